@@ -25,15 +25,15 @@ def words_in(name: str) -> set[str]:
 
 @dataclass(frozen=True)
 class Kind:
-    """What encodings are of.
+    """A kind of encoding, by the quantity that it encodes.
 
     Attributes:
-        name: what a reader calls what is encoded.
-        folder: where the pairs of files lie.
-        plural: what is encoded, of several.
-        command: what measures a user's file of it, with {} for the file.
-        spoken: what names of functions that are of it have in them, in lower case.
-        begins: what a word of such a name begins with, which others may have in them: Through has rough.
+        name: human-readable name of the quantity.
+        folder: folder of the pairs of files.
+        plural: the quantity in the plural.
+        command: command that measures a user's file of this kind, with {} for the file.
+        spoken: parts of the names of functions of this kind, in lower case.
+        begins: beginnings of words in such names that may occur inside other words: Through has rough.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Kind:
 
     @property
     def word(self) -> str:
-        """Its name as one word: frame of tangent frames."""
+        """Its name as one word: frame for tangent frames."""
         return self.name.rpartition(" ")[2]
 
     def is_in(self, name: str) -> bool:
@@ -101,7 +101,7 @@ def kind_spoken_of(name: str) -> Kind | None:
 
 
 class AnyEncoding(Protocol):
-    """What encodings of every kind say of themselves; see each kind for what they mean there."""
+    """The attributes that encodings of every kind have; each kind's class says what they mean there."""
 
     kind: ClassVar[Kind]
 

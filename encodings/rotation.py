@@ -1,7 +1,8 @@
 """Tangent frames, and the quaternions of their rotations.
 
-A quaternion x, y, z, w turns the axes into the frame: x into the tangent, y into normal x tangent, z into the normal.
-Of its two signs the one is taken whose largest component is positive. The GLSL twin of this file is `rotation.glsl`.
+A quaternion x, y, z, w turns the axes into the frame: x into the tangent, y into normal x tangent, z into the
+normal. Of the two signs of a quaternion, the one with the positive largest component is used. The GLSL twin of this
+file is `rotation.glsl`.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ class Frame(NamedTuple):
 
 
 def frame_of(normal: Vec3, tangent: Vec3, hand) -> Frame:
-    """A frame of any numbers: +z and +x where they are no direction, and 1 for a hand that is not below 0.
+    """Return a frame from any numbers: +z and +x replace invalid directions, a hand that is not below 0 becomes 1.
 
-    Every path into an encoder of frames goes through this once, so that no input makes a texel that is not a number.
+    Every path into an encoder of frames goes through this function once, so that no input makes a texel NaN.
     """
     length2 = dot(tangent, tangent)
     is_direction = (length2 > TINY) & (length2 < 1.0 / TINY)

@@ -127,7 +127,7 @@ def sqrt(x):
 
 
 def inversesqrt(x):
-    """One over the square root."""
+    """Return one over the square root."""
     return 1.0 / jnp.sqrt(x)
 
 

@@ -1,4 +1,4 @@
-"""How linear light becomes the image that a display is sent: exposure, tone mapping, clipping, the sRGB curve."""
+"""The path from linear light to the image sent to a display: exposure, tone mapping, clipping, the sRGB curve."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ MAX_EXPOSURE = 20.0
 
 @dataclass(frozen=True)
 class Display:
-    """What a display is sent.
+    """Settings of the image sent to a display.
 
     Attributes:
         exposure: in stops: light is multiplied by 2^exposure.

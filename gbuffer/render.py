@@ -33,7 +33,7 @@ WALL, QUERY = "wall clock after each pass", "GL timer query"
 
 @dataclass(frozen=True)
 class Timing:
-    """Milliseconds of repeated frames: the median, how far apart the quartiles lie, and each of them."""
+    """Milliseconds of repeated frames: the median, the distance between the quartiles, and each sample."""
 
     median: float
     spread: float
@@ -42,7 +42,7 @@ class Timing:
 
 @dataclass(frozen=True)
 class Clock:
-    """What times are taken by: its name, and what runs something and gives its milliseconds."""
+    """A clock: its name, and a function that runs another one and returns its milliseconds."""
 
     name: str
     measure: Callable[[Callable[[], object]], float]
@@ -94,11 +94,11 @@ class Rendering:
         self._is_warm = False
 
     def draw(self, scene: Scene | None = None, keeps: Keeps | None = None) -> None:
-        """One frame, all passes in order.
+        """Draw one frame, all passes in order.
 
         Args:
             scene: the scene at another moment, if one is given.
-            keeps: what the G-buffer keeps in place of the normals; of layout fp32 at one sample a pixel alone.
+            keeps: what the G-buffer keeps in place of the normals; only for layout fp32 at one sample per pixel.
         """
         if scene:
             self.frame.show(scene)
@@ -129,10 +129,10 @@ class Rendering:
         return covered, position[covered]
 
     def surfaces(self) -> list[np.ndarray]:
-        """What the passes up to the geometry's leave, those passes run: the textures of the G-buffer, then those of the
-        light that surfaces give off themselves; float32, (height, width, channels) each, row 0 on top.
+        """Run the passes up to the geometry pass and return their output: the textures of the G-buffer, then those of
+        the light that surfaces emit; float32, (height, width, channels) each, row 0 on top.
 
-        At one sample a pixel, of a layout and a light buffer in 32-bit floats.
+        Only at one sample per pixel, with a layout and a light buffer in 32-bit floats.
         """
         self.frame.advance()
         for name, run in self.passes.items():
@@ -172,8 +172,8 @@ class Rendering:
         return self.read(FINAL if self.frame.plan.samples == 1 else RESOLVED, RESOLVE)[0][..., :3]
 
     def gbuffer(self) -> list[np.ndarray]:
-        """What the G-buffer of the frame last drawn says, as `unpack.UNPACKED` lists it; row 0 on top, 0 where nothing
-        is covered. At one sample a pixel only."""
+        """Return the content of the last frame's G-buffer, in the order of `unpack.UNPACKED`; row 0 on top, 0 where
+        nothing is covered. Only at one sample per pixel."""
         return [self.read(resource, UNPACK)[0] for resource in UNPACKED]
 
     def read(self, resource: Resource, by: Pass | None = None) -> list[np.ndarray]:
@@ -185,7 +185,7 @@ class Rendering:
         return [read_pixels(texture)[::-1] for texture in self.frame.textures(resource)]
 
     def timings(self, repeats: int) -> tuple[dict[str, Timing], str]:
-        """Each pass, and the whole as "frame", over repeated frames after at least one; and which clock it was."""
+        """Time each pass, and the whole as "frame", over repeated frames after at least one; also return the clock."""
         clock = clock_of(self._device)
         if not self._is_warm:
             self.draw()
@@ -227,7 +227,7 @@ def rendering(device: Device, pipeline: Pipeline, scene: Scene, plan: Plan) -> I
 
 
 def check(device: Device, pipeline: Pipeline, plan: Plan, is_metal_rough: bool = False) -> None:
-    """Raises LayoutError where a plan does not suit a pipeline, the scene's materials or the device; one line."""
+    """Raise LayoutError if a plan does not suit a pipeline, the scene's materials or the device; one line."""
     layout, light = plan.layout, plan.light_buffer
     if is_metal_rough:
         check_metal_rough(pipeline)
@@ -252,7 +252,7 @@ def check(device: Device, pipeline: Pipeline, plan: Plan, is_metal_rough: bool =
 
 
 def check_metal_rough(pipeline: Pipeline) -> None:
-    """Raises LayoutError where a pipeline cannot carry metal/rough materials; one line."""
+    """Raise LayoutError if a pipeline does not support metallic-roughness materials; one line."""
     if pipeline.told.get("LIGHT_HOLDS") == TERMS:
         raise LayoutError(
             f"{pipeline.name} cannot carry metal/rough materials: its light buffer keeps no light by Fresnel's term; "
@@ -261,7 +261,8 @@ def check_metal_rough(pipeline: Pipeline) -> None:
 
 
 def bytes_per_pixel(pipeline: Pipeline, plan: Plan) -> float:
-    """What a pipeline keeps for each pixel of the image, at all its samples: all that its passes write but the image
-    itself and what has a size in pixels of its own; one copy of each, all copies of what the next frame reads."""
+    """Return the bytes that a pipeline keeps per pixel of the image, at all its samples: everything that its passes
+    write except the image itself and resources with their own size in pixels; one copy of each, but all copies of
+    what the next frame reads."""
     kept = (resource for resource in pipeline.resources.values() if resource != FINAL)
     return float(sum(resource.bytes_per_pixel(pipeline.planned(plan)) for resource in kept))

@@ -126,7 +126,7 @@ def _build_given(canvas: Canvas) -> Run:
 
 
 class LightsOnColumns:
-    """Each light on the columns whose pixels it reaches, the sun on all."""
+    """Draws each light on the columns whose pixels it reaches, and the sun on all columns."""
 
     def __init__(self, canvas: Canvas, positions: np.ndarray):
         self._canvas, self._blend = canvas, BLEND_OF[canvas.plan.light_buffer.blend]

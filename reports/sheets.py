@@ -1,6 +1,6 @@
-"""What rows are shown as: columns with their definitions, sheets to read, and what a page says of a table.
+"""The presentation of rows: columns with their definitions, sheets to read, and a page's description of a table.
 
-Imports nothing but the standard library: every start of the program does so with this.
+Imports nothing but the standard library, because every start of the program imports this module.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ Row = dict[str, Any]
 
 
 class Role(StrEnum):
-    """What a column is for."""
+    """The purpose of a column."""
 
     KEY = "key"  # names the row
     FIGURE = "figure"  # what was measured; gates and comparisons hold these
@@ -56,7 +56,7 @@ class Column:
 
     @property
     def definition(self) -> str:
-        """What it says, with its unit."""
+        """Its definition, with its unit."""
         return f"{self.says} Unit: {self.unit}." if self.unit else self.says
 
     def is_called(self, name: str) -> bool:
@@ -65,7 +65,7 @@ class Column:
 
 
 def column_called(name: str, columns: Iterable[Column]) -> Column | None:
-    """The column that a row or a summary calls so; None where there is none."""
+    """Return the column for a name in a row or a summary; None if there is none."""
     matches = [column for column in columns if column.is_called(name)]
     # `ms_frame` is itself and not one of `ms_*`.
     return max(matches, key=lambda column: len(column.name), default=None)
@@ -77,7 +77,7 @@ def undefined(name: str) -> Column:
 
 
 class View(StrEnum):
-    """What a reader of the page is at; one is shown at a time, in this order."""
+    """The page's views for the reader; one is shown at a time, in this order."""
 
     CHOOSE = "choose"  # what to take
     COMPARE = "compare"  # two codecs' pictures
@@ -94,14 +94,15 @@ class Section:
 
     Attributes:
         title: its heading.
-        short: what the navigation calls it.
+        short: its name in the navigation.
         intro: the question that it answers.
         method: how it is measured, in sentences.
-        parts: a column; rows that differ in it are shown as tables of their own.
-        extras: what the page's template shows beside the tables.
-        view: where it is shown.
+        parts: a column; rows with different values in it are shown as separate tables.
+        extras: what the page's template shows next to the tables.
+        view: the view that shows it.
         leads: whether it is the page's answer.
-        of_texels: whether bytes of whole texels decide its figures, and not only the numbers that are stored.
+        of_texels: whether its figures depend on the bytes of whole texels, and not only on the numbers that are
+            stored.
     """
 
     title: str
@@ -120,12 +121,12 @@ class Sheet:
     """Rows for people to read, all with the same columns.
 
     Attributes:
-        title: empty where the rows need none.
+        title: empty if the rows need none.
         rows: the lines.
-        drops: the columns that a narrow terminal leaves out, the first first.
-        notes: lines below them, on a terminal and in Markdown.
-        said: paragraphs above them, the first of which is the answer.
-        aside: paragraphs after those that say what is not part of the answer; a page folds them.
+        drops: the columns that a narrow terminal leaves out, in this order.
+        notes: lines below the rows, on a terminal and in Markdown.
+        said: paragraphs above the rows, the first of which is the answer.
+        aside: paragraphs after those, on what is not part of the answer; a page folds them.
         keys: what the title says of every row, by column.
     """
 

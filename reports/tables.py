@@ -1,4 +1,4 @@
-"""One table, five ways to write it."""
+"""Five ways to write a table."""
 
 from __future__ import annotations
 
@@ -158,16 +158,16 @@ def _fitting(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[st
 
 
 def _widths(rows: Sequence[dict[str, Any]], columns: Sequence[str]) -> list[int]:
-    """What each column needs: headers may break between words, cells nowhere but in long prose."""
+    """Return the width that each column needs: headers may break between words, cells only in long prose."""
     longest = (max(len(text_of(row[column])) for row in rows) for column in columns)
     return [max(min(cell, PROSE), *map(len, c.split("_"))) for cell, c in zip(longest, columns, strict=True)]
 
 
 def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[str] = (), total: str = "") -> str:
-    """A table for people; `total` as in `written`.
+    """Return a table for people; `total` as in `written`.
 
-    Columns that say the same in every row go to the line below it; where the rest does not fit, columns named in
-    `expendable` are left out, the first first, and that is said.
+    Columns with the same value in every row move to the line below the table. If the rest does not fit, the columns
+    in `expendable` are left out, the first first, and a note lists them.
     """
     from io import StringIO
 
@@ -230,7 +230,7 @@ def written(
 
 
 def _lead(lead: str, format: str) -> list[str]:
-    """What stands above a table, with an empty line below it; in Markdown each of its lines is a paragraph."""
+    """Return the text above a table, with an empty line below it; in Markdown each of its lines is a paragraph."""
     if not lead:
         return []
     lines = [markdown_sentence(line) if format == "markdown" else line for line in lead.split("\n")]

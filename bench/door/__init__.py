@@ -1,1 +1,1 @@
-"""What users come in by: the command line, gates, tests and Python."""
+"""Entry points for users: the command line, gates, tests and Python."""

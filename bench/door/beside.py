@@ -1,6 +1,6 @@
-"""What the second process of a run does; see `run/second.py`.
+"""The work of the second process of a run; see `run/second.py`.
 
-Imports nothing heavy: the first process names these functions before it has imported what they need.
+Imports nothing heavy: the first process refers to these functions before it has imported what they need.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from ..tables.table import Row, Step
 
 @dataclass(frozen=True)
 class Asking:
-    """What is asked of a table: its name, sets of its options, and its outputs."""
+    """A request for a table: its name, sets of its options, and its outputs."""
 
     table: str
     options: Sequence[Any]
@@ -32,11 +32,11 @@ class Asking:
 
     @classmethod
     def of(cls, ask: Asked) -> Asking:
-        """What a process asks another one for."""
+        """Return a request in the form that one process sends to another."""
         return cls(ask.table.name, (ask.options, *ask.others), ask.outputs)
 
     def asked(self) -> Asked:
-        """The same in the other process. Raises UsageError and MissingError."""
+        """Return the same request in the other process. Raises UsageError and MissingError."""
         return asked_together(TABLES[self.table], self.options, self.outputs)
 
 
@@ -49,7 +49,7 @@ class Sent:
         self._send = send
 
     def find(self, table: str, step: Step) -> list[Row] | None:
-        """The rows of a step that were kept before; None where there are none."""
+        """Return the rows of a step that were kept before; None if there are none."""
         return self._rows.get(key_text(table, step.key))
 
     def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
@@ -74,16 +74,16 @@ def prepare(send: Send, tables: Sequence[str] = ()) -> None:  # noqa: ARG001 # a
 
 
 def measure(send: Send, folder: Path, own: Sequence[Asking], others: Sequence[Asking], said: Iterable[str]) -> None:
-    """Measure tables one after the other; then write what the first process has measured.
+    """Measure tables one after the other, then write the files of those that the first process has measured.
 
     Args:
-        folder: of the run.
+        folder: the run's folder.
         own: tables that this process measures and writes.
-        others: tables that the first process measures, and whose files this one writes.
-        said: lines that the first process has told.
+        others: tables that the first process measures, and whose files this process writes.
+        said: lines that the first process has already printed.
 
     Raises:
-        UsageError, MissingError: what was wrong.
+        UsageError, MissingError: a table cannot be measured or written.
     """
     told.update(said)
     sent = Sent(folder, send)

@@ -1,4 +1,4 @@
-"""What `code` does: writes a codec's code in the languages that engines are written in, and verifies it."""
+"""The `code` command: writes a codec's functions in the languages used by engines, and verifies them."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
 
 
 def _of_named(word: str) -> str:
-    """What the codes are of: a kind, a layout, or empty for what the names say. Raises UsageError."""
+    """Return what `--of` names: a kind, a layout, or empty if the names decide. Raises UsageError."""
     known = (*NAMED, LAYOUT)
     if not word:
         return ""
@@ -84,7 +84,7 @@ def _of_named(word: str) -> str:
 
 
 def _check_prefix(prefix: str) -> None:
-    """Raises UsageError for a prefix that names cannot begin with in every language."""
+    """Raise UsageError for a prefix that names in some language cannot begin with."""
     is_name = re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", prefix) and not prefix.lower().startswith("gl_")
     if prefix and not (is_name and len(prefix) <= LONGEST):
         raise UsageError(
@@ -134,8 +134,8 @@ def _write(codecs: Sequence[Any], languages: Sequence[str], options: CodeOptions
 
 
 def _prefix(codec: Any, codecs: Sequence[Any], options: CodeOptions) -> str:
-    """What a codec's names begin with; empty for what they usually do. Codecs of one kind, which lie in one folder and
-    may be used together, have names of their own."""
+    """Return the prefix of a codec's names; empty for the usual prefix. Codecs of one kind are written to one folder
+    and may be used together, so each has names of its own."""
     is_alone = sum(usual_prefix(other) == usual_prefix(codec) for other in codecs) == 1
     return options.prefix or ("" if is_alone else stem_of(codec))
 

@@ -1,4 +1,4 @@
-"""What the head of a codec's code says: what it is, its figures, and how it was verified."""
+"""The header of a codec's source file: what the file is, its figures, and how it was verified."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ STAGE, FAMILY, FAMILY_TITLE = "fragment", "navi21", "AMD RDNA 2 (navi21, RADV)"
 
 
 def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str]) -> list[str]:
-    """The paragraphs above a file's functions.
+    """Return the paragraphs above a file's functions.
 
     Args:
-        code: what the file holds.
-        codec: what was measured; of a code for another half than z >= 0 in other axes than the file's.
-        command: what made it.
+        code: the contents of the file.
+        codec: the measured codec; for a half other than z >= 0, its axes differ from the file's.
+        command: the command that made the file.
         verified: how its results compare with the catalogue's.
-        said: its codec's figures, see `figures`.
+        said: the codec's figures, see `figures`.
     """
     encoding, kind = codec.encoding, kind_of(codec)
     compared = verified.replace(" are equal, bit", " are the catalogue's, bit", 1) if kind.is_ours(codec) else verified
@@ -51,7 +51,7 @@ def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str
 
 
 def rounding_of(codec: Any) -> str:
-    """How the storage of a codec of any kind rounds; codecs that do not say round to the nearest."""
+    """Return how the storage of a codec of any kind rounds; to the nearest if the codec does not say."""
     return getattr(codec, "rounding", "nearest")
 
 

@@ -1,4 +1,4 @@
-"""What `code` of codecs and of layouts share: how a file's results compare, a table of that, and where files go."""
+"""Shared parts of `code` for codecs and for layouts: comparing a file's results, their table, and output paths."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ CodeT = TypeVar("CodeT", Code, GBufferCode)
 def compared(
     agreement: Callable[[], verify.Agreement | layout_verify.Agreement], language: str, more: Sequence[str] = ()
 ) -> Row:
-    """Run a file: its verdict, figures (with `more` of its agreement), and what is said of them."""
+    """Run a file and return its verdict, its figures (with `more` from its agreement), and a description of them."""
     try:
         agrees, how = agreement(), runner(language).how()
     except (MissingError, NoDeviceError) as error:
@@ -51,13 +51,13 @@ def compared(
 
 
 def witness(codes: Iterable[CodeT], verified: Callable[[CodeT], Row]) -> list[tuple[CodeT, Row]]:
-    """Return the first of some codes that can be run here, with its row; nothing where none can."""
+    """Return the first file that can be run here, with its row; an empty list if none can."""
     rows = ((code, verified(code)) for code in codes)
     return list(islice((pair for pair in rows if pair[1]["verdict"] != NOT_RUN), 1))
 
 
 def check_place(output: Path | None, count: int) -> None:
-    """Raise UsageError where so many files cannot be written into a folder, or to standard output without one."""
+    """Raise UsageError if `count` files cannot be written to a folder, or to standard output without one."""
     check_is_folder(output, "code writes into")
     if output:
         check_folder(output)
@@ -66,8 +66,8 @@ def check_place(output: Path | None, count: int) -> None:
 
 
 def save(code: Code | GBufferCode, head: Sequence[str], output: Path | None) -> None:
-    """Write a code's files into a folder and name them, or its text to standard output. Raises UsageError where it is
-    several files and there is no folder."""
+    """Write the files to a folder and report their paths, or write the text to standard output. Raises UsageError if
+    there are several files and no folder."""
     files = code.files(head)
     if output is None and len(files) > 1:
         raise UsageError(f"{code.name} comes with look-up tables: name a folder with -o")

@@ -1,4 +1,4 @@
-"""What `doctor FILE` does: says what is likely wrong with an encoding, and draws its error over the sphere."""
+"""The `doctor FILE` command: reports what is likely wrong with an encoding, and plots its error over the sphere."""
 
 from __future__ import annotations
 
@@ -55,19 +55,19 @@ def examine_encoding(
     report: Path | None = None,
     sources: Mapping[str, Any] = MappingProxyType({}),
 ) -> int:
-    """Write a verdict, findings and notes, and the picture if one is asked for.
+    """Write a verdict, findings and notes, and the plot if one is asked for.
 
     Args:
-        storage: the name of the one that it is measured in; None for STORAGE.
-        domain: one of DOMAINS, that it is meant for; None to find out.
-        diff, report: of a folder, where a patch and a page go; None for none.
-        sources: how it is read, by options of `Sources`.
+        storage: the name of the storage to measure in; None for STORAGE.
+        domain: the domain that the encoding is meant for, one of DOMAINS; None to find out.
+        diff, report: for a folder, the paths of a patch and a page to write; None to write none.
+        sources: how the file is read, by options of `Sources`.
 
     Returns:
-        the exit status: 1 where something is likely wrong.
+        the exit status: 1 if something is likely wrong.
 
     Raises:
-        UsageError: there is no file, it is not an encoding, a name is unknown, or something cannot be written.
+        UsageError: no file is given, it is not an encoding, a name is unknown, or something cannot be written.
     """
     if file is None:
         raise UsageError("doctor examines a file with --plot, --storage and --domain: name it")
@@ -127,7 +127,7 @@ def examine_encoding(
 
 
 def _examine_own(file: UserFile, kind: OwnKind, format: str, output: Path | None) -> int:
-    """The same of a code of something else than normals."""
+    """Write the same for an encoding of something other than normals, and return the exit status."""
     own = examined_code(kind, file)
     command = kind.kind.command.format(command_line([file.plain]))
     about = {"file": file.path.name, "encoding": own.made.name, "domain": kind.kind.plural}
@@ -177,7 +177,7 @@ def bulleted(lines: Sequence[str], format: str) -> str:
 
 
 def _storage(name: str) -> Storage:
-    """Raises UsageError where it is not one."""
+    """Return the storage of a name. Raises UsageError if it does not name exactly one."""
     storages = storages_named((name,))
     if len(storages) != 1:
         raise UsageError(f"--storage {name}: doctor measures in one storage")
@@ -185,12 +185,12 @@ def _storage(name: str) -> Storage:
 
 
 def _domain(found: Examined) -> str:
-    """What a row calls the domain: of a hemisphere that is not z >= 0, which it is."""
+    """Return the name of the domain for a row; for a hemisphere other than z >= 0, also which one it is."""
     return found.domain.name + (f", {found.domain.text}" if found.domain.is_turned else "")
 
 
 def no_numbers(storage: Storage, row: Mapping[str, Any]) -> list[str]:
-    """Count the codes that are no numbers once they are rounded, whatever exact ones are, by a row of quality."""
+    """Report how many rounded codes decode to NaN or infinity, whatever exact codes do, by a row of `quality`."""
     if not row.get("invalid"):
         return []
     share = f"{row['invalid']} of {row['count']} rounded codes ({100 * row['invalid'] / row['count']:.2g} %)"
@@ -214,7 +214,7 @@ def _compared(found: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str
 
 
 def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
-    """What half arithmetic makes of a code whose file declares it; nothing of others."""
+    """Return a note on the errors in half precision of an encoding whose file declares it; empty for others."""
     if not codec.encoding.is_also_half:
         return []
     half = Codec(in_half(codec.encoding), codec.storage)

@@ -1,4 +1,4 @@
-"""What `doctor FOLDER` does: reads every shader file below a folder once, and says in one table what its pairs lose."""
+"""The `doctor FOLDER` command: reads every shader file below a folder once and tabulates the errors of their pairs."""
 
 from __future__ import annotations
 
@@ -72,15 +72,15 @@ PATCH = "Codes of normals by normalbench doctor"
 
 @dataclass
 class Pair:
-    """An encoder and its decoder.
+    """An encoder–decoder pair.
 
     Attributes:
-        file: from the folder on; of two, both.
-        word: it, as it is named on the command line.
-        looked: what a close look found.
-        storage: what its code lies in.
-        row: its figures.
-        findings: what is likely wrong, lines.
+        file: the path from the folder; both paths if the pair is in two files.
+        word: the pair, as it is named on the command line.
+        looked: the result of a close examination.
+        storage: the storage of the pair's codes.
+        row: the pair's figures.
+        findings: lines on what is likely wrong.
     """
 
     file: str
@@ -98,14 +98,14 @@ class Pair:
 
 @dataclass
 class Other:
-    """A file whose functions are not measured in the table, or some of them.
+    """A file with functions that are not measured in the table.
 
     Attributes:
-        file: from the folder on.
-        why: why not.
-        functions: ENCODE:DECODE, or the name of a function without a partner; None where there is no pair.
-        lone: its encoder or its decoder, where the other one is missing.
-        findings: what is likely wrong, lines.
+        file: the path from the folder.
+        why: why they are not measured.
+        functions: ENCODE:DECODE, or the name of a function without a partner; None if there is no pair.
+        lone: the encoder or the decoder, if the other is missing.
+        findings: lines on what is likely wrong.
     """
 
     file: str
@@ -124,19 +124,19 @@ def examine_folder(
     report: Path | None = None,
     sources: Mapping[str, Any] = MappingProxyType({}),
 ) -> int:
-    """Write the table of a folder's pairs, and what is likely wrong below it.
+    """Write the table of a folder's pairs, and below it what is likely wrong.
 
     Args:
-        storage: what every code lies in; None for what each implies.
-        diff: a file for a patch that puts the catalogue's best codes in place of worse ones; None for none.
-        report: where a page goes; None for none.
+        storage: the storage of every pair; None for the storage that each pair implies.
+        diff: a file for a patch that replaces worse encodings with the catalogue's best; None for no patch.
+        report: the path of a page to write; None for no page.
         sources: how files are read, by options of `Sources`.
 
     Returns:
-        the exit status: 1 where something is likely wrong.
+        the exit status: 1 if something is likely wrong.
 
     Raises:
-        UsageError: there is no pair, or something cannot be written.
+        UsageError: the folder has no pair, or something cannot be written.
     """
     check_page(report)
     if diff:
@@ -181,10 +181,10 @@ def _save(path: Path, text: str) -> None:
 
 
 def files_below(folder: Path) -> Iterator[Path]:
-    """The shader files below a folder, in order; hidden folders and those of other people's packages are left out.
+    """Yield the shader files below a folder, in order, without hidden folders and those of third-party packages.
 
     Raises:
-        UsageError: there are too many.
+        UsageError: there are too many files.
     """
     count, seen = 0, set[Path]()
     for path in sorted(folder.rglob("*")):
@@ -219,7 +219,7 @@ def _text(path: Path) -> str:
 
 
 def _looked(folder: Path, storage: Storage | None, word: str) -> list[Pair | Other]:
-    """What there is to say of a file: its pairs of normals, and those of other kinds that its functions' names say."""
+    """Return the entries of a file: its pairs for normals, and those of other kinds by its functions' names."""
     shader = UserFile(word)
     file = shader.path.relative_to(folder).as_posix()
     others = [_of_kind(file, shader, kind) for kind in _kinds_by_names(shader.path)]
@@ -254,7 +254,7 @@ def _names_a_pair(path: Path) -> bool:
 
 
 def _of_pairs(folder: Path, storage: Storage | None, word: str, pairs: Sequence[str]) -> list[Pair | Other]:
-    """What there is to say of some pairs of a file."""
+    """Return the entries of some pairs of a file."""
     words = [UserFile(word).with_pair(pair).word for pair in pairs]
     measured = (each for pair in words[:MOST_PAIRS] for each in _of_normals(folder, storage, pair))
     file = UserFile(word).path.relative_to(folder).as_posix()
@@ -266,7 +266,7 @@ def _without(path: Path, error: Exception) -> str:
 
 
 def _kinds_by_names(path: Path) -> Iterator[OwnKind]:
-    """The kinds, other than normals, of which a file's functions are an encoder and a decoder by their names."""
+    """Yield the kinds, other than normals, for which a file has an encoder and a decoder, judging by their names."""
     names = [name for name in _DEFINED.findall(_text(path)) if role(name)]
     for kind, own in OWN.items():
         if len({role(name) for name in names if kind_spoken_of(name) is kind and not name_speaks_of_normals(name)}) > 1:
@@ -274,7 +274,7 @@ def _kinds_by_names(path: Path) -> Iterator[OwnKind]:
 
 
 def _of_kind(file: str, shader: UserFile, kind: OwnKind) -> Other:
-    """What is said of a code of something else than normals, and what measures it."""
+    """Return the entry of an encoding of something other than normals, with the command that measures it."""
     try:
         own = examined_code(kind, shader)
     except (UsageError, MissingError) as error:
@@ -292,7 +292,7 @@ def _pair(file: str, word: str, storage: Storage | None) -> Pair:
 
 
 def implied_storage(looked: Examined) -> Storage:
-    """What a code lies in, as far as it says: the steps that it rounds to itself, else 8 bits a number."""
+    """Return the storage that an encoding implies: the one whose steps it rounds to itself, else 8 bits per number."""
     encoding, lattice = looked.encoding, looked.lattice
     if encoding.is_packed:
         return BITS_32
@@ -327,7 +327,7 @@ def _across_files(
 
 
 def _shared_folders(file: str, other: str) -> int:
-    """How many folders two files have in common."""
+    """Return the number of folders that two files have in common."""
     return len(Path(os.path.commonpath([f"/{file}", f"/{other}"])).parts)
 
 
@@ -339,7 +339,7 @@ def _disagreements(reader: OneFunctionError, pairs: Sequence[Pair]) -> Iterator[
 
 
 def _of_target(path: Path, functions: str) -> Iterator[str]:
-    """What is likely wrong with how the code's texels are read, in the file itself."""
+    """Yield what is likely wrong, in the file itself, with how the encoding's texels are read."""
     text, decode = _text(path), functions.rpartition(":")[2].partition("(")[0]
     if match := re.search(_FILTERED.format(re.escape(decode)), text, re.I):
         line = text.count("\n", 0, match.start()) + 1
@@ -350,7 +350,7 @@ def _of_target(path: Path, functions: str) -> Iterator[str]:
 
 
 def _measure(pairs: Sequence[Pair]) -> None:
-    """Errors, prices, and the best code of the catalogue in the same storage."""
+    """Measure errors and costs, and find the best encoding of the catalogue in the same storage."""
     by_question: dict[tuple[str, str], list[Pair]] = {}
     for pair in pairs:
         codec = Codec(pair.looked.encoding, pair.storage)
@@ -399,13 +399,13 @@ def _figures(row: Row, best: Row | None) -> Row:
 
 
 class Told:
-    """What is said of a folder's pairs.
+    """The report on a folder's pairs.
 
     Attributes:
-        rows: one for each pair, and for each file that speaks of one and has none.
-        measured: those of pairs that were measured, for people.
-        lines: what is likely wrong, and why others were not measured.
-        lead: how many there are, in a sentence.
+        rows: one for each pair, and one for each file that seems to have a pair but has none.
+        measured: the rows of pairs that were measured, for people.
+        lines: what is likely wrong, and why other pairs were not measured.
+        lead: the counts, in a sentence.
     """
 
     def __init__(self, folder: Path, files: int, all_told: Sequence[Pair | Other]):

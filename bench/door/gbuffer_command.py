@@ -1,4 +1,4 @@
-"""What `code --of layout` does: writes the code that packs and unpacks a whole G-buffer, and verifies it."""
+"""The `code --of layout` command: writes functions that pack and unpack a whole G-buffer, and verifies them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def is_of_layouts(options: CodeOptions) -> bool:
 
 
 def check_no_layout(options: CodeOptions) -> None:
-    """Raises UsageError where the name of a layout stands among those of encodings."""
+    """Raise UsageError if a layout's name is among the names of encodings."""
     for word in map(str, options.codec):
         if not options.of and word in LAYOUTS and word not in ENCODINGS:
             raise UsageError(f"{word} is a layout: normalbench code {word} --of {LAYOUT}")

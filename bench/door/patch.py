@@ -74,7 +74,7 @@ def _part_of(folder: Path, file: str, pairs: Sequence[Pair]) -> str:
 
 
 def _mean_of(patched: str, path: Path, pair: Pair) -> float:
-    """The mean error of a patched file. Raises UsageError where it is not that of the best code."""
+    """Return the mean error of a patched file. Raises UsageError if it is not that of the best encoding."""
     with tempfile.TemporaryDirectory() as place:
         copy = Path(place) / path.name
         copy.write_bytes(patched.encode())
@@ -139,6 +139,6 @@ def _parameter(bare: str, item: Item) -> str:
 
 
 def _line_start(bare: str, item: Item) -> int:
-    """Where the line of a function's name begins, in a text without comments."""
+    """Return the start of the line with a function's name, in a text without comments."""
     name = re.compile(rf"\b{item.name}\s*\(").search(bare, item.start)
     return bare.rfind("\n", 0, name.start() if name else item.start) + 1

@@ -1,4 +1,4 @@
-"""What `run` does: many tables into a results folder with its page. A run that was stopped goes on."""
+"""The `run` command: measures many tables into a results folder with its page. A stopped run resumes."""
 
 from __future__ import annotations
 
@@ -41,21 +41,21 @@ REPORT = "report.html"
 
 
 def chosen_tables(names: Names, said: Mapping[str, Any]) -> list[Table]:
-    """Return the tables that names stand for; of "all" those measured unasked, with the options that were said. Raises
-    UsageError."""
+    """Return the tables that names stand for; for "all", those measured by default with the options that were given.
+    Raises UsageError."""
     if names == ("all",):
         return [table for table in TABLES.values() if table.is_in_all(said)]
     return list(dict.fromkeys(choose("table", names, TABLES)))
 
 
 def given(request: Any) -> dict[str, Any]:
-    """What of a request was said."""
+    """Return the options that were given in a request, without `tables`."""
     values = {field.name: getattr(request, field.name) for field in fields(request) if field.name != "tables"}
     return {name: value for name, value in values.items() if value is not None}
 
 
 def options_of(table: Table, said: Mapping[str, Any]) -> list[Any]:
-    """A table's options in a run: what is usual, and what was said in place of it."""
+    """Return a table's options in a run: the usual values, replaced by those that were given."""
     known = fields_of(table.options)
     own = {name: value for name, value in said.items() if name in known and known[name].option.in_run}
     # A layout is measured as it is where nothing is said to put into it.
@@ -72,11 +72,11 @@ def _read_so(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def asked_of(request: Any, folder: Path) -> list[Asked]:
-    """What a request asks of each table; which of them this machine cannot measure is said on standard error.
+    """Return what a request asks of each table; report on standard error which tables this machine cannot measure.
 
     Raises:
-        UsageError: an unknown table, or an option that cannot be.
-        MissingError: this machine can measure none of them.
+        UsageError: a table is unknown, or an option is invalid.
+        MissingError: this machine can measure none of the tables.
     """
     asks: list[Asked] = []
     reasons: dict[str, list[str]] = {}
@@ -97,7 +97,7 @@ def asked_of(request: Any, folder: Path) -> list[Asked]:
 
 
 def _check_taken(chosen: Iterable[Table], said: Mapping[str, Any]) -> None:
-    """Raises UsageError for an option that none of the tables takes, or that nothing is there for."""
+    """Raise UsageError for an option that no chosen table takes, or that applies to files if none is named."""
     in_names(said)
     for name in said:
         takers = [table for table in TABLES.values() if _takes(table, name)]
@@ -113,7 +113,7 @@ def _takes(table: Table, name: str) -> bool:
 
 
 def _asked(table: Table, said: Mapping[str, Any], folder: Path) -> Asked:
-    """What is asked of one table, each step once."""
+    """Return the request for one table, each step once."""
     if missing := table.work.missing():
         raise MissingError(missing)
     return asked_together(table, options_of(table, said), in_folder(table, table.outputs(), folder))
@@ -219,7 +219,7 @@ def _measure_all(
 
 
 def _beside(asks: Iterable[Asked]) -> list[Asked]:
-    """What the second process measures, so that both take as long: no answer, and nothing that times are taken of."""
+    """Return what the second process measures, so that both take as long: not the answer, and nothing that is timed."""
     chosen: list[Asked] = []
     own = sum(seconds_of(ask) for ask in asks if ask.table.section.leads or _takes_times(ask))
     beside = 0.0

@@ -1,4 +1,5 @@
-"""What `run` keeps of code for its page: every codec of the catalogue in all languages, that of the answers run."""
+"""The functions that `run` keeps for its page: every codec of the catalogue in all languages. Those of the answers
+are run."""
 
 from __future__ import annotations
 

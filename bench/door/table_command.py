@@ -1,4 +1,4 @@
-"""What the command of a table does: measure, show the rows, write what else was asked for."""
+"""The command of a table: measures, shows the rows, and writes the other outputs that were asked for."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def in_folder(table: Table, outputs: Any, folder: Path) -> Any:
 
 
 def _work(table: Table) -> Row:
-    """What kept rows must agree in to be taken again."""
+    """Return what kept rows must agree in to be reused."""
     return {"table": table.name, "sources": sources(), "machine": platform.platform()}
 
 
@@ -135,7 +135,7 @@ def _show(table: Table, done: Measured, format: str, output: Path | None) -> boo
 
 
 def _plot(table: Table, done: Measured) -> None:
-    """Draw the table's charts into the file of --plot, where there is one. Raises UsageError where there are none."""
+    """Draw the table's charts into the file of --plot, if one is given. Raises UsageError if there are no charts."""
     path, work = getattr(done.outputs, "plot", None), table.work
     if not path or not work.has_charts:
         return
@@ -151,7 +151,7 @@ def _plot(table: Table, done: Measured) -> None:
 
 
 def _why_nothing(table: Table, rows: Sequence[Row]) -> str:
-    """Why there is no chart of rows: the first reason that a row gives, or that they have too few figures."""
+    """Return why rows have no chart: the first reason that a row gives, or that they have too few figures."""
     few = f"{len(rows)} row{'s' * (len(rows) != 1)} with too few figures for a chart; ask for more: {table.example}"
     return next((row["skipped"] for row in rows if row.get("skipped")), few)
 

@@ -1,1 +1,1 @@
-"""What everybody stands on: errors, files, option types, this machine, compiled C."""
+"""Shared foundations: errors, files, option types, this machine, compiled C."""

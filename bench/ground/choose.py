@@ -46,10 +46,10 @@ def choose_one(what: str, name: str, known: Collection[str]) -> str:
 
 
 def unknown_name(what: str, names: Iterable[str], known: Collection[str], listed: str = "") -> UsageError:
-    """What is said of names that nothing has, with what may have been meant.
+    """Return the error for unknown names, with what may have been meant.
 
     Args:
-        listed: what is known, where that is more than the names.
+        listed: the list of what is known, if that is more than the names.
     """
     listed = listed or ", ".join(known)
     guess = "".join(f" {hint}" for name in names if (hint := meant(name, known, what)))
@@ -84,7 +84,7 @@ def whole_file_of(word: str) -> str:
 
 
 def names_a_file(word: str) -> bool:
-    """Whether there is a file of this name; of a name that no file can have there is none."""
+    """Whether a file of this name exists; False for a name that no file can have."""
     with suppress(OSError, ValueError):
         return Path(word).is_file()
     return False

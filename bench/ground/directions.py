@@ -1,4 +1,4 @@
-"""Directions that encoders get wrong first: axes and what lies beside them, diagonals, circles; and random ones."""
+"""Directions that encoders get wrong first: axes and their neighbours, diagonals, circles; and random ones."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ AROUND = 96
 
 
 def directions() -> np.ndarray:
-    """Axes with both zeros and what lies beside them, diagonals, and random directions: float32 of shape (count, 3).
+    """Return axes with both zeros and their neighbours, diagonals, and random directions: float32 of shape (count, 3).
 
-    The last RANDOM are the random ones.
+    The last RANDOM directions are the random ones.
     """
     near = (0.0, -0.0, 1e-7, -1e-7, 1e-3, -1e-3)
     sides = itertools.product(range(3), (1.0, -1.0), near, near)
@@ -33,6 +33,6 @@ def circles() -> np.ndarray:
 
 
 def unit(v: np.ndarray) -> np.ndarray:
-    """Rows at length 1; those of length 0 stay."""
+    """Return rows scaled to length 1; rows of length 0 stay."""
     length = np.linalg.norm(v.astype(np.float64), axis=1, keepdims=True)
     return v / np.where(length > 0, length, 1.0)

@@ -90,7 +90,7 @@ def channels_of(word: str) -> tuple[str, ...]:
 
 
 def meant(word: str, known: Iterable[str], what: str = "") -> str:
-    """What somebody may have meant by an unknown word, as the end of a sentence; empty for no idea.
+    """Return what an unknown word may have meant, as the end of a sentence; empty if nothing is similar.
 
     Args:
         what: the kind of name, which may have other words for it.

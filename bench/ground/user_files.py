@@ -1,5 +1,5 @@
-"""How a user's encoder is named: a file, where it has several pairs of functions the two that are meant, and how it is
-read: mine.hlsl:EncodeNormal:DecodeNormal:define=QUALITY=2:include=Packages=../library.
+"""Names of users' encoders: a file, the two functions to use if it has several pairs, and the settings for reading
+it: mine.hlsl:EncodeNormal:DecodeNormal:define=QUALITY=2:include=Packages=../library.
 
 Imports nothing heavy: gates read these names before anything is measured.
 """
@@ -70,7 +70,7 @@ def _match(word: str) -> re.Match[str] | None:
 
 
 def _match_of_text(word: str) -> re.Match[str] | None:
-    """A word for a file that is there and is text, whatever its ending, but for those of other things."""
+    """Match a word for an existing text file, whatever its ending, except the endings of other kinds of files."""
     match = _OTHER.fullmatch(word)
     ending = Path(match["file"]).suffix.lower() if match else ""
     if not match or ending in _NO_SHADERS or ending in OTHER_LANGUAGES or not is_file(Path(), match["file"]):
@@ -83,14 +83,14 @@ def _match_of_text(word: str) -> re.Match[str] | None:
 
 
 class Settings(NamedTuple):
-    """How a user's file is read.
+    """Settings for reading a user's file.
 
     Attributes:
         defines: macros, NAME or NAME=VALUE.
         preludes: files that are put in front.
-        roots: folders in which includes are searched, each with what their names begin with; empty for any.
-        language: one of LANGUAGES; empty for that of its ending.
-        format: that a code of light lies in; empty for what it usually lies in.
+        roots: folders in which includes are searched, each with the prefix of their names; empty for any.
+        language: one of LANGUAGES; empty for the language of the file's ending.
+        format: the storage format of a light encoding; empty for its usual one.
     """
 
     defines: tuple[str, ...] = ()
@@ -105,7 +105,7 @@ _MACRO = re.compile(r"[A-Za-z_]\w*(?:=.*)?")
 
 
 def _root(said: str) -> tuple[str, str]:
-    """What names begin with, and the folder: of FOLDER, and of VIRTUAL=FOLDER."""
+    """Return the prefix of names and the folder, from FOLDER or VIRTUAL=FOLDER."""
     virtual, mark, folder = said.partition("=")
     return (virtual.strip("/"), folder) if mark else ("", said)
 
@@ -136,7 +136,7 @@ class UserFile:
 
     @cached_property
     def settings(self) -> Settings:
-        """How it is read. Raises UsageError for a macro or a language that cannot be."""
+        """The settings for reading the file. Raises UsageError for an invalid macro or language."""
         match = _match(self.word)
         pairs = re.findall(_SETTING, match["settings"], re.I) if match else []
         of = {kind: tuple(value for name, value in pairs if name.lower() == kind) for kind in SETTINGS}
@@ -160,18 +160,18 @@ class UserFile:
 
     @property
     def plain(self) -> str:
-        """Its name without how it is read."""
+        """The name without its settings."""
         match = _match(self.word)
         return self.word[: match.start("settings")] if match else self.word
 
     @property
     def twin(self) -> Path:
-        """The Python file that may lie next to it."""
+        """The Python file that may exist next to the shader file."""
         return self.path.with_suffix(".py")
 
     @property
     def is_translated(self) -> bool:
-        """Whether it is in another language than GLSL, or more is said of it than its name."""
+        """Whether the file is in a language other than GLSL, or the word has functions or settings."""
         match = _match(self.word)
         return self.path.suffix.lower() != GLSL or bool(match and (match["encode"] or match["settings"]))
 
@@ -231,7 +231,7 @@ def file_names(text: str, folder: Path = Path()) -> tuple[str, ...]:
 
 
 def parts_of(word: str) -> list[str]:
-    """The names in a word that are files, each with how it is read: those of a chain, or of its settings."""
+    """Return the names in a word that are files, each with its settings: the parts of a chain, or files in settings."""
     if names_an_encoder(word) and (CHAIN not in word or is_file(Path(), str(file_of(word)))):
         return [word]
     before, is_chain, then = word.rpartition(CHAIN)
@@ -299,8 +299,8 @@ def lacks_a_function(word: str) -> bool:
 
 
 def check_word(word: str, known: Collection[str], has_format: bool = False) -> None:
-    """Raise UsageError where a word names a shader of another language, lacks its ending, names only one of its two
-    functions, or has a format where none may be."""
+    """Raise UsageError if a word names a shader in another language, lacks its ending, names only one of its two
+    functions, or has a format where none is allowed."""
     file = next((word + ending for ending in ENDINGS if names_a_file(word + ending)), None)
     if file and spelled("encoding", word, known) is None:
         raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")

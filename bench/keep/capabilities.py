@@ -1,4 +1,4 @@
-"""What this machine can measure, and what to install where it cannot."""
+"""The measurements that this machine can make, and what to install for the others."""
 
 from __future__ import annotations
 

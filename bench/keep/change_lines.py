@@ -1,4 +1,4 @@
-"""What changed between two runs, for people: a sentence for each encoding, a line for each row, and a total."""
+"""Changes between two runs, for people: a sentence for each encoding, a line for each row, and a total."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ UNITS = ("degrees", "dB")
 
 
 def what_matters(before: Done, after: Done, changes: Sequence[Row]) -> list[str]:
-    """Which encodings changed, each a sentence, the worst first: in how many of their rows, and the figures that people
-    know of the row that changed most."""
+    """Return a sentence for each encoding that changed, the worst first: in how many of its rows, and the figures in
+    degrees and decibels of the row that changed most."""
     if changes and not _share_a_row(before, after):
         return ["the runs share no row"]
     return sentences(before, after, changes)
 
 
 def sentences(before: Done, after: Done, changes: Sequence[Row]) -> list[str]:
-    """As `what_matters`, of changes of which either run may lack a row."""
+    """Return the sentences of `what_matters` for changes where either run may lack a row."""
     counts = _rows_of_each(before, after)
     groups: dict[str, list[Row]] = {}
     for change in changes:
@@ -64,8 +64,7 @@ def _row_names(done: Done) -> set[tuple]:
 
 
 def _rows_of_each(before: Done, after: Done) -> Counter[str]:
-    """How many rows there are of each encoding, without those that give the same reason for having no figures in both
-    runs."""
+    """Count the rows of each encoding, without those that give the same reason for missing figures in both runs."""
     counts = Counter[str]()
     for name in dict.fromkeys([*before.tables, *after.tables]):
         table = TABLES[name]
@@ -82,7 +81,7 @@ def _reasons(table: Table, rows: Sequence[Row]) -> list[tuple]:
 
 
 def _subject(table: str, keys: Mapping[str, object]) -> str:
-    """What a row is of: an encoding of any kind, else its table."""
+    """Return the subject of a row: an encoding of any kind, else its table."""
     return str(next((keys[name] for name in SUBJECTS if keys.get(name)), table))
 
 
@@ -104,7 +103,7 @@ def _share_text(some: int, count: int) -> str:
 
 
 def _figures_said(row: Sequence[Row], name: str) -> str:
-    """Where a row is, and its figures in degrees and in decibels before and after; empty where none changed."""
+    """Return a row's name and its figures in degrees and decibels before and after; empty if none of them changed."""
     where = " ".join(row[0]["row"].replace(name, " ", 1).split())
     known = (f"{change['column']} {_before_and_after(change)}" for change in known_figures(row, UNITS))
     figure_text = ", ".join(known)
@@ -131,8 +130,8 @@ def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
 
 
 def _together_key(changes: Sequence[Row]) -> Callable[[Row], tuple]:
-    """What tells rows apart that did not change together: rows of a table whose figures all went from the same to the
-    same."""
+    """Return a function that gives rows of a table the same key if their figures all changed from and to the same
+    values."""
     rows: dict[tuple, list[tuple]] = {}
     for change in changes:
         rows.setdefault(by_row(change), []).append((change["column"], str(change["before"]), str(change["after"])))
@@ -148,7 +147,7 @@ def _table_key(change: Row) -> tuple:
 
 
 def _worst_row(group: Sequence[Row]) -> Row:
-    """Of several changes the worst row, named by what they have in common, with the figure of it that people know."""
+    """Return the worst row of several changes, named by what they have in common, with its headline figure."""
     rows = rows_of(group)
     worst = headline(rows[0])
     shared = [v for n, v in worst["keys"].items() if v is not None and all(c["keys"].get(n) == v for c in group)]
@@ -160,7 +159,7 @@ def _worst_row(group: Sequence[Row]) -> Row:
 
 
 def total(changes: Sequence[Row]) -> str:
-    """How many rows and figures changed, and how many of the rows are worse, better, gone and so on."""
+    """Return how many rows and figures changed, and how many of the rows are worse, better, gone and so on."""
     rows = rows_of(changes)
     counts = Counter(map(_verdict_word, rows))
     summary = ", ".join(f"{_count_text(counts[verdict], 'row')} {verdict}" for verdict in VERDICTS if counts[verdict])
@@ -170,7 +169,7 @@ def total(changes: Sequence[Row]) -> str:
 
 
 def _verdict_word(row: Sequence[Row]) -> str:
-    """One of VERDICTS of all that changed in a row."""
+    """Return the first of VERDICTS that applies to the changes of a row."""
     verdicts = {SLIGHTLY[change["verdict"]] if is_small(change) else change["verdict"] for change in row}
     verdicts |= {NEW for change in row if presence(change) == ONLY[False]}
     return next((verdict for verdict in VERDICTS if verdict in verdicts), VERDICTS[-1])
@@ -181,5 +180,5 @@ def _count_text(count: int, what: str) -> str:
 
 
 def _figure_count(changes: Sequence[Row]) -> int:
-    """How many figures changed; a row that only one of the runs has is of no column."""
+    """Count the figures that changed, without the rows that only one of the runs has, which name no column."""
     return sum(bool(change["column"]) for change in changes)

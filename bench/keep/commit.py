@@ -14,10 +14,10 @@ SHORT, CHANGED = 8, "+"
 
 
 def commit_of(named: str | None, folder: Path) -> Row:
-    """What a run records of its commit; empty where a folder is in no repository and the change has no name.
+    """Return what a run records of its commit; empty if a folder is not in a repository and the change has no name.
 
-    `name`, `time` in seconds, `subject`, whether files of the repository were `changed` since, and `rank`, which orders
-    commits of one second, as a rebase makes them.
+    `name`, `time` in seconds, `subject`, whether files of the repository were `changed` since, and `rank`, which
+    orders commits of the same second, as a rebase makes them.
     """
     if named:
         return {"name": named}
@@ -43,7 +43,7 @@ def _has_filters(folder: Path) -> bool:
 
 
 def _git(folder: Path, *words: str) -> str:
-    """What git says of a repository; empty where there is no git, no repository or no commit."""
+    """Return git's output for a repository; empty if git, the repository or a commit is missing."""
     try:
         # What a repository's settings name as programs: those that watch its files, and hooks.
         safe = ("-c", "core.fsmonitor=false", "-c", f"core.hooksPath={os.devnull}", "--no-optional-locks", "--no-pager")

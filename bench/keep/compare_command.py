@@ -1,4 +1,4 @@
-"""What `compare` does."""
+"""The `compare` command."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ FAILS = {"never": (), "worse": ("worse", GONE), "change": ("worse", "better", GO
 
 
 def compare_command(before: Path, after: Path, fail_on: str, format: str, output: Path | None) -> int:
-    """Write what changed from one results folder to another; that nothing did is said on standard error.
+    """Write what changed from one results folder to another; if nothing did, report that on standard error.
 
     Returns:
-        the exit status: 1 where something changed that `fail_on` names.
+        the exit status: 1 if something changed that `fail_on` names.
     """
     ours, theirs = (read_to_show(folder, needs_rows=True) for folder in (before, after))
     changes = compared(ours, theirs)
@@ -53,7 +53,7 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
 
 
 def _settings_apart(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[str]:
-    """The settings from outside that two runs had otherwise, in words."""
+    """Return the external settings that differ between two runs, in words."""
     names = sorted(name for name in {*one, *other} if name.startswith(SETTING) or name == ROWS_BY)
     values = ((name.removeprefix(SETTING), one.get(name, "not set"), other.get(name, "not set")) for name in names)
     return [f"{name} was {before} and is {after}" for name, before, after in values if before != after]

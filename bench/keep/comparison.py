@@ -1,4 +1,4 @@
-"""What changed between two runs: figures exactly; times where a rank test and a least effect agree."""
+"""Changes between two runs: figures exactly; times if both a rank test and a minimum effect agree."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def compared(before: Done, after: Done) -> list[Row]:
 
 
 def _tables_and_rows(before: Done, after: Done) -> Iterator[tuple[Table, Mapping[Any, Row], Mapping[Any, Row]]]:
-    """Each table that either run has, and its rows in both by what they are called."""
+    """Yield each table that either run has, and its rows in both runs by name."""
     ours, theirs = before.tables, after.tables
     for name in dict.fromkeys([*ours, *theirs]):
         before_rows, after_rows = (named_rows(TABLES[name], rows.get(name, [])) for rows in (ours, theirs))
@@ -54,7 +54,7 @@ def _tables_and_rows(before: Done, after: Done) -> Iterator[tuple[Table, Mapping
 
 
 def measured_otherwise(before: Done, after: Done) -> list[str]:
-    """The conditions under which rows of both runs were measured otherwise, in words; those of most rows first."""
+    """Return the conditions that differ between the same rows of both runs, in words; the most frequent first."""
     counts: Counter[tuple[str, Any, Any]] = Counter()
     for _, ours, theirs in _tables_and_rows(before, after):
         for row, other in ((row, theirs[key]) for key, row in ours.items() if key in theirs):
@@ -67,10 +67,10 @@ def measured_otherwise(before: Done, after: Done) -> list[str]:
 
 
 def in_order(changes: Sequence[Row]) -> list[Row]:
-    """Changes, those of one row together: rows by their headline, and the worst of a row first.
+    """Return changes in order, those of one row together: rows by their headline, and the worst of a row first.
 
-    A row that lost a figure comes first, then grown errors, the largest first, other figures that are worse, rows that
-    are gone, what is better, what is new, and last what changed by little.
+    A row that lost a figure comes first, then increased errors, the largest increase first, other figures that are
+    worse, rows that are gone, better figures, new rows, and last small changes.
     """
     ranked = sorted(rows_of(changes), key=lambda row: rank_key(headline(row)))
     return [change for row in ranked for change in sorted(row, key=rank_key)]
@@ -85,7 +85,7 @@ def rows_of(changes: Sequence[Row]) -> list[list[Row]]:
 
 
 def by_row(change: Row) -> tuple:
-    """What tells a row from all others."""
+    """Return a key that tells a row from all others."""
     return change["table"], change["row"], presence(change)
 
 
@@ -95,14 +95,14 @@ def presence(change: Row) -> str:
 
 
 def headline(row: Sequence[Row]) -> Row:
-    """Of the changes of one row the first in decibels, else in degrees, that says what the worst says; else the
+    """Return the first of a row's changes in decibels, else in degrees, of the same kind as its worst; else the
     worst."""
     worst = min(row, key=rank_key)
     return next(known_figures(row, ERRORS), worst)
 
 
 def known_figures(row: Sequence[Row], units: Sequence[str]) -> Iterator[Row]:
-    """Of the changes of one row that say what its worst says, the first in each of some units."""
+    """Yield the first change in each of some units, of a row's changes of the same kind as its worst."""
     group = min(map(_group_index, row))
     alike = _by_column([change for change in row if _group_index(change) == group])
     for unit in units:
@@ -143,7 +143,7 @@ def named_rows(table: Table, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
 
 
 def in_turn(rows: Sequence[Row], name_of: Callable[[Row], T]) -> dict[tuple[T, int], Row]:
-    """Rows by their names, and those of one name by their order."""
+    """Return rows by name, and those of the same name by their order."""
     by_name: dict[tuple[T, int], Row] = {}
     counts: dict[T, int] = {}
     for row in rows:
@@ -154,7 +154,7 @@ def in_turn(rows: Sequence[Row], name_of: Callable[[Row], T]) -> dict[tuple[T, i
 
 
 def row_changes(table: Table, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool) -> Iterator[Row]:
-    """What differs between the rows of one table."""
+    """Yield the differences between the rows of one table."""
     for key in dict.fromkeys([*ours, *theirs]):
         if key in ours and key in theirs:
             yield from _column_changes(table, key[0], ours[key], theirs[key], same_machine)
@@ -211,10 +211,10 @@ def gives_reason(table: Table, row: Row) -> bool:
 
 
 def severity_of(column: Column, before: Any, after: Any, has_reason: bool) -> float:
-    """How much worse a figure has become, in decibels; below 0 where it is better, 0 for neither.
+    """Return how much worse a figure has become, in decibels; below 0 if it is better, 0 for neither.
 
-    A figure that could not be measured any more is infinitely worse, one that now can be is infinitely better. Without
-    a reason it was not looked for, as the supremum of a code that is no longer the best.
+    A figure that can no longer be measured is infinitely worse; one that now can be is infinitely better. Without a
+    reason, a missing figure was not looked for, as the supremum of an encoding that is no longer the best.
     """
     if not column.better:
         return 0.0
@@ -241,14 +241,14 @@ def same(one: Any, other: Any) -> bool:
 
 
 def difference(before: Any, after: Any) -> str:
-    """By how much a figure differs, as text."""
+    """Return the difference between two figures, as text."""
     if isinstance(before, int | float) and isinstance(after, int | float):
         return f"{after - before:+.3g}"
     return NOT_MEASURED if after is None else NEW if before is None else "another"
 
 
 def mann_whitney(one: Sequence[float], other: Sequence[float]) -> float:
-    """How probable it is by chance that two samples are as far apart in rank as these, in either direction."""
+    """Return the probability that two samples are by chance as far apart in rank as these, in either direction."""
     from scipy.stats import mannwhitneyu
 
     # The exact distribution knows no ties.

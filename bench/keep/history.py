@@ -28,15 +28,15 @@ Called = tuple[str, tuple[Any, ...]]
 
 @dataclass
 class Series:
-    """What the runs have of one row.
+    """The history of one row over the runs.
 
     Attributes:
-        table: whose row it is.
+        table: the table of the row.
         called: the row's name.
-        rows: the row, and the first run that has it so.
+        rows: each version of the row, with the first run that has it.
         runs: the runs that have the row.
-        gaps: a run that lacks it although it was asked for the same, and the one that has it again; None for none.
-        times: by machine and column, the runs and what the clock said.
+        gaps: a run that lacks the row although it was asked for the same, and the run that has it again, or None.
+        times: by machine and column, the runs and their times.
     """
 
     table: Table
@@ -58,7 +58,7 @@ class Series:
 
     @property
     def judged(self) -> list[str]:
-        """The columns of figures, times and speeds of which one way is better."""
+        """The columns of figures, times and speeds that have a better direction."""
         names = dict.fromkeys(name for _, row in self.rows for name in row)
         columns = ((name, self.table.column(name)) for name in names)
         return [
@@ -84,10 +84,10 @@ class Change:
     """A figure that changed from one run to the next.
 
     Attributes:
-        line: as `compare` has it.
-        at: the first run that has it so.
-        mended: the run since which it is no longer worse; None where it still is.
-        series: the row that it is of.
+        line: the change as `compare` has it.
+        at: the first run with the change.
+        mended: the run since which the figure is no longer worse; None if it still is.
+        series: the row that has the figure.
     """
 
     line: Row
@@ -97,7 +97,7 @@ class Change:
 
 
 def series_of(runs: Sequence[Past]) -> list[Series]:
-    """Each row over some runs in their order."""
+    """Return each row over some runs in their order."""
     asked = [_asked_text(past) for past in runs]
     by_key: dict[tuple[str, tuple[Called, int]], Series] = {}
     read = Rows()
@@ -116,7 +116,7 @@ def series_of(runs: Sequence[Past]) -> list[Series]:
 
 
 def _asked_text(past: Past) -> str:
-    """What a run was asked for; empty where it may lack rows."""
+    """Return the request of a run, as text; empty if the run may lack rows."""
     return json.dumps(past.done.facts.get("request"), sort_keys=True) if past.done.finished else ""
 
 
@@ -128,7 +128,7 @@ class Rows:
         self._last: dict[str, tuple[list[int], dict[tuple[Called, int], Row]]] = {}
 
     def of(self, past: Past) -> Iterator[tuple[Table, dict[tuple[Called, int], Row]]]:
-        """Each table of a run with its rows."""
+        """Yield each table of a run with its rows."""
         steps: dict[str, list[Row]] = {}
         for step in past.done.steps:
             steps.setdefault(step["table"], []).append(step)
@@ -174,7 +174,7 @@ def _clocks(table: Table, row: Row) -> Iterator[str]:
 
 
 def changes_of(series: Sequence[Series]) -> list[Change]:
-    """What got worse, or better than it ever was, in any of some rows."""
+    """Return what got worse, or better than ever before, in any of some rows."""
     tests = sum(len(times) - 1 for row_series in series for times in row_series.times.values())
     return [
         change

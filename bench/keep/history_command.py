@@ -1,4 +1,4 @@
-"""What `history` does."""
+"""The `history` command."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SPARED = ("figures", "rows", "date", "change")
 
 @dataclass(frozen=True)
 class Wanted:
-    """What of the runs is looked at: names, or None for all."""
+    """The selected part of the runs: names, or None for all."""
 
     tables: Names | None = None
     encoding: Names | None = None
@@ -40,7 +40,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Group:
-    """What changed at one commit, and was mended at one, or still is so."""
+    """The changes that were made at one commit and mended at another one, or not yet."""
 
     kind: str
     at: int
@@ -127,7 +127,7 @@ def _ranked(changes: Sequence[Change]) -> list[Change]:
 
 
 def _figures(groups: Sequence[Group], series: Sequence[Series], columns: set[str]) -> list[tuple[Series, str]]:
-    """The figures that are shown over the runs: of each row that changed the one that says most, or those named."""
+    """Return the figures to show over the runs: the most telling one of each row that changed, or those named."""
     if columns:
         return [(shown_series, name) for shown_series in series for name in shown_series.judged if name in columns]
     figures: dict[tuple[Any, ...], tuple[Series, str]] = {}
@@ -211,7 +211,7 @@ def _about(past: Past) -> Row:
 
 
 def _across(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list[Row]:
-    """A line for each run, and a column for each figure; lines that say what the one above says are left out."""
+    """Return a line for each run, with a column for each figure, without lines that repeat the line above."""
     values = {f"{name} {row_series.called}": dict(row_series.over_all(name)) for row_series, name in figures[:MOST]}
     rows = [{called: by_run.get(i) for called, by_run in values.items()} for i in range(len(runs))]
     kept = [i for i, row in enumerate(rows) if i in (0, len(runs) - 1) or row != rows[i - 1]]

@@ -38,10 +38,10 @@ class Journal:
         self.lines = _whole_lines(path, content)
 
     def add(self, line: Line) -> None:
-        """Keep a line for good: at once, so that it is whole or cut off at its end, and on the disk.
+        """Write a line to disk at once, so that it is either whole or cut off at its end.
 
         Raises:
-            UsageError: it cannot be written; what was kept before stays.
+            UsageError: the line cannot be written; what was kept before stays.
         """
         start, rest = self._file.seek(0, os.SEEK_END), json.dumps(line).encode() + b"\n"
         try:

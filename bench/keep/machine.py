@@ -1,4 +1,4 @@
-"""What this machine has, which every results folder records."""
+"""Facts about this machine, which every results folder records."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def processor() -> str:
 
 
 def machine() -> dict[str, str]:
-    """What a result depends on: versions, processor, JAX's devices and the GL device, by name."""
+    """Return the facts that a result depends on, by name: versions, processor, JAX's devices and the OpenGL device."""
     facts = {
         "python": platform.python_version(),
         "system": platform.platform(),
@@ -64,7 +64,7 @@ def _gl_facts() -> dict[str, str]:
 
 
 def compilers() -> dict[str, str]:
-    """The compilers of GPU drivers, and those of shaders; of one that is missing, what to install."""
+    """Return the compilers of GPU drivers and those of shaders; for a missing one, what to install."""
     return isa.driver_versions() | _compiler_facts()
 
 
@@ -80,24 +80,24 @@ def _compiler_facts() -> dict[str, str]:
 
 
 def require_compilers() -> None:
-    """Raises MissingError where a compiler of shaders is missing."""
+    """Raise MissingError if a shader compiler is missing."""
     missing = [fact for fact in _compiler_facts().values() if fact in (spirv.NO_COMPILER, spirv.NO_OPTIMISER)]
     if missing:
         raise MissingError("; ".join(missing))
 
 
 def require_radeons() -> None:
-    """Raises MissingError where RADV cannot compile."""
+    """Raise MissingError if RADV cannot compile."""
     _require(RADV)
 
 
 def require_intel() -> None:
-    """Raises MissingError where one of Intel's drivers cannot compile, or the device that they are given."""
+    """Raise MissingError if one of Intel's drivers cannot compile, or the device that they are given is missing."""
     _require(ANV, HASVK)
 
 
 def require_nvidia() -> None:
-    """Raises MissingError where NVIDIA's compiler of CUDA or its disassembler is missing."""
+    """Raise MissingError if NVIDIA's compiler of CUDA or its disassembler is missing."""
     _require(NVRTC)
 
 

@@ -42,7 +42,7 @@ class Past:
 
     @property
     def full_name(self) -> str:
-        """What a program knows the commit by."""
+        """The commit's name for programs."""
         return str(self.commit.get("name", self.name))
 
     @property
@@ -52,13 +52,13 @@ class Past:
 
     @property
     def order(self) -> tuple[float, int, float]:
-        """What puts it before and behind others."""
+        """The key that sorts runs."""
         return self.seconds, int(_number(self.commit.get("rank"), 0)), self.ran
 
 
 def past_runs(folders: Sequence[Path]) -> list[Past]:
-    """The runs in some folders, by their commits, and those of one commit by their own dates. Those
-    without rows are left out, unless all are.
+    """Return the runs in some folders, by their commits, and those of one commit by their own dates. Runs without rows
+    are left out, unless all are without.
 
     Raises:
         UsageError: a folder has no run, or a run cannot be read.
@@ -96,7 +96,7 @@ def _number(value: object, usual: float) -> float:
 
 
 def _seconds(text: str) -> float:
-    """A date as `run` writes it, in seconds; 0 where there is none."""
+    """Return a date as `run` writes it, in seconds; 0 if the text is not a date."""
     try:
         return max(0.0, datetime.strptime(text, "%Y-%m-%dT%H:%M:%S%z").timestamp())
     except ValueError:
@@ -104,7 +104,8 @@ def _seconds(text: str) -> float:
 
 
 def named_apart(runs: Sequence[Past]) -> Iterator[str]:
-    """What sets the run before each apart from it, besides the commit: facts of the machine, and this program."""
+    """Yield what differs between each run and the one before, besides the commit: facts of the machine, and
+    normalbench itself."""
     yield ""
     for previous, other in pairwise(runs):
         there, here = (past.done.facts.get("machine") or {} for past in (previous, other))

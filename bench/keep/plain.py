@@ -14,5 +14,5 @@ def plain(rows: Sequence[Row]) -> list[Row]:
 
 
 def key_text(table: str, key: Row) -> str:
-    """What a table's step is known by."""
+    """Return the text that identifies a step of a table."""
     return json.dumps([table, key], sort_keys=True, default=lambda number: number.item())

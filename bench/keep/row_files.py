@@ -23,10 +23,10 @@ KNOWN_SHARE = 0.75
 
 
 def check_rows(path: Path | None, columns: Iterable[str] = ()) -> None:
-    """Raises UsageError where rows cannot be written to a file, or the file holds something else; None will do.
+    """Raise UsageError if rows cannot be written to a file, or the file holds something else; None is allowed.
 
     Args:
-        columns: what the file may have as well, where the rows belong to no table.
+        columns: other columns that the file may have, if the rows belong to no table.
     """
     if path is None:
         return
@@ -64,7 +64,7 @@ def _lines_of(data: bytes) -> list[list[str]]:
 
 
 def _beginnings(columns: Iterable[str]) -> set[str]:
-    """What the first line of a header may have of each column: where it is narrow, the first words."""
+    """Return what the first line of a header may have of each column: the first words if the column is narrow."""
     words = [column.split("_") for column in columns]
     return {"_".join(several[:count]) for several in words for count in range(1, len(several) + 1)}
 

@@ -77,7 +77,7 @@ class Done:
         return by_table
 
     def finished_rows(self, name: str) -> list[Row]:
-        """The finished rows of a table, which this is the one place to finish; those that are asked for, once.
+        """Return the finished rows of a table. Rows are finished only here, on demand, and once per table.
 
         Raises:
             one of UNEXPECTED: the rows are not what this version writes.
@@ -94,13 +94,13 @@ class Done:
 
     @property
     def left_out(self) -> str:
-        """Which rows `tables` does not have, as a sentence without its end; empty where it has all."""
+        """The rows that `tables` lacks, as a sentence without its end; empty if it has all."""
         names = dict.fromkeys(step["table"] for step in self.steps if step["table"] not in TABLES)
         return f"Rows of {', '.join(names)} are left out, because this version has no such table" if names else ""
 
     @property
     def finished(self) -> bool:
-        """Whether every step has its rows, of every request that was made of the folder."""
+        """Whether every step has its rows, for every request that was made of the folder."""
         before = self.facts.get("before")
         requests = [facts for facts in before if isinstance(facts, dict)] if isinstance(before, list) else []
         # The same request may have been made again since.
@@ -109,14 +109,14 @@ class Done:
 
 
 def facts_of(command: Sequence[str]) -> Row:
-    """What a run records of itself before anything is measured: the command, the sources and the machine."""
+    """Return what a run records of itself before anything is measured: the command, the sources and the machine."""
     from .machine import machine
 
     return {"command": list(command), "sources": sources(), "machine": machine()}
 
 
 class Shared:
-    """What several runs have in common: a line that many of them have is parsed, checked and named once."""
+    """Data that several runs share: a line that many of them have is parsed, checked and named once."""
 
     def __init__(self):
         self.lines: dict[bytes, Row] = {}
@@ -131,13 +131,13 @@ class Shared:
 
 
 def read_run(folder: Path, shared: Shared | None = None) -> Done:
-    """A results folder; nothing is written.
+    """Read a results folder; nothing is written.
 
     Args:
-        shared: where many runs are read, what they share.
+        shared: what runs share, if many are read.
 
     Raises:
-        UsageError: it is none, or cannot be read.
+        UsageError: the folder is not a results folder, or cannot be read.
     """
     facts, lines = _facts(folder), read_lines(folder / ROWS, shared and shared.lines)
     _check_steps(folder, lines, shared.checked if shared else set())
@@ -148,10 +148,10 @@ def read_run(folder: Path, shared: Shared | None = None) -> Done:
 
 
 def read_to_show(folder: Path, shared: Shared | None = None, needs_rows: bool = False) -> Done:
-    """A results folder that people look at: what is amiss with its rows is said on standard error.
+    """Read a results folder that people look at, and report problems with its rows on standard error.
 
     Raises:
-        UsageError: as `read_run`; or it has no rows, and needs some.
+        UsageError: as `read_run`; or the folder has no rows but must have some.
     """
     done = read_run(folder, shared)
     if needs_rows and not done.steps:
@@ -163,7 +163,7 @@ def read_to_show(folder: Path, shared: Shared | None = None, needs_rows: bool = 
 
 
 def _check_steps(folder: Path, lines: Sequence[Row], checked: set[int]) -> None:
-    """Raises UsageError. Lines whose ids are in `checked` were looked at before; the others are added."""
+    """Raise UsageError if a line is invalid. Lines whose ids are in `checked` are skipped; the other ids are added."""
     from .schema import Keys, check_step
 
     keys: Keys = {}
@@ -178,7 +178,7 @@ def _check_steps(folder: Path, lines: Sequence[Row], checked: set[int]) -> None:
 
 
 def _seal_columns(data: bytes) -> Row:
-    """What a finished run remembers of its rows."""
+    """Return what a finished run remembers of its rows."""
     return {"lines": data.count(b"\n"), "digest": hashlib.sha256(data).hexdigest()}
 
 
@@ -216,7 +216,7 @@ class Run:
 
     @property
     def kept(self) -> int:
-        """How many steps have their rows in the file, which a signal may stop a moment after it was written."""
+        """The number of steps with rows in the file, counted there because a signal may come just after a write."""
         return len(read_lines(self.folder / ROWS))
 
     def find(self, table: str, step: Step) -> list[Row] | None:
@@ -237,8 +237,8 @@ class Run:
         return kept
 
     def arrange(self, steps: Iterable[tuple[str, Step]]) -> None:
-        """Put the rows in the order of a request's steps, each with its table: workers bring them in any. Rows of
-        earlier requests stay in front; those of parts go once their step is whole. Raises UsageError."""
+        """Put the rows in the order of a request's steps, each with its table: workers return them in any order. Rows
+        of earlier requests stay in front; those of parts are removed once their step is whole. Raises UsageError."""
         place = {key_text(table, step.key): index for index, (table, step) in enumerate(steps)}
         # As they lie in the file, with those that were kept since it was opened.
         before = read_lines(self.folder / ROWS)
@@ -295,10 +295,10 @@ class Amended:
 
 @contextmanager
 def amended(folder: Path) -> Iterator[Amended]:
-    """A run that is there, whatever its sources and its machine, to put other rows into.
+    """Open an existing run, whatever its sources and its machine, to put other rows into it.
 
     Raises:
-        UsageError: there is none, another process writes it, or its rows were changed after it finished.
+        UsageError: the run is missing, another process writes it, or its rows were changed after it finished.
     """
     # First, because a journal is made where there is none.
     _facts(folder)
@@ -326,8 +326,8 @@ def same_work(facts: Row, others: Row) -> bool:
 
 
 def _other_place(facts: Row, others: Row) -> str:
-    """What sets a run apart from one that is to be added to it: sources, or facts of the machine with both values;
-    empty where nothing does."""
+    """Return what distinguishes a run from one that is to be added to it: sources, or facts of the machine with both
+    values; empty if nothing does."""
     reasons = (
         [f"of other sources ({_there_and_here(facts, others, 'sources')})"]
         if _is_different(facts, others, "sources")
@@ -373,7 +373,7 @@ def unfinished(parent: Path, facts: Row) -> Path | None:
 
 
 def _holds_something_else(folder: Path) -> bool:
-    """Whether there is anything but a run, which may have been stopped before it said what it is."""
+    """Whether a folder holds anything but a run, which may have been stopped before it wrote its facts."""
     try:
         names = {path.name for path in folder.iterdir()} if folder.exists() else set()
     except OSError:

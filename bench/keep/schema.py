@@ -1,4 +1,4 @@
-"""What the files of runs and baselines may hold: people edit them, and a slip is said by its place, not as a bug."""
+"""The permitted contents of the files of runs and baselines: people edit them, so an error names its place."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class StepLine(TypedDict):
 
 @with_config(STRICT)
 class RunFacts(TypedDict, total=False):
-    """What is read of `run.json`."""
+    """The contents of `run.json` that are read."""
 
     schema: int
     request: dict[str, JsonValue]
@@ -76,7 +76,7 @@ class BaselineEntry(TypedDict):
 
 @with_config(STRICT)
 class KeptLine(TypedDict):
-    """A line of what is kept beside an output file until it is written."""
+    """A line of what is kept next to an output file until the file is written."""
 
     step: str
     rows: list[dict[str, JsonValue]]
@@ -96,7 +96,7 @@ WRONG = {
 
 
 def check_facts(facts: Any, place: str) -> None:
-    """Raises UsageError where `run.json` holds something else than a run's facts, or those of another version."""
+    """Raise UsageError if `run.json` does not hold a run's facts, or holds those of another version."""
     _check(FACTS, facts, [place])
     if facts.get("schema") != SCHEMA:
         raise UsageError(f"{place}: another version of normalbench measured this run; measure it again")
@@ -107,11 +107,11 @@ Keys = dict[tuple[str, str], tuple[bool, str]]
 
 
 def check_step(line: Any, place: str, keys: Keys) -> None:
-    """Raises UsageError where a line of a run is not a step, a figure is not a number, or a key is text in one row and
-    a number in another.
+    """Raise UsageError if a line of a run is not a step, a figure is not a number, or a key is text in one row and a
+    number in another.
 
     Args:
-        keys: what the lines before had; what this line has is added.
+        keys: the keys of the lines before; those of this line are added.
     """
     _check(STEP, line, [place])
     for number, row in enumerate(line["rows"], 1):
@@ -130,18 +130,18 @@ def _check_keys(name: str, row: Row, place: str, keys: Keys) -> None:
 
 
 def check_kept(line: Any, place: str) -> None:
-    """Raises UsageError where a line of a file of kept rows is not a step."""
+    """Raise UsageError if a line of a file of kept rows is not a step."""
     _check(KEPT, line, [place])
 
 
 def check_entry(entry: Any, place: str) -> None:
-    """Raises UsageError where an entry of a baseline is not one, or a figure is not a number."""
+    """Raise UsageError if an entry of a baseline is malformed, or a figure is not a number."""
     _check(ENTRY, entry, [place])
     _check_row(entry["table"], entry["row"], [place])
 
 
 def _check_row(name: str, row: Row, place: Sequence[str]) -> None:
-    """Raises UsageError where a column holds what it cannot. Columns that the table does not have may hold anything."""
+    """Raise UsageError if a column holds an invalid value. Columns that the table does not have may hold anything."""
     table = TABLES.get(name)
     known = {name: column for name in row if (column := table.column(name))} if table else {}
     roles = {name: column.role for name, column in known.items()}

@@ -1,4 +1,4 @@
-"""Where a series of times steps up or down, and not merely wavers."""
+"""Steps up or down in a series of times, as opposed to mere fluctuations."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ FROM_MEDIAN = 1.4826
 
 
 def time_steps(times: Sequence[float], tests: int) -> list[int]:
-    """Where steps begin: by the least squares of ranks that are constant in pieces, as Lung-Yut-Fong, Lévy-Leduc and
-    Cappé (2015) do; those stay that the judgement of two runs holds for changes.
+    """Return where steps begin: fit piecewise constant ranks by least squares, as Lung-Yut-Fong, Lévy-Leduc and
+    Cappé (2015) do, and keep the steps that the comparison of two runs takes for changes.
 
     Args:
-        tests: how many places a step was looked for at, in this series and the others.
+        tests: the number of places where a step was looked for, in this series and the others.
     """
     begins = _pieces(times)
     while begins and max(doubts := _doubts(times, begins, tests)):
@@ -46,7 +46,7 @@ def _placed(times: Sequence[float], begins: Sequence[int]) -> list[int]:
 
 
 def _pieces(times: Sequence[float]) -> list[int]:
-    """Where pieces begin, but for the first."""
+    """Return where pieces begin, except for the first."""
     import numpy as np
 
     ordered, count = np.sort(times), len(times)
@@ -69,7 +69,7 @@ def _pieces(times: Sequence[float]) -> list[int]:
 
 
 def _doubts(times: Sequence[float], begins: Sequence[int], tests: int) -> list[float]:
-    """How doubtful each step is; 0 where it is none by noise."""
+    """Return how doubtful each step is; 0 for a step that is not noise."""
     pieces = [times[begin:end] for begin, end in pairwise([0, *begins, len(times)])]
     return [_doubt(*pair, tests) for pair in pairwise(pieces)]
 

@@ -1,1 +1,1 @@
-"""How errors are measured: angles, images, bounds, the worst case, and the meters."""
+"""The measurement of errors: angles, images, bounds, the worst case, and the meters."""

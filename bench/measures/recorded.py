@@ -33,7 +33,8 @@ class Recorded:
 
     Attributes:
         file: JSON: figures by name, each with its `key`.
-        sources: files from the package's root that they depend on, besides OF_CODECS and the encoding's module.
+        sources: files that the figures depend on, from the package's root, besides OF_CODECS and the encoding's
+            module.
     """
 
     file: Path

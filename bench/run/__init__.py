@@ -1,1 +1,1 @@
-"""Where steps are measured: in this process, a second one, or workers."""
+"""The places where steps are measured: this process, a second process, or workers."""

@@ -1,4 +1,4 @@
-"""How long steps of tables take: as in an earlier run of the same question, else as on two cores without a GPU."""
+"""Expected durations of steps: those of an earlier run with the same options, else on two cores without a GPU."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ PAGE_S = 12.0
 
 
 def expected(asks: Sequence[Asked], beside: Sequence[Asked]) -> dict[str, tuple[int, float]]:
-    """Return by table its steps and the seconds of each, and those of the page.
+    """Return for each table the number of its steps and the seconds of each step, and the same for the page.
 
     Args:
-        beside: what a second process measures meanwhile: only what it takes longer than this one counts.
+        beside: what a second process measures meanwhile; only the time that exceeds this process's counts.
     """
     own = {ask.table.name: (_ticks(ask), _seconds(ask)) for ask in asks if ask not in beside}
     theirs = {ask.table.name: (_ticks(ask), _seconds(ask)) for ask in beside}

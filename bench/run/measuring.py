@@ -1,4 +1,4 @@
-"""From options to finished rows: what is asked for, which of it is kept from before, and what is measured now."""
+"""From options to finished rows: which steps are requested, which are already stored, and which are measured now."""
 
 from __future__ import annotations
 
@@ -59,13 +59,13 @@ class Kept(Protocol):
 
 
 class Place(Protocol):
-    """Where steps are measured."""
+    """A place where steps are measured."""
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
-        """Each step with its rows, in whatever order they are there.
+        """Yield each step with its rows, in the order in which they are ready.
 
         Args:
-            steps: those of `ask` that are wanted.
+            steps: the steps of `ask` that are wanted.
             tick: called once for each part of a step that is done.
         """
         ...
@@ -96,7 +96,7 @@ HERE = Here()
 
 
 class Nothing:
-    """What keeps no rows: every step is measured anew."""
+    """A store that keeps no rows: every step is measured anew."""
 
     def find(self, table: str, step: Step) -> list[Row] | None:  # noqa: ARG002 # as of every Kept
         return None
@@ -106,10 +106,10 @@ class Nothing:
 
 
 def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
-    """What a table's options and outputs ask for.
+    """Return the steps that a table's options and outputs ask for.
 
     Raises:
-        UsageError: an option that cannot be.
+        UsageError: an option is invalid.
         MissingError: this machine lacks what the table needs.
     """
     require_memory()
@@ -126,7 +126,7 @@ def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
 
 
 def asked_together(table: Table, several: Sequence[Any], outputs: Any) -> Asked:
-    """What several sets of a table's options ask for, each step once. Raises UsageError and MissingError."""
+    """Return the steps that several sets of options ask for, each step once. Raises UsageError and MissingError."""
     asks = [asked(table, options, outputs) for options in several]
     steps = {repr(step.key): step for ask in asks for step in ask.steps}
     return replace(asks[0], steps=list(steps.values()), others=[ask.options for ask in asks[1:]])
@@ -164,22 +164,22 @@ def _measured_steps(ask: Asked, kept: Kept, place: Place) -> list[list[Row]]:
 
 
 def _in_parts(steps: Sequence[Step]) -> Iterator[Step]:
-    """What is measured: the steps that are measured at once, then the first part of each of the others, and so on, as
-    what is made for a part may serve several steps."""
+    """Yield the steps to measure: those without parts, then the first part of each of the others, and so on, because
+    data made for one part may serve several steps."""
     yield from (step for step in steps if not step.parts)
     for several in zip_longest(*(step.parts for step in steps)):
         yield from filter(None, several)
 
 
 def with_parts(steps: Iterable[Step]) -> Iterator[Step]:
-    """Each step, and then its parts."""
+    """Yield each step, and then its parts."""
     for step in steps:
         yield from (step, *step.parts)
 
 
 def files_of(options: Any) -> Row:
-    """Return fingerprints of all files that options name, each with those read beside it, {"files": [...]}, and how
-    captures are read where that is said, {"read": {...}}; {} for no files."""
+    """Return fingerprints of all files that options name, each with those read next to it, {"files": [...]}, and how
+    captures are read if an option says so, {"read": {...}}; {} for no files."""
     words = {part for words in words_of(options).values() for word in words for part in parts_of(word)}
     digests = sorted(filter(None, map(_fingerprint, words)))
     reading = fields_of(Reading).values() if isinstance(options, Reading) else ()
@@ -196,7 +196,7 @@ def words_of(options: Any) -> dict[str, list[str]]:
 
 
 def _fingerprint(word: str) -> str:
-    """Of a file and its companions, and of how it is read, wherever they lie. Empty for no file."""
+    """Return a fingerprint of a file, its companions and how it is read, wherever they are; empty for no file."""
     path, shader = file_of(word), UserFile(word)
     try:
         if not path.is_file():
@@ -212,8 +212,8 @@ def _fingerprint(word: str) -> str:
 
 
 def companions(word: str | Path) -> list[Path]:
-    """The files that are read with the one that a word names: those of the same stem, and those that its kind refers
-    to."""
+    """Return the files that are read with the file that a word names: those with the same stem, and those that a file
+    of its kind refers to."""
     path = file_of(str(word))
     patterns = COMPANIONS.get(path.suffix.lower(), ())
     beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
@@ -275,7 +275,7 @@ def file_digest(path: Path) -> bytes:
 
 
 class Beside:
-    """Rows kept in a journal beside an output file."""
+    """Rows kept in a journal next to an output file."""
 
     def __init__(self, kept: Journal):
         self.path, self._journal = kept.path, kept
@@ -306,11 +306,11 @@ def _checked(kept: Journal) -> list[Row]:
 
 @contextmanager
 def beside(output: Path | None, work: Row) -> Iterator[Beside | None]:
-    """Rows kept beside an output file while a command runs; they go once the block ends well. None where there is no
-    file to keep them beside.
+    """Keep rows next to an output file while a command runs, and delete them when the block ends without an error.
+    Yield None if there is no output file to keep them next to.
 
     Args:
-        work: sources and machine, by which rows may be kept.
+        work: sources and machine; kept rows must match them.
 
     Raises:
         UsageError: another process writes the same output, it cannot be written, or it keeps other work's rows.

@@ -36,14 +36,15 @@ Send = Callable[[Any], None]
 
 
 class Piped:
-    """The process, as the one that started it sees it.
+    """The child process, for use by the process that started it.
 
     Args:
-        first: what it calls at once, such as imports.
-        take: called in a thread with each value that a function sends, and with an exception where one raised.
+        first: called in it at once, for example to import modules.
+        take: called in a thread with each value that a function sends, and with the exception if a function raised
+            one.
 
     Attributes:
-        ended: set once nothing comes any more.
+        ended: set when nothing more comes.
     """
 
     def __init__(self, first: Callable[[Send], None], take: Callable[[Any], None]):
@@ -63,7 +64,7 @@ class Piped:
 
     @property
     def status(self) -> int | None:
-        """Its exit status, below 0 for a signal; None while it runs."""
+        """The process's exit status, below 0 for a signal; None while it runs."""
         return self._process.poll()
 
     def call(self, function: Callable[..., None], *arguments: Any) -> None:
@@ -109,8 +110,7 @@ def _end_now(*_: int | FrameType | None) -> None:
 
 
 def _own_ends() -> tuple[IO[bytes], IO[bytes]]:
-    """Where calls come from and where values go. Children read nothing, and what libraries print goes to standard
-    error."""
+    """Return the streams of calls and of values. Children read nothing, and libraries print to standard error."""
     calls, values = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)
@@ -118,7 +118,7 @@ def _own_ends() -> tuple[IO[bytes], IO[bytes]]:
 
 
 def _take(calls: IO[bytes], waiting: SimpleQueue[bytes]) -> None:
-    """Calls as they come, until nobody can call any more."""
+    """Queue calls as they come, and end this process when nobody can call any more."""
     with suppress(EOFError, pickle.UnpicklingError):
         while True:
             waiting.put(pickle.load(calls))

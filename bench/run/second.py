@@ -37,7 +37,7 @@ class Written:
 
 @dataclass(frozen=True)
 class Finished:
-    """All is done."""
+    """A message that all work is done."""
 
 
 def is_worth_it(tables: Sequence[Table]) -> bool:
@@ -76,7 +76,7 @@ class Second:
             raise self._error
 
     def end(self) -> None:
-        """End the process, and what it started; rows that it has sent are kept. What it said is told."""
+        """End the process and all that it started; rows that it has sent are kept. Its messages are passed on."""
         for line in self._process.wait():
             tell(line.removeprefix("normalbench: "))
 

@@ -1,1 +1,1 @@
-"""What people see: the terminal, the page and the site."""
+"""Output for people: the terminal, the page and the site."""

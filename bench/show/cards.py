@@ -1,4 +1,4 @@
-"""What the page says of each codec besides its rows: formulas, sources, engines, and the numbers that it stores."""
+"""The page's facts about each codec besides its rows: formulas, sources, engines, and the numbers that it stores."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `import` does: adds device files to a run, all of them or none."""
+"""The `import` command: adds device files to a run, all of them or none."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def _is_newer(file: DeviceFile, there: Mapping[str, Any] | None) -> bool:
 
 
 def _said(file: DeviceFile, there: Mapping[str, Any] | None) -> str:
-    """What became of a file, against what the run had of its device and browser."""
+    """Say what was done with a file, compared with what the run had from its device and browser."""
     what = f"{many(len(file.codecs), 'codec')}, {many(len(file.facts), 'fact')}"
     if there is None:
         return f"added {what}"
@@ -94,7 +94,7 @@ def _said(file: DeviceFile, there: Mapping[str, Any] | None) -> str:
 
 
 def _with(lines: Sequence[Row], new: Sequence[Device]) -> list[Row]:
-    """The steps of a run with those of new devices, in place of older ones of the same devices and browsers."""
+    """Return the steps of a run with those of new devices, replacing older ones of the same devices and browsers."""
     replaced = {device.file.identity for device in new}
     kept = [line for line in lines if not (_is_ours(line) and _identity(line) in replaced)]
     return list(_renamed([*kept, *(line for device in new for line in _lines(device))]))

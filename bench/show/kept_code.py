@@ -35,7 +35,7 @@ class CodecCode(TypedDict):
 
 @with_config(ConfigDict(strict=True, extra="forbid"))
 class KeptCode(TypedDict):
-    """All of it: titles of languages by name, pieces, and codecs by label."""
+    """The whole file: titles of languages by name, pieces, and codecs by label."""
 
     languages: dict[Name, Name]
     pieces: list[str]

@@ -1,4 +1,4 @@
-"""What `report` does: a run's page, its charts as files, or a text for a pull request."""
+"""The `report` command: a run's page, its charts as files, or a text for a pull request."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def report_command(
 
 
 def _check_output(output: Path, as_markdown: bool) -> None:
-    """Raises UsageError for a file that cannot be written, or whose name says that it is something else."""
+    """Raise UsageError for a file that cannot be written, or whose name says that it is something else."""
     check_writable(output, mark=b"" if as_markdown else MARK)
     if not as_markdown:
         check_page(output)
@@ -85,18 +85,18 @@ def write_report(
     most_charts: int | None = None,
     name: str = "",
 ) -> Path:
-    """Write the page, and beside it a folder of its charts and one of its pictures, if asked for.
+    """Write the page and, next to it, a folder of its charts and one of its pictures, if asked for.
 
     Args:
-        charts: the folder of charts beside the page; empty for none.
-        most_charts: how many of them are written, the page's first ones; None for all.
-        name: what the page is called; empty for the name of the folder.
+        charts: the folder of charts next to the page; empty for none.
+        most_charts: how many charts are written, the page's first ones; None for all.
+        name: the page's name; empty for the name of the folder.
 
     Returns:
         the page's path.
 
     Raises:
-        UsageError: it cannot be written.
+        UsageError: the page cannot be written.
     """
     check_writable(target)
     pictures = f"{target.stem}-{PICTURES}" if pictures_beside else ""
@@ -115,13 +115,13 @@ def write_report(
 def drawn_page(
     run: Found, charts: Path | None = None, pictures: str = "", most_charts: int | None = None
 ) -> tuple[Found, embedded.Gallery, dict[str, wire.Spec]]:
-    """A run with what could not be drawn, its pictures, and its charts by name.
+    """Return a run with remarks on what could not be drawn, its pictures, and its charts by name.
 
     Args:
-        run: as it was gathered.
+        run: the run as it was gathered.
         charts: the folder that files of its charts are written into; None for no files.
-        pictures: the folder of pictures, from that of the page; empty for those in the page.
-        most_charts: how many of them are written; None for all.
+        pictures: the folder of pictures, from that of the page; empty for pictures in the page.
+        most_charts: how many charts are written; None for all.
     """
     # Pictures are packed while charts are drawn; either takes a core for seconds.
     with ThreadPoolExecutor(1) as pool:
@@ -136,12 +136,12 @@ def drawn_page(
 
 
 def library_of(specs: Mapping[str, wire.Spec]) -> str:
-    """The script that draws charts; empty where there are none."""
+    """Return the script that draws charts; empty if there are no charts."""
     return wire.library() if specs else ""
 
 
 def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
-    """The scripts that hold pictures, in place of those of an earlier page."""
+    """Write the scripts that hold pictures, replacing those of an earlier page."""
     if not files:
         return
     for name, path in files_of(folder).items():
@@ -153,8 +153,8 @@ def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
 
 
 def _drawn(run: Found, folder: Path | None, most: int | None) -> tuple[dict[str, wire.Spec], list[str]]:
-    """Write the first charts as files, if there is a folder for them. Return those of the page by name, and a sentence
-    for each that cannot be drawn."""
+    """Write the first charts as files, if there is a folder for them. Return the page's charts by name, and a sentence
+    for each chart that cannot be drawn."""
     specs, failed = {}, []
     for number, drawing in enumerate(page.drawings(run)):
         try:
@@ -206,7 +206,7 @@ def gathered(folder: Path, done: Done, name: str = "") -> Found:
 
 
 def _other_version(facts: Row) -> str:
-    """What measured a run that these sources did not."""
+    """Say which version measured a run, if it was not measured by these sources."""
     machine = facts.get("machine")
     version = plain_text(str(machine.get("normalbench") or "")) if isinstance(machine, dict) else ""
     there = plain_text(str(facts.get("sources") or "that it did not keep"))
@@ -221,7 +221,7 @@ def _clean_code(kept: dict[str, Any]) -> dict[str, Any]:
 
 
 def _encodings(tables: Mapping[str, Sequence[Row]]) -> frozenset[str]:
-    """The names of encodings of normals: the catalogue's, and those of users' files in a run's rows."""
+    """Return the names of encodings of normals: the catalogue's, and those of users' files in a run's rows."""
     of_normals = (rows for name, rows in tables.items() if ENCODING in TABLES[name].columns)
     names = {str(row["encoding"]) for rows in of_normals for row in rows if row.get("encoding")}
     return frozenset(names | ENCODINGS.keys())
@@ -263,7 +263,7 @@ def _drawings(found: Found, done: Done, table: Table, remarks: list[str]) -> lis
 
 
 def _finished(done: Done, table: Table) -> Sequence[Row]:
-    """The finished rows of a table; as they are where they are not those of this version, which its summary says."""
+    """Return a table's finished rows; rows of another version as they are, which the summary says."""
     try:
         return done.finished_rows(table.name)
     except UNEXPECTED:
@@ -291,7 +291,7 @@ def _flat(value: Any) -> Any:
 
 
 def _command(facts: Row) -> str:
-    """How a run was measured, as it is typed into another folder."""
+    """Return the command that measured a run, without its output folder."""
     words = [str(word) for word in facts.get("command") or ("run",)]
     output_index = next((i for i, word in enumerate(words) if word in ("-o", "--output")), len(words))
     return command_line(["normalbench", *words[:output_index], *words[output_index + 2 :]])
@@ -313,7 +313,7 @@ def _asked(facts: Row) -> set[str]:
 
 
 def _subjects(folder: Path, done: Done, names: Iterable[str], remarks: list[str]) -> Iterator[Subject]:
-    """What the run has pictures of."""
+    """Yield the subjects of the run's pictures."""
     for name in names:
         if "images" in TABLES[name].files:
             try:
@@ -324,7 +324,7 @@ def _subjects(folder: Path, done: Done, names: Iterable[str], remarks: list[str]
 
 
 def _extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> dict[str, Any]:
-    """Find what tables show beside their rows, by attributes of `found.Found`."""
+    """Collect what tables show besides their rows, by attributes of `found.Found`."""
     extras: dict[str, Any] = {}
     for name in tables:
         try:
@@ -335,7 +335,7 @@ def _extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str
 
 
 def _live(folder: Path) -> Live | None:
-    """What the page's laboratory runs; None where the run keeps nothing of it."""
+    """Return the contents of the page's laboratory; None if the run keeps none of it."""
     codecs, left_out = read_live(folder)
     if not codecs:
         return None

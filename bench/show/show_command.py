@@ -1,4 +1,4 @@
-"""What `show` does: print what a run found, or a table of it."""
+"""The `show` command: prints the results of a run, or a table of it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A measured table as it is shown: for people on the terminal, for programs, and what is to be said of its rows."""
+"""The output of a measured table: on the terminal for people, as text for programs, and remarks on its rows."""
 
 from __future__ import annotations
 
@@ -137,12 +137,13 @@ def say_skipped(table: Table, rows: Sequence[Row], known: Iterable[str] = ()) ->
 
 
 def _but_its_backend(table: Table, row: Row) -> tuple[object, ...]:
-    """What a row is called, whichever language measured it."""
+    """Return the key of a row without its backend."""
     return tuple(row.get(column.name) for column in table.of_role(Role.KEY) if column.name != "backend")
 
 
 def _kind_of_skip(table: Table, rows: Sequence[Row], reason: str) -> str:
-    """What a reason has kept from some rows; that an encoding without a twin is measured otherwise is not a failure."""
+    """Describe the rows that lack figures for this reason. A missing twin is not a failure if another backend measures
+    the encoding."""
     skipped = [row for row in rows if row.get("skipped") == reason]
     measured = {_but_its_backend(table, row) for row in rows if not row.get("skipped")}
     if lacks_twin(reason) and all(_but_its_backend(table, row) in measured for row in skipped):

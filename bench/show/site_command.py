@@ -1,4 +1,4 @@
-"""What `site` does: a run and folders of device files become a static site."""
+"""The `site` command: makes a static site from a run and folders of device files."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ DESCRIPTION = (
 
 def site_command(folders: Sequence[Path], output: Path) -> int:
     """Write the site of a run and the devices that were imported into it, of the device files in folders and their
-    folders, or of both.
+    subfolders, or of both.
 
     Returns:
-        the exit status: 1 where a file was left out because something is wrong with it.
+        the exit status: 1 if a file was left out because something is wrong with it.
 
     Raises:
         UsageError: several folders are runs, there is no device file, or the site cannot be written.
@@ -85,7 +85,7 @@ def _files_in(folder: Path) -> list[Path]:
 
 
 def _device_files(paths: list[Path]) -> tuple[list[Read], int]:
-    """The files that are devices', and how many are not, each of which is told."""
+    """Read files. Return those that are device files, and how many are not, each of which is reported."""
     reads, wrong = [], 0
     for path in paths:
         try:

@@ -45,7 +45,7 @@ def write_site(folder: Path, made: Mapping[str, str]) -> None:
 
 
 def _files_before(folder: Path) -> list[str]:
-    """What this program wrote there before. Raises UsageError."""
+    """Return the names of the files that this program wrote there before. Raises UsageError."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder; site writes into one")
     # Behind a link lies somebody else's folder.
@@ -67,7 +67,7 @@ def _files_before(folder: Path) -> list[str]:
 
 @contextmanager
 def _partial_folder(folder: Path) -> Iterator[Path]:
-    """A folder beside, on the same disk, that is gone afterwards."""
+    """Yield a folder next to this one, on the same disk; delete it afterwards."""
     folder = folder.resolve()
     folder.parent.mkdir(parents=True, exist_ok=True)
     clear_away(folder)
@@ -90,7 +90,7 @@ def _marker_text(files: list[str]) -> str:
 
 
 def _put(partial: Path, folder: Path, made: Mapping[str, str]) -> None:
-    """What was written takes its place: at once where there is nothing, else the marker first and the index last."""
+    """Move what was written into place: at once if the folder is empty, else the marker first and the index last."""
     if not folder.exists() or not any(folder.iterdir()):
         place = folder.resolve()
         if place.exists():

@@ -1,1 +1,1 @@
-"""What is measured: codecs and sets of normals, by their names and from files."""
+"""The subjects of measurements: codecs and sets of normals, by their names and from files."""

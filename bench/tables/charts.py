@@ -24,18 +24,18 @@ def having(rows: Sequence[Row], *columns: str) -> list[Row]:
 
 
 def lines_of(rows: Sequence[Row]) -> list[str]:
-    """What tells each row of a chart apart: its codec, and what else differs between the rows."""
+    """Return labels that tell a chart's rows apart: the codec, and what else differs between the rows."""
     others = [name for name in LINES if len({str(row.get(name)) for row in rows}) > 1]
     return [" ".join([CodecKey.of(row).label, *(str(row.get(name)) for name in others)]) for row in rows]
 
 
 def but_without_twins(rows: Sequence[Row]) -> list[Row]:
-    """Rows but those that have no figures for want of a Python twin alone, which is said beside them."""
+    """Return rows, except those without figures only for lack of a Python twin, which is reported next to them."""
     return [row for row in rows if not lacks_twin(row.get("skipped") or "")]
 
 
 def one_backend(rows: Sequence[Row]) -> list[Row]:
-    """Of each encoding or depth code the rows of one back end: JAX's where it has some."""
+    """Return the rows of one backend for each encoding of normals or depth: JAX's if it has any."""
     chosen: dict[Any, Any] = {}
     for backend in dict.fromkeys([*BACKENDS, *(str(row.get("backend")) for row in rows)]):
         for row in rows:
@@ -49,19 +49,19 @@ def _code_name(row: Row) -> Any:
 
 
 def backends_of(rows: Sequence[Row]) -> str:
-    """By which back ends rows are, as a title says it, whatever the order of the rows."""
+    """Return the backends of rows as a title names them, whatever the order of the rows."""
     names = dict.fromkeys(str(row.get("backend")) for row in rows)
     return " or ".join(sorted(names, key=_place))
 
 
 def _place(backend: str) -> int:
-    """Its place among the back ends; the last for another name."""
+    """Return the place of a backend among all backends; the last place for another name."""
     known = backends.BACKENDS
     return known.index(backend) if backend in known else len(known)
 
 
 def bins(text: Any) -> list[tuple[float, float, int]]:
-    """A row's histogram: lower and upper edge in degrees and the count of each bin; none where it is no histogram."""
+    """Return a row's histogram: lower and upper edge in degrees and count of each bin; empty if it is not one."""
     try:
         pairs = [(float(edge), int(count)) for edge, count in (word.split(":") for word in str(text).split())]
     except ValueError:

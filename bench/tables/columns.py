@@ -1,4 +1,4 @@
-"""What the columns of tables mean, as a table."""
+"""The meanings of the columns of tables, as a table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What frames are rendered with: layouts with codecs in them, and plans that suit a pipeline."""
+"""The settings that frames are rendered with: layouts with codecs in them, and plans that suit a pipeline."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 
 def with_codecs(chosen: Iterable[Layout], codecs: Sequence[Codec], complaints: list[str]) -> list[Layout]:
-    """Each layout with every codec that fits in it; why others do not is appended to `complaints`."""
+    """Return each layout with every codec that fits in it; append to `complaints` why others do not fit."""
     for encoding in dict.fromkeys(codec.encoding for codec in codecs):
         check_twin(encoding)
     complaints += by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)

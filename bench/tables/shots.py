@@ -63,12 +63,12 @@ class Frame:
 
     @cached_property
     def compared(self) -> Flip:
-        """What compares other frames with it."""
+        """The comparison of other frames with this one."""
         return Flip(self.shown)
 
 
 class Measurable(Protocol):
-    """One row to measure: a value that can be hashed, and what it is measured against."""
+    """A row to measure: a value that can be hashed, and the reference that it is measured against."""
 
     @property
     def reference(self) -> Any: ...
@@ -107,7 +107,7 @@ class Bench(ABC, Generic[CaseT, FrameT]):
 
     @abstractmethod
     def figures(self, case: CaseT, frames: list[FrameT], exact: list[FrameT]) -> Row:
-        """Return what a row says of frames beside their reference's; at least `skipped` where nothing can be said."""
+        """Return figures of frames compared with their reference's; at least `skipped` if there are no figures."""
 
     def reference(self, case: CaseT) -> list[FrameT]:
         """Return the frames of a case's reference."""
@@ -150,7 +150,7 @@ def _made_scene(maker: SceneMaker, setting: Setting) -> Scene:
 
 
 def image_figures(frames: Sequence[Frame], exact: Sequence[Frame]) -> Row:
-    """Compare images as displayed, with the mean over frames: `mse`, `psnr_db`, and the pixels that are no numbers."""
+    """Compare images as displayed, with the mean over frames: `mse`, `psnr_db`, and how many pixels are not finite."""
     errors = [squared_error(frame.shown, other.shown) for frame, other in zip(frames, exact, strict=True)]
     mse = float(np.mean([error for error, _ in errors]))
     return {"mse": mse, "psnr_db": psnr_db(mse), "invalid": sum(broken for _, broken in errors)}
@@ -186,13 +186,13 @@ def described(pipeline: Pipeline, plan: Plan, setting: Setting, asked: int) -> R
 
 
 def require_surface(maker: SceneMaker, is_seen: bool) -> None:
-    """Raise UsageError where no surface of a scene is seen."""
+    """Raise UsageError if no surface of a scene is visible."""
     if not is_seen:
         raise UsageError(f"{maker.name}: {SEES_NOTHING}")
 
 
 def says_little(scene: str, covered: float) -> Iterator[str]:
-    """Say what has to be said of a scene that covers so many percent of its picture; nothing of one that fills it."""
+    """Yield a remark on a scene that covers too few percent of its image; nothing for one that fills it."""
     if 0 < covered < LEAST_COVERED:
         what = f"{scene}: surfaces cover {covered:.0f} % of the picture"
         yield f"{what}; a camera in the file that comes nearer gives more pixels to judge by"
@@ -202,7 +202,7 @@ def checked_device(repeats: int, least: int = 0) -> Device:
     """Return the device that frames are rendered on.
 
     Raises:
-        UsageError: repeats beyond what is possible.
+        UsageError: `repeats` is out of range.
         MissingError: there is no device, or no JAX.
     """
     require_jax()

@@ -1,4 +1,4 @@
-"""What a table is: everything that is a fact of it, stated once. Imports nothing heavy.
+"""The definition of a table: all its facts, each stated once. Imports nothing heavy.
 
 A table is a folder with two files, and one line of `registry.py`:
 
@@ -34,7 +34,7 @@ UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 
 
 class Group(StrEnum):
-    """What a command is for, as the program's help groups them; in its order."""
+    """The purpose of a command, by which the program's help groups commands; in this order."""
 
     ANSWER = "The answer"
     MEASURE = "Measure"
@@ -50,14 +50,14 @@ class NoOutputs:
 
 @dataclass(frozen=True)
 class Step:
-    """What is measured, kept and resumed at once: a row, or several.
+    """A unit that is measured, kept and resumed at once: a row, or several.
 
     Attributes:
         key: everything that determines the rows except the machine and the sources; plain values.
-        case: what the table's own code measures.
-        name: what a progress bar says.
+        case: the case that the table's own code measures.
+        name: its name in a progress bar.
         ticks: how many chunks it has.
-        parts: steps that are measured in place of one that takes hours; `Work.merge` makes its rows of theirs.
+        parts: steps that are measured in place of a step that takes hours; `Work.merge` makes its rows from theirs.
     """
 
     key: Row
@@ -116,37 +116,39 @@ def _has_repeats(step: Step) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Work:
-    """How a table is measured and shown. Everything here may import heavy packages.
+    """The code that measures and shows a table. Everything here may import heavy packages.
 
     Attributes:
         steps: from options and outputs, both typed text, to steps. Raises UsageError and MissingError.
-        check: what of the outputs that a user asked for cannot be. Raises UsageError before anything is measured.
+        check: checks the outputs that a user asked for. Raises UsageError before anything is measured.
         measure: the rows of each step, in the order of the steps.
-        merge: the rows of a step that is measured in parts, of all rows of its parts in their order.
-        finish: new rows with what needs all of them: their order, their ranks. It is called where rows are measured,
-            and where a run is read; all others receive finished rows.
-        shown: finished rows for people; None where they are shown as they are.
-        verdict: what finished rows say, as an engineer would: a sentence, and others that it needs.
-        summary: what people look at first, below the verdict.
+        merge: the rows of a step that is measured in parts, from all rows of its parts in their order.
+        finish: new rows completed with what needs all of them: their order, their ranks. It is called when rows are
+            measured, and when a run is read; all others receive finished rows.
+        shown: finished rows for people; None if they are shown as they are.
+        verdict: the conclusion from finished rows, as an engineer would put it: a sentence, and others that it
+            needs.
+        summary: the rows that people look at first, below the verdict.
         warnings: a line for each row that is measured but odd.
         failures: a line for each row that makes the command fail.
-        write: the files that were asked for beside the rows. Returns lines that make the command fail.
+        write: writes the files that were asked for besides the rows. Returns lines that make the command fail.
         charts: `chart.Chart` values of rows, which the page, the files of `run`, notebooks and --plot draw.
-        plotted: the charts that --plot draws where they are not `charts` of the rows.
-        extras: what the page shows beside the rows, by attributes of `found.Found`, from the folder of a run, its rows
-            by table, and remarks that it may add to.
+        plotted: the charts that --plot draws if they are not `charts` of the rows.
+        extras: the page's contents besides the rows, by attributes of `found.Found`, from the folder of a run, its
+            rows by table, and remarks that it may add to.
         joined: charts of the page that need rows of several tables, from its contents, a `found.Found`.
-        subjects: what the files of `write`, in a folder, show of the rows: `pixels.Subject` values for the page.
+        subjects: the images of the rows among the files of `write`, in a folder: `pixels.Subject` values for the
+            page.
         films: animations of the rows among the files of `write`, in a folder: `pixels.Film` values for the page.
-        worst: the normal that a step's codec turns the most; None where there is none.
-        listing: the instructions that a step's row was counted in, as text; None where there are none.
-        lacking: what this machine turned out to lack; makes the exit status 3.
-        missing: why `run` leaves the table out on this machine; empty where it does not.
-        needs: what a step is measured with besides JAX: GL, VULKAN, COMPILERS, C_COMPILER. Workers that have another
-            one, or none, do not measure it.
-        is_timed: whether a clock is read for a step's rows: then the process that was asked measures it, after all
-            others.
-        stays: whether measuring leaves behind what `write` or `lacking` takes, so that no other process can do it.
+        worst: the normal that a step's codec turns the most; None if there is no such normal.
+        listing: the instructions that a step's row was counted in, as text; None if there are none.
+        lacking: what turned out to be missing on this machine; makes the exit status 3.
+        missing: why `run` leaves the table out on this machine; empty if it does not.
+        needs: what a step is measured with besides JAX: GL, VULKAN, COMPILERS, C_COMPILER. Workers that have
+            another one, or none, do not measure it.
+        is_timed: whether a clock is read for a step's rows: if so, the process that was asked measures it, after
+            all others.
+        stays: whether measuring leaves behind what `write` or `lacking` uses, so that no other process can do it.
     """
 
     steps: Callable[[Any, Any], Sequence[Step]]
@@ -185,27 +187,28 @@ class Table:
     """A table.
 
     Attributes:
-        package: where its code is: `__package__` of the file that makes it.
-        help: what the command's help says: a sentence, and a paragraph if need be.
-        example: a command that answers a usual question.
+        package: the package of its code: `__package__` of the file that makes it.
+        help: the command's help: a sentence, and a paragraph if need be.
+        example: a command that answers a common question.
         options: the dataclass of what is measured; the command line, tests, gates and Python read it.
-        outputs: the dataclass of what may be written beside the rows.
+        outputs: the dataclass of what may be written besides the rows.
         columns: the columns of its rows, in order.
         also: columns that only its summaries have.
         section: its part of the page.
-        group: where the program's help has its command.
-        usual: what `run` measures of it where nothing else is asked for: sets of options.
-        usual_where_said: by an option, what of `usual` is replaced where `run` is given that option.
-        single: options of a gate or a test that says nothing else.
+        group: the group of its command in the program's help.
+        usual: what `run` measures of it if nothing else is asked for: sets of options.
+        usual_where_said: by option, what replaces parts of `usual` if `run` is given that option.
+        single: options of a gate or a test that gives no others.
         files: by output, the folder or file of a run that holds it.
-        by: a column; for people rows that differ in it are tables of their own.
-        partial: whether a row that says why figures are missing may have others.
+        by: a column; for people, rows that differ in it form separate tables.
+        partial: whether a row that says why figures are missing may have other figures.
         in_all: whether `run` measures it without being asked to.
-        asked_by: an option; where it is given, `run` measures the table without being asked to.
-        not_with: an option; where it is given, `run` measures the table only if it is named.
+        asked_by: an option; if it is given, `run` measures the table without being asked to.
+        not_with: an option; if it is given, `run` measures the table only if it is named.
         is_usual: whether a gate or a test that names no table means this one.
-        is_kept: whether the command gives its answer again while nothing has changed that decides it.
-        step_s: seconds of a step in the default run, on two cores: what a run expects until it has measured its own.
+        is_kept: whether the command repeats its answer while nothing that determines it has changed.
+        step_s: seconds per step in the default run, on two cores: the estimate of a run until it has measured its
+            own.
         compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
     """
 
@@ -244,7 +247,7 @@ class Table:
 
     @property
     def work(self) -> Work:
-        """How it is measured."""
+        """The code that measures and shows it."""
         return import_module(f"{self.package}.work").WORK
 
     def empty(self, parts: Iterable[str] = ()) -> Row:
@@ -253,7 +256,7 @@ class Table:
         return dict.fromkeys(name for several in names for name in several)
 
     def column(self, name: str) -> Column | None:
-        """The column that a row or a summary calls so; None where there is none."""
+        """Return the column of a row or a summary by its name; None if there is no such column."""
         return _column_of(self, name)
 
     def of_role(self, *roles: Role) -> list[Column]:
@@ -265,18 +268,18 @@ class Table:
         return row | {c.name: c.before for c in self.of_role(Role.KEY) if c.before and c.name not in row}
 
     def name_of(self, row: Mapping[str, Any]) -> str:
-        """What a row is called: its key columns' values."""
+        """Return the name of a row: the values of its key columns."""
         return " ".join(str(row[c.name]) for c in self.of_role(Role.KEY) if row.get(c.name) is not None)
 
     def warnings(self, rows: Sequence[Row]) -> Iterator[str]:
-        """Say what is odd about rows: results that are no numbers, and what the table itself says."""
+        """Yield warnings about rows: results that are NaN or infinite, and the table's own warnings."""
         for row in rows:
             if row.get("invalid"):
                 yield f"{self.name_of(row)}: {row['invalid']} results are NaN or infinite"
         yield from self.work.warnings(rows)
 
     def lacking(self, done: Measured) -> list[str]:
-        """What the machine turned out to lack; each once."""
+        """Return what the machine turned out to lack, each item once."""
         return list(dict.fromkeys(self.work.lacking(done)))
 
     def drops(self, rows: Sequence[Row]) -> tuple[str, ...]:

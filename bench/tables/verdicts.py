@@ -14,12 +14,12 @@ MOST_TIED = 3
 
 
 def best_by_bits(rows: Iterable[Row], figure: str, bits: str = "bits") -> list[list[Row]]:
-    """Return for each bit count the rows with the smallest figure and those that tie with it, the best first. Bit
-    counts whose best does not beat that of fewer bits are left out.
+    """Return the rows with the smallest figure for each bit count and the rows that tie with them, the best first.
+    Bit counts whose best row does not beat fewer bits are left out.
 
     Args:
-        figure: the column of the error.
-        bits: the column of the bit count.
+        figure: column of the error.
+        bits: column of the bit count.
     """
     groups: dict[float, list[Row]] = {}
     for row in sorted((row for row in rows if row[bits]), key=lambda row: (row[bits], row[figure])):
@@ -51,7 +51,7 @@ def codec_name(row: Row) -> str:
 
 
 def codecs(rows: Sequence[Row], joined: Callable[[Iterable[str]], str]) -> str:
-    """Return what rows' codecs are called in a sentence; a storage that all have is said once."""
+    """Return the names of the rows' codecs for a sentence; a storage that all of them share is named once."""
     shared = {(row["storage"], row.get("rounding") or "nearest") for row in rows}
     if len(rows) == 1 or shared != {(rows[0]["storage"], "nearest")}:
         return joined(map(codec_name, rows))
@@ -59,7 +59,7 @@ def codecs(rows: Sequence[Row], joined: Callable[[Iterable[str]], str]) -> str:
 
 
 def alternatives(names: Iterable[str]) -> str:
-    """Return names of which each will do: "a, b or c"; of many the first and how many more."""
+    """Join the names of alternatives: "a, b or c"; for many names, return the first and the number of the others."""
     known = list(dict.fromkeys(names))
     if len(known) > MOST_TIED:
         return f"{known[0]} or {len(known) - 1} others that tie"

@@ -40,12 +40,12 @@ def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
 
 
 def fewer_bits(bits: int | None, code_bits: float | None) -> int | None:
-    """What a codec's codes are worth in whole bits; None where that is all that they occupy."""
+    """Return how many whole bits a codec's codes are worth; None unless fewer than the bits that they use."""
     return round(code_bits) if bits and code_bits and round(code_bits) < bits else None
 
 
 def codec_name(encoding_name: str, storage_name: str, rounding: str) -> str:
-    """What a codec is called; rounding to the nearest is not said."""
+    """Return the name of a codec; rounding to nearest is left out."""
     return f"{encoding_name}/{storage_name}" + ("" if rounding == "nearest" else f"/{rounding}")
 
 
@@ -90,9 +90,9 @@ class Codec:
 
     @property
     def misfit(self) -> str | None:
-        """Why the storage cannot hold what the encoding makes; None where it can.
+        """The reason why the storage cannot hold the encoding's output; None if it can.
 
-        Sign bits are kept beside it, in the depth's sign.
+        Sign bits are stored elsewhere, in the sign of the depth.
         """
         encoding, storage = self.encoding, self.storage
         if encoding.before and encoding.before.misfit:
@@ -151,7 +151,7 @@ class Codec:
         return None
 
     def dither(self, frame: int) -> Dither:
-        """The noise of a whole step for its numbers; of moving noise that of a frame, else of frame 0."""
+        """Return noise of a whole step for its numbers; `frame` is the frame of moving noise, 0 for still noise."""
         return dither_of(self.storage, list(map(self.encoding.levels_of, range(self.encoding.components))), frame)
 
     @property
@@ -161,14 +161,14 @@ class Codec:
 
     @property
     def is_integer(self) -> bool:
-        """Whether its texels are bits alone, whose means are no numbers: an integer, or floats across channels."""
+        """Whether its texels are bits without a meaningful mean: an integer, or floats across channels."""
         return self.encoding.is_packed or self.storage.is_word or self.storage.form is not None
 
     @property
     def bits(self) -> int:
-        """The bits it occupies: of every channel that it uses, all; and its sign bits. Of an integer, those it uses.
+        """The bits that it uses: all of every channel used, and its sign bits. For an integer, only the bits used.
 
-        A component of few values takes its channel, too: another storage has a channel that fits.
+        A component of few values counts its whole channel, too, because another storage has a channel that fits.
         """
         if self.encoding.is_packed:
             return self.encoding.packed_bits
@@ -176,7 +176,7 @@ class Codec:
 
     @property
     def codes(self) -> int:
-        """How many codes it has: whatever its numbers in [-1, 1] can be, used or not."""
+        """The number of its codes: all values that its numbers in [-1, 1] can have, used or not."""
         if self.encoding.is_packed:
             return 2**self.encoding.packed_bits
         size = self.encoding.components + self.encoding.sign_bits
@@ -205,7 +205,7 @@ class Codec:
         return every[above - ~is_above]
 
     def rounding_of(self, component: int) -> str:
-        """How a component rounds: one of few values to the nearest, whatever the others do."""
+        """Return how a component rounds: to nearest if it has few values, whatever the others do."""
         return "nearest" if self.encoding.levels_of(component) else rounds_to(self.rounding)
 
     def store(self, code):
@@ -237,7 +237,7 @@ class Codec:
         return [type(code)(*numbers) for numbers in itertools.product(*around)]
 
     def _nearest_of(self, code, n: Vec3, view: Vec3):
-        """Of the codes around the one that is decoded nearest to n."""
+        """Return the code, among those around `code`, that decodes nearest to n."""
         codes = self.around(code)
         # Squared distances, not cosines: near 1 those no longer tell fine codes apart.
         misses = [n - self.encoding.decode(candidate, view) for candidate in codes]
@@ -256,6 +256,6 @@ class Codec:
 def _nearer(
     a: tuple[Float[Array, "*shape"], Code], b: tuple[Float[Array, "*shape"], Code]
 ) -> tuple[Float[Array, "*shape"], Code]:
-    """Of two codes with their distance the nearer one, and the first where they are as near."""
+    """Return the nearer of two codes, each with its distance; the first if both are equally near."""
     is_nearer = b[0] < a[0]
     return select(is_nearer, b[0], a[0]), select(is_nearer, b[1], a[1])

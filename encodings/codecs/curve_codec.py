@@ -21,30 +21,31 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class CurveEncoding:
-    """A pair of maps between a quantity and a number in [0, 1], in JAX here and in GLSL in the file beside it.
+    """A pair of maps between a quantity and a number in [0, 1], in JAX here and in GLSL in the file next to it.
 
-    A quantity is what a material has one of at a point: a roughness, a metalness, a reflectance, a share of ambient
-    light, or a channel of a colour. The range is the largest quantity that is kept; more is cut off by fixed-point
-    storages, not here. An encoder that computes a root, a power or a logarithm, or that falls, takes a negative
-    quantity and NaN for 0; `linear` and `reflectivity` leave that to the format. The GLSL file defines
-    `float <name>_encode_curve(float x, float range)` and `float <name>_decode_curve(float e, float range)`.
+    A quantity is a single number of a material at a point: a roughness, a metalness, a reflectance, a share of
+    ambient light, or a channel of a colour. The range is the largest quantity that is kept; larger ones are clamped
+    by fixed-point storages, not here. An encoder that computes a root, a power or a logarithm, or that falls,
+    treats a negative quantity and NaN as 0; `linear` and `reflectivity` leave that to the format. The GLSL file
+    defines `float <name>_encode_curve(float x, float range)` and `float <name>_decode_curve(float e, float range)`.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
-        title: what a reader calls it.
+        title: human-readable name.
         encode: (quantity, range) -> a number, in [0, 1] for quantities up to the range. On float64 the exact map.
         decode: (number, range) -> quantity, likewise.
-        storages: where it usually lies, names of CURVE_STORAGES.
-        citation: where it comes from.
+        storages: usual storages, names of CURVE_STORAGES.
+        citation: source of the encoding.
         glsl: the GLSL twin.
-        ulps: how far the two languages may differ before storage, encode in 2^-23, decode in 2^-23 of the range.
-        ulps_reason: why it is that many.
-        usual_range: the range where none is named.
-        inverse_error: how far a quantity that is encoded and decoded without rounding comes back from itself, in shares
-            of the range; 0 where the two maps are each other's inverse.
+        ulps: allowed difference between the two languages before storage, encode in 2^-23, decode in 2^-23 of the
+            range.
+        ulps_reason: reason for these numbers.
+        usual_range: range if none is given.
+        inverse_error: error of a quantity after encoding and decoding without rounding, as a share of the range; 0
+            if the two maps are inverses.
         constants: numbers that both languages need, by their GLSL name.
-        functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
-        stores_colours: whether channels of colours are stored on it; other curves have no errors in display steps.
+        functions: prefix of its GLSL functions in a user's file; empty if it is the name.
+        stores_colours: whether it is used for channels of colours; other curves have no errors in display steps.
     """
 
     kind: ClassVar[Kind] = CURVE
@@ -65,12 +66,12 @@ class CurveEncoding:
 
     @property
     def prefix(self) -> str:
-        """What the names of its GLSL functions begin with."""
+        """The prefix of the names of its GLSL functions."""
         return self.functions or self.name
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """What its GLSL file defines."""
+        """The signatures of the functions in its GLSL file."""
         return (
             f"float {self.prefix}_encode_curve(float x, float range)",
             f"float {self.prefix}_decode_curve(float e, float range)",
@@ -79,12 +80,12 @@ class CurveEncoding:
 
 @dataclass(frozen=True)
 class CurveCodec:
-    """A curve over a range, and the storage of its number, which lies in the first of the storage's channels.
+    """A curve over a range, and the storage of its number, which is in the first of the storage's channels.
 
     Attributes:
         range: the largest quantity that is kept.
-        rounding: one of `storage.ROUNDINGS`; or DITHERED, where noise of a step is added to the number before it is
-            rounded to the nearest.
+        rounding: one of `storage.ROUNDINGS`; or DITHERED, which adds noise of a step to the number before rounding
+            it to nearest.
     """
 
     encoding: CurveEncoding
@@ -113,18 +114,17 @@ class CurveCodec:
 
     @property
     def step(self) -> float:
-        """How far apart the numbers are that a fixed-point channel tells apart."""
+        """The distance between neighbouring numbers of a fixed-point channel."""
         return 1.0 / self.storage.scale(0)
 
     @property
     def bits(self) -> int:
-        """The bits it needs: those of a channel."""
+        """The bits that it needs: those of one channel."""
         return self.storage.bits[0]
 
     @property
     def codes(self) -> int:
-        """How many codes it has: the numbers in [0, 1] that the channel holds, half of those in [-1, 1] that has a
-        sign."""
+        """The number of its codes: the channel's numbers in [0, 1], half of those in [-1, 1] if it has a sign."""
         count = self.storage.count(0)
         return count if self.storage.is_biased else count // 2 + 1
 

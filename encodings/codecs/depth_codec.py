@@ -40,34 +40,36 @@ SCALING_ULPS, POSITION_ULPS = 1, 3
 
 @dataclass(frozen=True, eq=False)
 class DepthEncoding:
-    """A pair of maps between depths and numbers, in JAX here and in GLSL in the file beside it.
+    """A pair of maps between depths and numbers, in JAX here and in GLSL in the file next to it.
 
     The depth is planar: -z of the view-space position, not the distance from the eye. The GLSL file defines
-    `float <name>_encode_depth(float depth, float near, float far)`, and `<name>_decode_depth` of a number likewise,
-    named so because light codes are compiled beside them. What reaches an encoder has been through `vec.depth_or_far`:
-    nothing is NaN, infinite or beyond `far`. The encoder itself clamps what is nearer than its range.
+    `float <name>_encode_depth(float depth, float near, float far)`, and `<name>_decode_depth` of a number likewise;
+    the suffix distinguishes them from light encodings, which are compiled with them. The inputs of an encoder have
+    passed through `vec.depth_or_far`: none is NaN, infinite or beyond `far`. The encoder itself clamps depths
+    nearer than its range.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
-        title: what a reader calls it.
-        encode: (depth, near, far) -> number in [0, 1]; in [-1, 1] with the depth's sign if `signed`. On float64 arrays
-            the exact map.
+        title: human-readable name.
+        encode: (depth, near, far) -> number in [0, 1]; in [-1, 1] with the depth's sign if `signed`. On float64
+            arrays the exact map.
         decode: (number, near, far) -> depth, likewise.
-        storages: where it usually lies, names of DEPTH_STORAGES.
-        citation: where it comes from.
+        storages: usual storages, names of DEPTH_STORAGES.
+        citation: source of the encoding.
         glsl: the GLSL twin.
-        ulps: how far either language may be from the exact maps, encode and decode. A unit is 2^-23 of the number, and
-            what 2^-23 of the depth moves the number by; for decode the same of the depth.
-        ulps_reason: why it is that many.
-        projection: where the number is what a depth buffer holds, how clip space counts it; the inverse projection then
-            gives the position.
-        signed: whether the depth carries the sign of the normal's z. Zero has a sign too.
-        own_units: whether float formats hold the depth in the scene's own units, which is a far plane at 1: they need
-            no range.
+        ulps: allowed error of either language against the exact maps, encode and decode. A unit is 2^-23 of the
+            number, plus the change of the number when the depth changes by 2^-23; for decode, the same for the
+            depth.
+        ulps_reason: reason for these numbers.
+        projection: how clip space counts depth, if the number is what a depth buffer holds; the inverse projection
+            then gives the position.
+        signed: whether the depth's sign is that of the normal's z. Zero has a sign too.
+        own_units: whether float formats hold the depth in the scene's own units, which is a far plane at 1: they
+            need no range.
         constants: numbers that both languages need, by their GLSL name.
-        functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
-        bytes: over how many 8-bit channels its code lies; then a number in [0, 1] is encoded, whatever depth that is.
-            0 for a code of one number.
+        functions: prefix of its GLSL functions in a user's file; empty if it is the name.
+        bytes: number of 8-bit channels that its code takes; then a number in [0, 1] is encoded, whatever depth that
+            is. 0 for a code of one number.
     """
 
     kind: ClassVar[Kind] = DEPTH
@@ -89,12 +91,12 @@ class DepthEncoding:
 
     @property
     def prefix(self) -> str:
-        """What the names of its GLSL functions begin with."""
+        """The prefix of the names of its GLSL functions."""
         return self.functions or self.name
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """What its GLSL file defines."""
+        """The signatures of the functions in its GLSL file."""
         if self.bytes:
             return f"vec4 {self.prefix}_encode_bytes(float number)", f"float {self.prefix}_decode_bytes(vec4 texel)"
         return (
@@ -131,7 +133,7 @@ class DepthCodec:
 
     @property
     def step(self) -> float:
-        """How far apart the numbers are that a fixed-point storage tells apart."""
+        """The distance between neighbouring numbers of a fixed-point storage."""
         return 1.0 / (self.storage.scale // 2 if self.encoding.signed else self.storage.scale)
 
     @property
@@ -146,12 +148,12 @@ class DepthCodec:
 
     @property
     def bits(self) -> int:
-        """The bits it occupies."""
+        """The bits that it uses."""
         return self.storage.bits
 
     @property
     def codes(self) -> int:
-        """How many codes it has: whatever its number in [0, 1], or in [-1, 1] under a sign, can be."""
+        """The number of its codes: all values of its number in [0, 1], or in [-1, 1] with a sign."""
         if self.storage.format.kind != "float":
             return 2**self.bits
         both = self.storage.format.count(0)
@@ -207,16 +209,16 @@ class DepthCodec:
     def furthest(
         self, depth: Float[np.ndarray, "*shape"], camera: Camera, with_arithmetic: bool = True
     ) -> Float[np.ndarray, "*shape"]:
-        """How far each depth may move on its way through the storage, at worst.
+        """Return the largest possible error of each depth after a round trip through the storage.
 
-        What rounding moves the number by, through the exact maps; and, if asked for, what float32 arithmetic adds to
-        the number and to the depth, down to the position.
+        It is the error from rounding the number, through the exact maps. If asked for, it includes what float32
+        arithmetic adds to the number and to the depth, up to the position.
 
         Args:
             depth: float64, positive.
 
         Returns:
-            float64; infinite where the storage may give anything.
+            float64; infinite where the storage may return anything.
         """
         import jax
 
@@ -236,7 +238,7 @@ class DepthCodec:
             return np.asarray(jnp.maximum(*errors))
 
     def _rounded_by(self, number: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
-        """How far rounding moves numbers of float64 at most: half a step of the storage to the nearest, else a step."""
+        """Return the largest rounding error of float64 numbers: half a step of the storage to nearest, else a step."""
         share = 0.5 if self.rounding == "nearest" else 1.0
         if self.storage.format.kind != "float":
             return np.full_like(number, share * self.step)

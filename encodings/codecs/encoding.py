@@ -1,4 +1,4 @@
-"""What an encoding is: a pair of maps between unit normals and a few numbers, written twice."""
+"""The definition of an encoding: a pair of maps between unit normals and a few numbers, written twice."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ AXES: Mapping[str, tuple[str, str]] = MappingProxyType({"x": ("yzx", "zxy"), "y"
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number of an encoding that may be another one: `encode` and `decode` both take it by its name.
+    """A number of an encoding that can be changed: `encode` and `decode` both take it by its name.
 
     Attributes:
-        name: the keyword, and what it is called on the command line.
-        constant: the GLSL macro for it; what `constants` say of that is the published value.
+        name: the keyword, and the name on the command line.
+        constant: its GLSL macro; its value in `constants` is the published one.
         least, most: its range.
     """
 
@@ -41,14 +41,14 @@ class Parameter:
 
 @dataclass(frozen=True)
 class LookUp:
-    """A table of an encoding that may be another one: `encode` takes it by the keyword `table`.
+    """A lookup table of an encoding that can be changed: `encode` takes it by the keyword `table`.
 
     Attributes:
         sampler: its key in `tables`.
-        levels: how many values a number of the code may have in a storage that it can be fitted to; evenly spread ones,
-            as many for each number.
-        fit: (normals, levels, prior) -> the table with the least squared error on them. Normals are float64 of shape
-            (count, 3); `prior` is how many normals the middle of a texel counts as.
+        levels: how many values each number of the code may have in a storage for which the table can be fitted;
+            evenly spread, the same for every number.
+        fit: (normals, levels, prior) -> the table with the smallest squared error on the normals. Normals are
+            float64 of shape (count, 3); `prior` is the number of normals that the centre of a texel counts as.
     """
 
     sampler: str
@@ -62,44 +62,49 @@ def _none(_: Mapping[str, Any]) -> Mapping[str, float]:
 
 @dataclass(frozen=True, eq=False)
 class Encoding:
-    """A pair of maps between normals and codes, in JAX here and in GLSL in the file beside it.
+    """A pair of maps between normals and codes, in JAX here and in GLSL in the file next to it.
 
-    The GLSL file defines `<name>_encode(vec3 n, vec3 view)` and `<name>_decode(code, vec3 view)`; the code is a vec2 or
-    vec3 of `components + sign_bits` numbers.
+    The GLSL file defines `<name>_encode(vec3 n, vec3 view)` and `<name>_decode(code, vec3 view)`; the code is a
+    vec2 or vec3 of `components + sign_bits` numbers.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
-        title: what a reader calls it.
-        encode: (n, view) -> code, unit normal to numbers in [-1, 1] on its domain. `view` is the view-space position.
+        title: human-readable name.
+        encode: (n, view) -> code, unit normal to numbers in [-1, 1] on its domain. `view` is the view-space
+            position.
         decode: (code, view) -> normal, not renormalised unless the method does so.
-        components: how many numbers are stored with the storage's precision.
-        domain: the normals it can hold: "sphere", "hemisphere" (z >= 0) or "view" (facing the viewer).
-        citation: where it comes from.
+        components: number of components that are stored with the storage's precision.
+        domain: the normals that it can hold: "sphere", "hemisphere" (z >= 0) or "view" (facing the viewer).
+        citation: source of the encoding.
         glsl: the GLSL twin.
-        ulps: how far the two languages may differ before storage, encode and decode, in 2^-23 (a unit in the last
-            place of 1), times how far the map moves its result for a unit of its input where that is more than one.
-        ulps_reason: why it is that many.
-        sign_bits: further components that are 1 or -1 and take one bit, kept in the sign of the depth.
+        ulps: allowed difference between the two languages before storage, encode and decode, in 2^-23 (a unit in
+            the last place of 1), times the change of the map's result per unit of its input where that is more than
+            one.
+        ulps_reason: reason for these numbers.
+        sign_bits: further components that are 1 or -1 and take one bit, stored in the sign of the depth.
         constants: numbers that both languages need, by their GLSL name.
-        derived: further ones that follow from these.
-        levels: for each component how many values it may have, from -1 to 1 evenly spread; 0, as where none are given,
-            for a number like any other.
-        is_precise: of the codes around, every component rounded down or up, the one that decodes nearest is stored.
-        searches: the encoder takes the best of several codes; where two are as good the languages may differ.
-        tables: makes the look-up tables by GLSL sampler name, float32 arrays of shape (height, width, channels).
-        functions: what the names of its GLSL functions begin with, of a variant that shares another's file.
-        parameters: those of its constants that may have other values.
-        look_up: that one of its tables that may be another one.
+        derived: further constants that follow from these.
+        levels: how many values each component may have, evenly spread from -1 to 1; 0, or no levels at all, for an
+            ordinary number.
+        is_precise: whether the code that decodes nearest is stored, among those with every component rounded down
+            or up.
+        searches: whether the encoder takes the best of several codes; if two are equally good the languages may
+            differ.
+        tables: makes the lookup tables by GLSL sampler name, float32 arrays of shape (height, width, channels).
+        functions: prefix of its GLSL functions, for a variant that shares another encoding's file.
+        parameters: the constants that may have other values.
+        look_up: the table that can be changed.
         axis: which axis of a normal is its z, a key of AXES.
-        sign: 1, or -1 where the opposite of a normal is encoded.
-        is_half: every step of encode and decode is rounded to a float of 16 bits; codes are of that type.
-        source: the user's file that its GLSL was translated from; None where the GLSL was written.
-        before: the codec that normals have been through when they are encoded; None where it is given them as they are.
-        is_unit: its author's functions give and take numbers in [0, 1], u for c = 2 u - 1: every storage holds u.
-        packed_bits: how many bits are used of a code that is one integer of 32 bits as its author's functions make it:
-            its two numbers are the halves, and it is stored as it stands. 0 for any other code.
-        declares_half: its author's functions are of numbers of 16 bits.
-        own: the same in its author's axes, of a code for another half than z >= 0, which tables turn.
+        sign: 1, or -1 if the opposite of a normal is encoded.
+        is_half: whether every step of encode and decode is rounded to a 16-bit float; codes are of that type.
+        source: the user's file from which its GLSL was translated; None if the GLSL was written.
+        before: the codec that normals have passed through before they are encoded; None if they have not.
+        is_unit: whether its author's functions take and return numbers in [0, 1], u for c = 2 u - 1: every storage
+            holds u.
+        packed_bits: number of bits used in a code that is one integer of 32 bits as its author's functions make it:
+            its two numbers are the halves, and it is stored unchanged. 0 for any other code.
+        declares_half: whether its author's functions use 16-bit numbers.
+        own: the same encoding in its author's axes, for a code of another half than z >= 0, which tables turn.
     """
 
     kind: ClassVar[Kind] = NORMAL
@@ -148,17 +153,17 @@ class Encoding:
 
     @property
     def twin(self) -> Path:
-        """Where the Python half of a user's encoding lies."""
+        """The path of the Python half of a user's encoding."""
         return (self.source or self.glsl).with_suffix(".py")
 
     @property
     def prefix(self) -> str:
-        """What the names of its GLSL functions begin with."""
+        """The prefix of the names of its GLSL functions."""
         return self.functions or self.name
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """What its GLSL file defines."""
+        """The signatures of the functions in its GLSL file."""
         code = f"vec{self.components + self.sign_bits}"
         return (
             f"{code} {self.prefix}_encode(vec3 n, vec3 view)",
@@ -175,7 +180,7 @@ class Encoding:
         return fingerprint(self.glsl, (code, sorted(self.constants.items())), self.tables(), self.twin)
 
     def levels_of(self, component: int) -> int:
-        """How many values a number of its code has; 0 for one like any other, 2 for a sign bit."""
+        """Return how many values a number of its code has; 0 for an ordinary number, 2 for a sign bit."""
         if component >= self.components:
             return 2
         return self.levels[component] if self.levels else 0
@@ -187,12 +192,12 @@ class Encoding:
 
     @property
     def reach_deg(self) -> float:
-        """How far from the line of sight it holds normals, if its domain is "view"."""
+        """The largest angle from the line of sight of the normals that it holds, if its domain is "view"."""
         return self.published.get("cap", 90.0)
 
     @property
     def can_turn(self) -> bool:
-        """Whether it may have another axis or sign: it holds every direction, and none of it lies in a depth."""
+        """Whether it may have another axis or sign: it holds every direction, and no part of it is in a depth."""
         return self.domain == "sphere" and not self.sign_bits
 
     @property
@@ -202,7 +207,7 @@ class Encoding:
 
     @property
     def is_exact(self) -> bool:
-        """Whether its maps are those of real numbers, which only storage rounds."""
+        """Whether its maps are those of real numbers, which only the storage rounds."""
         return not self.is_half and self.before is None
 
     @property
@@ -218,11 +223,11 @@ class Encoding:
         return encoding._variant(suffix, **values)
 
     def turned(self, axis: str, sign: int, said: str = "") -> Encoding:
-        """The encoding of directions in other axes, in both languages, its name followed by `said`.
+        """Return the encoding of directions in other axes, in both languages, with `said` after its name.
 
         Args:
             axis: which axis of a normal becomes its z, a key of AXES.
-            sign: -1 where the opposite direction is encoded.
+            sign: -1 to encode the opposite direction.
         """
         order, back = AXES[axis]
         encode, decode = self.encode, self.decode
@@ -237,7 +242,7 @@ class Encoding:
         return encoding._variant(said)
 
     def in_half(self, said: str) -> Encoding:
-        """The encoding computed in floats of 16 bits, by the same code, named after `said`."""
+        """Return the encoding computed in 16-bit floats by the same functions, with `said` after its name."""
         encode, decode = self.encode, self.decode
 
         def half_encode(n: Vec3, view: Vec3) -> Any:
@@ -267,7 +272,7 @@ class Encoding:
         return replace(self, encode=encode_again, before=before, **named)
 
     def with_table(self, table: Float[Array | np.ndarray, "height width channels"], said: str) -> Encoding:
-        """The encoding with another look-up table, float32 of the published one's shape, named after `said`."""
+        """Return the encoding with another lookup table, float32 of the published table's shape, named after `said`."""
         assert self.look_up
         tables = {**self.tables(), self.look_up.sampler: table}
         encoding = replace(self, tables=lambda: tables)._variant(f":table={said}")

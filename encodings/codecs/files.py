@@ -50,11 +50,11 @@ class CatalogueError(Exception):
 
 
 def file_bytes(path: Path, most: int) -> bytes:
-    """What a file of at most so many bytes holds.
+    """Return the contents of a file of at most `most` bytes.
 
     Raises:
-        FileError: it cannot be read, is larger, or is not a plain file: a pipe may never end.
-        ValueError: no file can have such a name.
+        FileError: the file cannot be read, is larger, or is not a plain file: a pipe may never end.
+        ValueError: no file can have this name.
     """
     try:
         return _bytes(path, most)
@@ -84,16 +84,16 @@ def reason_of(error: OSError) -> str:
 
 
 def why_no_file(path: Path) -> str:
-    """Which of a folder, not plain or missing a path is that names no plain file; nothing is opened."""
+    """Return why a path does not name a plain file (a folder, not plain or missing), without opening anything."""
     return FOLDER if path.is_dir() else NOT_PLAIN if path.exists() else MISSING
 
 
 def file_text(path: Path) -> str:
-    """The text of a file in UTF-8; a byte-order mark is no part of it.
+    """Return the text of a UTF-8 file without its byte-order mark.
 
     Raises:
         FileError: see file_bytes.
-        ValueError: it is no such text.
+        ValueError: the file is not UTF-8 text.
     """
     try:
         text = file_bytes(path, MOST_TEXT).decode("utf-8-sig")
@@ -103,11 +103,11 @@ def file_text(path: Path) -> str:
 
 
 def file_toml(path: Path) -> dict[str, Any]:
-    """What a TOML file holds.
+    """Return the contents of a TOML file.
 
     Raises:
         FileError: see file_bytes.
-        ValueError: it is not TOML, is nested too deep, or has a number that is not finite.
+        ValueError: the file is not TOML, is nested too deep, or has a number that is not finite.
     """
     text = file_text(path)
     try:
@@ -132,7 +132,7 @@ TWICE = ("overwrite", "twice", "immutable", "redefine")
 
 
 def _not_toml(said: str) -> str:
-    """What is wrong with TOML, from what the library says: `Cannot overwrite a value (at line 3, column 22)`."""
+    """Return what is wrong with TOML, from the library's message: `Cannot overwrite a value (at line 3, column 22)`."""
     place = re.search(r"line (\d+), column (\d+)", said)
     where = f"line {place[1]}, column {place[2]}" if place else "its end"
     what = "a key or a table is given twice" if any(word in said for word in TWICE) else "this is not TOML"
@@ -140,7 +140,7 @@ def _not_toml(said: str) -> str:
 
 
 def file_json(path: Path) -> Any:
-    """What a JSON file holds.
+    """Return the contents of a JSON file.
 
     Raises:
         FileError: see file_bytes.
@@ -153,13 +153,13 @@ Pairs = Callable[[list[tuple[str, Any]]], dict[str, Any]]
 
 
 def parsed_json(data: str | bytes, pairs: Pairs | None = None) -> Any:
-    """What JSON holds that others wrote: all its numbers are finite.
+    """Parse JSON that others wrote; all numbers in it are finite.
 
     Args:
-        pairs: makes an object from its names and values; what it raises passes through.
+        pairs: makes an object from its names and values; its exceptions pass through.
 
     Raises:
-        ValueError: it is not JSON, is nested too deep, or has a number that is not finite; with its place.
+        ValueError: the data is not JSON, is nested too deep, or has a number that is not finite; with its place.
     """
     try:
         text = data if isinstance(data, str) else data.decode("utf-8-sig")
@@ -200,5 +200,5 @@ def _is_finite(value: float) -> bool:
 
 
 def called(name: str) -> str:
-    """A file's name as text: bytes that are no UTF-8 become escapes, as no file in UTF-8 could hold them."""
+    """Return a file's name as text: bytes that are not UTF-8 become escapes, because no UTF-8 file could hold them."""
     return name.encode(errors="backslashreplace").decode()

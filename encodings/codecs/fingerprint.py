@@ -20,7 +20,7 @@ _INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)
 
 
 def fingerprint(glsl: Path, values: object, tables: Mapping[str, Any], twin: Path | None = None) -> str:
-    """Hex digits over a GLSL file and what it includes, its Python twin if there is one, values and tables.
+    """Return hex digits over a GLSL file and its includes, its Python twin if there is one, values and tables.
 
     Args:
         twin: a Python file that may be missing; None for the one next to the GLSL file.

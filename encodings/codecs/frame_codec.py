@@ -40,18 +40,18 @@ class FrameCodec:
 
     @property
     def bits(self) -> int:
-        """The bits it occupies: of every channel that it uses, all."""
+        """The bits that it uses: all bits of every channel used."""
         return sum(self.storage.bits[: self.encoding.components])
 
     @property
     def codes(self) -> int:
-        """How many codes it has: whatever its numbers in [-1, 1] can be, used or not."""
+        """The number of its codes: all values that its numbers in [-1, 1] can have, used or not."""
         return math.prod(n or self.storage.count(i) for i, n in enumerate(self.encoding.levels))
 
     @property
     def least(self) -> float:
-        """The least number above 0 that the storage holds where the encoding keeps the hand: a whole step of SNORM,
-        half of one of UNORM, which has no 0. It is 0 where there is no hand."""
+        """The smallest number above 0 that the storage holds where the encoding keeps the hand: a whole step of
+        SNORM, half a step of UNORM, which has no 0. It is 0 if there is no hand."""
         if self.encoding.hand_in is None:
             return 0.0
         if self.storage.kind == "float":
@@ -70,7 +70,7 @@ class FrameCodec:
         return dither_of(self.storage, self.encoding.levels, 0)
 
     def rounding_of(self, component: int) -> str:
-        """How a component rounds: one of few values to the nearest, whatever the others do."""
+        """Return how a component rounds: to nearest if it has few values, whatever the others do."""
         has_levels = component < self.encoding.components and self.encoding.levels[component]
         return "nearest" if has_levels else rounds_to(self.rounding)
 

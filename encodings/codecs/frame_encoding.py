@@ -1,4 +1,4 @@
-"""What a frame encoding is: a pair of maps between tangent frames and up to four numbers, written twice."""
+"""The definition of a frame encoding: a pair of maps between tangent frames and up to four numbers, written twice."""
 
 from __future__ import annotations
 
@@ -14,33 +14,33 @@ from ..vec import Vec4
 
 @dataclass(frozen=True, eq=False)
 class FrameEncoding:
-    """A pair of maps between tangent frames and codes, in JAX here and in GLSL in the file beside it.
+    """A pair of maps between tangent frames and codes, in JAX here and in GLSL in the file next to it.
 
-    The GLSL file defines `vec4 <name>_encode(Frame frame, float least)` and `Frame <name>_decode(vec4 e, float least)`,
-    and where it settles `vec4 <name>_settle(Frame frame, vec4 stored)`. What reaches an encoder has been through
-    `rotation.frame_of`: nothing is NaN or infinite.
+    The GLSL file defines `vec4 <name>_encode(Frame frame, float least)` and
+    `Frame <name>_decode(vec4 e, float least)`, and `vec4 <name>_settle(Frame frame, vec4 stored)` if it settles.
+    The inputs of an encoder have passed through `rotation.frame_of`: none is NaN or infinite.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
-        title: what a reader calls it.
-        encode: (frame, least) -> numbers in [-1, 1], of four those that it makes and 0. `least` is the least number
-            above 0 that the storage holds where the hand lies: what keeps a sign.
+        title: human-readable name.
+        encode: (frame, least) -> four numbers in [-1, 1]; those that it does not make are 0. `least` is the
+            smallest number above 0 that the storage holds in place of the hand, so that the sign is kept.
         decode: (numbers, least) -> frame.
-        hand_in: which of the numbers has the frame's hand for its sign; None of rotations alone, whose frames all come
-            back with hand 1.
-        levels: for each number that it makes how many values it may have, from -1 to 1 evenly spread; 0 for a number
-            like any other.
-        storages: where it usually lies, names of FRAME_STORAGES.
-        citation: where it comes from.
+        hand_in: index of the number whose sign is the frame's hand; None for encodings of rotations, whose frames
+            all come back with hand 1.
+        levels: how many values each of its numbers may have, evenly spread from -1 to 1; 0 for an ordinary number.
+        storages: usual storages, names of FRAME_STORAGES.
+        citation: source of the encoding.
         glsl: the GLSL twin.
-        ulps: how far the two languages may differ before storage, encode and decode, in 2^-23; encode as it is decoded
-            where two codes stand for frames that near.
-        ulps_reason: why it is that many.
-        settle: (frame, the code as it comes back) -> the code to store, where some numbers depend on how others were
-            rounded; those others stay as they came back.
+        ulps: allowed difference between the two languages before storage, encode and decode, in 2^-23; encode is
+            compared after decoding where two codes stand for frames that near.
+        ulps_reason: reason for these numbers.
+        settle: (frame, the code as it comes back) -> the code to store, if some numbers depend on how others were
+            rounded; the others stay as they came back.
         constants: numbers that both languages need, by their GLSL name.
-        functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
-        is_unit: its author's functions give and take numbers in [0, 1], u for c = 2 u - 1: every storage holds u.
+        functions: prefix of its GLSL functions in a user's file; empty if it is the name.
+        is_unit: whether its author's functions take and return numbers in [0, 1], u for c = 2 u - 1: every storage
+            holds u.
     """
 
     kind: ClassVar[Kind] = FRAME
@@ -62,17 +62,17 @@ class FrameEncoding:
 
     @property
     def prefix(self) -> str:
-        """What the names of its GLSL functions begin with."""
+        """The prefix of the names of its GLSL functions."""
         return self.functions or self.name
 
     @property
     def components(self) -> int:
-        """How many numbers it makes."""
+        """The number of components that it makes."""
         return len(self.levels)
 
     @property
     def signatures(self) -> tuple[str, ...]:
-        """What its GLSL file defines."""
+        """The signatures of the functions in its GLSL file."""
         settle = (f"vec4 {self.prefix}_settle(Frame frame, vec4 stored)",) if self.settle else ()
         return (
             f"vec4 {self.prefix}_encode(Frame frame, float least)",

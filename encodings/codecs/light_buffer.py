@@ -14,13 +14,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Blending:
-    """How a device adds light up in a target.
+    """The way a device adds up light in a target.
 
     Attributes:
-        rounding: of the result, "nearest" or "truncate".
-        rounds_source: whether what the shader writes is rounded to the format before it is blended as well, as fixed
-            point hardware may do where the format is linear.
-        by_shifts: whether products of such codes are made of shifts, p + p / 256 + 1/2 for p / 255, as software does.
+        rounding: rounding of the result, "nearest" or "truncate".
+        rounds_source: whether the shader's output is also rounded to the format before it is blended, as
+            fixed-point hardware may do if the format is linear.
+        by_shifts: whether products of such codes are computed with shifts, p + p / 256 + 1/2 for p / 255, as
+            software does.
     """
 
     rounding: str = "nearest"
@@ -32,7 +33,7 @@ IDEAL = Blending()
 
 
 def blended(codec: LightCodec, texel: Vec4, light: Vec4, blending: Blending = IDEAL) -> Vec4:
-    """What a texel (any shape) holds after one more light."""
+    """Return the contents of a texel (any shape) after one more light."""
     storage = codec.storage
     if codec.blend == "read":
         total = light_or_none(codec.decode(texel) + light)

@@ -41,7 +41,7 @@ class LightCodec:
 
     @property
     def title(self) -> str:
-        """What a reader calls it."""
+        """The human-readable name."""
         lacks = "" if self.has_alpha else ", no fourth channel"
         return f"{self.storage.title}{lacks}" if self.encoding.is_plain else self._named[1]
 
@@ -63,7 +63,7 @@ class LightCodec:
 
     @property
     def codes(self) -> int:
-        """How many texels there are, used or not."""
+        """The number of possible texels, used or not."""
         return 2**self.bits
 
     @property
@@ -83,12 +83,12 @@ class LightCodec:
 
     @property
     def blend(self) -> str:
-        """How light is added: one of light_encoding.BLENDS. Numbers across channels cannot be blended."""
+        """The way light is added: one of light_encoding.BLENDS. Numbers across channels cannot be blended."""
         return "read" if self.storage.is_packed else self.encoding.blend
 
     @property
     def no_light(self) -> float:
-        """What every channel of a texel without light holds."""
+        """The value of every channel of a texel without light."""
         return self.encoding.no_light
 
     @property

@@ -1,4 +1,4 @@
-"""What a light encoding is: a pair of maps between light and a texel, written twice, and how light is added in it."""
+"""A light encoding: a pair of maps between light and a texel, written twice, and the way light is added."""
 
 from __future__ import annotations
 
@@ -17,33 +17,33 @@ BLENDS = ("add", "multiply", "read")
 
 @dataclass(frozen=True, eq=False)
 class LightEncoding:
-    """A pair of maps between light and what a texel holds, in JAX here and in GLSL in the file beside it.
+    """A pair of maps between light and the contents of a texel, in JAX here and in GLSL in the file next to it.
 
     The GLSL file defines `vec4 <name>_encode(vec4 light)` and `vec4 <name>_decode(vec4 e)`. Light is linear: three
-    colours and, where `has_alpha`, a fourth number that is added up on its own.
+    colours and, if `has_alpha`, a fourth number that is added up on its own.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
-        title: what a reader calls it.
-        encode: light (Vec4) to a texel, as the format is given it. An encoder that computes anything takes
-            negative light and NaN for none, and infinite light for the most that it holds; `plain` and `linear` leave
-            that to the format.
-        decode: a texel, as the format gives it back, to light.
+        title: human-readable name.
+        encode: light (Vec4) to a texel, before the format stores it. An encoder that computes anything treats
+            negative light and NaN as none, and infinite light as the maximum that it holds; `plain` and `linear`
+            leave that to the format.
+        decode: a texel, as the format returns it, to light.
         storages: the formats that it is made for, names of LIGHT_STORAGES.
         blend: one of BLENDS.
         has_alpha: whether it holds a fourth number, in a format that has four.
-        limit: the most white light that it holds; infinite where only the format limits it.
-        citation: where it comes from.
+        limit: the brightest white light that it holds; infinite if only the format limits it.
+        citation: source of the encoding.
         glsl: the GLSL twin.
-        ulps: how far the two languages may differ, encode and decode, in 2^-23 of the brightest channel.
-        ulps_reason: why it is that many.
+        ulps: allowed difference between the two languages, encode and decode, in 2^-23 of the brightest channel.
+        ulps_reason: reason for these numbers.
         constants: numbers that both languages need, by their GLSL name.
-        ranged: makes the encoding over another range, named `<name>:<range>`; None where it has none.
-        is_plain: whether a texel is the light itself; a light buffer of it goes by the format's name.
-        in_curve: its name and title in a format that keeps colours by the sRGB curve, where it is made for one.
-        functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the file's.
-        any_bits: "unorm" or "float", where it may lie in all storages of that kind that have three or four numbers;
-            empty where it is made for the named ones alone.
+        ranged: makes the encoding over another range, named `<name>:<range>`; None if it has no range.
+        is_plain: whether a texel is the light itself; its light buffer has the format's name.
+        in_curve: its name and title in a format that stores colours by the sRGB curve, if it is made for one.
+        functions: prefix of its GLSL functions in a user's file; empty if it is the file's name.
+        any_bits: "unorm" or "float", if it may use all storages of that kind with three or four numbers; empty if
+            it is made for the named storages alone.
     """
 
     kind: ClassVar[Kind] = LIGHT
@@ -68,15 +68,15 @@ class LightEncoding:
 
     @property
     def no_light(self) -> float:
-        """What every channel of a texel without light holds: what blending leaves another as it is by."""
+        """The value of every channel of a texel without light, which leaves another texel unchanged when blended."""
         return 1.0 if self.blend == "multiply" else 0.0
 
     @property
     def prefix(self) -> str:
-        """What the names of its GLSL functions begin with. Over another range they are the same functions."""
+        """The prefix of the names of its GLSL functions, which are the same over another range."""
         return self.functions or self.glsl.stem
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """What its GLSL file defines."""
+        """The signatures of the functions in its GLSL file."""
         return f"vec4 {self.prefix}_encode(vec4 light)", f"vec4 {self.prefix}_decode(vec4 e)"

@@ -25,29 +25,31 @@ NUMBERS = 2
 
 @dataclass(frozen=True, eq=False)
 class MotionEncoding:
-    """A pair of maps between motion vectors and codes, in JAX here and in GLSL in the file beside it.
+    """A pair of maps between motion vectors and codes, in JAX here and in GLSL in the file next to it.
 
-    A motion is in screens a frame: 1 is the width of the image along x, and its height along y. The range is the
-    largest motion that comes to 1 or -1, in screens. The GLSL file defines `vec2 <name>_encode_motion(vec2 motion,
-    float range)` and `vec2 <name>_decode_motion(vec2 e, float range)`. No encoder clips: fixed-point storages do.
-    An encoder that computes a root or a logarithm takes NaN for no motion; `linear` leaves it to the format.
+    A motion is in screens per frame: 1 is the width of the image along x, and its height along y. The range is the
+    largest motion that becomes 1 or -1, in screens. The GLSL file defines
+    `vec2 <name>_encode_motion(vec2 motion, float range)` and `vec2 <name>_decode_motion(vec2 e, float range)`. No
+    encoder clips: fixed-point storages do. An encoder that computes a root or a logarithm treats NaN as no motion;
+    `linear` leaves that to the format.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
-        title: what a reader calls it.
+        title: human-readable name.
         encode: (motion, range) -> two numbers, in [-1, 1] for motions up to the range.
         decode: (numbers, range) -> motion.
-        storages: where it usually lies, names of MOTION_STORAGES.
-        citation: where it comes from.
+        storages: usual storages, names of MOTION_STORAGES.
+        citation: source of the encoding.
         glsl: the GLSL twin.
-        ulps: how far the two languages may differ before storage, encode in 2^-23, decode in 2^-23 of the range; both
-            for motions up to the range.
-        ulps_reason: why it is that many.
+        ulps: allowed difference between the two languages before storage, encode in 2^-23, decode in 2^-23 of the
+            range; both for motions up to the range.
+        ulps_reason: reason for these numbers.
         own_units: whether float formats hold the motion in screens, which is a range of 1: they need no range.
         constants: numbers that both languages need, by their GLSL name.
-        functions: what the names of its GLSL functions begin with, of a user's file; empty where that is the name.
-        is_unit: its author's functions give and take numbers in [0, 1], u for c = 2 u - 1: every storage holds u.
-        own_range: of functions that are given no range, the largest motion that comes to 1 or -1; None of others.
+        functions: prefix of its GLSL functions in a user's file; empty if it is the name.
+        is_unit: whether its author's functions take and return numbers in [0, 1], u for c = 2 u - 1: every storage
+            holds u.
+        own_range: for functions without a range, the largest motion that becomes 1 or -1; None for others.
     """
 
     kind: ClassVar[Kind] = MOTION
@@ -68,12 +70,12 @@ class MotionEncoding:
 
     @property
     def prefix(self) -> str:
-        """What the names of its GLSL functions begin with."""
+        """The prefix of the names of its GLSL functions."""
         return self.functions or self.name
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """What its GLSL file defines."""
+        """The signatures of the functions in its GLSL file."""
         return (
             f"vec2 {self.prefix}_encode_motion(vec2 motion, float range)",
             f"vec2 {self.prefix}_decode_motion(vec2 e, float range)",
@@ -114,12 +116,12 @@ class MotionCodec:
 
     @property
     def bits(self) -> int:
-        """The bits it needs: those of two channels."""
+        """The bits that it needs: those of two channels."""
         return sum(self.storage.bits[:NUMBERS])
 
     @property
     def codes(self) -> int:
-        """How many codes it has: whatever its numbers in [-1, 1] can be."""
+        """The number of its codes: all values that its numbers in [-1, 1] can have."""
         return math.prod(map(self.storage.count, range(NUMBERS)))
 
     @property

@@ -1,4 +1,4 @@
-"""Square root: steps are narrow near 0, as those of a gamma of 2 are."""
+"""Square root: steps are narrow near 0, as with a gamma of 2."""
 
 from pathlib import Path
 

@@ -1,6 +1,7 @@
-"""Axis and angle of a frame's rotation: the axis on the octahedral square, the angle under the hand's sign.
+"""Axis and angle of a frame's rotation: the axis on the octahedral square, the angle with the hand as its sign.
 
-An angle of 0 has no sign, so the least number that has one stands for it. Of a half turn both ends of the axis are one.
+An angle of 0 has no sign, so the smallest number with a sign replaces it. For a half turn, both ends of the axis
+are the same rotation.
 """
 
 from pathlib import Path

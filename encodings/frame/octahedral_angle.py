@@ -1,7 +1,7 @@
 """Octahedral normal, and the tangent's angle around it from a fixed tangent of that normal.
 
-The fixed tangent is that of the normal as it is decoded: no field of tangents is without a seam or a pole, and there a
-normal that was moved by rounding would have another one. -1 and 1 are one angle, so one of 2^n codes is spare.
+The fixed tangent is that of the decoded normal: every field of tangents has a seam or a pole, where a normal that
+was moved by rounding would have another fixed tangent. -1 and 1 are the same angle, so one of 2^n codes is unused.
 """
 
 from pathlib import Path

@@ -1,7 +1,7 @@
-"""QTangent: a whole quaternion, its sign the frame's hand.
+"""QTangent: a whole quaternion whose sign is the frame's hand.
 
-q and -q are one rotation, so the sign of w is free. It must not be lost where w is 0: there w is kept at the least
-number that has a sign, which costs up to twice that in angle.
+q and -q are the same rotation, so the sign of w is free. It must not be lost where w is 0: there w becomes the
+smallest number with a sign, at an error of up to twice that number in angle.
 """
 
 from pathlib import Path
@@ -12,7 +12,7 @@ from ..vec import TINY, Vec4, dot, inversesqrt, maximum, select, sign_not_zero, 
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """The quaternion under the hand's sign, |w| at least `least`."""
+    """Return the quaternion with the hand as its sign, and |w| at least `least`."""
     q = quaternion_of(frame)
     q = q * sign_not_zero(q.w)
     # for w < least: (q.xyz sqrt(1 - least^2), least); e = hand q

@@ -1,7 +1,7 @@
 """Modified Rodrigues parameters of a rotation without a handedness: its quaternion, projected from -w onto a ball.
 
-The stereographic projection one dimension up: all rotations lie in the unit ball, and both ends of a half turn's axis
-are one rotation. No angle is needed.
+This is the stereographic projection one dimension up: all rotations are in the unit ball, and both ends of a half
+turn's axis are the same rotation. No angle is needed.
 """
 
 from pathlib import Path

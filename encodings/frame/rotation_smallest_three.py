@@ -1,6 +1,6 @@
-"""Smallest three of a rotation without a handedness: three components of its quaternion, and which one is the largest.
+"""Smallest three of a rotation without a handedness: three components of its quaternion, and the largest's index.
 
-As `smallest_three`, but all three components have the whole of their range, since none carries a hand.
+Like `smallest_three`, but all three components use their whole range, because none has the hand as its sign.
 """
 
 import math

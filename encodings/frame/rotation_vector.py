@@ -1,6 +1,6 @@
-"""Axis and angle of a rotation without a handedness, as one vector: along the axis, as long as the angle in half turns.
+"""Axis and angle of a rotation without a handedness, as one vector: the axis times the angle in half turns.
 
-Also called the exponential map. All rotations lie in the unit ball; of a half turn both ends of the axis are one.
+Also called exponential map. All rotations are in the unit ball; both ends of a half turn's axis are one rotation.
 """
 
 from pathlib import Path

@@ -1,8 +1,8 @@
-"""Smallest three: of a quaternion the three smallest components, and which one is the largest.
+"""Smallest three: the three smallest components of a quaternion, and the index of the largest.
 
-q and -q are one rotation, so the largest is positive and its square is what is left of 1. The others lie in
-[-1, 1] / sqrt(2). The third of them is kept by its distance from the lower end of that range, and the hand is its sign:
-that takes one bit of its precision, and none beside it.
+q and -q are the same rotation, so the largest is positive and its square is what the others leave of 1. The others
+are in [-1, 1] / sqrt(2). The third of them is stored as its distance from the lower end of that range, with the
+hand as its sign: that takes one bit of its precision, and no other bit.
 """
 
 import math

@@ -1,6 +1,6 @@
-"""Colours over their largest one, as roots in eight bits each, and that largest one as the bits of a half float.
+"""Colours over their largest channel, as square roots in eight bits each, and that channel as a half float's bits.
 
-Five bytes. The half lies in a number of sixteen bits as the integer that its bits are. Codes do not add.
+Five bytes. A number of 16 bits holds the bits of the half as an integer. Codes do not add.
 """
 
 from pathlib import Path
@@ -25,7 +25,7 @@ def encode(light: Vec4) -> Vec4:
 
 
 def decode(e: Vec4) -> Vec4:
-    """A texel's light; the fourth number is 0. Bits of infinity or of no number are those of the largest half."""
+    """Return a texel's light; the fourth number is 0. The bits of infinity and NaN become those of the largest half."""
     bits = minimum(e.w * STEPS + 0.5, MOST_BITS)
     m = bits.astype(jnp.uint16).view(jnp.float16).astype(jnp.float32)
     # L = e.rgb^2 m

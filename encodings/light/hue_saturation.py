@@ -1,7 +1,7 @@
-"""Hue in six bits, saturation in two, and the root of the largest channel in eight: emission in two bytes.
+"""Hue in six bits, saturation in two, and the square root of the largest channel in eight: emission in two bytes.
 
-Saturation has the steps 1/4, 1/2, 3/4 and 1. What has less than 1/4 is white, which is the last hue of the least
-saturation; a colour that would have that code is taken for the first hue, which is red as well. Codes do not add.
+Saturation has the steps 1/4, 1/2, 3/4 and 1. A colour with less than 1/4 becomes white, which is the last hue at
+the lowest saturation; a colour with that code gets the first hue instead, which is also red. Codes do not add.
 """
 
 from pathlib import Path
@@ -14,7 +14,7 @@ HUES, SATURATIONS = 63.0, 3.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Light to [0, 1]: 0 for what is negative or NaN; more than 16 is cut off by the format."""
+    """Map light to [0, 1]: 0 for negative values and NaN; the format clamps values above 16."""
     c = light_or_none(light).xyz
     v = maximum(maximum(c.x, c.y), c.z)
     d = v - minimum(minimum(c.x, c.y), c.z)

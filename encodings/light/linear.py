@@ -15,7 +15,7 @@ RANGE = 2.0
 
 
 def encode(light: Vec4, limit: float = RANGE) -> Vec4:
-    """Light to [0, 1]; more than the range is cut off by the format."""
+    """Map light to [0, 1]; the format clamps values above the range."""
     # e = L / range
     return light * (1.0 / limit)
 

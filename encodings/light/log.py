@@ -1,7 +1,7 @@
-"""Logarithmic light: codes multiply where light adds, so that blending by DST_COLOR, ZERO adds it up.
+"""Logarithmic light: codes multiply where light adds, so that blending by DST_COLOR, ZERO adds up light.
 
-No light is 1, exactly. The last code before 0 is log2(255) = 7.994, a whole 1.0 of light after the one before it; 0 is
-taken for that code.
+The code of no light is exactly 1. The last code before 0 is log2(255) = 7.994, a whole 1.0 of light after the code
+before it; 0 is read as that code.
 """
 
 import math

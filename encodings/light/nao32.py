@@ -25,7 +25,7 @@ def _product(v: Vec3, m: tuple[float, ...]) -> Vec3:
 
 
 def encode(light: Vec4) -> Vec4:
-    """Light to [0, 1]: 0 for what is negative or NaN; below 2^-63.5 there is none."""
+    """Map light to [0, 1]: 0 for negative values and NaN; light below 2^-63.5 is lost."""
     # (X', Y, XYZ') = L M, x = X' / XYZ', y = Y / XYZ'
     p = _product(light_or_none(light).xyz, MATRIX)
     x, y = p.x / maximum(p.z, TINY), p.y / maximum(p.z, TINY)

@@ -17,7 +17,7 @@ SLACK = 2.0**-10
 
 
 def encode(light: Vec4, limit: float = RANGE) -> Vec4:
-    """Light to [0, 1]: 0 for what is negative or NaN; more than the range is cut off."""
+    """Map light to [0, 1]: 0 for negative values and NaN; values above the range are clamped."""
     # m = ceil(255 max(L) / range - slack) / 255, at least 1/255 and at most 1
     rgb = light_or_none(light).xyz
     largest = maximum(maximum(rgb.x, rgb.y), rgb.z)

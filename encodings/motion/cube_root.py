@@ -8,7 +8,7 @@ from ..vec import TINY, Vec2, maximum, select, sign_not_zero
 
 
 def root(share):
-    """The cube root of a number from 0 on; what is below the least normal float32 is 0, as NaN is."""
+    """Return the cube root of a number from 0 up; NaN and numbers below the smallest normal float32 give 0."""
     # s^(1/3) = 2^(log2(s) / 3)
     return select(share >= TINY, exp2_of(log2_of(maximum(share, TINY)) * (1.0 / 3.0)), 0.0)
 

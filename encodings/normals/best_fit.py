@@ -1,14 +1,14 @@
-"""Best-fit normals: of all 8-bit codes along a direction, the one that points best, its length found in a table.
+"""Best-fit normals: the most accurate of all 8-bit codes along a direction, with its length from a table.
 
-Scaling a normal before UNORM8 rounds it moves it among the codes; decoding takes the length away again. The best scale
-is the same for a direction's mirror images and whichever axis is the largest, so the table holds a sixth of an octant,
-with the look-up coordinates of the source, and is not interpolated. UNORM8 has no code for 0: its values are the odd
-multiples of 1/255. The scale puts the largest component right on one of them.
+Scaling a normal before UNORM8 rounds it moves it among the codes; decoding removes the length again. The best scale
+is the same for a direction's mirror images and whichever axis is the largest, so the table holds a sixth of an
+octant, with the lookup coordinates of the source, and is not interpolated. UNORM8 has no code for 0: its values are
+the odd multiples of 1/255. The scale puts the largest component exactly on one of them.
 
-RMS angle in RGBA8 on uniform directions, degrees, by the side of the table: 0.126 for 128, 0.070 for 256, 0.046 for
-512, 0.038 for 1024, 0.0357 for 2048; 0.0348 for the nearest of all codes, 0.184 unscaled. The axes are no better than
-unscaled, 0.32 degrees. The table is for UNORM8 rounded to nearest: elsewhere the scale only takes from the precision,
-and a table of its own can be fitted.
+RMS angle in RGBA8 for uniform directions, in degrees, by the side of the table: 0.126 for 128, 0.070 for 256, 0.046
+for 512, 0.038 for 1024, 0.0357 for 2048; 0.0348 for the nearest of all codes, 0.184 unscaled. The axes are no
+better than unscaled, 0.32 degrees. The table is for UNORM8 rounded to nearest: elsewhere the scale only reduces
+precision, and another table can be fitted.
 """
 
 from collections.abc import Callable
@@ -30,11 +30,11 @@ _CENTRE = (np.arange(SIZE, dtype=np.float32) + 0.5) / SIZE
 
 
 def _misfit(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
-    """The squared sine of the angle from (x, y, 1) to the nearest code (p, q, k), up to a factor that knows no k.
+    """Return the squared sine of the angle from (x, y, 1) to the nearest code (p, q, k), up to a factor without k.
 
-    Of codes in half steps, p and q are even or odd as k is: odd ones where there is no code for 0. Both vectors are
-    halved here, so that those are whole numbers and halves. What follows is |(x, y, 1) x (p, q, k)|^2 / |(p, q, k)|^2,
-    in place: fresh arrays would take as long as the arithmetic.
+    In codes of half steps, p and q are even or odd as k is: odd if there is no code for 0. Both vectors are halved
+    here, so that their numbers are whole numbers and halves. The result is |(x, y, 1) x (p, q, k)|^2 / |(p, q,
+    k)|^2, computed in place: fresh arrays would take as long as the arithmetic.
     """
     odd, half = k % 2, k / 2
     u, v = x * half, y * half
@@ -53,7 +53,7 @@ def _misfit(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
 
 
 def _best_scales(misfit: Callable[[int], np.ndarray], levels: int) -> np.ndarray:
-    """The scales k / (levels - 1) with the least misfit, every k tried. Of equals the largest."""
+    """Return the scales k / (levels - 1) with the smallest misfit, trying every k; the largest of equal ones."""
     last = levels - 1
     least = misfit(last)
     best = np.ones_like(least)
@@ -66,9 +66,10 @@ def _best_scales(misfit: Callable[[int], np.ndarray], levels: int) -> np.ndarray
 
 @cache
 def centres(levels: int = LEVELS) -> np.ndarray:
-    """The best scale over (middle / largest, least / middle), for the texel's centre; float32 of shape (SIZE, SIZE, 1).
+    """Return the best scale at each texel's centre, over (middle / largest, smallest / middle).
 
-    Some rows at a time, which stay in a core's cache: a quarter of a second in place of a whole one.
+    The result is float32 of shape (SIZE, SIZE, 1). The function processes some rows at a time, which stay in a
+    core's cache: a quarter of a second instead of a whole one.
     """
     y, blocks = _CENTRE, []
     for ratio in np.split(_CENTRE[:, None], SIZE // ROWS):
@@ -82,11 +83,12 @@ def tables() -> dict[str, np.ndarray]:
 
 
 def fit(normals: np.ndarray, levels: int, prior: float) -> np.ndarray:
-    """The table whose scales have the least squared error on the normals of each texel, for numbers of so many values.
+    """Return the table whose scales have the smallest squared error on each texel's normals, for numbers of
+    `levels` values.
 
     Args:
         normals: float64 of shape (count, 3), unit.
-        prior: how many normals the texel's centre counts as; a texel that no normal meets has its centre's scale.
+        prior: number of normals that a texel's centre counts as; a texel without normals has its centre's scale.
     """
     if not len(normals):
         return centres(levels)
@@ -107,7 +109,7 @@ def fit(normals: np.ndarray, levels: int, prior: float) -> np.ndarray:
 
 
 def _summed(x, y, starts: np.ndarray, centre_x, centre_y, prior: float, k: int) -> np.ndarray:
-    """For each texel the misfits of its normals, and of its centre as often as that counts."""
+    """Return for each texel the summed misfits of its normals, and of its centre, which counts `prior` times."""
     return np.add.reduceat(_misfit(x, y, k), starts) + prior * _misfit(centre_x, centre_y, k)
 
 

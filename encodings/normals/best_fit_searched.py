@@ -1,6 +1,6 @@
-"""Best-fit normals without a look-up: every length is tried, and of the 8-bit codes met the one that points best kept.
+"""Best-fit normals without a lookup: every length is tried, and the most accurate of these 8-bit codes is kept.
 
-UNORM8 has no code for 0: its values are the odd multiples of 1/255, so that the largest component can be put right on
+UNORM8 has no code for 0: its values are the odd multiples of 1/255, so that the largest component can be exactly on
 128 of them.
 """
 

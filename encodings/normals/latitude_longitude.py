@@ -8,7 +8,7 @@ from ..vec import Vec2, Vec3, sqrt
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to (atan2(y, x) / pi, 2 acos(z) / pi - 1); the poles, where there is no longitude, get 0."""
+    """Map a unit normal to (atan2(y, x) / pi, 2 acos(z) / pi - 1); the poles, which have no longitude, get 0."""
     # acos(n.z) = atan2(sqrt(n.x^2 + n.y^2), n.z)
     polar = atan2_pi(sqrt(n.x * n.x + n.y * n.y), n.z)
     return Vec2(atan2_pi(n.y, n.x), 2.0 * polar - 1.0)

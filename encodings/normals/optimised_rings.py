@@ -1,8 +1,8 @@
-"""Optimised rings: 2^16 points on rings of latitude, as many on each as one covering radius needs, in two bytes.
+"""Optimised rings: 2^16 points on rings of latitude, each with as many as one covering radius needs, in two bytes.
 
-Ring j of R lies at the angle j pi / (R - 1) from +z. The points on it are so many that no direction between its
-borders, half way to its neighbours, is farther from one of them than the radius, and the radius is as small as 2^16
-points allow: 0.5624 degrees, of the 227 rings that are best.
+Ring j of R is at the angle j pi / (R - 1) from +z. It has enough points that every direction between its borders,
+half way to its neighbours, is within the radius of a point. The radius is as small as 2^16 points allow: 0.5624
+degrees, for the best number of rings, 227.
 """
 
 import math
@@ -21,7 +21,7 @@ RINGS = round(math.sqrt(math.pi * COUNT / 4))
 
 
 def points_needed(radius: float, count: int = RINGS) -> np.ndarray:
-    """How many points each of `count` rings needs, so that a point and half a step around reach the ring's borders."""
+    """Return the points that each of `count` rings needs for `radius` to reach half a step around and its borders."""
     theta = np.arange(1, count - 1) * np.pi / (count - 1)
     needed = np.ones(count)
     for border in (theta - 0.5 * np.pi / (count - 1), theta + 0.5 * np.pi / (count - 1)):
@@ -45,7 +45,7 @@ def covering_radius() -> float:
 
 @cache
 def rings() -> np.ndarray:
-    """For each ring how many points it has, and how many the rings before it have; float32 of shape (RINGS, 2)."""
+    """Return for each ring its number of points, and that of all rings before it; float32 of shape (RINGS, 2)."""
     counts = points_needed(covering_radius())
     return np.stack([counts, np.cumsum(counts) - counts], axis=1).astype(np.float32)
 

@@ -1,4 +1,4 @@
-"""X and Y in a frame of the pixel's own, whose Z looks back along the eye ray: what is seen faces it."""
+"""X and Y in the pixel's own frame, whose Z points back along the eye ray: visible surfaces face it."""
 
 from pathlib import Path
 

@@ -1,6 +1,6 @@
 """Spherical coordinates: the angle around Z, and Z itself.
 
-Of a view few normals have a Z near -1: with a bias and a scale the codes for Z lie where normals are.
+Few normals of a view have a Z near -1: a bias and a scale put the codes for Z where the normals are.
 """
 
 from pathlib import Path
@@ -14,7 +14,7 @@ BIAS, SCALE = 0.0, 1.0
 
 
 def encode(n: Vec3, view: Vec3, bias: float = BIAS, scale: float = SCALE) -> Vec2:
-    """Unit normal to (atan2(y, x) / pi, (z - bias) / scale); the poles, where there is no angle, get angle 0."""
+    """Map a unit normal to (atan2(y, x) / pi, (z - bias) / scale); the poles, which have no angle, get angle 0."""
     return Vec2(atan2_pi(n.y, n.x), (n.z - bias) / scale)
 
 

@@ -1,6 +1,6 @@
-"""Spherical Fibonacci lattice of 2^16 points: the nearest point's number, in two bytes.
+"""Spherical Fibonacci lattice of 2^16 points: the index of the nearest point, in two bytes.
 
-Point i lies at z = 1 - (2 i + 1) / N, a golden section of a turn further around Z than the one before.
+Point i is at z = 1 - (2 i + 1) / N, a golden section of a turn further around Z than the point before.
 """
 
 import math

@@ -1,7 +1,7 @@
-"""Equal-area map in the pixel's own frame, of normals up to an angle from the line of sight.
+"""Equal-area map in the pixel's own frame, for normals up to an angle from the line of sight.
 
-What a camera sees faces it, but for interpolated and mapped normals, which turn a few degrees further. All codes lie
-within the angle, each with its share of the cap: of 100 degrees, 59 % of the sphere, which is worth 2.3 dB.
+Visible surfaces face the camera, except for interpolated and mapped normals, which turn a few degrees further. All
+codes are within the angle, with equal shares of the cap: 100 degrees are 59% of the sphere, a gain of 2.3 dB.
 """
 
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ CAP_DEG, CAPS_DEG = 100.0, (90.0, 150.0)
 
 
 def height_of(cap: float) -> float:
-    """How far a cap's rim lies below its middle, of an angle in degrees."""
+    """Return how far a cap's rim is below its middle, for an angle in degrees."""
     return 1.0 - cos(radians(cap))
 
 

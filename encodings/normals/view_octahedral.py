@@ -1,8 +1,8 @@
-"""Octahedral map in the pixel's own frame, of normals up to an angle from the line of sight.
+"""Octahedral map in the pixel's own frame, for normals up to an angle from the line of sight.
 
-What a camera sees faces it, but for interpolated and mapped normals, which turn a few degrees further. The pyramid of
-the hemi-octahedral map, with its foot at that angle in place of 90 degrees, holds these: at 90 it is that map. The foot
-is a square around the cap's circle, so some codes lie beyond the angle.
+Visible surfaces face the camera, except for interpolated and mapped normals, which turn a few degrees further. The
+pyramid of the hemi-octahedral map, with its foot at that angle instead of 90 degrees, holds these normals; at 90
+degrees it is that map. The foot is a square around the cap's circle, so some codes are beyond the angle.
 """
 
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ CAP_DEG, CAPS_DEG = 100.0, (90.0, 150.0)
 
 
 def foot(cap: float) -> tuple[float, float]:
-    """How far the pyramid's foot lies below its tip, and half of its diagonal, of an angle in degrees."""
+    """Return how far the pyramid's foot is below its tip, and half of its diagonal, for an angle in degrees."""
     return 1.0 - cos(radians(cap)), sin(radians(cap))
 
 

@@ -1,4 +1,4 @@
-"""All three components: the baseline that the two-component methods are held against."""
+"""All three components: the baseline for the two-component methods."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""All three components, brought back to unit length when read."""
+"""All three components, renormalised when read."""
 
 from pathlib import Path
 

@@ -14,12 +14,12 @@ CONSTANTS = {"LUMA": LUMA}
 
 
 def luminance(c: Vec3):
-    """How bright linear light is: one array."""
+    """Return the luminance of linear light, as one array."""
     return dot(c, Vec3(*LUMA))
 
 
 def chromaticity(c: Vec3) -> Vec3:
-    """The colour of light at luminance 1; white where there is none."""
+    """Return the colour of light at luminance 1; white where there is no light."""
     total = luminance(c)
     return select(total > TINY, c / select(total > TINY, total, 1.0), Vec3(1.0, 1.0, 1.0))
 

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 
 class CameraTerms(NamedTuple):
-    """What a shader knows of a camera and a projection, in float32.
+    """The terms of a camera and a projection that a shader is given, in float32.
 
-    `terms` are the two of the projection's row for z: clip-space z is terms.x z + terms.y.
+    `terms` are the two terms of the projection's row for z: clip-space z is terms.x z + terms.y.
     """
 
     near: Float[Array, ""]
@@ -33,12 +33,12 @@ class CameraTerms(NamedTuple):
 
 @dataclass(frozen=True)
 class Projection:
-    """How clip space counts depth.
+    """The way clip space counts depth.
 
     Attributes:
         row: (near, far) -> a, b: clip-space z is a z + b, with w = -z.
-        clip: a, b: z / w is a depth + b for the depth buffer's depth from 0 to 1. (2, -1) is GL's own choice; (1, 0)
-            needs glClipControl, and no sum that would round away a float's fine steps near 0.
+        clip: a, b: z / w is a depth + b for the depth buffer's depth from 0 to 1. (2, -1) is OpenGL's default; (1,
+            0) needs glClipControl, and has no sum that would round away a float's fine steps near 0.
     """
 
     row: Callable[[float, float], tuple[float, float]]
@@ -62,7 +62,7 @@ class Camera:
 
     @property
     def rays(self) -> tuple[float, float]:
-        """Where the ray through the screen's upper right corner is at depth 1."""
+        """The position of the ray through the screen's upper right corner at depth 1."""
         up = float(np.tan(np.radians(self.fov) / 2))
         return up * self.aspect, up
 

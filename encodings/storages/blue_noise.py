@@ -1,6 +1,6 @@
-"""Blue noise: numbers for the pixels of a tile, each number once, of which neighbours differ and no patch stands out.
+"""Blue noise: numbers for the pixels of a tile, each used once; neighbours differ and no patch stands out.
 
-By void and cluster: R. Ulichney, The void-and-cluster method for dither array generation, SPIE 1913, 1993.
+Method: R. Ulichney, The void-and-cluster method for dither array generation, SPIE 1913, 1993.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class _Pattern:
 
     @property
     def void(self) -> int:
-        """The pixel that is crowded least, of the others."""
+        """The least crowded of the pixels that are not set."""
         return int(np.argmin(np.where(self.pixels, np.inf, self._crowd)))
 
 

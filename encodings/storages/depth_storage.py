@@ -1,4 +1,4 @@
-"""What the number of a depth is stored in, and its arithmetic: channels of a target, or the depth buffer itself."""
+"""Storages of the number of a depth, and their arithmetic: channels of a target, or the depth buffer itself."""
 
 from __future__ import annotations
 
@@ -18,16 +18,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DepthStorage:
-    """Where the number of a depth lies.
+    """The storage of the number of a depth.
 
     Attributes:
         name: the catalogue's key.
-        title: what a reader calls it.
-        format: of the render target, or of the depth attachment.
-        home: "packed", an unsigned integer over the last of a target's 8-bit channels; "channel", a target's first;
-            "attachment", the depth buffer itself; or "bytes", 8-bit channels as its author's shader fills them.
-        bits: of the number.
-        code: a `DepthEncoding` whose two functions make a number in [0, 1] these bytes, and back; None for others.
+        title: human-readable name.
+        format: format of the render target or of the depth attachment.
+        home: "packed", an unsigned integer over the last of a target's 8-bit channels; "channel", the first channel
+            of a target; "attachment", the depth buffer itself; or "bytes", 8-bit channels as its author's shader
+            fills them.
+        bits: bits of the number.
+        code: a `DepthEncoding` whose two functions convert a number in [0, 1] to these bytes, and back; None for
+            others.
     """
 
     name: str
@@ -92,10 +94,11 @@ def depth_storage_of(storage: Storage) -> DepthStorage | None:
 def fixed(
     c: Float[Array | np.ndarray, "*shape"], scale: int, is_signed: bool, rounding: str = "nearest"
 ) -> UInt[Array, "*shape"]:
-    """The unsigned integer (uint32) for c in [0, 1] (float32, any shape) where `scale` stands for 1; NaN is 0. It is
-    rounded in one of ROUNDINGS.
+    """Return the unsigned integer (uint32) for c in [0, 1] (float32, any shape), where `scale` stands for 1 and NaN
+    is 0, rounded by one of ROUNDINGS.
 
-    A signed c in [-1, 1] lies in sign and magnitude: the upper half of the integers is for the negative and for -0.
+    A signed c in [-1, 1] is stored as sign and magnitude: the upper half of the integers is for negative numbers
+    and -0.
     """
     half = scale // 2
     magnitude = minimum(maximum(abs(c) if is_signed else c, 0.0), 1.0)
@@ -123,8 +126,8 @@ def _share(integer: UInt[Array, "*shape"], scale: int) -> Float[Array, "*shape"]
 
 
 def store_bytes(integer: UInt[Array, "*shape"], bits: int) -> UInt[Array, "*shape"]:
-    """An unsigned integer over channels of 8-bit UNORM, the highest byte first, and back. No byte is rounded by itself,
-    so none can carry into another."""
+    """Return an unsigned integer after storing it in channels of 8-bit UNORM, the highest byte first. No byte is
+    rounded by itself, so none can carry into another."""
     together = jnp.zeros_like(integer)
     for shift in range((bits - 1) // 8 * 8, -1, -8):
         byte = ((integer >> shift) & 0xFF).astype(jnp.float32)

@@ -33,7 +33,7 @@ class Dither:
 
     @property
     def added(self) -> np.ndarray:
-        """What is added to the numbers of a code, by pixel, float32 of shape (SIZE, SIZE, 4); it repeats."""
+        """The noise that is added to the numbers of a code, by pixel, float32 of shape (SIZE, SIZE, 4); it repeats."""
         noise = np.zeros((SIZE, SIZE, 4), np.float32)
         for number, step in enumerate(self.steps):
             noise[..., number] = (_tile_from(self.frame * NUMBERS + number) - 0.5) * step
@@ -41,8 +41,8 @@ class Dither:
 
 
 def laid_out(noise: np.ndarray, width: int, count: int) -> np.ndarray:
-    """What is added to the codes of so many pixels of a picture `width` wide, row by row, where noise of shape (height,
-    width, 4) repeats: of shape (count, 4), as the shader reads it (`dither.glsl`)."""
+    """Return the noise for the codes of `count` pixels of an image `width` wide, row by row: of shape (count, 4),
+    as the shader reads it (`dither.glsl`). The noise, of shape (height, width, 4), repeats."""
     rows, columns = np.divmod(np.arange(count), width)
     return noise[rows % noise.shape[0], columns % noise.shape[1]]
 

@@ -1,14 +1,14 @@
-"""How numbers become texels and come back: the arithmetic of render target formats, emulated bit for bit.
+"""Conversion of numbers to texels and back: the arithmetic of render target formats, emulated bit for bit.
 
-UNORM of n bits: x = c/2 + 1/2 is clamped to [0, 1] and stored as the integer nearest x (2^n - 1). SNORM: c is clamped
-to [-1, 1] and stored as the integer nearest c (2^(n-1) - 1). Products are float32 products, ties go to the even
-integer, NaN takes the lower end; what comes back is the integer times the float32 reciprocal of the scale. That is
-OpenGL 4.6, section 2.3.5, with the choices it leaves open made as the devices tested make them (`test_storage.py`).
+UNORM of n bits: x = c/2 + 1/2 is clamped to [0, 1] and stored as the integer nearest x (2^n - 1). SNORM: c is
+clamped to [-1, 1] and stored as the integer nearest c (2^(n-1) - 1). Products are float32 products, ties go to the
+even integer, NaN takes the lower end; the value read back is the integer times the float32 reciprocal of the scale.
+This is OpenGL 4.6, section 2.3.5, with its open choices made as the tested devices make them (`test_storage.py`).
 
-Half floats round to nearest even, or are cut off: GL allows both, and both ship. To truncate is to cut off the texel:
-UNORM goes down, which is toward -1 in the code; SNORM, centred or not, and floats go toward zero. `truncate_half` is
-what engines that pack by hand write to make up for that, floor(x (2^n - 1/2)). Where a device does not round as a codec
-asks, the shader rounds before the write (`storage.glsl`), and the row says so.
+Half floats round to nearest even, or are truncated: OpenGL allows both, and both ship. Truncation applies to the
+texel: UNORM goes down, which is toward -1 in the code; SNORM, centred or not, and floats go toward zero.
+`truncate_half` is what engines that pack by hand write to compensate for that, floor(x (2^n - 1/2)). If a device
+does not round as a codec asks, the shader rounds before the write (`storage.glsl`), and the row says so.
 
 Numbers in float64 stand for the exact map: the same integers and floats, products and reciprocals in float64.
 """
@@ -31,7 +31,7 @@ SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
 
 
 class Scale(NamedTuple):
-    """What stands for 1 in a fixed-point channel, and its reciprocal: numbers, or arguments of a traced function."""
+    """The integer for 1 in a fixed-point channel, and its reciprocal: numbers, or arguments of a traced function."""
 
     one: Any
     reciprocal: Any
@@ -43,10 +43,10 @@ def scale_of(integer: int) -> Scale:
 
 
 def rounded(x: Float[Array, "*shape"], scale: Scale, rounding: str = "nearest", most=None) -> Float[Array, "*shape"]:
-    """x in [-1, 1] (any shape) as a whole number: nearest, or cut off toward zero, or cut off of x (one + 1/2).
+    """Round x in [-1, 1] (any shape) to a whole number: nearest, truncated toward zero, or x (one + 1/2) truncated.
 
     Args:
-        most: the largest one, where that does not stand for 1.
+        most: the largest whole number, if it does not stand for 1.
     """
     if rounding == "nearest":
         whole = jnp.round(x * scale.one)
@@ -74,9 +74,10 @@ def store_snorm(
 def store_half(
     x: Float[Array | np.ndarray, "*shape"], rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """x (float32, any shape) as a 16-bit float stores it: 11 significant bits, steps of 2^-24 below 2^-14.
+    """Return x (float32, any shape) as a 16-bit float stores it: 11 significant bits, steps of 2^-24 below 2^-14.
 
-    Nearest turns what is at least 65520 into infinity; toward zero stops at 65504 and keeps only infinity infinite.
+    Rounding to nearest turns numbers of at least 65520 into infinity; rounding toward zero stops at 65504 and keeps
+    only infinity infinite.
     """
     if rounding == "nearest":
         return x.astype(jnp.float16).astype(jnp.float32)
@@ -164,9 +165,10 @@ def scales_of(storage: Storage, number: type[np.floating] = np.float32) -> tuple
 
 
 def shared(storage: Storage, count: int, number: type[np.floating] = np.float32) -> tuple[Storage, tuple[Scale, ...]]:
-    """What a traced function is given to serve every fixed-point format of a kind: a format that stands for all of
-    them, and this one's scales of the first `count` channels, of float32 or float64. Floats have no scales; the first
-    format with as many bits in these channels stands for them. Others stand for themselves."""
+    """Return what a traced function is given to serve every fixed-point format of a kind: a format that stands for
+    all of them, and this format's scales of the first `count` channels, in float32 or float64. Floats have no
+    scales; the first format with the same bits in these channels stands for them. Other formats stand for
+    themselves."""
     if storage.kind == "float":
         if storage.form:
             return storage, ()
@@ -194,9 +196,9 @@ def _scale(storage: Storage, channel: int) -> Scale:
 def store_texel(
     x: Float[Array | np.ndarray, "*shape"], storage: Storage, channel: int, rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """One number of a texel (float32, any shape), as the format is given it, through one channel and back.
+    """Pass one number of a texel (float32, any shape), as the format is given it, through one channel and back.
 
-    A float16 is a result of half arithmetic: the format's own conversion is not part of that, the shader's number is.
+    A float16 is a result of half arithmetic, which covers the shader's number, not the format's own conversion.
     """
     if x.dtype == jnp.float16:
         return store_texel(x.astype(jnp.float32), storage, channel, rounding).astype(jnp.float16)
@@ -220,7 +222,7 @@ def _store_float_texel(
 def store_number(
     c: Float[Array | np.ndarray, "*shape"], storage: Storage, channel: int, rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """One number of a code (float32, any shape, nominally in [-1, 1]) through one channel and back."""
+    """Pass one number of a code (float32, any shape, nominally in [-1, 1]) through one channel and back."""
     # What is laid across channels is a whole number as UNORM and SNORM have it; its bytes are exact.
     if storage.is_biased:
         return store_texel(c * 0.5 + 0.5, storage, channel, rounding) * 2.0 - 1.0

@@ -1,6 +1,6 @@
-"""Storages that are said by their bits: unorm:9:7, snorm:12:12, centred:8:8, float:5:10.
+"""Storages that are named by their bits: unorm:9:7, snorm:12:12, centred:8:8, float:5:10.
 
-Each is the catalogue's format that has just these bits, or numbers laid across the channels of RGBA8 or RGBA16.
+Each is the catalogue's format with exactly these bits, or numbers laid across the channels of RGBA8 or RGBA16.
 """
 
 from __future__ import annotations
@@ -71,16 +71,17 @@ BY_RULE = re.compile(rf"(?P<kind>{'|'.join(KINDS)}):(?P<bits>\d{{1,3}}(?::\d{{1,
 
 
 def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
-    """Numbers of so many bits: the catalogue's format that has just these, or laid across channels.
+    """Return the storage of numbers of these bits: the catalogue's format with exactly these bits, or one laid
+    across channels.
 
     Args:
-        kind: "unorm", "snorm", "snorm_full", or another word for these; "uint" and "sint" lie in one integer, if they
-            have at most 32 bits together. "centred" for the integers of SNORM in the channels of a UNORM format.
-            "float" and "ufloat" have the bits of exponent and mantissa, with and without a sign, and are all alike: see
-            `of_count`.
+        kind: "unorm", "snorm", "snorm_full", or another word for these; "uint" and "sint" are in one integer, if
+            they have at most 32 bits together. "centred" is for the integers of SNORM in the channels of a UNORM
+            format. "float" and "ufloat" have the bits of exponent and mantissa, with and without a sign, the same
+            for all numbers: see `of_count`.
 
     Raises:
-        ValueError: as `across`; centred ones that are no format of a GPU; and floats that cannot be.
+        ValueError: as `across`; for centred numbers that are not in a GPU format; and for floats that cannot exist.
     """
     if kind in ("float", "ufloat"):
         return _of_floats(kind, bits)
@@ -114,12 +115,12 @@ def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
 
 
 def of_count(storage: Storage, count: int) -> Storage:
-    """A storage of floats with as many as a code has numbers, where only the bits of each were said."""
+    """Return a storage with as many floats as a code has numbers, if only the bits of each float were given."""
     return _floats(storage.float_form(0), count) if storage.is_uncounted else storage
 
 
 def _floats(form: FloatForm, count: int) -> Storage:
-    """At least so many floats of a form, as far as a texel of 64 bits has room; GPUs' own where they are."""
+    """Return a storage of at least `count` floats of a form, if 64 bits have room; a GPU's own format if it exists."""
     own = {FORMS[16]: "16f", FORMS[32]: "32f"}
     if form in own:
         # No GPU has three.
@@ -133,7 +134,7 @@ def _floats(form: FloatForm, count: int) -> Storage:
 
 
 def rule_of(storage: Storage) -> str:
-    """The bits of a storage as they are said: snorm:16:16; of floats what each channel has."""
+    """Return the rule that names a storage's bits: snorm:16:16; for floats, the bits of each channel."""
     if storage.kind != "float":
         kind = "centred" if storage.is_centred else "snorm_full" if storage.is_full else storage.kind
         kind = {"unorm": "uint", "snorm": "sint"}[kind] if storage.is_word else kind
@@ -144,8 +145,8 @@ def rule_of(storage: Storage) -> str:
 
 
 def rule_of_first(storage: Storage, count: int) -> str:
-    """What its first numbers are: their bits, and whether they lie across channels. Codes of these numbers are the same
-    in every storage that has the same: RG8 and RGBA8 for two."""
+    """Return the bits of its first numbers, and whether they are laid across channels. Codes of these numbers are
+    the same in every storage for which this is the same: RG8 and RGBA8 for two."""
     first = rule_of(replace(storage, bits=storage.bits[:count]))
     return f"{first} across channels of {storage.part} bits" if storage.is_packed else first
 

@@ -1,12 +1,12 @@
-"""What numbers are stored in: render target formats, and integers laid across their channels.
+"""Storages of numbers: render target formats, and integers laid across their channels.
 
-Numbers may be laid across channels of 8 bits as integers of any size, the highest bits first: 12:12 in three bytes; and
-across channels of 16 bits where they have more than 32 together. A signed one of n bits is then the integer of SNORM
-plus 2^(n-1) - 1, so that -1 is 0 and there is a code for 0. Floats of any size lie there by their own bits. How numbers
-become texels is in `rounding.py`.
+Numbers may be laid across channels of 8 bits as integers of any size, the highest bits first: 12:12 in three bytes;
+and across channels of 16 bits if they have more than 32 together. A signed number of n bits is then the integer of
+SNORM plus 2^(n-1) - 1, so that -1 is 0 and there is a code for 0. Floats of any size are laid there by their own
+bits. The conversion of numbers to texels is in `rounding.py`.
 
-A format in STORAGES holds normals everywhere. FORMATS, which layouts name, has these and more. Those of tangent frames
-and of motion vectors are picked from STORAGES by their names.
+A format in STORAGES holds normals everywhere. FORMATS, whose names layouts use, has these and more. Formats for
+tangent frames and motion vectors are picked from STORAGES by their names.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ ROUNDINGS_AND_DITHERED = (*ROUNDINGS, DITHERED)
 
 
 def rounds_to(rounding: str) -> str:
-    """How a number is rounded once noise was added where that is asked for: one of ROUNDINGS."""
+    """Return how a number is rounded after noise was added, if it is: one of ROUNDINGS."""
     return "nearest" if rounding == DITHERED else rounding
 
 
 @dataclass(frozen=True)
 class FloatForm:
-    """How a float is laid out: a sign, an exponent and a mantissa. The highest exponent is that of infinity and NaN.
+    """The layout of a float: a sign, an exponent and a mantissa. The highest exponent is that of infinity and NaN.
 
     Attributes:
         exponent: its bits, 2 to 8.
         mantissa: its bits, 1 to 23.
-        is_signed: whether there is a sign; without one there is nothing below 0, and what is finite stays finite.
+        is_signed: whether there is a sign; without one nothing is below 0, and finite numbers stay finite.
     """
 
     exponent: int
@@ -70,22 +70,24 @@ class Storage:
 
     Attributes:
         name: the catalogue's key.
-        title: what a reader calls it.
+        title: human-readable name.
         kind: "unorm", "snorm" or "float".
         bits: bits of each channel, in channel order.
-        internal_format: the GL enum.
-        curved: how many of its channels, the first, keep linear light by the sRGB curve.
-        part: bits of each channel of a target that numbers lie across as integers, 8 or 16; 0 where each number has a
-            channel.
-        is_word: its numbers lie in one integer, the first in the lowest bits, for an integer format or a buffer. `part`
-            is then of the channels that the same integer fills in other targets, where it is measured.
-        is_centred: the integers of SNORM lie in UNORM channels, 2^(n-1) - 1 more than themselves.
-        holds_unit: its texels hold numbers in [0, 1] though it has a sign: those of an encoder that returns them so.
-        is_said: somebody said its bits, however few they are.
-        is_full: its signed integers are -2^(n-1) to 2^(n-1) - 1, and 2^(n-1) would stand for 1.
-        form: of its floats, where they are none of a GPU's.
+        internal_format: the OpenGL enum.
+        curved: how many of its first channels store linear light by the sRGB curve.
+        part: bits of each channel of a target that numbers are laid across as integers, 8 or 16; 0 if each number
+            has its own channel.
+        is_word: whether its numbers are in one integer, the first in the lowest bits, for an integer format or a
+            buffer. `part` is then for the channels that the same integer fills in other targets, where it is
+            measured.
+        is_centred: whether UNORM channels hold the integers of SNORM, increased by 2^(n-1) - 1.
+        holds_unit: whether its texels hold numbers in [0, 1] although it has a sign: those of an encoder that
+            returns them.
+        is_said: whether its bits were given explicitly, however few they are.
+        is_full: whether its signed integers are -2^(n-1) to 2^(n-1) - 1, so that 2^(n-1) would stand for 1.
+        form: form of its floats, if no GPU has it.
         is_integer: whether its channels are whole numbers, which hold bits and are not blended.
-        is_uncounted: somebody said the bits of its floats, and not how many there are: see `rules.of_count`.
+        is_uncounted: whether the bits of its floats were given, but not their number: see `rules.of_count`.
     """
 
     name: str
@@ -106,16 +108,16 @@ class Storage:
 
     @property
     def is_packed(self) -> bool:
-        """Whether its numbers lie as integers across channels."""
+        """Whether its numbers are laid across channels as integers."""
         return self.part > 0
 
     def float_form(self, channel: int) -> FloatForm:
-        """How the floats of a channel are laid out."""
+        """Return the layout of the floats of a channel."""
         return self.form or FORMS[self.bits[channel]]
 
     @property
     def channels(self) -> int:
-        """How many numbers it holds."""
+        """The number of values that a texel holds."""
         return len(self.bits)
 
     @property
@@ -139,7 +141,7 @@ class Storage:
 
     @property
     def only_measured(self) -> str:
-        """What its numbers are, where neither a layout keeps them nor a page reads them; else empty."""
+        """A description of its numbers, if neither a layout stores them nor a page reads them; else empty."""
         if self.form:
             return "floats of a form that no GPU has"
         if self.is_centred:
@@ -155,7 +157,7 @@ class Storage:
 
     @property
     def field_bits(self) -> int:
-        """The bits of the first channels of one size, across which whole numbers may lie; 0 where none may."""
+        """The bits of the first channels of equal size, across which whole numbers may be laid; 0 if none may."""
         return self.bits.count(self.bits[0]) * self.bits[0] if self.kind == "unorm" else 0
 
     def scale(self, channel: int) -> int:
@@ -169,17 +171,17 @@ class Storage:
         return self.scale(channel) - self.is_full
 
     def levels(self, channel: int) -> int:
-        """How many values of a number in [-1, 1] a channel tells apart at least, evenly spread ones."""
+        """Return how many evenly spread values in [-1, 1] a channel can distinguish, at least."""
         if self.kind != "float":
             return self.scale(channel) * (not self.is_biased) + self.most(channel) + 1
         return 2 ** (self.float_form(channel).mantissa + 1 - self.is_biased)
 
     def step(self, channel: int) -> float:
-        """How far apart the numbers in [-1, 1] are that a fixed-point channel tells apart."""
+        """Return the distance between neighbouring numbers in [-1, 1] of a fixed-point channel."""
         return 1.0 / self.scale(channel) if self.is_full else 2.0 / (self.levels(channel) - 1)
 
     def count(self, channel: int) -> int:
-        """How many numbers in [-1, 1] a channel tells apart, however spread."""
+        """Return how many numbers in [-1, 1] a channel can distinguish, however they are spread."""
         if self.kind != "float":
             return self.levels(channel)
         # From 0 to 1 the floats of each octave, down from the exponent of 1.
@@ -188,7 +190,7 @@ class Storage:
         return to_one + 1 if self.is_biased else 2 * to_one + 1
 
     def numbers(self, channel: int) -> np.ndarray:
-        """Those numbers, ascending; float64. Not of 32-bit floats, which are too many."""
+        """Return the numbers that `count` counts, ascending; float64. Not for 32-bit floats, which are too many."""
         if self.kind != "float":
             return np.linspace(-1.0, 1.0 - self.is_full * self.step(channel), self.count(channel))
         bias, mantissa = self.float_form(channel).one, self.float_form(channel).mantissa

@@ -47,7 +47,7 @@ def float_words(texels: np.ndarray, form: FloatForm) -> np.ndarray:
 
 
 def numbers_across(words: np.ndarray, storage: Storage, channel: int) -> np.ndarray:
-    """The numbers (float32) whose integers (uint32, any shape) lie across channels: `words` the other way."""
+    """Return the numbers (float32) of integers (uint32, any shape) laid across channels: the inverse of `words`."""
     number = _numbers_of(words, storage, channel)
     return number * np.float32(2) - np.float32(1) if storage.is_biased else number
 

@@ -57,7 +57,7 @@ def _function_defines(encoding: Encoding) -> dict[str, object]:
 
 
 def levels_of(encoding: Encoding) -> tuple[int, ...]:
-    """How many values each of three numbers of a code has."""
+    """Return the number of values of each of a code's three numbers."""
     return tuple(encoding.levels_of(component) for component in range(3))
 
 
@@ -117,7 +117,7 @@ def _form_defines(storage: Storage) -> dict[str, object]:
 
 @dataclass(frozen=True)
 class Decoded:
-    """What came back: `normals` as decoded and `codes` as stored, float32 arrays of shape (height, width, 3 and 4)."""
+    """Decoded texels: `normals` as decoded and `codes` as stored, float32 arrays of shape (height, width, 3 and 4)."""
 
     normals: np.ndarray
     codes: np.ndarray

@@ -1,4 +1,4 @@
-"""What the codecs of every kind need of a GL device: functions looked for, two passes, and a compute shader."""
+"""GL tools for codecs of every kind: a check for functions, two passes, and a compute shader."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Textures = dict[str, Texture]
 
 
 def check_functions(glsl: Path, signatures: Iterable[str]) -> None:
-    """Raises ShaderError where a GLSL file cannot be read or lacks a function of this result, name and first type."""
+    """Raise ShaderError if a GLSL file cannot be read or lacks a signature (result, name and first type)."""
     text = re.sub(r"\s+", " ", read_shader(glsl))
     for signature in signatures:
         head, given = signature.split("(")
@@ -97,7 +97,7 @@ class Passes:
             return [read_pixels(texture) for texture in targets]
 
     def _written_textures(self, stack: ExitStack, sources: Textures) -> Textures:
-        """What the encoding pass leaves in the targets; released with the stack."""
+        """Return the targets after the encoding pass; they are released with the stack."""
         device, size = self._device, next(iter(sources.values())).size
         kept = {name: device.owned(stack, device.target(size, storage)) for name, storage in self._formats.items()}
         device.render(self._encode, list(kept.values()), **sources, **self._tables)
@@ -119,7 +119,7 @@ def exact(
     tables: Tables = dict,
     **uniforms: Any,
 ) -> list[np.ndarray]:
-    """What a compute shader makes of float32 arrays of shape (count, 4), without any storage: arrays of that shape."""
+    """Return a compute shader's results on float32 arrays of shape (count, 4), without storage, in the same shape."""
     with ExitStack() as stack:
         compute: Any = device.owned(stack, device.compute_pass(shader, defines, names))
         bind(compute, uploaded(device, stack, tables()))

@@ -1,7 +1,8 @@
-"""How often the loops of a shader run, and whether a device ends them before they are done.
+"""Iterations of a shader's loops, and whether a device ends the loops before they are done.
 
-A software driver ends all loops of a shader together after some number of turns, and says nothing: what is measured
-then is not what a GPU computes. So a short loop runs behind the user's functions: where theirs were ended, it is too.
+A software driver ends all loops of a shader together after some number of iterations, without a message: the
+figures are then not those of a GPU. So a short loop runs behind the user's functions: if their loops were ended, so
+is this one.
 """
 
 from __future__ import annotations
@@ -38,13 +39,13 @@ def loop_limit(device: Device) -> int | None:
 
 
 def loops_ended(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For each normal whether the device ended a loop of encode, and of decode.
+    """Return for each normal whether the device ended a loop of encode, and of decode.
 
     Args:
         n, view: float32 arrays of shape (count, 4).
 
     Returns:
-        two arrays of bool of shape (count,); decode's is set too where encode's loop was ended.
+        two arrays of bool of shape (count,); decode's is also set if a loop of encode was ended.
     """
     defines, names = encoding_defines(encoding), {"ENCODING": encoding.glsl}
     outputs = exact(device, "loops_done.comp", defines, names, [n, view], 2, encoding.tables, asked_turns=FEW)
@@ -54,7 +55,7 @@ def loops_ended(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndar
 
 
 def turns_made(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How often each loop runs its body for each normal: in encode, and in decode of the code that this gives.
+    """Return how often each loop runs its body for each normal: in encode, and in decode of the resulting code.
 
     Args:
         n, view: float32 arrays of shape (count, 4).
@@ -94,7 +95,7 @@ def _counted_text(source: Source) -> tuple[str, int]:
 
 
 def _conditions(code: str) -> Iterator[tuple[int, int, str]]:
-    """Where the condition of each loop begins and ends, and the function that counts it."""
+    """Yield the start and the end of each loop's condition, and the function that counts it."""
     for match in _LOOP.finditer(code):
         first, parts = match.end(), [match.end()]
         depth, position = 1, first

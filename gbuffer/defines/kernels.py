@@ -24,14 +24,14 @@ PLANES, GROUP = 8, 64
 
 @dataclass(frozen=True, eq=False)
 class Operation:
-    """What stands between loading numbers and storing them.
+    """The step between loading numbers and storing them.
 
     Attributes:
         glsl: the file that defines `operation`, a shader's name or a path.
-        given, beside, made: how many numbers go in, go in beside them, and come out; at least 1.
-        own_defines, own_names: what that file needs, as `Source` takes it.
-        tables: makes its look-up tables by sampler name, as `Encoding.tables`.
-        is_portable: whether its SPIR-V says what it costs; what a driver has to unroll and fold first does not.
+        given, beside, made: number of inputs, of additional inputs and of outputs; at least 1.
+        own_defines, own_names: the macros and files that the file needs, as for `Source`.
+        tables: makes its lookup tables by sampler name, like `Encoding.tables`.
+        is_portable: whether its SPIR-V shows its cost; false if a driver has to unroll and fold it first.
     """
 
     glsl: str | Path
@@ -67,7 +67,7 @@ class Operation:
 
 
 def encode(encoding: Encoding) -> Operation:
-    """A normal and the view-space position beside it to a code, for 8-bit UNORM if it is rounded precisely.
+    """Return the operation from a normal and its view position to a code, for 8-bit UNORM if it is rounded precisely.
 
     Raises:
         ShaderError: as `encoding_defines`.
@@ -81,7 +81,7 @@ def encode(encoding: Encoding) -> Operation:
 
 
 def decode(encoding: Encoding) -> Operation:
-    """A code and the view-space position beside it to a normal. Raises ShaderError as `encoding_defines`."""
+    """Return the operation from a code and its view position to a normal. Raises ShaderError as `encoding_defines`."""
     return Operation("kernel_decode.glsl", _number_count(encoding), 3, 3, *_read(encoding))
 
 

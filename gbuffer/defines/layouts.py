@@ -23,11 +23,11 @@ SRGB_ONE = "255.0"
 
 
 def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool = False) -> dict[str, object]:
-    """The macros that make `gbuffer.glsl` speak of a layout.
+    """Return the macros that adapt `gbuffer.glsl` to a layout.
 
     Args:
         rounds: `shader_roundings`.
-        is_metal_rough: whether it is surfaces of metal/rough materials that lie in it.
+        is_metal_rough: whether the layout stores surfaces of metallic-roughness materials.
     """
     words = layout.words
     storages = [target.storage for target in layout.targets]
@@ -78,7 +78,7 @@ def curve_files(layout: Layout) -> tuple[Path, ...]:
 
 
 def _curved_components(layout: Layout) -> list[str]:
-    """What lies in channels that the format itself puts on the sRGB curve."""
+    """Return the components in channels that the format itself puts on the sRGB curve."""
     targets = [target.storage.curved for target in layout.targets]
     return [word.component for word in layout.words if word.first < targets[word.target]]
 
@@ -147,14 +147,14 @@ FIRST_OF_MOTION = "motion.x"
 
 
 def _motion_line(encoding: MotionEncoding, way: str, largest: float) -> str:
-    """What codes the two numbers of a motion in `numbers`, or takes them back."""
+    """Return the statement that encodes the two numbers of a motion in `numbers`, or decodes them."""
     x, y = (f"numbers[{COMPONENTS.index(f'motion.{axis}')}]" for axis in "xy")
     code = f"vec2 code_of_motion = {encoding.prefix}_{way}_motion(vec2({x}, {y}), {glsl_value(largest)});"
     return f"{{ {code} {x} = code_of_motion.x; {y} = code_of_motion.y; }}"
 
 
 def _sign_defines(layout: Layout) -> dict[str, object]:
-    """The macros of a number of the normal's code that lies in the sign of a quantity."""
+    """Return the macros of a number of the normal's code that is stored in the sign of a quantity."""
     word = layout.carrier
     is_depth = word is not None and word.component == "depth"
     beside = word if word and not is_depth else None

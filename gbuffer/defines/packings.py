@@ -1,4 +1,4 @@
-"""What storages make of a code's numbers, and layouts of a depth: operations whose cost is asked for by themselves."""
+"""Packing of codes into storages, and of a depth into layouts: operations whose cost is measured separately."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Packing(Protocol):
     def storage(self) -> Storage | None: ...
 
     def pack(self) -> Operation:
-        """The numbers to a texel; beside them a depth."""
+        """Return the operation from the numbers to a texel; a depth is an additional input."""
         ...
 
     def unpack(self) -> Operation:
@@ -50,8 +50,8 @@ class Packing(Protocol):
 
 @dataclass(frozen=True)
 class StoragePacking:
-    """So many of a code's numbers, 2 or 3, in the first channels of a storage. Rounding is left to the device, as it is
-    wherever the device rounds as asked."""
+    """The first 2 or 3 numbers of a code in the first channels of a storage. Rounding is left to the device, as it
+    is wherever the device rounds as requested."""
 
     storage: Storage
     numbers: int
@@ -62,7 +62,7 @@ class StoragePacking:
 
     @property
     def channels(self) -> int:
-        """The channels of the target that hold something: at least 2, as GLSL has no vectors of one."""
+        """Number of channels of the target in use: at least 2, because GLSL has no one-component vectors."""
         storage = self.storage
         taken = -(-sum(storage.bits[: self.numbers]) // storage.part) if storage.is_packed else self.numbers
         return max(2, taken)
@@ -82,10 +82,10 @@ class WordPacking:
     """Words of a layout across the channels of a target: numbers of a code, or a depth.
 
     Attributes:
-        name: what a reader calls it.
+        name: its display name.
         target: the format and the words that fill it.
         numbers: how many of a code's numbers; 0 for a depth.
-        signed: whether the depth carries the sign of the normal's z.
+        signed: whether the depth has the sign of the normal's z.
     """
 
     name: str
@@ -99,7 +99,7 @@ class WordPacking:
 
     @property
     def channels(self) -> int:
-        """The channels that hold something: at least 2, as GLSL has no vectors of one."""
+        """Number of channels in use: at least 2, because GLSL has no one-component vectors."""
         words, size = self._layout.words, self.target.storage.bits[0]
         last = (((w.first + w.bits - 1) // size if w.bits else w.first) for w in words if w.target == 0)
         return max(1, *last) + 1

@@ -1,4 +1,4 @@
-"""What an effect is: passes that read what a pipeline keeps, with settings that can be named in one word of text."""
+"""Effects: passes that read what a pipeline keeps, with settings that can be named in one word of text."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Number:
     """A setting that is a number.
 
     Attributes:
-        usual, least, most: what it is unless given, and between which bounds; whole where `usual` is an int.
-        says: what it means, with its unit.
+        usual, least, most: its default, minimum and maximum; whole numbers if `usual` is an int.
+        says: its meaning, with its unit.
     """
 
     usual: int | float
@@ -101,7 +101,7 @@ class ChosenEffect:
         return ":".join([self.effect.name, *own])
 
     def passes(self) -> tuple[Pass, ...]:
-        """Its passes."""
+        """Return the effect's passes."""
         return self.effect.passes(**dict(self.values))
 
 

@@ -17,8 +17,8 @@ LEAST = 3.0  # pixels of the radius on the screen; with fewer nothing is compute
 
 
 def turns(taps: int) -> int:
-    """Turns of the spiral: the whole number nearest to the golden share of its taps that has no factor in common with
-    them, so that no two taps lie in one direction. 7 for the paper's 11."""
+    """Return the turns of the spiral: the whole number nearest to the golden section of its taps that has no factor
+    in common with them, so that no two taps are in the same direction. 7 for the paper's 11."""
     return min((n for n in range(1, taps + 1) if gcd(n, taps) == 1), key=lambda n: abs(n - GOLDEN * taps))
 
 

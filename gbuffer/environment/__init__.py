@@ -1,1 +1,1 @@
-"""What lies around a scene at every distance: pictures of it, and what surfaces of each roughness see there."""
+"""The distant surroundings of a scene: images of them, and what surfaces of each roughness see there."""

@@ -29,7 +29,7 @@ class EnvironmentMaker:
     has_sun: bool = False
 
     def make(self) -> Environment:
-        """It; one value, whose levels a device keeps."""
+        """Return the environment; always the same value, whose levels a device keeps."""
         return _made(self)
 
 

@@ -1,8 +1,9 @@
-"""How much of a constant environment a rough metal reflects: the two numbers of the split sum.
+"""Share of a constant environment that a rough metal reflects: the two numbers of the split sum.
 
-    reflected = f0 scale + bias,  scale = integral of D V n.l (1 - (1 - v.h)^5),  bias = integral of D V n.l (1 - v.h)^5
+    reflected = f0 scale + bias,
+    scale = integral of D V n.l (1 - (1 - v.h)^5),  bias = integral of D V n.l (1 - v.h)^5
 
-over the directions l of light. D is GGX's with alpha = roughness^2, V is height-correlated Smith's, times Schlick's F.
+over light directions l. D is GGX's with alpha = roughness^2, V is height-correlated Smith's, times Schlick's F.
 """
 
 from __future__ import annotations
@@ -33,11 +34,11 @@ def dfg(n_v: np.ndarray, roughness: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 
 def _microfacets(n_v: np.ndarray, alpha: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What the microfacets at each node add to the integral without Fresnel, and their v.h; the nodes come last.
+    """Return what each node's microfacets add to the integral without Fresnel, and their v.h; the nodes come last.
 
-    A microfacet's slope is alpha tan(x) towards longitude p, p = 0 on the viewer's side. Then D n.h dh is
-    sin 2x dx dp / 2 pi, and twice that with the mirror image of p. Light comes to the horizon where
-    slope^2 - 2 slope tan(v) cos p = 1: there x ends, so the integrand is smooth.
+    A microfacet's slope is alpha tan(x) towards longitude p, p = 0 on the viewer's side. Then D n.h dh is sin 2x dx
+    dp / 2 pi, and twice that with the mirror image of p. Light reaches the horizon where slope^2 - 2 slope tan(v)
+    cos p = 1: x ends there, so the integrand is smooth.
     """
     share, of_share, cosine, of_turn = _nodes()
     sine = np.sqrt(1 - n_v**2)

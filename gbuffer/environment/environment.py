@@ -30,7 +30,7 @@ class Environment:
 
 
 def directions(height: int) -> np.ndarray:
-    """Of the centres of an environment's texels, (height, 2 height, 3), float64, unit."""
+    """Return the directions of the centres of an environment's texels, (height, 2 height, 3), float64, unit."""
     t = (np.arange(height)[:, None] + 0.5) * np.pi / height
     return towards(t, (np.arange(2 * height) + 0.5) * np.pi / height - np.pi)
 
@@ -41,6 +41,6 @@ def towards(t: np.ndarray, p: np.ndarray) -> np.ndarray:
 
 
 def solid_angles(height: int) -> np.ndarray:
-    """Of a texel of each row, (height, 1), float64, in steradians."""
+    """Return the solid angle of a texel of each row, (height, 1), float64, in steradians."""
     edges = np.cos(np.arange(height + 1) * np.pi / height)
     return -np.diff(edges)[:, None] * np.pi / height

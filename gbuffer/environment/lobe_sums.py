@@ -27,12 +27,12 @@ ROWS, LONGITUDES = 8, 64
 
 @dataclass(frozen=True)
 class Grid:
-    """Where texels and directions are.
+    """Grid of texels and directions.
 
     Attributes:
         height: rows of the environment; it is twice as wide.
-        step: how many texels a direction has along either side: 1, or an even number.
-        alpha: the lobe's, above 0.
+        step: number of texels per direction along either side: 1, or an even number.
+        alpha: of the lobe, above 0.
     """
 
     height: int
@@ -55,7 +55,7 @@ class Grid:
 
     @property
     def offset(self) -> float:
-        """From a direction to the texel in the middle or right of it, in texels of longitude."""
+        """Distance from a direction to the texel in the middle or right of it, in texels of longitude."""
         return 0.0 if self.step == 1 else 0.5
 
     @property
@@ -128,7 +128,8 @@ def _pixels(grid: Grid, spectrum: np.ndarray) -> np.ndarray:
 
 
 def _lobe_spectra(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
-    """Of the lobes around directions of these latitudes along each row of texels, (frequencies, directions, rows)."""
+    """Return the spectra of lobes around directions of these latitudes along each row of texels, with the shape
+    (frequencies, directions, rows)."""
     spectra = _transformed(grid, _far_lobes(grid, latitudes))
     if not grid.is_resolved:
         for number, latitude in enumerate(latitudes):

@@ -1,4 +1,4 @@
-"""What surfaces of each roughness see of an environment, in levels to interpolate between."""
+"""The environment as surfaces of each roughness see it, in levels to interpolate between."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ Keep = Callable[[str, Callable[[], Arrays]], Arrays]
 
 @dataclass(frozen=True, eq=False)
 class Prefiltered:
-    """An environment by GGX's lobe around each direction r, where normal and viewer are r.
+    """An environment filtered by GGX's lobe around each direction r, where normal and viewer are r.
 
     It is the sum of L K over that of K, K = D((1 + r.l) / 2) max(r.l, 0).
 
     Attributes:
         fine: (levels, height, width, 3), float32, texels as the environment's own; level 0 is its radiance.
-        fine_roughness: of each fine level, from 0 up.
+        fine_roughness: roughness of each fine level, from 0 up.
         coarse: (levels, height / 4, width / 4, 3), float32.
-        coarse_roughness: of each coarse level; the first is the last fine one, the last is 1.
+        coarse_roughness: roughness of each coarse level; the first is the last fine one, the last is 1.
     """
 
     fine: np.ndarray
@@ -68,10 +68,10 @@ def kept_prefiltered(environment: Environment) -> Prefiltered:
 
 
 def prefiltered(environment: Environment, keep: Keep = _made_now) -> Prefiltered:
-    """The levels of an environment; 512 x 256 texels take 4 seconds of one core, 1024 x 512 half a minute.
+    """Return the levels of an environment; 512 x 256 texels take 4 seconds on one core, 1024 x 512 half a minute.
 
     Raises:
-        ValueError: its height is no multiple of 4, or its width is not twice its height.
+        ValueError: its height is not a multiple of 4, or its width is not twice its height.
     """
     radiance = environment.radiance
     height, width = radiance.shape[:2]
@@ -91,7 +91,7 @@ def key_of(radiance: np.ndarray) -> str:
 
 
 def _levels(radiance: np.ndarray) -> Arrays:
-    """Those that are no copy of the radiance."""
+    """Return the levels that are not a copy of the radiance."""
     # SciPy's transforms: who only asks what environments there are does not wait for them.
     from .lobe_sums import seen_through_lobe
 

@@ -23,7 +23,7 @@ SUN_IRRADIANCE = np.array([9.0, 8.4, 7.2])
 
 @functools.cache
 def sky() -> np.ndarray:
-    """Its radiance, (256, 512, 3), float32, from 0.05 to about 15 000 in the sun."""
+    """Return the radiance of the sky, (256, 512, 3), float32, from 0.05 to about 15,000 in the sun."""
     return drawn(_light)
 
 

@@ -54,7 +54,7 @@ PANELS = (
 
 @functools.cache
 def studio() -> np.ndarray:
-    """Its radiance, (256, 512, 3), float32, from 0.02 to 15: its tubes, of 20, are narrower than two texels."""
+    """Return the radiance, (256, 512, 3), float32, from 0.02 to 15: its tubes, of 20, are narrower than two texels."""
     return drawn(_light)
 
 

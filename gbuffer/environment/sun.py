@@ -17,11 +17,11 @@ REACH = 5.0
 
 @dataclass(frozen=True)
 class Sun:
-    """What rises above a radiance, in one small part of an environment.
+    """Radiance above a threshold, in one small part of an environment.
 
     Attributes:
         towards: unit direction to its middle.
-        irradiance: of what rises above, on a surface across it, linear colour.
+        irradiance: of that radiance, on a surface that faces it, linear colour.
     """
 
     towards: tuple[float, float, float]
@@ -29,7 +29,7 @@ class Sun:
 
 
 def found_sun(radiance: np.ndarray, most: float = MOST) -> Sun | None:
-    """The sun of (height, 2 height, 3), or None where nothing is above `most`, or what is lies further apart."""
+    """Return the sun of (height, 2 height, 3), or None if texels above `most` are missing or too far apart."""
     excess = np.maximum(radiance.astype(np.float64) - most, 0) * solid_angles(len(radiance))[..., None]
     bright = excess.any(-1)
     if not bright.any():

@@ -1,4 +1,4 @@
-"""What a pass draws with: targets that it writes, programs that know the frame, and what it reads, bound by name."""
+"""Drawing tools of a pass: targets that it writes, programs that know the frame, and its inputs, bound by name."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class Canvas:
     """A frame as one pass sees it.
 
     Attributes:
-        frame, device, plan: what the frame is made of, on which device.
-        told: the macros that earlier passes and this one tell.
+        frame, device, plan: the frame, its device and its plan.
+        told: the macros that earlier passes and this one set.
 
     Raises:
-        PipelineError: the pass uses what it does not declare.
+        PipelineError: the pass uses a resource that it does not declare.
     """
 
     def __init__(self, frame: Frame, one: Pass):
@@ -59,12 +59,12 @@ class Canvas:
         self.frame.held(self._declared_resource(resource, self._pass.writes)).move_on()
 
     def target(self, *colours: Resource, depth: Resource | None = None, most: int | None = None) -> Target:
-        """What to draw into.
+        """Return the target to draw into.
 
         Args:
             colours: resources that the pass writes, in the order of the shader's outputs.
             depth: depth and stencil to draw against; written if the pass writes it.
-            most: how many textures at most.
+            most: maximum number of textures.
         """
         for resource in colours:
             self._declared_resource(resource, self._pass.writes)
@@ -141,7 +141,7 @@ def _samplers(reads: tuple[Resource, ...], writes: tuple[Resource, ...]) -> dict
 
 @contextmanager
 def counted(context: Any, queries: list[Query] | None) -> Iterator[None]:
-    """A query of samples around what is drawn, added to the queries; none where nobody counts."""
+    """Count the samples of what is drawn in a query, which is added to the queries; do nothing if they are None."""
     if queries is None:
         yield
         return

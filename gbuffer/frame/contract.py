@@ -1,4 +1,4 @@
-"""What passes promise one another: what each reads and writes, in which order. Checked when a pipeline is made."""
+"""The contract between passes: what each reads and writes, in which order. Checked when a pipeline is made."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ class Pass:
     """One pass over a frame.
 
     Attributes:
-        name: what tables call it, once in a pipeline.
-        reads: what earlier passes have written, and what the frame before has kept.
-        writes: what later passes may read. What it does not read as well is cleared before it runs.
-        build: given a canvas it compiles, and returns what to run for each frame. It is not called where nothing that
-            the pass writes is there.
-        after: of an effect's pass: the passes that it follows; of those the pipeline has, the last.
-        tells: macros for itself and every later pass. An effect tells who may read what it writes.
-        expects: values of macros that it can work with, some earlier pass having told one of them.
-        needs: components that it cannot do without in the G-buffer.
+        name: its name in tables, unique in a pipeline.
+        reads: resources that earlier passes have written, or that the previous frame has kept.
+        writes: resources that later passes may read. Those that it does not also read are cleared before it runs.
+        build: compiles the pass for a canvas, and returns the function to run for each frame. It is not called if
+            none of the resources that the pass writes exist.
+        after: for an effect's pass: the passes that it may follow; it follows the last of these in the pipeline.
+        tells: macros for itself and every later pass. An effect with macros lets later passes read what it writes.
+        expects: macro values that it can work with; an earlier pass must have set one of them.
+        needs: components that it requires in the G-buffer.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Pass:
 
     @property
     def offers(self) -> tuple[Resource, ...]:
-        """What later passes may read without saying so, by a macro."""
+        """Resources that later passes may read without declaring them, because of a macro."""
         return self.writes if self.after and self.tells else ()
 
 
@@ -84,17 +84,17 @@ class Pipeline:
 
     @cached_property
     def resources(self) -> Mapping[str, Resource]:
-        """All that its passes write, by name."""
+        """All resources that its passes write, by name."""
         return {resource.name: resource for stage in self.stages for resource in stage.writes}
 
     @cached_property
     def told(self) -> Mapping[str, int]:
-        """All macros that its passes tell."""
+        """All macros that its passes set."""
         return {name: value for stage in self.stages for name, value in stage.tells.items()}
 
     @property
     def needs(self) -> frozenset[str]:
-        """Components that it cannot do without in the G-buffer, besides the normal."""
+        """Components that it requires in the G-buffer, besides the normal."""
         return frozenset().union(*(stage.needs for stage in self.stages))
 
     @property
@@ -104,7 +104,7 @@ class Pipeline:
 
     @property
     def light_targets(self) -> tuple[int, ...]:
-        """How many targets its light buffer may have; empty where it has none."""
+        """Numbers of targets that its light buffer may have; empty if it has none."""
         if LIGHT.name not in self.resources:
             return ()
         return (1,) if self.told["LIGHT_HOLDS"] == COLOURS else (1, 2)
@@ -124,11 +124,11 @@ class Pipeline:
         return replace(plan, apart=self.scaled)
 
     def upto(self, stage: Pass) -> tuple[Pass, ...]:
-        """The passes before one; all of them if it is none of them."""
+        """Return the passes before this one; all of them if the pipeline does not contain it."""
         return self.stages[: self.stages.index(stage)] if stage in self.stages else self.stages
 
     def with_effect(self, passes: Iterable[Pass]) -> Pipeline:
-        """The pipeline with an effect's passes, each behind the one that it names and those that did so before.
+        """Return the pipeline with an effect's passes, each behind the pass that it names and earlier effect passes.
 
         Raises:
             PipelineError: there is no such pass, or they do not fit.

@@ -166,7 +166,7 @@ class Frame:
         return {**light, **kept}
 
     def _material_defines(self) -> dict[str, object]:
-        """The macros of metal/rough materials and of what lies around."""
+        """Return the macros of metallic-roughness materials and of the environment."""
         around = self.scene.environment
         defines: dict[str, object] = {"HAS_MAPS": int(self.scene.has_maps), "HAS_ENVIRONMENT": int(around is not None)}
         defines |= {"SPECULAR_ANTIALIASING": int(self.plan.antialiased), "LEAST_ROUGHNESS": self.plan.least_roughness}
@@ -176,7 +176,8 @@ class Frame:
         return defines
 
     def _material_tables(self) -> dict[str, Any]:
-        """What metal/rough surfaces look up: the split sum, and what lies around. On the device beyond the frame."""
+        """Return the tables of metallic-roughness surfaces: the split sum and the environment. They outlive the
+        frame on the device."""
         if not self.scene.is_metal_rough:
             return {}
         device = self.device
@@ -217,7 +218,7 @@ class Frame:
         bind(program, {"bumps": self.scene_buffers.bumps, **self.tables, **self._by_kind(textures)})
 
     def _by_kind(self, textures: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Textures by sampler, those of the G-buffer that hold whole numbers under a sampler of their own."""
+        """Return textures by sampler; those of the G-buffer that hold whole numbers have a sampler of their own."""
         storages = [target.storage for target in self.plan.layout.targets]
         if SAMPLERS not in textures or not any(storage.is_integer for storage in storages):
             return textures
@@ -228,7 +229,7 @@ class Frame:
         return {**textures, **{name: several for name, several in parts.items() if several}}
 
     def _frame_buffer(self, size: tuple[int, int], view: Sight | None) -> Buffer:
-        """What `frame.glsl` declares."""
+        """Return the buffer that `frame.glsl` declares."""
         sight, previous = view or self.scene.view, view or self.scene.previous
         picture = size if view else self.plan.sampled_from or self.plan.size
         projection, to_world = sight.projection(picture[0] / picture[1]), np.linalg.inv(sight.matrix())
@@ -250,7 +251,7 @@ def _levels_uploaded(device: Device, levels: Prefiltered) -> list[Any]:
 
 
 def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:
-    """For each target 0 where the device rounds as asked, else one more than how `storage.glsl` counts the way."""
+    """Return for each target 0 if the device rounds as requested, else 1 + the rounding's number in `storage.glsl`."""
     homes = {word.target for word in layout.words if word.component.startswith("normal.")}
     return tuple(
         _shader_rounding(device, target.storage, rounds_to(layout.rounding) if i in homes else "nearest")

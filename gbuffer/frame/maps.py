@@ -48,7 +48,7 @@ class Maps:
 
 
 def _sampled(one: Map) -> tuple[object, ...]:
-    """What makes a texture of a map: maps that differ in where they lie alone share one."""
+    """Return the identity of a map's texture: maps that differ only in their placement share one."""
     return id(one.texels), one.is_srgb, _repeats(one)
 
 
@@ -58,7 +58,7 @@ def _repeats(one: Map) -> tuple[bool, bool]:
 
 
 def metal_rough_numbers(material: MetalRough) -> list[float]:
-    """What `instance.glsl` declares of a metal/rough material."""
+    """Return the numbers that `instance.glsl` declares for a metallic-roughness material."""
     numbers = [*material.base, material.alpha, material.metalness, material.roughness, material.reflectance]
     has_normals = float(material.normal_map is not None)
     numbers += [material.cutoff, *material.emission, 0.0]

@@ -1,4 +1,4 @@
-"""What a frame is made of."""
+"""The plan of a frame."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ LEAST_ROUGHNESS = 0.045
 
 @dataclass(frozen=True)
 class Plan:
-    """What a frame is made of.
+    """The parts and settings of a frame.
 
     Attributes:
         size: width and height of the final image.
-        samples: of each pixel.
-        layout, light_buffer: what the G-buffer and the light are kept in.
+        samples: samples per pixel.
+        layout, light_buffer: how the G-buffer and the light are stored.
         light_targets: 1 or 2, see `accumulation.glsl`.
         shadows: whether the sun has a shadow map.
-        antialiased: whether metal/rough surfaces are made rougher by the normals that a pixel sees.
-        least_roughness: that lights see; what lies around is mirrored down to 0.
-        scale: of the G-buffer's and light buffer's size to the image's, for pipelines that have the choice.
-        apart: whether G-buffer and light buffer have that scale, and one sample a pixel; the pipeline says so.
+        antialiased: whether metallic-roughness surfaces are made rougher by the normals within a pixel.
+        least_roughness: lowest roughness for lights; the environment is reflected down to 0.
+        scale: size of the G-buffer and light buffer relative to the image's, for pipelines that have the choice.
+        apart: whether G-buffer and light buffer have that scale, and one sample per pixel; set by the pipeline.
         dither: the noise that is added to the normal's code; None for what its layout says.
-        sampled_from: of pixels that were sampled from another frame, that frame's width and height.
+        sampled_from: for pixels that were sampled from another frame, that frame's width and height.
     """
 
     size: tuple[int, int]
@@ -45,13 +45,13 @@ class Plan:
 
     @property
     def noise(self) -> Dither | None:
-        """What is added to the numbers of the normal's code before they are rounded; None for nothing."""
+        """Noise that is added to the numbers of the normal's code before they are rounded; None for no noise."""
         codec = self.layout.codec
         return codec.dither(0) if self.dither is None and codec.is_dithered else self.dither
 
     @property
     def surface_scale(self) -> float:
-        """Of the G-buffer's size to the image's."""
+        """Size of the G-buffer relative to the image's."""
         return self.scale if self.apart else 1.0
 
     @property

@@ -1,4 +1,4 @@
-"""What passes hand on to one another: textures by name, whose formats and sizes follow from a frame's plan."""
+"""Resources that passes hand on: textures by name, whose formats and sizes follow from a frame's plan."""
 
 from __future__ import annotations
 
@@ -52,15 +52,14 @@ class Resource:
     Attributes:
         name: the sampler that reads it; `<name>_before` reads the copy before.
         format: one of KNOWN.
-        scale: of the size of what it follows, or a size in pixels of its own.
-        follows: whose size and samples it has: the IMAGE's, or those of the G-buffer's SURFACES.
-        samples: of each pixel: 1, or AS_MANY.
-        copies: 2 or more for what is read while it is written. The second is made when first asked for.
-        depth: the slices of a volume; 0 for a texture of two dimensions.
+        scale: size relative to what it follows, or a size in pixels of its own.
+        follows: what decides its size and samples: the IMAGE, or the G-buffer's SURFACES.
+        samples: samples per pixel: 1, or AS_MANY.
+        copies: 2 or more if it is read while it is written. The second is made at the first request.
+        depth: number of slices of a volume; 0 for a two-dimensional texture.
         kept: whether the next frame reads it. Each frame then moves on by one copy, and may read before it writes.
         smooth: whether `texture()` blends neighbouring texels.
-        shares: the resource that it is wherever the two have one size and as many samples; it takes that one's place,
-            which no later pass may read.
+        shares: the resource that it replaces if size and samples agree; later passes may not read that resource.
     """
 
     name: str
@@ -90,7 +89,7 @@ class Resource:
         return self.shares is not None and self.shares.shape(plan) == self.shape(plan)
 
     def bytes_per_pixel(self, plan: Plan) -> float:
-        """Of one copy, of all if they are kept, for a pixel of the image; 0 for what has a size in pixels."""
+        """Return the bytes of one copy, or of all if they are kept, per pixel of the image; 0 for a size in pixels."""
         if isinstance(self.scale, tuple) or self.is_shared(plan):
             return 0.0
         sizes = (sum(t.bits) // 8 if isinstance(t, Storage) else DEPTH_STENCIL_BYTES for t in self.texels(plan))

@@ -23,7 +23,7 @@ IDENTITIES = 255
 
 
 class Sight(Protocol):
-    """Where a scene is seen from: a `View`, or any other hashable value that has these."""
+    """A viewpoint on a scene: a `View`, or any other hashable value that has these methods."""
 
     def matrix(self) -> np.ndarray:
         """World to view space, (4, 4)."""
@@ -50,13 +50,13 @@ class Draw:
 
 
 class SceneBuffers:
-    """What a scene's frames are drawn from, released with `stack`; it may move from frame to frame.
+    """Buffers that a scene's frames are drawn from, released with `stack`; the scene may move from frame to frame.
 
     Attributes:
         draws: by name, what to draw: "opaque", "general", "special", "transparent" (farthest first), "casters"
-            (closed) and "thin casters" (two-sided), and for each light's index the opaque instances within its reach.
+            (closed) and "thin casters" (two-sided), and for each light's index the opaque instances in its reach.
         view: world space to that of the scene's own camera, by which transparent instances are ordered.
-        lights, first_lamp: the lights as shaders number them, and the first that is no sun.
+        lights, first_lamp: the lights in the order of the shaders, and the first that is not a sun.
         meshes: vertex and index buffers.
         two_sided: whether the back of each mesh is drawn as well.
         bumps: the normal map.
@@ -196,7 +196,7 @@ def _light_numbers(light: Light, view: np.ndarray) -> list[float]:
 
 
 def what_is_built(scene: Scene) -> tuple[object, ...]:
-    """What passes are built for, and may not change from frame to frame."""
+    """Return the parts of a scene that passes are built for, which may not change from frame to frame."""
     meshes = ((part.mesh.positions.tobytes(), part.mesh.triangles.tobytes(), part.casts) for part in scene.parts)
     lights = sorted(light.kind for light in scene.lights)
     return *meshes, *lights, scene.is_metal_rough, scene.has_maps, scene.environment
@@ -217,7 +217,8 @@ def bounds(scene: Scene, casters_only: bool = False) -> tuple[np.ndarray, np.nda
 
 
 def sun_matrix(scene: Scene) -> np.ndarray:
-    """World space to the shadow map, (4, 4): x, y and depth along the sun's rays, each from 0 to 1 around the casters.
+    """Return the matrix from world space to the shadow map, (4, 4): x, y and depth along the sun's rays, each from 0
+    to 1 around the casters.
 
     Raises:
         ValueError: nothing casts a shadow, or there is no sun.

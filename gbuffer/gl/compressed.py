@@ -13,7 +13,7 @@ from .raw import compressed_texture, delete_texture
 
 
 def device_texels(device: Device, blocks: bytes, size: tuple[int, int], internal_format: int) -> np.ndarray:
-    """What a shader fetches from a texture of compressed blocks, float32 of shape (height, width, 4).
+    """Return the texels that a shader fetches from compressed blocks, float32 of shape (height, width, 4).
 
     Args:
         blocks: row by row.
@@ -21,7 +21,7 @@ def device_texels(device: Device, blocks: bytes, size: tuple[int, int], internal
         internal_format: the GL enum.
 
     Raises:
-        FormatError: the device does not have the format, or no texture this large.
+        FormatError: the device does not support the format, or a texture of this size.
     """
     if max(size) > device.max_size:
         raise FormatError(f"{device.renderer} has textures of up to {device.max_size} texels a side, not {max(size)}")

@@ -154,7 +154,7 @@ class Device:
             return self.context.compute_shader(source.text)
 
     def computed(self, compute: moderngl.ComputeShader, inputs: Sequence[np.ndarray], outputs: int) -> list[np.ndarray]:
-        """What a compute shader, 64 to a group, fills of arrays like those that it is given, of shape (count, 4)."""
+        """Return the arrays that a compute shader, 64 to a group, fills; they have the inputs' shape, (count, 4)."""
         count = len(inputs[0])
         with ExitStack() as stack:
             given = [self.context.buffer(np.ascontiguousarray(a, np.float32)) for a in inputs]
@@ -199,7 +199,7 @@ class Device:
 
     @staticmethod
     def smooth(texture: moderngl.Texture | moderngl.Texture3D) -> None:
-        """What shaders sample there is blended between texels, and ends at the border."""
+        """Make shaders blend between a texture's texels, without repeating it beyond the border."""
         texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
         texture.repeat_x = texture.repeat_y = False
 
@@ -256,7 +256,7 @@ class Device:
         texture.repeat_x = texture.repeat_y = False
 
     def given_samples(self, asked: int) -> int:
-        """The samples a pixel of a target of which so many are asked: a power of two or the next the device has."""
+        """Return a target's samples per pixel for a requested number: a power of two or the next the device has."""
         samples = 1 << (min(asked, self.max_samples).bit_length() - 1)
         if samples == 1:
             return 1
@@ -324,8 +324,8 @@ class Device:
         return framebuffer
 
     def slice_framebuffer(self, volumes: Sequence[moderngl.Texture3D], at: int | None) -> moderngl.Framebuffer:
-        """One slice of each volume to draw into, or all slices by `gl_Layer`; a framebuffer of moderngl's has flat
-        targets, which give way."""
+        """Return a framebuffer of one slice of each volume, or of all slices by `gl_Layer`; moderngl needs flat
+        targets to make it, which the slices replace."""
         width, height, _ = volumes[0].size
         with ExitStack() as stack:
             flat = [self.owned(stack, self.target((width, height), STORAGES["rgba8"])) for _ in volumes]
@@ -394,7 +394,7 @@ class Device:
         return self.idle.read(components=4) == texel.tobytes()
 
     def native_rounding(self, storage: Storage) -> str:
-        """How the device's own conversion into the format rounds: "nearest", "truncate" or "other"."""
+        """Return how the device's own conversion into the format rounds: "nearest", "truncate" or "other"."""
         if storage.name not in self._native:
             self._native[storage.name] = self._probe_rounding(storage)
         return self._native[storage.name]

@@ -1,4 +1,4 @@
-"""What lies on a device beyond those who asked for it."""
+"""Objects on a device that outlive the code that requested them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ T = TypeVar("T")
 
 
 class Lasting(Generic[T]):
-    """Objects by a key, each made once. Beyond so many, those that were asked for longest ago and that nobody uses any
-    more are released."""
+    """Objects by a key, each made once. Beyond a maximum number, objects without users are released, those
+    requested longest ago first."""
 
     def __init__(self, most: int, release: Callable[[T], None]):
         self._most, self._release = most, release

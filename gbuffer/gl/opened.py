@@ -6,7 +6,7 @@ from typing import Protocol
 
 
 class Opened(Protocol):
-    """What can be asked of it."""
+    """The properties of the device that others may query."""
 
     renderer: str
 

@@ -78,12 +78,12 @@ def _lookup() -> Callable[[bytes], int | None]:
 
 
 def _address(found: int | None) -> int | None:
-    """What a finder gave; None where it is one of the numbers that WGL says "not found" by."""
+    """Return the result of a finder; None for one of the numbers that mean "not found" in WGL."""
     return None if found in (None, 1, 2, 3, ctypes.c_void_p(-1).value) else found
 
 
 def _address_within(library: ctypes.CDLL, name: str) -> int | None:
-    """Where a library itself has a function, as opengl32.dll has those of GL 1.1; None where it does not."""
+    """Return the address of a library's own function, such as those of GL 1.1 in opengl32.dll; None if it has none."""
     symbol = getattr(library, name, None)
     return ctypes.cast(symbol, ctypes.c_void_p).value if symbol else None
 
@@ -192,8 +192,8 @@ def clear_words(attachments: Iterable[int]) -> None:
 
 
 def mark_volume() -> None:
-    """Draws count in the stencil, and change nothing else: up where a back face lies behind what is drawn, down where
-    a front face does. What lies inside a closed volume is left at 1, wherever the eye is (depth fail)."""
+    """Make draws change only the stencil: up where a back face is behind what is drawn, down where a front face is.
+    Everything inside a closed volume is left at 1, wherever the eye is (depth fail)."""
     function("glColorMask")(0, 0, 0, 0)
     function("glStencilFunc")(ALWAYS, 0, 0xFF)
     function("glStencilOpSeparate")(BACK, KEEP, INCR_WRAP, KEEP)
@@ -220,7 +220,7 @@ def clear_stencil() -> None:
 
 
 def blend_by(alpha: float) -> None:
-    """What `device.BY_ALPHA` blends by in the draws that follow."""
+    """Set the alpha that `device.BY_ALPHA` uses in the draws that follow."""
     function("glBlendColor")(alpha, alpha, alpha, alpha)
 
 

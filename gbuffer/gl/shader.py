@@ -43,18 +43,17 @@ def shaders() -> Mapping[str, Path]:
 class Source:
     """A shader's text with every include expanded once.
 
-    An include is a file next to the one that includes it, else a shader of `shaders`, by its name alone.
+    An include is a file next to the one that includes it, else a shader of `shaders`, by its name only.
 
-    Where each line comes from is kept here and not told to the compiler by `#line`: Mesa forgets the source string
+    The origin of each line is kept here and not told to the compiler by `#line`: Mesa forgets the source string
     number in some of its messages, and then blames the wrong file.
 
     Args:
         path: the shader: a name of `shaders`, or a path.
-        defines: macros set at its head; those that nothing mentions are left out, so that what is the same program has
-            the same text.
-        names: the file or the files that stand behind `#include NAME`.
-        may_read: whether a file that is not of this program may be included, its links resolved; it is not opened
-            otherwise. None: what is read has been asked before.
+        defines: macros set at its head; unused ones are left out, so that identical programs have identical text.
+        names: the file or the files that replace `#include NAME`.
+        may_read: whether a file from outside this program may be included, its links resolved; otherwise it is not
+            opened. None: the files have been checked before.
     """
 
     def __init__(

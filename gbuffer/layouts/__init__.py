@@ -1,1 +1,1 @@
-"""Which bits of which targets hold what."""
+"""Assignment of attributes to the bits of render targets."""

@@ -1,7 +1,7 @@
-"""The normals of engines and SDKs, each from its own source. What lies beside them is this renderer's.
+"""The normals of engines and SDKs, each from its own source. The other attributes are this renderer's.
 
-`shading_model`, this renderer's Deferred ID, lies where the engine has a material's ID or nothing. `whole.py` has
-engines whose whole material is known.
+`shading_model`, this renderer's Deferred ID, is placed where the engine has a material's ID or nothing. `whole.py`
+has engines whose whole material is known.
 """
 
 from __future__ import annotations

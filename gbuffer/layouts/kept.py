@@ -1,4 +1,4 @@
-"""How a layout keeps what a material is: on a curve over a range, or a light by the code of a whole texel."""
+"""Encodings of material values in a layout: on a curve over a range, or light as the code of a whole texel."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ def channels_of(colour: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Kept:
-    """How a quantity is kept.
+    """The encoding of a quantity.
 
     Attributes:
         encoding: of each of its numbers, or of all of them.
-        range: the largest that a curve keeps, of motion in screens a frame; 1 for a code of light, which has its own.
+        range: the largest value on a curve, for motion in screens per frame; 1 for light, which has its own.
     """
 
     encoding: CurveEncoding | LightEncoding | MotionEncoding
@@ -55,10 +55,10 @@ class Kept:
 
 
 def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
-    """What `name`, or `name:limit` where there is a limit, says of a quantity such as `roughness` or `emissive`.
+    """Return the encoding that `name`, or `name:limit`, selects for a quantity such as `roughness` or `emissive`.
 
     Raises:
-        ValueError: there is none of that name, it is not for that quantity, or the range is none; a line.
+        ValueError: the name is unknown, it is not for that quantity, or the range is invalid; one line.
     """
     if quantity == MOTION:
         return _kept_motion(name, limit)
@@ -75,7 +75,7 @@ def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
 
 
 def _kept_motion(name: str, limit: str | None) -> Kept:
-    """Raises ValueError."""
+    """Return the encoding of motion. Raises ValueError."""
     if name not in MOTION_ENCODINGS:
         raise ValueError(f"unknown code of motion {name!r}; known: {', '.join(MOTION_ENCODINGS)}")
     return Kept(MOTION_ENCODINGS[name], 1.0 if limit is None else _range_of(limit))

@@ -1,4 +1,4 @@
-"""What a layout of a G-buffer is: its targets, their formats, and what lies in which of their bits.
+"""The layout of a G-buffer: its targets, their formats, and the assignment of attributes to their bits.
 
 Native depth and stencil, D32F S8, belong to every layout; a layout without a `depth` word reads the native depth,
 resolved to linear. `words.py` explains the words.
@@ -110,7 +110,7 @@ class Layout:
         return self.codec.undithered
 
     def _check_normal_words(self, found: Collection[str]) -> None:
-        """Raises LayoutError where the words of the normal are not those that its encoding needs."""
+        """Raise LayoutError if the words of the normal are not those that its encoding needs."""
         encoding, name, carried = self.encoding, self.encoding.name, self.carried
         normal = {f"normal.{axis}" for axis in "xyz"[: encoding.components]}
         kept = {c for c in found if c.startswith("normal.")} | ({carried} if carried else set())
@@ -122,7 +122,7 @@ class Layout:
             raise LayoutError(f"layout {self.name}: {name} keeps a sign in the depth's, but the layout keeps no depth")
 
     def _check_colours(self) -> None:
-        """Raises LayoutError where the channels of a colour are not kept alike."""
+        """Raise LayoutError if the channels of a colour are not stored alike."""
         for colour in (*COLOURS, MOTION):
             words = [word for word in self.words if quantity_of(word.component) == colour]
             if len({word.kept for word in words}) > 1:
@@ -137,22 +137,22 @@ class Layout:
 
     @property
     def kept(self) -> dict[str, Kept]:
-        """The curves and codes that its words lie in, by component; none of those that are kept as they are."""
+        """Curves and encodings of its words, by component; words that are stored unchanged are left out."""
         return {word.component: word.kept for word in self.words if word.kept}
 
     @property
     def carrier(self) -> Word | None:
-        """The word that carries a number of the normal's code as its sign; None where none does."""
+        """The word whose sign stores a number of the normal's code; None if there is none."""
         return next((word for word in self.words if word.sign), None)
 
     @property
     def carried(self) -> str:
-        """That number, such as `normal.z`; empty where there is none."""
+        """The number in the sign of `carrier`, such as `normal.z`; empty if there is none."""
         return self.carrier.sign if self.carrier else ""
 
     @property
     def has_signed_depth(self) -> bool:
-        """Whether the depth carries a sign: of an encoding that leaves one to it, or of a number of the code."""
+        """Whether the depth has a sign: one that the encoding leaves to it, or that of a number of the code."""
         return self.encoding.sign_bits > 0 or (self.carrier is not None and self.carrier.component == "depth")
 
     @property
@@ -175,7 +175,7 @@ class Layout:
 
     @cached_property
     def words(self) -> tuple[Word, ...]:
-        """Where each component lies. Raises LayoutError where one does not fit."""
+        """The positions of all components. Raises LayoutError if one does not fit."""
         words = [word for index, target in enumerate(self.targets) for word in placed(self.name, index, target)]
         if len([word for word in words if word.sign]) > 1:
             raise LayoutError(f"layout {self.name}: only one quantity may carry a sign")
@@ -184,7 +184,7 @@ class Layout:
         return tuple(words)
 
     def _check_word(self, word: Word) -> None:
-        """Raises LayoutError where a word cannot say what it must."""
+        """Raise LayoutError if a word cannot represent what it must."""
         target, component = self.targets[word.target], word.component
         place, storage = place_of(self.name, word.target, target), target.storage
         bits = word.bits or storage.bits[word.first]
@@ -198,7 +198,7 @@ class Layout:
             self._check_normal(place, component, storage, bits)
 
     def _check_normal(self, place: str, component: str, storage: Storage, bits: int) -> None:
-        """Raises LayoutError where a number of the normal's code is not kept as the encoding needs it."""
+        """Raise LayoutError if a number of the normal's code is not stored as the encoding needs it."""
         encoding = self.encoding
         if encoding.is_packed and storage != BITS_32:
             raise LayoutError(f"{place}: {encoding.name} packs 32 bits itself, which need the format {BITS_32.name}")
@@ -211,31 +211,31 @@ class Layout:
 
     @property
     def summary(self) -> str:
-        """All that makes it what it is, in one line."""
+        """Everything that defines the layout, in one line."""
         targets = "; ".join(f"{target.format}: {target.holds}" for target in self.targets)
         depth = f", {self.depth.name} depth" if self.depth else ""
         return f"{targets}; {self.encoding.name}, {self.space} space, {self.rounding}, packed {self.packing}{depth}"
 
     @property
     def components(self) -> frozenset[str]:
-        """What it keeps; a roughness is a power too."""
+        """Components that it stores; a roughness is a power too."""
         components = frozenset(word.component for word in self.words)
         return components | {"power"} if "roughness" in components else components
 
     @property
     def metal_rough_components(self) -> frozenset[str]:
-        """What it keeps of a metal/rough surface: a metallic next to the base colour is what it reflects too."""
+        """Components of a metallic-roughness surface: with metallic, the base colour is its reflectance too."""
         return self.components | ({*channels_of(F0_COLOUR)} if "metallic" in self.components else set())
 
     @property
     def codec(self) -> Codec:
-        """The normal's encoding, the format it lies in, and how that rounds."""
+        """The normal's encoding, its format, and how that rounds."""
         home = next(word.target for word in self.words if word.component == "normal.x")
         return Codec(self.encoding, self.targets[home].storage, self.rounding)
 
     @property
     def normal_storage(self) -> str:
-        """The format that the normal lies in, and its bits where they are packed into channels of another size."""
+        """The format of the normal, and its bits if they are packed into channels of another size."""
         packed = [str(word.bits) for word in self.words if "normal" in word.component and word.bits]
         return " ".join(filter(None, (self.codec.storage.name, ":".join(packed))))
 
@@ -247,7 +247,7 @@ class Layout:
 
     @property
     def normal_scales(self) -> tuple[float, ...]:
-        """The integers that stand for 1 in the first three numbers of the normal's code; 1 where there is none."""
+        """Integers that represent 1 in the first three numbers of the normal's code; 1 for a missing number."""
         normal_words = {w.component: w for w in self.words if "normal" in w.component}
         words = [normal_words.get(f"normal.{axis}") for axis in "xyz"]
         return tuple(float(self._scale(word)) if word else 1.0 for word in words)
@@ -257,18 +257,18 @@ class Layout:
 
     @property
     def bytes_per_pixel(self) -> int:
-        """Of its targets, without native depth and stencil, at one sample."""
+        """Bytes of its targets, without native depth and stencil, at one sample."""
         return sum(sum(target.storage.bits) for target in self.targets) // 8
 
     @property
     def bytes_with_light(self) -> int | None:
-        """Of its targets and the engine's light buffer, likewise; None where that is not known."""
+        """Bytes of its targets and the engine's light buffer, likewise; None if that buffer is not known."""
         return self.bytes_per_pixel + LIGHT_BUFFERS[self.light].bytes_per_pixel if self.light else None
 
     @property
     def reflects_by(self) -> str:
-        """What says how much a surface reflects: the contract between materials and light. Layouts with different
-        ones cannot be compared byte by byte. Empty where the layout is not whole."""
+        """The attributes that define a surface's reflectance: the contract between materials and light. Layouts
+        with different contracts cannot be compared byte by byte. Empty if the layout is not whole."""
         if not self.is_whole:
             return ""
         if "metallic" in self.components:
@@ -319,13 +319,13 @@ class Layout:
 def engine_layout(
     engine: str, year: int, name: str, title: str, encoding: Encoding, targets: str, source: str, **how: Any
 ) -> Layout:
-    """A layout of an engine, in world space if not said otherwise; `targets` is as `targets_of` reads it."""
+    """Return a layout of an engine, in world space by default; `targets` is text for `targets_of`."""
     how = {"space": WORLD, "engine": engine, "year": year, **how}
     return Layout(name, title, targets_of(targets), encoding, source, **how)
 
 
 def _check_known(layout_name: str, field: str, name: str, known: Collection[str]) -> None:
-    """Raises LayoutError for a name that is not among the known ones."""
+    """Raise LayoutError for a name that is not among the known ones."""
     if name not in known:
         raise LayoutError(f"layout {layout_name}: unknown {field} {name!r}; known: {', '.join(known)}")
 

@@ -1,9 +1,9 @@
-"""What engines keep of an opaque metal/rough material, whole: every field, format and curve, from each one's source.
+"""Engines' layouts of a whole opaque metallic-roughness material: every field, format and curve, each from its source.
 
-`other` is what an engine keeps and this renderer does not use. `shading_model`, this renderer's Deferred ID, lies where
-the engine has a shading model, flags or opacity. Emissive light that a target holds otherwise than this renderer can is
-`other`, and is added to the light buffer here. Words of one integer target are written as channels of RGBA8 targets,
-which are the same bits.
+`other` is a field that an engine keeps and this renderer does not use. `shading_model`, this renderer's Deferred
+ID, is placed where the engine has a shading model, flags or opacity. Emissive light that a target stores in a way
+that this renderer does not support is `other`, and is added to the light buffer here. Words of one integer target
+are written as channels of RGBA8 targets, which are the same bits.
 """
 
 from __future__ import annotations

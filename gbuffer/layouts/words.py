@@ -1,14 +1,14 @@
-"""The words of a layout: what lies in which bits of a render target.
+"""The words of a layout: the assignment of components to the bits of a render target.
 
-A target is a format and a line of words that fill its bits in order, the most significant first. A word alone
-(`base_color.r`) takes one whole channel and is converted as the format converts. A word with a number of bits
-(`depth:16`) is an unsigned integer laid across the first channels of equal bits of a UNORM format, or of integers. `-`
+A target is a format and a line of words that fill its bits in order, the most significant first. A word without
+bits (`base_color.r`) takes one whole channel and is converted as the format converts. A word with a number of bits
+(`depth:16`) is an unsigned integer across the first channels of equal bits of a UNORM format, or of integers. `-`
 leaves a channel free.
 
-A quantity may carry a number of the normal's code that is 1 or -1 as its own sign: `roughness*normal.z`. It may lie on
-a curve of the catalogue, over a range of its own: `squared(roughness)`, `linear:0.08(f0)`. A colour without a channel
-stands for all of its channels: `square_root(base_color)`, `f0.rgb`. A light may be kept by a code of four numbers,
-which fill a texel: `rgb9e5(emissive)`. The words of engines are understood as well: see `names.py`.
+A quantity may store a number of the normal's code that is 1 or -1 as its own sign: `roughness*normal.z`. It may use
+a curve of the catalogue, over a range of its own: `squared(roughness)`, `linear:0.08(f0)`. A colour without a
+channel means all of its channels: `square_root(base_color)`, `f0.rgb`. A light may be stored as a code of four
+numbers, which fill a texel: `rgb9e5(emissive)`. The words of engines are accepted as well: see `names.py`.
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ class LayoutError(Exception):
 
 @dataclass(frozen=True)
 class Word:
-    """One component in a target. `first` counts channels if `bits` is 0, and bits otherwise. `sign` is the number of
-    the normal's code that it carries as its sign, or empty; `kept` the curve or the code that it lies in, or None;
-    `label` what an `other` is called, or empty."""
+    """One component in a target. `first` counts channels if `bits` is 0, and bits otherwise. `sign` is the number
+    of the normal's code that its sign stores, or empty; `kept` the curve or the encoding that it uses, or None;
+    `label` the name of an `other`, or empty."""
 
     component: str
     target: int
@@ -85,19 +85,19 @@ def targets_of(text: str) -> tuple[Target, ...]:
 
 
 def placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
-    """Where each component of a target lies, the free and the unused ones left out; see `all_placed`."""
+    """Return the position of each component of a target, without the free and the unused ones; see `all_placed`."""
     return (word for word in all_placed(layout_name, index, target) if word.component != OTHER)
 
 
 def all_placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
-    """Where each component of a target lies and what engines keep besides, the free ones left out.
+    """Yield each component of a target with its place, and the bits that only engines use; skip free bits.
 
     Args:
-        layout_name: for messages.
-        index: which target of the layout it is.
+        layout_name: the layout's name, for messages.
+        index: the target's index in the layout.
 
     Raises:
-        LayoutError: an unknown word, or one that does not fit.
+        LayoutError: a word is unknown or does not fit.
     """
     place, storage, bit = place_of(layout_name, index, target), target.storage, 0
     for text in spelt_out(place, target):
@@ -125,7 +125,7 @@ def all_placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
 
 
 def place_of(layout_name: str, index: int, target: Target) -> str:
-    """What messages call a target."""
+    """Return the name of a target for messages."""
     return f"layout {layout_name}, target {index} ({target.format})"
 
 
@@ -162,7 +162,7 @@ def _by_its_name(place: str, typed: str) -> tuple[str, re.Match[str] | None]:
 
 
 def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
-    """The component of a word, the sign that it carries, its bits, and the curve that it lies on."""
+    """Return a word's component, the normal's component kept as its sign, its bit count and its curve."""
     match = WORD.fullmatch(text)
     name = (match["curved"] or match["name"]) if match else ""
     name = OTHER if name.startswith(f"{OTHER}.") else name
@@ -201,7 +201,7 @@ def _ends(storage: Storage) -> list[int]:
 
 
 def least_carried(storage: Storage, bits: int) -> float:
-    """The least share of [0, 1] that a number with a sign is kept at, so that rounding leaves the sign."""
+    """Return the smallest share of [0, 1] at which a number with a sign is kept, so that rounding leaves the sign."""
     if storage.kind == "snorm":
         return 1.0 / (2 ** (bits - 1) - 1)
     if storage.kind == "unorm":
@@ -210,7 +210,7 @@ def least_carried(storage: Storage, bits: int) -> float:
 
 
 def without_normal(holds: str) -> list[str]:
-    """The words of a target, those of the normal left free so that the others keep their channels."""
+    """Return a target's words with the normal's bits free, so that the other words keep their channels."""
     words = []
     for text in holds.split():
         if text.startswith("normal."):

@@ -1,1 +1,1 @@
-"""The passes of the pipelines, each beside its shaders."""
+"""The passes of the pipelines, each next to its shaders."""

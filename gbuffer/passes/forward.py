@@ -9,12 +9,12 @@ from .forward_surfaces import ForwardSurfaces
 
 
 def forward() -> Pass:
-    """All opaque surfaces under all lights."""
+    """Return the pass that draws all opaque surfaces under all lights."""
     return Pass("forward", (SHADOW_MAP,), (FINAL, DEPTH), partial(_build, True))
 
 
 def ambient() -> Pass:
-    """All opaque surfaces under ambient light, for lights to be added to."""
+    """Return the pass that draws all opaque surfaces under ambient light, to which lights are then added."""
     return Pass("ambient", (), (FINAL, DEPTH), partial(_build, False))
 
 

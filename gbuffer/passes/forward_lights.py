@@ -1,4 +1,4 @@
-"""For each light the opaque surfaces within its reach, added to what is there."""
+"""Opaque surfaces drawn once for each light that reaches them, and added to the image."""
 
 from ..frame.canvas import AGAIN, Canvas
 from ..frame.contract import Pass, Run

@@ -4,10 +4,10 @@ from ..frame.canvas import Canvas
 
 
 class ForwardSurfaces:
-    """The scene's meshes, lit as they are drawn: by the sun or not, and by a range of lamps.
+    """The scene's meshes, lit as they are drawn: with or without the sun, and by a range of lamps.
 
     Attributes:
-        lamps: the number of the first lamp, and one more than that of the last.
+        lamps: the number of the first lamp, and the number of the last plus one.
     """
 
     def __init__(self, canvas: Canvas, by_sun: bool):

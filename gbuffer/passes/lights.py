@@ -18,7 +18,8 @@ from .light_bounds import ball, cone
 
 
 def lights(light_holds: int) -> Pass:
-    """All lights, added up in the light buffer: to nothing for TERMS, else to what the geometry pass began with."""
+    """Return the pass that adds all lights to the light buffer, which holds nothing for TERMS, else the geometry
+    pass's output."""
     begun = () if light_holds == TERMS else (LIGHT,)
     kinds = {"shading_model"} if light_holds == BY_KIND else set()
     return Pass(

@@ -33,7 +33,7 @@ def material(draws: str, filters: bool = False) -> Pass:
 
 
 def _guarded(draws: str, canvas: Canvas) -> Run:
-    """Each sample once, over the G-buffer's depth."""
+    """Return a run that shades each sample once, over the G-buffer's depth."""
     target, surfaces = canvas.target(FINAL, depth=DEPTH), canvas.geometry("geometry.vert", "material.frag")
     context, blend = canvas.device.context, ADD if draws == "special" else None
 

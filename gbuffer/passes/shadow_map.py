@@ -12,7 +12,7 @@ THIN_SHADOW_OFFSET = (8.0, 16.0)
 
 
 def shadow_map() -> Pass:
-    """What the sun reaches first."""
+    """Return the pass that draws the depth of the first surfaces that the sun reaches."""
     return Pass("shadow_map", reads=(), writes=(SHADOW_MAP,), build=_build)
 
 

@@ -19,15 +19,15 @@ FILMIC = "aces"
 
 @dataclass(frozen=True)
 class SceneMaker:
-    """A scene.
+    """A scene and the settings with which it is shown.
 
     Attributes:
-        name, title: what it is called, and what it shows.
-        make: it, at a moment.
-        frames: over how many moments a figure is averaged.
-        exposure: in stops; None to have it measured, of a scene whose light nobody has set.
-        is_metal_rough: whether its materials are metal/rough, which have no specular power.
-        sides: width and height of the picture that it is; None where it can be drawn at any size.
+        name, title: its name, and what it shows.
+        make: makes the scene for a setting, such as a moment.
+        frames: number of moments over which a figure is averaged.
+        exposure: in stops; None to measure it, for a scene whose light nobody has set.
+        is_metal_rough: whether its materials are metallic-roughness, which have no specular power.
+        sides: width and height of the image that the scene is; None if it can be drawn at any size.
     """
 
     name: str
@@ -40,7 +40,7 @@ class SceneMaker:
 
     @property
     def tone_mapping(self) -> str:
-        """How its light beyond 1 is shown, one of TONE_MAPPINGS."""
+        """The tone mapping for light above 1, one of TONE_MAPPINGS."""
         return FILMIC if self.is_metal_rough else "none"
 
     def within(self, size: tuple[int, int]) -> tuple[int, int]:
@@ -51,7 +51,7 @@ class SceneMaker:
         return max(1, round(self.sides[0] * share)), max(1, round(self.sides[1] * share))
 
     def display(self, linear: np.ndarray) -> Display:
-        """How its images are shown; an exposure that nobody has set is measured of linear light, (..., 3)."""
+        """Return how images are displayed; an exposure that nobody has set is measured on linear light, (..., 3)."""
         exposure = measured_exposure(linear.reshape(-1, 3)) if self.exposure is None else self.exposure
         return Display(exposure, self.tone_mapping)
 

@@ -18,12 +18,12 @@ class Mesh:
 
     Attributes:
         positions: (vertices, 3), float64.
-        normals: (vertices, 3), unit, pointing out, float64.
-        triangles: (triangles, 3) vertex indices; no order of corners is promised, the normals say which side is out.
-        uv: (vertices, 2), where a vertex lies on its surface; a normal map's tangents follow from it.
-        authored: (vertices, 4), tangents and their bitangents' signs, as `tangents` has them, that do not follow from
-            `uv`: a file's own, or those of the uv that its normal map lies by.
-        second_uv: (vertices, 2), another set of uv that maps may be laid by; None where there is none.
+        normals: (vertices, 3), unit, pointing outward, float64.
+        triangles: (triangles, 3), vertex indices in any winding order; the normals tell which side is out.
+        uv: (vertices, 2), the place of each vertex on its surface; a normal map's tangents follow from it.
+        authored: (vertices, 4), tangents and the signs of their bitangents, as returned by `tangents`, that do not
+            follow from `uv`: a file's own, or those of its normal map's uv set.
+        second_uv: (vertices, 2), a second set of uv that maps may use; None if there is none.
     """
 
     positions: np.ndarray
@@ -35,10 +35,10 @@ class Mesh:
 
     @cached_property
     def uploaded(self) -> tuple[np.ndarray, np.ndarray]:
-        """What a device is given, kept for further frames: vertices, float32, and triangles as `wound` has them, int32.
+        """The arrays for a device, kept for later frames: vertices, float32, and triangles from `wound`, int32.
 
-        A vertex is its position, its normal, its tangent with the bitangent's sign, and its two uv, where a mesh of one
-        set has it twice.
+        A vertex consists of its position, its normal, its tangent with the bitangent's sign, and its two uv sets. A
+        mesh with one set repeats it.
         """
         second = self.uv if self.second_uv is None else self.second_uv
         vertices = np.concatenate([self.positions, self.normals, tangents(self), self.uv, second], axis=1)
@@ -59,13 +59,13 @@ class Mesh:
 
 
 def _tangents_placed(authored: np.ndarray, linear: np.ndarray) -> np.ndarray:
-    """Tangents lie in the surface and go as positions do; a mirror turns the bitangent's sign around."""
+    """Transform tangents as positions, because they are in the surface; a mirror flips the bitangent's sign."""
     sign = authored[:, 3:] * np.sign(np.linalg.det(linear))
     return np.concatenate([_unit(authored[:, :3] @ linear), sign], axis=1)
 
 
 def joined(meshes: Sequence[Mesh]) -> Mesh:
-    """One mesh of several, without authored tangents."""
+    """Join meshes into one mesh, without authored tangents."""
     starts = np.cumsum([0, *(len(m.positions) for m in meshes[:-1])])
     return Mesh(
         np.concatenate([m.positions for m in meshes]),
@@ -105,8 +105,8 @@ def wound(mesh: Mesh) -> np.ndarray:
 
 
 def facing(mesh: Mesh) -> Mesh:
-    """What a mesh in view space shows the eye, the origin, where backs are culled: the triangles that are seen from the
-    side that their normals point to."""
+    """Return a view-space mesh without its back faces: only the triangles whose normals point to the side of the
+    eye, the origin."""
     triangles = wound(mesh)
     corners = mesh.positions[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -171,8 +171,8 @@ def tangents(mesh: Mesh, uv: np.ndarray | None = None) -> np.ndarray:
 
 
 def _gradients(mesh: Mesh, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where u and where v grows on each triangle, (triangles, 3), times its area in uv, and that area's sign,
-    (triangles, 1)."""
+    """Return the directions in which u and v grow on each triangle, (triangles, 3), times its area in uv, and that
+    area's sign, (triangles, 1)."""
     corners, uv = mesh.positions[mesh.triangles], uv[mesh.triangles]
     (e1, e2), (d1, d2) = (np.moveaxis(a[:, 1:] - a[:, :1], 1, 0) for a in (corners, uv))
     # e = du T + dv B for two edges, solved for T and B; the area in uv weighs each triangle.
@@ -182,9 +182,9 @@ def _gradients(mesh: Mesh, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
 
 
 def laid_by(mesh: Mesh, uv: np.ndarray) -> Mesh:
-    """The mesh with the tangents of a map that lies by `uv`, (vertices, 2).
+    """Return the mesh with the tangents of a map whose texture coordinates are `uv`, (vertices, 2).
 
-    Triangles on which the map is mirrored share no vertex with the others: their bitangents have the other sign.
+    Triangles on which the map is mirrored share no vertex with the others, as their bitangents have the other sign.
     """
     corners = mesh.positions[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

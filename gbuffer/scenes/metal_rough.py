@@ -15,15 +15,15 @@ DIELECTRIC = 0.04
 
 @dataclass(frozen=True, eq=False)
 class Map:
-    """A picture that is laid on a surface.
+    """A texture map on a surface.
 
     Attributes:
         texels: (height, width, 4), uint8 or uint16; or float32, which is not filtered; row 0 is at v = 0. A channel
-            that a file does not have is the largest integer. Maps of one picture share the array.
+            that a file lacks has the largest integer. Maps of the same image share the array.
         is_srgb: whether the first three channels are colours on the sRGB curve; 8 bits only.
-        wrap: what lies beyond [0, 1] along u and along v.
-        uv_set: which of a mesh's two sets of uv it is laid by, 0 or 1.
-        placed: (2, 3): the map is looked up at placed @ (u, v, 1).
+        wrap: wrap modes beyond [0, 1] along u and along v.
+        uv_set: which of a mesh's two uv sets it uses, 0 or 1.
+        placed: (2, 3), the map is sampled at placed @ (u, v, 1).
     """
 
     texels: np.ndarray
@@ -35,20 +35,20 @@ class Map:
 
 @dataclass(frozen=True, eq=False)
 class MetalRough:
-    """How a surface answers light: GGX's lobe over Lambert's.
+    """A metallic-roughness material: GGX's lobe over Lambert's.
 
     Attributes:
         base: linear base colour, each channel in [0, 1].
         metalness: 0 for a dielectric, 1 for a metal.
-        roughness: perceptual, 0 for a mirror, 1 for the dullest; alpha is its square.
-        reflectance: what a dielectric reflects of light that meets it head on.
-        emission: linear light that the surface gives off, 0 or more.
+        roughness: perceptual, 0 for a mirror, 1 for the dullest surface; alpha is its square.
+        reflectance: reflectance of a dielectric at normal incidence.
+        emission: linear light that the surface emits, 0 or more.
         alpha: below 1 the surface is transparent and drawn after all others.
-        cutoff: where the alpha of a point is lower nothing is drawn; 0 draws everything.
+        cutoff: points with a lower alpha are not drawn; 0 draws everything.
         normal_scale: factor of the normal map's x and y.
-        occlusion_strength: how much of the occlusion map is believed, 0 to 1.
+        occlusion_strength: strength of the occlusion map, 0 to 1.
         base_map: colour and alpha, times `base` and `alpha`.
-        rough_metal_map: roughness in G and metalness in B, times the two numbers.
+        rough_metal_map: roughness in G and metalness in B, times `roughness` and `metalness`.
         normal_map: the normal in the tangent frame, x along u and y along -v: RGB are x, y, z by 2 c - 1.
         occlusion_map: R is the share of ambient light that arrives.
         emission_map: times `emission`.
@@ -73,7 +73,7 @@ class MetalRough:
 
     @property
     def maps(self) -> tuple[Map | None, ...]:
-        """Its pictures, in the order of `MAPS`."""
+        """Its maps, in the order of `MAPS`."""
         return tuple(getattr(self, f"{name}_map") for name in MAPS)
 
 

@@ -1,4 +1,4 @@
-"""Pixels as a scene: what a G-buffer says of each lies on a square of its own, which covers it and faces the camera."""
+"""Pixels as a scene: each is a square with its G-buffer attributes that covers the pixel and faces the camera."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ TANGENT = (1.0, 0.0, 0.0, -1.0)
 
 @dataclass(frozen=True, eq=False)
 class PixelSurfaces:
-    """What the pixels of a picture show, float32, row 0 on top.
+    """The surfaces that the pixels of an image show, float32, row 0 at the top.
 
     Attributes:
         depth: (height, width), along the line of sight; 0 where there is no surface.
         normal: (height, width, 3), unit, in view space.
         base_color, emissive: (height, width, 3), linear.
-        roughness, metallic, f0, ao: (height, width); f0 of a dielectric.
+        roughness, metallic, f0, ao: (height, width); f0 is that of a dielectric.
     """
 
     depth: np.ndarray

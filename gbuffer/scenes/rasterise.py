@@ -42,13 +42,13 @@ class Camera:
 
 @dataclass(frozen=True)
 class Rendered:
-    """What is seen through each pixel.
+    """The surface visible at each pixel.
 
     Attributes:
         normals: interpolated and renormalised, view space, (height, width, 3), float32; zero on the background.
         positions: view-space positions, (height, width, 3), float32; (0, 0, -far) on the background.
         covered: (height, width), bool. Row 0 is the top.
-        triangle: (height, width), int64, which of the mesh's triangles it is; any number where nothing is covered.
+        triangle: (height, width), int64, index of the mesh's triangle; any number where nothing is covered.
     """
 
     normals: np.ndarray

@@ -38,13 +38,13 @@ class Pyramid:
         return levels
 
     def through(self, uv: np.ndarray, along_x: np.ndarray, along_y: np.ndarray) -> np.ndarray:
-        """The map as pixels see it, (pixels, 3).
+        """Return the map as filtered for pixels, (pixels, 3).
 
         Args:
-            uv: (pixels, 2), where each pixel's centre lies.
-            along_x, along_y: (pixels, 2), by how much that changes to the next pixel.
+            uv: (pixels, 2), texture coordinates of each pixel's centre.
+            along_x, along_y: (pixels, 2), the change of `uv` to the next pixel.
 
-        The footprint is looked up in up to PROBES places along its longer side, each between the two levels whose
+        The footprint is sampled in up to PROBES places along its longer side, each between the two levels whose
         texels are nearest to the shorter side.
         """
         size = np.array(self.levels[0].shape[1::-1])
@@ -115,11 +115,11 @@ def _halved(texels: np.ndarray) -> np.ndarray:
 def mapped_normals(
     rendered: Rendered, camera: Camera, drawn: Sequence[tuple[Mesh, Material | MetalRough]]
 ) -> np.ndarray:
-    """The normals of what is rendered with the normal maps of its materials, (height, width, 3), float32.
+    """Return the normals of a rendered image with its materials' normal maps applied, (height, width, 3), float32.
 
     Args:
-        rendered: the meshes as one, in their order.
-        drawn: meshes in view space and what they are made of.
+        rendered: the meshes drawn as one, in their order.
+        drawn: meshes in view space and their materials.
     """
     normals = rendered.normals.copy()
     ends = np.cumsum([len(mesh.triangles) for mesh, _ in drawn])
@@ -142,7 +142,7 @@ def mapped_normals(
 
 
 def coarser(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> list[tuple[Mesh, Material | MetalRough]] | None:
-    """The same with normal maps of 8 bits rounded to COARSER; None where none has 8."""
+    """Return the same pairs with 8-bit normal maps rounded to integers up to COARSER; None if no map has 8 bits."""
     coarse_texels: dict[int, np.ndarray] = {}
     pairs = []
     for mesh, material in drawn:
@@ -157,9 +157,9 @@ def coarser(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> list[tuple[M
 
 
 def cut_out(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> IsDrawn | None:
-    """What `rasterise` draws of meshes that are one: points whose alpha is not below their material's threshold.
+    """Return the test for `rasterise` on joined meshes: a point's alpha is not below its material's threshold.
 
-    Alpha is looked up without mips. None where no material cuts anything out.
+    Alpha is sampled without mips. Returns None if no material cuts anything out.
     """
     ends = np.cumsum([len(mesh.triangles) for mesh, _ in drawn])
     cut = {n: (mesh, m) for n, (mesh, m) in enumerate(drawn) if isinstance(m, MetalRough) and m.cutoff > 0}
@@ -177,7 +177,7 @@ def cut_out(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> IsDrawn | No
 
 
 def _alpha(mesh: Mesh, lying: Map | None, corners: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """A map's alpha within triangles, (points,); 1 where there is no map."""
+    """Return a map's alpha at points in triangles, (points,); 1 if there is no map."""
     if lying is None:
         return np.ones(len(corners))
     uv = np.einsum("pc,pck->pk", weights, placed_uv(mesh, lying)[corners])
@@ -185,7 +185,7 @@ def _alpha(mesh: Mesh, lying: Map | None, corners: np.ndarray, weights: np.ndarr
 
 
 def placed_uv(mesh: Mesh, lying: Map) -> np.ndarray:
-    """Where a map is looked up at a mesh's vertices, (vertices, 2); by the first set of uv where there is no second."""
+    """Return where a map is sampled at a mesh's vertices, (vertices, 2); if there is no second uv set, by the first."""
     uv = mesh.second_uv if lying.uv_set and mesh.second_uv is not None else mesh.uv
     return uv @ lying.placed[:, :2].T + lying.placed[:, 2]
 

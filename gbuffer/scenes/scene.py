@@ -1,4 +1,4 @@
-"""What a scene is: meshes in many places, materials, lights, a camera."""
+"""Scenes: meshes in many places, materials, lights and a camera."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ LIGHT_KINDS = ("point", "spot", "sun")
 
 @dataclass(frozen=True)
 class Material:
-    """How a surface answers light.
+    """A Blinn-Phong material.
 
     Attributes:
         kind: "general", or one of the special materials of the second geometry pass: "skin", "hair", "glossy".
         albedo, specular: linear colours, each channel in [0, 1].
-        power: Blinn-Phong's, 1 to 2048.
-        emissive: linear colour added as it is.
-        bump: strength of the normal map, 0 for none; 1 tilts by up to about 35 degrees.
+        power: specular power, 1 to 2048.
+        emissive: linear colour, added unchanged.
+        bump: strength of the normal map, 0 for none; 1 tilts normals by up to about 35 degrees.
         bump_repeat: how often the map repeats over a mesh's uv.
         alpha: below 1 the surface is transparent and drawn after all others.
     """
@@ -51,9 +51,9 @@ class Light:
     Attributes:
         kind: "point", "spot" or "sun".
         colour: linear, at a distance of 0.
-        position, radius: of point and spot lights; nothing is lit at `radius` and beyond.
-        direction: the way the light goes, unit; of spot lights and the sun.
-        inner, outer: half angles of a spot's cone in degrees, full light inside the one, none outside the other.
+        position, radius: for point and spot lights; nothing is lit at `radius` and beyond.
+        direction: the direction in which light travels, unit; for spot lights and the sun.
+        inner, outer: half angles of a spot's cone in degrees: full light inside `inner`, none outside `outer`.
     """
 
     kind: Literal["point", "spot", "sun"]
@@ -71,10 +71,10 @@ class ScenePart:
 
     Attributes:
         mesh: in its own space.
-        models: (instances, 4, 4), column vectors' matrices to world space: rotation, uniform scale, translation.
+        models: (instances, 4, 4), matrices to world space for column vectors: rotation, uniform scale, translation.
         materials: (instances,), indices into the scene's materials.
-        casts: whether it throws shadows; the shadow map is fitted around what does.
-        two_sided: whether its back, where the normals point away, is drawn as well.
+        casts: whether it casts shadows; the shadow map is fitted around the parts that do.
+        two_sided: whether its back, on the side away from the normals, is drawn as well.
     """
 
     mesh: Mesh
@@ -146,17 +146,17 @@ class View:
 
 @dataclass(frozen=True)
 class Water:
-    """A level sheet of water without end, wherever no ground rises above it. Only the effect of that name draws it.
+    """An endless, level sheet of water, visible where no ground rises above it. Only the effect `water` draws it.
 
     Attributes:
-        level: its height where it is still, in metres.
-        deep: what it looks like where no ground is seen through it, as an albedo.
-        extinction: of red, green and blue light that goes through it, 1 / m.
-        crests: what light looks like that comes through a crest, as an albedo.
+        level: its height when still, in metres.
+        deep: its colour where no ground is visible through it, as an albedo.
+        extinction: for red, green and blue light in the water, 1 / m.
+        crests: colour of light that comes through a crest, as an albedo.
         patch: metres after which the waves repeat along x and z.
         slope: root mean square slope of the waves.
-        heading: where the waves go, in degrees from x towards z.
-        period: seconds after which every wave is where it was.
+        heading: direction in which the waves travel, in degrees from x towards z.
+        period: seconds after which the waves repeat.
         time: seconds.
     """
 
@@ -173,15 +173,15 @@ class Water:
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything a frame is drawn from.
+    """Everything that a frame is drawn from.
 
     Attributes:
-        parts, materials, lights: what there is; at most one light is a sun. Materials are all of one model.
+        parts, materials, lights: the contents; at most one light is a sun. All materials use the same model.
         ambient: linear colour, times the albedo.
         view: the camera.
-        previous: where the camera stood a frame ago; the motion that a G-buffer may keep is between the two.
-        water: if there is any.
-        environment: what lies around, at every distance; of metal/rough scenes alone.
+        previous: the camera one frame earlier; the motion that a G-buffer may store is between the two.
+        water: None if there is none.
+        environment: the surroundings, at every distance; only for metallic-roughness scenes.
     """
 
     parts: tuple[ScenePart, ...]
@@ -194,7 +194,7 @@ class Scene:
     environment: Environment | None = None
 
     def under(self, environment: Environment) -> Scene:
-        """The scene with what lies around; a sun that was taken out of that takes the place of the scene's own."""
+        """Return the scene with these surroundings; a sun that was taken out of them replaces the scene's own."""
         if environment.sun is None:
             return replace(self, environment=environment)
         way, irradiance = environment.sun

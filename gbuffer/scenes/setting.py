@@ -1,4 +1,4 @@
-"""What a scene may be asked for, and what several of them share."""
+"""The settings of scenes, and what several scenes share."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Setting:
-    """What a procedural scene is made with.
+    """The settings with which a procedural scene is made.
 
     Attributes:
-        objects, lights: how many, where the scene has a choice.
-        seed: what its random numbers start from.
-        time: 0 to 1, where moving lights are on their way around.
+        objects, lights: their numbers, where the scene has a choice.
+        seed: seed of its random numbers.
+        time: 0 to 1, the position of moving lights on their way around.
     """
 
     objects: int = 200

@@ -42,7 +42,7 @@ ALL = "all"
 
 
 class Scale(StrEnum):
-    """How an axis places values."""
+    """The way an axis places values."""
 
     LINEAR = "linear"
     LOG = "log"
@@ -51,7 +51,7 @@ class Scale(StrEnum):
 
 
 class Kind(StrEnum):
-    """What is drawn of rows."""
+    """The kind of mark that is drawn for rows."""
 
     POINTS = "points"
     LINES = "lines"
@@ -71,9 +71,9 @@ class Axis:
     Attributes:
         title: what it measures, with its unit; empty for names that need none.
         scale: how it places values.
-        domain: the values at its ends; None for those of the rows, with a margin.
-        ticks: where it is marked, and how; empty for the renderer's choice.
-        names: of a scale of names, all in order.
+        domain: the values at its ends; None to fit the rows, with a margin.
+        ticks: positions and texts of its ticks; empty for the renderer's choice.
+        names: for a scale of names, all of them in order.
         is_shared: whether all panels have the same values at its ends.
     """
 
@@ -86,7 +86,7 @@ class Axis:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """Where a scale of counts is marked, within its domain; empty for others."""
+        """The ticks of a scale of counts, within its domain; empty for others."""
         low, high = self.domain or (0.0, 0.0)
         return tuple(count for count in COUNTS if low <= count <= high) if self.scale == Scale.COUNT else ()
 
@@ -104,7 +104,7 @@ class Axis:
         return math.copysign(math.expm1(abs(along)) * LINEAR_TO, along) if is_count else along
 
     def share(self, value: float) -> float:
-        """How far from the first end of the domain to the other a value lies: 0 to 1."""
+        """Return the position of a value between the first end of the domain and the other: 0 to 1."""
         assert self.domain
         low, high = map(self.along, self.domain)
         return (self.along(value) - low) / (high - low)
@@ -147,7 +147,7 @@ class Names:
         return self.of(DARK if is_dark else COLOURS)
 
     def of(self, looks: Sequence[Any]) -> list[Any]:
-        """What each value looks like, of the usual looks."""
+        """Return the look of each value, taken in turn from its own looks, else from the usual `looks`."""
         return [(self.looks or looks)[i % len(self.looks or looks)] for i in range(len(self.values))]
 
 
@@ -163,14 +163,14 @@ class Shades:
 
 @dataclass(frozen=True)
 class Switch:
-    """What a reader of the page chooses, in a control of all charts of a figure.
+    """A choice for the reader of the page, in a control for all charts of a figure.
 
     Attributes:
-        field: the field of rows that it chooses by.
-        label: of the control.
-        values: what can be chosen; ALL shows all rows.
-        usual: what is chosen at first. A file shows that.
-        has_panels: whether a file shows all choices instead, a panel for each.
+        field: the field of rows by which it chooses.
+        label: label of the control.
+        values: the choices; ALL shows all rows.
+        usual: the first choice, which is also the one in a file.
+        has_panels: whether a file shows all choices instead, one panel for each.
     """
 
     field: str
@@ -182,20 +182,20 @@ class Switch:
 
 @dataclass(frozen=True, kw_only=True)
 class Mark:
-    """What is drawn of rows.
+    """A mark that is drawn for rows.
 
     Attributes:
         kind: points, lines and so on.
-        rows: None for the chart's.
-        x, y, x2, y2: the fields that have its places.
-        text: of texts, labels and ends, the field that has it.
-        colour: INK, MUTED, FAINT, the field of the chart's colours, or a field that has colours.
-        shape: of points, one of SHAPES or the field of the chart's shapes.
-        dash: of lines, "solid", "dashed", "dotted" or the field of the chart's dashes.
-        by: of lines, areas and ends, the fields that tell them apart.
-        rest: a field that is true in rows that are beside the point: their points and labels are FAINT.
+        rows: None for the chart's rows.
+        x, y, x2, y2: the fields with its positions.
+        text: for texts, labels and ends, the field with the text.
+        colour: INK, MUTED, FAINT, the field of the chart's colours, or a field with colours.
+        shape: for points, one of SHAPES or the field of the chart's shapes.
+        dash: for lines, "solid", "dashed", "dotted" or the field of the chart's dashes.
+        by: for lines, areas and ends, the fields that distinguish them.
+        rest: a field that is true in less important rows: their points and labels are FAINT.
         is_stepped: whether lines and areas go across and then up or down.
-        tips: fields that a pointer is told, and what they are called.
+        tips: fields that the pointer shows, and their labels.
     """
 
     kind: Kind
@@ -272,7 +272,7 @@ class Chart:
 
     @property
     def legends(self) -> list[dict[str, Names]]:
-        """What a legend says: for each field that is told apart, by colour, shape and dash, its names."""
+        """The entries of a legend: for each field that is told apart, its names by colour, shape and dash."""
         fields: dict[str, dict[str, Names]] = {}
         for name in ("colour", "shape", "dash"):
             if isinstance(names := getattr(self, name), Names):
@@ -338,10 +338,10 @@ class Chart:
 
 
 def apart(wanted: Sequence[float], least: float) -> list[float]:
-    """The places nearest to some, in their order, no two of which are less than `least` apart.
+    """Return the places nearest to the wanted places, in their order, no two of which are less than `least` apart.
 
-    Neighbours that are too near are moved apart together (pool adjacent violators, the least squares under an order:
-    Barlow et al. 1972, Statistical Inference under Order Restrictions).
+    Neighbours that are too near are moved apart together (pool adjacent violators, the least squares under an
+    order: Barlow et al. 1972, Statistical Inference under Order Restrictions).
     """
     groups: list[tuple[float, int]] = []  # the mean of wanted less what stands before, and of how many
     for index, place in enumerate(wanted):
@@ -354,12 +354,12 @@ def apart(wanted: Sequence[float], least: float) -> list[float]:
 
 
 def lines_apart(axis: Axis, values: Sequence[float], height: float, least: float) -> list[float]:
-    """Where on a vertical axis the labels of values stand, each on a line of its own, near its value.
+    """Return the positions of the labels of values on a vertical axis, each on its own line, near its value.
 
     Args:
-        axis: one with a domain.
-        height: of the axis.
-        least: from one label's line to the next's, in the height's unit.
+        axis: an axis with a domain.
+        height: height of the axis.
+        least: smallest distance from one label's line to the next, in the height's unit.
 
     Returns:
         shares of the axis, in the order of the values.

@@ -119,7 +119,7 @@ def _panel(axes: Any, part: Chart) -> None:
 
 
 def _axis(axis: Any, limit: Any, said: Axis) -> None:
-    """Make one of matplotlib's axes what is said."""
+    """Set up one of matplotlib's axes as `said` describes it."""
     axis.set_label_text(plain(said.title), size=9)
     if said.scale == Scale.NAMES:
         axis.set_ticks(range(len(said.names)), [as_text(name) for name in said.names], size=8)
@@ -231,7 +231,7 @@ DRAWN = MappingProxyType(
 
 
 def _legend(place: Any, chart: Chart) -> None:
-    """What colours, shapes and dashes mean, those of one field together; what labels say is not said again."""
+    """Draw the legend of colours, shapes and dashes, those of one field together; none if line ends are labelled."""
     from matplotlib.lines import Line2D
 
     if any(mark.kind == Kind.ENDS for mark in chart.marks):

@@ -1,4 +1,4 @@
-"""Labels of a file's charts that lie over nothing."""
+"""Labels of a file's charts, placed so that they cover nothing."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def label_ends(axes: Any, part: Chart, texts: Sequence[Any]) -> None:
 
 
 def label_points(axes: Any, part: Chart) -> None:
-    """Write each point's name where it lies over no point, line or other name, as far as there is such a place."""
+    """Write each point's name where it covers no point, line or other name, if there is such a place."""
     marks = [mark for mark in part.marks if mark.kind == Kind.LABELS]
     taken = list(_covered(axes, part, axes.figure.dpi / 72)) if marks else []
     for mark in marks:
@@ -71,7 +71,7 @@ def _written_label(axes: Any, said: str, at: tuple[float, float], colour: str) -
 
 
 def _covered(axes: Any, part: Chart, pixels: float) -> Iterator[Any]:
-    """What points, lines and rules cover, in pixels."""
+    """Yield the boxes that points, lines and rules cover, in pixels."""
     for mark in part.marks:
         rows = part.rows_of(mark)
         if mark.kind == Kind.POINTS and rows:
@@ -109,7 +109,7 @@ def _box(x0: float, y0: float, x1: float, y1: float, padding: float) -> Any:
 
 
 def _placed(written: Any, taken: Sequence[Any], within: Any) -> Any:
-    """Moves a label to the nearest place that is free, or else to the one that is taken least; gives its box."""
+    """Move a label to the nearest free place, or else to the one with the fewest overlaps, and return its box."""
     candidates, pixels, boxes = [], written.figure.dpi / 72, np.array([box.extents for box in taken])
     # Laying text out takes a hundred times as long as moving its box.
     at_point: dict[tuple[str, str], Any] = {}
@@ -130,7 +130,7 @@ def _placed(written: Any, taken: Sequence[Any], within: Any) -> Any:
 
 
 def _overlaps(box: Any, others: np.ndarray) -> int:
-    """How many boxes, (count, 4) of left, bottom, right and top, a box meets."""
+    """Return how many boxes, (count, 4) of left, bottom, right and top, a box overlaps."""
     left, bottom, right, top = others.T
     return int(np.count_nonzero((left <= box.x1) & (box.x0 <= right) & (bottom <= box.y1) & (box.y0 <= top)))
 

@@ -1,4 +1,4 @@
-"""What matplotlib draws a chart's marks with: their places, colours, markers and strokes."""
+"""The positions, colours, markers and strokes with which matplotlib draws a chart's marks."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def plain(text: str) -> str:
 
 
 def places(part: Chart, mark: Mark, rows: Sequence[Row]) -> tuple[list[Any], list[Any]]:
-    """Where the rows of a mark are drawn, in matplotlib's own numbers."""
+    """Return the positions of a mark's rows, in matplotlib's own numbers."""
     return [_axis_position(part.x, row[mark.x]) for row in rows], [_axis_position(part.y, row[mark.y]) for row in rows]
 
 
@@ -53,7 +53,7 @@ def marker_of(part: Chart, mark: Mark, row: Row) -> str:
 
 
 def stroke_of(part: Chart, mark: Mark, row: Row) -> Any:
-    """How a line is dashed."""
+    """Return the dashes of a line."""
     names = part.named("dash", mark)
     return stroke(look(names, DASHES, row)) if names else STROKES[mark.dash]
 
@@ -64,7 +64,7 @@ def stroke(lengths: Sequence[float]) -> Any:
 
 
 def look(names: Names, looks: Sequence[Any], row: Row) -> Any:
-    """What a row's name looks like."""
+    """Return the look of a row's name."""
     return names.of(looks)[names.values.index(row[names.field])]
 
 

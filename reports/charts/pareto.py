@@ -1,4 +1,4 @@
-"""What codecs cost against what they lose: which of them no other beats."""
+"""The cost of codecs against what they lose, and which of them no other beats."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Point:
         name: its label.
         cost: in instructions.
         psnr: in dB.
-        bits: what it occupies.
+        bits: bits that it uses.
         is_starred: whether the cost counts both sides of a branch.
         codec: the encoding with its storage.
     """
@@ -34,9 +34,9 @@ class Panel:
     """Points of one kind and machine.
 
     Attributes:
-        kind: what the costs are of; panels of one kind are one panel of a chart.
-        points: one at least.
-        machine: what compiled; a chart of several has a switch between them.
+        kind: what the costs are for; panels of the same kind are one panel of a chart.
+        points: at least one.
+        machine: the machine to which the costs apply; a chart with several has a switch between them.
         is_usual: whether a switch shows it first.
     """
 
@@ -47,8 +47,8 @@ class Panel:
 
 
 def pareto_front(points: Sequence[Point]) -> list[Point]:
-    """Return the points that no other beats, by cost: another does that is in no respect worse, and better in one, of
-    decibels by more than is no difference."""
+    """Return the points that no other beats, sorted by cost. A point beats another if it is no worse in any
+    respect, and better in one; differences in decibels of up to TIE_DB do not count."""
     front = [point for point in points if not any(_beats(other, point) for other in points)]
     return sorted(front, key=lambda p: (p.cost, -p.psnr, p.bits))
 

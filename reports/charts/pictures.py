@@ -62,7 +62,7 @@ def grey(values: np.ndarray) -> np.ndarray:
 
 
 def difference(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """How far two displayed images are apart, times RENDER_GAIN, in bytes; NaN is as far as can be."""
+    """Return the difference of two displayed images, times RENDER_GAIN, in bytes; NaN in `image` counts as 1."""
     return _byte_pixels(np.abs(np.nan_to_num(image, nan=1.0) - reference) * RENDER_GAIN)
 
 
@@ -72,12 +72,12 @@ def strips(lines: Sequence[np.ndarray], height: int) -> np.ndarray:
 
 
 def depth_pictures(errors: np.ndarray, positions: np.ndarray, covered: np.ndarray) -> dict[str, np.ndarray]:
-    """How far off rebuilt positions are, in colour, over a scale of powers of ten; and the surface that they make, lit
-    by its own slope, where steps of the depth show as terraces. uint8 of shape (height, width, 3).
+    """Return the errors of rebuilt positions in colour, with a scale of powers of ten, and the surface that the
+    positions make, lit by its own slope, where depth steps show as terraces. uint8 of shape (height, width, 3).
 
     Args:
         errors: distances between true and rebuilt positions, (height, width).
-        positions: rebuilt, view space, row 0 on top, (height, width, 3).
+        positions: rebuilt, view space, row 0 at the top, (height, width, 3).
         covered: bool of shape (height, width).
     """
     with np.errstate(divide="ignore"):
@@ -101,7 +101,7 @@ def _coloured(powers: np.ndarray) -> np.ndarray:
 
 
 def _scale_of_colours(width: int, height: int = SCALE_HEIGHT) -> np.ndarray:
-    """What the colours mean: a strip of them over their powers of ten."""
+    """Return the key of the colours: a strip of them with their powers of ten."""
     low, high = DECADES
     strip = _coloured(np.broadcast_to(np.linspace(low, high, width), (height // 3, width)))
     image = Image.new("RGB", (width, height), "white")
@@ -116,7 +116,8 @@ def _scale_of_colours(width: int, height: int = SCALE_HEIGHT) -> np.ndarray:
 
 
 def _lit(positions: np.ndarray) -> np.ndarray:
-    """How a light meets the surface between neighbouring positions, 0 to 1; the last row and column as those before."""
+    """Return the shading of the surface between neighbouring positions, 0 to 1; the last row and column repeat
+    those before."""
     right, down = np.diff(positions, axis=1)[:-1], np.diff(positions, axis=0)[:, :-1]
     normals = np.cross(down, right)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -125,7 +126,7 @@ def _lit(positions: np.ndarray) -> np.ndarray:
 
 
 def made_by() -> PngInfo:
-    """What says in a PNG file who made it: such a file may be replaced."""
+    """Return the metadata that marks a PNG file as made by normalbench: such a file may be replaced."""
     info = PngInfo()
     info.add_text("Software", "normalbench")
     return info

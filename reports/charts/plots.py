@@ -16,7 +16,7 @@ class PlotError(Exception):
 
 
 def check_format(path: Path) -> None:
-    """Raises PlotError where a file's name does not end as one of FORMATS."""
+    """Raise PlotError if a file's name does not end in one of FORMATS."""
     if path.suffix.lower()[1:] not in FORMATS:
         raise PlotError(f"{path}: a plot's name ends in {', '.join('.' + name for name in FORMATS)}")
 

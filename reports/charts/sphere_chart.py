@@ -24,7 +24,7 @@ Maps = Mapping[str, np.ndarray]
 
 
 def sphere_range(maps: Maps) -> tuple[float, float]:
-    """The least and largest angle of a common logarithmic scale, degrees; what is exact lies below it."""
+    """Return the smallest and the largest angle of a common logarithmic scale, in degrees; zero error is below it."""
     angles = np.concatenate([plane[np.isfinite(plane)] for plane in maps.values()])
     largest = float(angles.max(initial=LEAST_DEG))
     above = angles[angles > largest * 1e-4]
@@ -32,7 +32,7 @@ def sphere_range(maps: Maps) -> tuple[float, float]:
 
 
 def coloured(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
-    """Angles as colours on a logarithmic scale, uint8 of shape (..., 4); transparent where there is none."""
+    """Return angles as colours on a logarithmic scale, uint8 of shape (..., 4); transparent where there is no angle."""
     import matplotlib
 
     low, high = np.log(limits)
@@ -58,13 +58,13 @@ def _marked_title(name: str, marks: Maps | None) -> str:
 
 
 def sphere_chart(maps: Maps, marks: Maps | None = None, halves: tuple[str, str] = ("", "")) -> Any:
-    """Angles over the sphere, two discs for each codec, in one scale of colours.
+    """Draw angles over the sphere, two discs for each codec, on one scale of colours.
 
     Args:
-        maps: by codec degrees of shape (2, cells, cells): the half that faces the viewer and the other, in Lambert's
-            azimuthal equal-area projection; NaN where there is none.
-        marks: by codec directions of shape (count, 3), each of which is marked.
-        halves: what stands below the two discs.
+        maps: by codec, degrees of shape (2, cells, cells): the half that faces the viewer and the other, in
+            Lambert's azimuthal equal-area projection; NaN where there is no angle.
+        marks: by codec, directions of shape (count, 3), each of which is marked.
+        halves: captions below the two discs.
     """
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm

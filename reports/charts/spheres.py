@@ -53,7 +53,7 @@ def _groups(maps: Sequence[SphereMap]) -> dict[int, list[SphereMap]]:
 
 
 def shown(maps: Sequence[SphereMap], most: int = MOST) -> list[SphereMap]:
-    """Those that a page has: of each number of bits the most exact, the second, and so on."""
+    """Return the maps that a page shows: the most accurate for each number of bits, then the second, and so on."""
     ranked = [sorted(group, key=lambda one: float(np.nanmean(one.mean_deg))) for group in _groups(maps).values()]
     turns = (sphere_map for turn in zip_longest(*ranked) for sphere_map in turn if sphere_map is not None)
     kept = {sphere_map.key.label for sphere_map in islice(turns, most)}
@@ -82,7 +82,7 @@ def _globes(bits: int, maps: Sequence[SphereMap]) -> Globes:
 
 
 def _mean(half: np.ndarray) -> float:
-    """The mean over a disc's cells, each by how much of it lies on the sphere."""
+    """Return the mean over a disc's cells, each weighted by its part on the sphere."""
     side = (np.arange(len(half) * FINE) + 0.5) / (len(half) * FINE) * 2 - 1
     inside = (side[:, None] ** 2 + side**2 <= 1).reshape(len(half), FINE, len(half), FINE).sum(axis=(1, 3))
     held = np.isfinite(half)
@@ -98,7 +98,7 @@ def _disc_pixels(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
 
 
 def colour_strip() -> str:
-    """The scale's colours from the least to the largest, as a picture."""
+    """Return the scale's colours from the smallest to the largest value, as an image."""
     steps = np.exp(np.linspace(0, 1, 256))[None]
     return small_uri(sphere_chart.coloured(steps, (1.0, math.e)))
 

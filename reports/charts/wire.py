@@ -1,7 +1,8 @@
-"""Charts as the page draws them: plain data that charts.js, beside page.css, makes SVG of with d3.
+"""Charts as the page draws them: plain data that charts.js, next to page.css, turns into SVG with d3.
 
-d3 was chosen because it is a library of parts, not of charts: the chart stays a value of ours, and the page draws
-exactly what a file shows. Packed it takes 0.1 MB. The package mpld3 carries it, which is not imported for it.
+d3 was chosen because it is a library of parts, not of charts: the chart remains a value of this program, and the
+page draws exactly what a file shows. Packed, d3 takes 0.1 MB. It is part of the package mpld3, which is not
+imported for it.
 """
 
 from __future__ import annotations
@@ -109,7 +110,7 @@ def codecs(made: Spec) -> set[str]:
 
 
 def rounded(value: Any) -> float | None:
-    """Four digits; None for what is no finite number."""
+    """Return a number with four digits; None if it is not a finite number."""
     return float(f"{value:.4g}") if is_number(value) and math.isfinite(value) else None
 
 
@@ -257,5 +258,5 @@ def _words(values: list[Any]) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """A value as a browser reads it: four digits, and nothing for what is no finite number."""
+    """Return a value as a browser reads it: floats with four digits, and None if they are not finite."""
     return rounded(value) if isinstance(value, float) else value

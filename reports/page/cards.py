@@ -1,4 +1,4 @@
-"""The block that the page's cards of codecs are built from: what is said of each, and which columns are its figures."""
+"""The block from which the page builds its cards of codecs: facts about each, and which columns are its figures."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ OWN = ("encoding", "storage", "rounding", "backend")
 
 
 def block(found: Found, names: Sequence[str]) -> str:
-    """What cards.js reads, packed; empty where the run has no codecs.
+    """Return the packed data that cards.js reads; empty if the run has no codecs.
 
     Args:
-        names: of the codecs that the page shows.
+        names: names of the codecs that the page shows.
     """
     about = found.cards
     if not about or not names:
@@ -46,7 +46,7 @@ def sections_of(found: Found) -> list[TableSection]:
 
 
 def codecs_of(found: Found, names: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """What is known of each codec: its storage, and the figures that codecs are compared by."""
+    """Return what is known of each codec: its storage, and the figures by which codecs are compared."""
     known = found.cards["codecs"]
     first = _first_rows(sections_of(found), known)
     return {name: first.get(name, {}) | known.get(name, {}) for name in names}
@@ -75,8 +75,8 @@ def is_figure(column: Column) -> bool:
 
 
 def _first_rows(sections: Sequence[TableSection], known: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """What the list shows of each codec, from a row of it or of one that stores the same numbers: of normals that it is
-    made for before others, of an answer before other tables. `of` is the set of normals."""
+    """Return what the list shows of each codec, from a row of it or of one that stores the same numbers. Rows of
+    normals for which it is made come first, then those of an answer before other tables. `of` is the normal set."""
     rows: dict[tuple[str, str], list[tuple[bool, bool, str, Row]]] = {}
     labels: dict[str, None] = {}
     for section in sections:

@@ -15,16 +15,16 @@ class CodecKey(NamedTuple):
 
     @classmethod
     def of(cls, row: Mapping[str, Any]) -> CodecKey:
-        """The codec of a row, which rounds to the nearest unless the row says otherwise."""
+        """Return the codec of a row, which rounds to nearest unless the row says otherwise."""
         return cls(str(row.get("encoding")), str(row.get("storage")), str(row.get("rounding") or "nearest"))
 
     @classmethod
     def said_by(cls, row: Mapping[str, Any]) -> CodecKey | None:
-        """The codec of a row of any table, which rounds to the nearest unless the row says otherwise; None where the
-        row does not say how it is stored."""
+        """Return the codec of a row of any table, which rounds to nearest unless the row says otherwise; None if
+        the row does not say how it is stored."""
         return cls.of(row) if row.get("encoding") and row.get("storage") else None
 
     @property
     def label(self) -> str:
-        """What a reader calls it."""
+        """The human-readable name."""
         return " ".join([self.encoding, self.storage, *([self.rounding] if self.rounding != "nearest" else [])])

@@ -87,7 +87,7 @@ def _page(found: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
 
 
 def _description(name: str, known: Mapping[str, Any], codecs: Mapping[str, Row]) -> str:
-    """What a search shows: what it is, and its figures where it takes the fewest bits."""
+    """Return the text for search results: what the encoding is, and its figures with the fewest bits."""
     says = known.get("says") or f"{name}, an encoding of normals."
     measured = [(label, row) for label, row in codecs.items() if "mean" in row]
     if not measured:
@@ -98,7 +98,7 @@ def _description(name: str, known: Mapping[str, Any], codecs: Mapping[str, Row])
 
 
 def _facts(known: Mapping[str, Any]) -> Iterator[tuple[str, Lines]]:
-    """What is known of an encoding of the catalogue."""
+    """Yield what is known of an encoding of the catalogue."""
     for what in ("encode", "decode"):
         if known.get(what):
             says, *formulas = known[what]

@@ -37,14 +37,14 @@ def block(rows: Sequence[Row], columns: Iterable[Column]) -> str:
 
 
 def _about(column: Column, name: str) -> dict[str, Any]:
-    """What is said of a column, less what is empty."""
+    """Return the facts about a column, without empty ones."""
     facts = {"says": column.definition, "better": column.better, "role": column.role.value, "unit": column.unit}
     facts |= {"hidden": not column.shown}
     return {"name": name, "title": title_of(name), **{key: value for key, value in facts.items() if value}}
 
 
 def _values(name: str, rows: Sequence[Row], digits: int | None) -> dict[str, Any]:
-    """Its values: numbers as they are, and all else as the texts that a CSV file has, each once, and their places."""
+    """Return a column's values: numbers unchanged, all else as the texts of a CSV file, each once, with indices."""
     values = [row.get(name) for row in rows]
     known = [value for value in values if value is not None]
     if known and all(type(value) is float for value in known):

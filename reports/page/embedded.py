@@ -41,7 +41,7 @@ class Gallery:
         subjects: what is shown, as pictures.js reads it.
         left_out: names of codecs whose pictures are left out, so that the page stays small.
         damaged: names of codecs whose files cannot be read.
-        files: scripts that lie beside the page, text by name.
+        files: scripts next to the page, text by name.
     """
 
     subjects: Sequence[Record] = ()
@@ -121,7 +121,7 @@ class _Packer:
         self.has_flip, self.is_full = True, False
 
     def planes(self, one: Pictured) -> Record | None:
-        """A codec's pixels, nothing of them where there is no room for any more; None where they cannot be read."""
+        """Return a codec's pixels, empty if there is no more room; None if they cannot be read."""
         pixels = one.load()
         self.has_flip = self.has_flip and isinstance(pixels, ImagePixels) and pixels.flip is not None
         if not pixels or pixels.shape != self.original.shape:
@@ -129,7 +129,7 @@ class _Packer:
         return {} if self.is_full else _planes(pixels, self.original, self.step)
 
     def size_with(self, planes: Record) -> int:
-        """What a further codec takes in the page; the first one brings the original with it."""
+        """Return the size that another codec adds to the page; the first codec brings the original with it."""
         return len(json.dumps(planes)) + (0 if self.taken else len(self.record["original"]))
 
     def take(self, one: Pictured, what: Record) -> None:
@@ -144,13 +144,13 @@ class _Packer:
 
 
 def gallery(subjects: Sequence[Subject], beside: str = "", budget: int = BUDGET) -> Gallery:
-    """The pictures of a page.
+    """Return the pictures of a page.
 
     Args:
-        subjects: what there is.
-        beside: the folder, as the page names it, of scripts that hold the pictures, all of them in full size; empty
-            to put them into the page, of each subject the first codecs that fit, all of a codec's or none.
-        budget: what they may take inside.
+        subjects: the available subjects.
+        beside: the folder, as the page names it, of scripts that hold all pictures in full size. If it is empty,
+            the page holds them: for each subject the first codecs that fit, all pictures of a codec or none.
+        budget: maximum size of the pictures inside the page.
     """
     originals = [(subject, subject.original()) for subject in subjects]
     packers = [_Packer(subject, image, bool(beside)) for subject, image in originals if image is not None]
@@ -176,7 +176,7 @@ def gallery(subjects: Sequence[Subject], beside: str = "", budget: int = BUDGET)
 
 
 def _packed(pool: ThreadPoolExecutor, packers: Sequence[_Packer]) -> Iterator[tuple[_Packer, Pictured, Record | None]]:
-    """Each codec's pixels, a few at a time: which subjects are full is known before the next ones are packed."""
+    """Yield each codec's pixels, a few at a time, so that full subjects are known before the next are packed."""
     wanted = list(_in_turn(packers))
     for start in range(0, len(wanted), WORKERS):
         few = wanted[start : start + WORKERS]
@@ -185,7 +185,7 @@ def _packed(pool: ThreadPoolExecutor, packers: Sequence[_Packer]) -> Iterator[tu
 
 
 def _in_turn(packers: Sequence[_Packer]) -> Iterator[tuple[_Packer, Pictured]]:
-    """What comes before all others; then the first codec of each subject by rank, the second of each, and so on."""
+    """Yield what comes before all others; then by rank the first codec of each subject, the second, and so on."""
     ranked = [
         [(packer, codec) for codec in sorted(packer.subject.codecs, key=lambda one: one.rank)] for packer in packers
     ]

@@ -10,7 +10,7 @@ from .page import base, template
 
 
 class Head(NamedTuple):
-    """What stands above a column."""
+    """The heading of a column."""
 
     title: str
     numeric: bool

@@ -1,4 +1,4 @@
-"""What a page is made of: everything that a run left, gathered by whoever can read runs."""
+"""The data of a page: everything that a run left, gathered by any caller that can read runs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Front:
 
 @dataclass(frozen=True)
 class Listing:
-    """A kernel's disassembly, and the GLSL of its encoding; empty where there is none."""
+    """A kernel's disassembly, and its encoding's GLSL, which is empty if there is none."""
 
     text: str
     source: str = ""
@@ -48,23 +48,23 @@ class Found:
     """A run.
 
     Attributes:
-        name: the folder's.
-        facts: what run.json says.
-        tables: rows by table, as they were kept.
+        name: the folder's name.
+        facts: the contents of run.json.
+        tables: rows by table, as they were stored.
         sections: the tables as the page shows them, in its order.
-        steps: how many have their rows.
-        finished: whether all that was asked for has.
-        encodings: the names of encodings of normals: the catalogue's, and those of users' files.
-        subjects: what codecs were tried on, and their pixels.
+        steps: number of steps that have their rows.
+        finished: whether everything that was asked for has its rows.
+        encodings: names of encodings of normals: the catalogue's, and those in users' files.
+        subjects: what codecs were tested on, and their pixels.
         maps: errors over the sphere.
-        agreement: how far the figures of two back ends are apart, in a sentence; empty where no codec has both.
+        agreement: how far the figures of the two backends differ, in a sentence; empty if no codec has both.
         fronts: cost against error.
         listings: disassemblies, by name.
-        choices: the questions that a reader may ask otherwise; empty where a run answers none.
-        cards: what is known of codecs and encodings; empty without any.
-        code: the code of codecs that the run keeps; empty where it keeps none.
-        live: what its laboratory runs; None where the run keeps none.
-        remarks: what does not fit, in sentences.
+        choices: the questions that a reader may ask differently; empty if a run answers none.
+        cards: what is known of codecs and encodings; empty if there are none.
+        code: source code of codecs that the run stores; empty if it stores none.
+        live: what its laboratory runs; None if the run has none.
+        remarks: problems with the run, in sentences.
     """
 
     name: str
@@ -86,7 +86,7 @@ class Found:
     remarks: Sequence[str] = ()
 
     def with_remarks(self, more: Sequence[str]) -> Found:
-        """The same run with more to say of it."""
+        """Return the same run with more remarks."""
         return replace(self, remarks=[*self.remarks, *more])
 
     @property
@@ -107,7 +107,7 @@ class Found:
 
     @property
     def request(self) -> Row:
-        """What was asked for, by option."""
+        """The request of the run, by option."""
         request = self.facts.get("request")
         return request if isinstance(request, dict) else {}
 

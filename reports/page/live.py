@@ -43,17 +43,17 @@ SCENES = 200_000
 
 @dataclass(frozen=True)
 class Live:
-    """What the laboratory is given of a run.
+    """The data of a run for the laboratory.
 
     Attributes:
         codecs: as `bench.measures.live.programs` makes them.
         storages: the functions of storages, in the same form, for an encoder that the reader types.
-        left_out: by codec, why a browser cannot be given it.
-        scenes: sets of normals that are images: names, pixels as uint8 of shape (height, width, 4), slopes of the rays
-            through the right and the upper edge.
+        left_out: why a browser cannot be given a codec, by codec.
+        scenes: sets of normals that are images: names, pixels as uint8 of shape (height, width, 4), slopes of the
+            rays through the right and the upper edge.
         unpacking: how pixels become normals.
         helpers: GLSL ES of the functions that users' encoders may call.
-        checks: what browsers need to make the normals that `checks` of each codec are of.
+        checks: what browsers need to make the normals for the `checks` of each codec.
     """
 
     codecs: Sequence[Record]
@@ -65,7 +65,7 @@ class Live:
     checks: Mapping[str, Any] = field(default_factory=dict)
 
     def data(self, about: Mapping[str, str]) -> str:
-        """All of it as text; `about` says what the page is of, by name."""
+        """Return all of it as text; `about` describes the page, by name."""
         content = {
             **about,
             "codecs": [_named(codec) for codec in self.codecs],

@@ -1,4 +1,4 @@
-"""A run's report for a pull request: the answer, or the tables in short where there is none, without a link."""
+"""A run's report for a pull request: the answer, or shortened tables if there is none, without a link."""
 
 from __future__ import annotations
 

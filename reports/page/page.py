@@ -90,13 +90,13 @@ class PageTable:
 
 
 def definitions(shown: Iterable[PageTable]) -> list[tuple[str, str]]:
-    """What the columns of tables say, each once: titles and definitions."""
+    """Return the titles and definitions of the columns of tables, each once."""
     heads = (head for page_table in shown for head in page_table.columns)
     return list(dict.fromkeys((head.title, head.column.definition) for head in heads if head.column.definition))
 
 
 def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> PageTable:
-    """Rows as a table to show; columns that say the same in each row are said once."""
+    """Return rows as a table to show; columns with the same value in each row are stated once."""
     return sheet_table(Sheet(title, rows), lambda name: Column(name, says(name)))
 
 
@@ -124,8 +124,8 @@ def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Contai
 
 
 def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator[tuple[int, str]]:
-    """The places of a column's best figures, of those of as many bits and of one operation; none where all are the
-    same, or where several are infinite: then the column cannot tell which is the best."""
+    """Yield the places of a column's best figures, among those with the same bits and operation; none if all are
+    the same or several are infinite, because the column then cannot tell which is the best."""
     groups: dict[Any, list[int]] = {}
     for index, row in enumerate(rows):
         if is_number(row[column.name]):
@@ -156,7 +156,7 @@ def _codec(row: Mapping[str, Any], encodings: Container[str]) -> str:
 
 
 def remarks(found: Found) -> list[str]:
-    """What a reader must know of the run before its figures."""
+    """Return what a reader must know of the run before its figures."""
     sentences = list(found.remarks)
     left_out = found.facts.get("left_out")
     sentences += [f"Left out of this run: {line}." for line in left_out] if isinstance(left_out, list) else []
@@ -199,8 +199,8 @@ class Shown:
 
 @dataclass(frozen=True)
 class Home:
-    """What the page says where it is the first page of a site: what a search shows of it, and links to the others, each
-    a path and a title."""
+    """The text of the page as the first page of a site: its description in search results, and links to the other
+    pages, each a path and a title."""
 
     title: str
     description: str
@@ -208,7 +208,7 @@ class Home:
 
 
 def views(found: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
-    """What a reader may look at, in the order of the page."""
+    """Return the views that a reader may choose, in the order of the page."""
     parts: dict[View, list[tuple[str, str]]] = {view: [] for view in View}
     for section in found.sections:
         mine = parts[section.about.view]
@@ -224,9 +224,9 @@ def views(found: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
 def beginning(
     parts: Sequence[PageSection], names: Sequence[str], own: Sequence[str] = (), is_laboratory: bool = False
 ) -> dict[str, Any]:
-    """What the script begins with: every codec; which are A and B until a reader says, the answer and what stands next
-    to it, or a user's own and the answer; and the view: the laboratory if the page is one, else that of what was
-    measured first, answers before all."""
+    """Return the state with which the script begins: every codec; A and B until a reader chooses others; and the
+    view. A and B are the answer and its neighbour in the table, or a user's own codec and the answer. The view is
+    the laboratory if the page is one, else that of the first section measured, answers before all others."""
     measured = sorted((part for part in parts if part.is_there), key=lambda part: not part.section.about.leads)
     leading = [part for part in measured if part.section.about.leads]
     answers = (table for part in leading for table in part.tables if table.said)
@@ -287,15 +287,15 @@ def html(
     files: Container[str] = (),
     home: Home | None = None,
 ) -> str:
-    """The page.
+    """Return the page.
 
     Args:
         found: the run.
         gallery: its pictures.
-        specs: its charts, by the names of their drawings; one that is missing is not shown.
-        library_script: what draws them.
-        files: names of those that lie beside the page.
-        home: what it says as the first page of a site, where it begins with the laboratory; None for a page alone.
+        specs: its charts, by the names of their drawings; a chart that is missing is not shown.
+        library_script: the script that draws them.
+        files: names of the files next to the page.
+        home: its text as the first page of a site, which begins with the laboratory; None for a page alone.
     """
     laboratory = live.script() if found.live else ""
     names = codecs(found, specs)
@@ -348,12 +348,12 @@ def _listings(found: Found) -> str:
 
 
 def base(names: Sequence[str], unpacked: Sequence[str] = (), is_beside: bool = False) -> dict[str, Any]:
-    """What base.html.j2 needs of every page.
+    """Return what base.html.j2 needs for every page.
 
     Args:
-        names: its scripts, files of the folder web.
-        unpacked: texts of scripts that it unpacks later.
-        is_beside: whether pictures lie beside it.
+        names: the page's scripts, files of the folder web.
+        unpacked: texts of scripts that the page unpacks later.
+        is_beside: whether pictures are stored next to the page.
     """
     scripts = [(WEB / name).read_text(encoding="utf-8") for name in names]
     style = (WEB / "page.css").read_text(encoding="utf-8")
@@ -361,7 +361,7 @@ def base(names: Sequence[str], unpacked: Sequence[str] = (), is_beside: bool = F
 
 
 def about(found: Found) -> dict[str, str]:
-    """What the laboratory says of the page that it is in."""
+    """Return what the laboratory says about the page that contains it."""
     return {"run": found.name, "sources": found.sources, "program": str(found.machine.get("normalbench", ""))}
 
 
@@ -371,7 +371,7 @@ def data_block(data: Any) -> str:
 
 
 def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
-    """What the page may execute: its own scripts, and those of pictures beside it."""
+    """Return the sources that the page may execute: its own scripts, and those of pictures next to it."""
     digests = (base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii") for script in scripts)
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 

@@ -36,12 +36,12 @@ def angle_bytes(degrees: np.ndarray, covered: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class NormalPixels:
-    """What a codec makes of an image of normals.
+    """An image of normals after a codec.
 
     Attributes:
         angle: `angle_bytes` of shape (height, width).
         codes: the stored bits, unsigned integers of shape (height, width, components).
-        bits: of each component.
+        bits: bits of each component.
         decoded: [-1, 1] as [0, 255], black on the background, uint8 of shape (height, width, 3).
     """
 
@@ -75,10 +75,10 @@ class Pictured:
 
     Attributes:
         key: which codec.
-        label: what a reader calls it.
-        codec: the codec as tables and charts name it; empty for what is none.
-        load: gives its pixels; None where its files are damaged.
-        rank: those of a lower rank are shown where there is no room for all.
+        label: human-readable name.
+        codec: the codec's name in tables and charts; empty if it is not a codec.
+        load: returns its pixels; None if its files are damaged.
+        rank: those of a lower rank are shown if there is not room for all.
     """
 
     key: CodecKey
@@ -90,15 +90,15 @@ class Pictured:
 
 @dataclass(frozen=True)
 class Subject:
-    """What several codecs were tried on.
+    """A subject on which several codecs were tested.
 
     Attributes:
-        title: what a reader calls it.
+        title: human-readable name.
         of: "normals" or "image".
-        original: the exact normals, or the image in 32-bit floats: uint8 of shape (height, width, 3); None where its
-            file is damaged.
-        codecs: whose pixels there are, the best of the fewest bits first.
-        first: how many of these a page has room for before it takes any of other subjects.
+        original: returns the exact normals, or the image in 32-bit floats: uint8 of shape (height, width, 3); None
+            if its file is damaged.
+        codecs: codecs that have pixels, the best of the fewest bits first.
+        first: number of these for which a page makes room before it takes any of other subjects.
     """
 
     title: str

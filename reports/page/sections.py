@@ -18,12 +18,12 @@ class TableSection:
     """A table's part of a page.
 
     Attributes:
-        key: its anchor, and the table of the run.
+        key: its anchor, and the name of the run's table.
         about: what the page says of the table, whatever was measured.
-        columns: those of its rows.
-        also: those that only its summary has.
+        columns: columns of its rows.
+        also: columns that only its summary has.
         rows: every row.
-        summary: what people look at first.
+        summary: the sheets that people look at first.
         drawings: its charts.
         asked: whether the run was asked for it.
         films: its animations, each a sentence and a data URI.
@@ -40,13 +40,13 @@ class TableSection:
     films: Sequence[tuple[str, str]] = ()
 
     def column(self, name: str) -> Column:
-        """What rows or sheets call so; without a definition where nothing is known of it."""
+        """Return the column for a name in rows or sheets; without a definition if nothing is known of it."""
         known = column_called(name, (*self.columns, *self.also))
         return replace(known, name=name) if known else undefined(name)
 
     @property
     def sheets(self) -> Iterator[Sheet]:
-        """Its tables that people look at first."""
+        """The tables that people look at first."""
         return (replace(sheet, rows=whole(sheet.rows)) for sheet in self.summary if sheet.rows)
 
     @property
@@ -55,7 +55,7 @@ class TableSection:
         return block(whole(self.rows), self.columns)
 
     def measured(self) -> list[tuple[str, str]]:
-        """What the answer says of its conditions: what these columns say in its rows."""
+        """Return the conditions of the answer: the values of the columns SAID in its rows."""
         conditions = [(name, dict.fromkeys(str(row[name]) for row in self.rows if row.get(name))) for name in SAID]
         return [(name, ", ".join(values)) for name, values in conditions if values]
 

@@ -1,4 +1,4 @@
-"""The pages of a site besides the laboratory: lists that are searched, devices, encodings, and what a run says without
+"""The pages of a site other than the laboratory: searchable lists, devices, encodings, and a run's results without
 scripts. Nothing here knows how anything is measured."""
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ LONGEST = 60
 
 @dataclass(frozen=True)
 class Site:
-    """What its pages lead to.
+    """The links of a site's pages.
 
     Attributes:
-        pages: titles by path; every page leads to these.
-        devices: the path of the list of devices.
-        laboratory: the path of the page that measures a device; empty where the site has none.
+        pages: titles by path; every page links to these.
+        devices: path of the list of devices.
+        laboratory: path of the page that measures a device; empty if the site has none.
     """
 
     pages: Mapping[str, str]
@@ -32,7 +32,7 @@ class Site:
     laboratory: str = ""
 
     def leads(self, path: str) -> dict[str, Any]:
-        """What base pages need to lead from a path to the others."""
+        """Return what base pages need to link from a path to the others."""
         links = [(linked(to, path), title, to == path) for to, title in self.pages.items()]
         about = {"links": links if len(links) > 1 else [link for link in links if not link[2]]}
         return about | {"laboratory": linked(self.laboratory, path) if self.laboratory else ""}
@@ -61,7 +61,7 @@ def plain_names(names: Iterable[str], other: str) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class Answer:
-    """A question about a device, answered: sentences, the first of which is the answer, and a table."""
+    """The answer to a question about a device: sentences, the first of which is the answer, and a table."""
 
     said: Sequence[str]
     table: PageTable
@@ -75,8 +75,8 @@ class DeviceSection:
         name: the device and its browser.
         key: the section's anchor.
         said: how it agrees with the run, in a sentence.
-        about: what the browser says of it, by name.
-        answers: which code to take.
+        about: what the browser reports about it, by name.
+        answers: which encoding to take.
         tables: every codec, and the facts.
     """
 
@@ -90,8 +90,7 @@ class DeviceSection:
 
 @dataclass(frozen=True)
 class Searched:
-    """A table of the index: for each row words that it is found by besides its cells, and where it leads to, empty for
-    nowhere."""
+    """A searchable table of the index: for each row, further words that find it and its link, empty for none."""
 
     key: str
     title: str
@@ -127,13 +126,13 @@ class Headed:
 
 @dataclass(frozen=True)
 class Index(Headed):
-    """A list that is searched.
+    """A searchable list.
 
     Attributes:
         said: what all rows together show, in sentences.
-        label: of the field to search by.
+        label: label of the search field.
         searched: its tables.
-        devices: what each of its tables' devices does.
+        devices: sections on the devices in its tables.
         measures: whether it says how a reader's device is measured and added.
     """
 
@@ -146,7 +145,7 @@ class Index(Headed):
 
 @dataclass(frozen=True)
 class ViewPage(Headed):
-    """What a view of the run's page says, without scripts.
+    """The text of a view of the run's page, without scripts.
 
     Attributes:
         said: the answer in a sentence; empty for none.
@@ -165,7 +164,7 @@ def index_html(index: Index, site: Site) -> str:
 
 
 def view_html(shown: ViewPage, site: Site) -> str:
-    """What a view says."""
+    """Return the page with the text of a view."""
     view = linked(shown.view[0], shown.path)
     return template("view.html.j2").render(shown=shown, view=view, choices=None, **_around(shown.path, site))
 

@@ -1,4 +1,4 @@
-"""What is said of rows of several sections: domains in words, and how far back ends agree."""
+"""Wording for rows of several sections: domains in words, and how far backends agree."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def counted_set(row: Row, rows: Sequence[Row]) -> str:
 
 
 def agreement(quality: Sequence[Row]) -> str:
-    """How far the figures of the two back ends are apart; empty where no codec has both.
+    """Return how far the figures of the two backends differ, in a sentence; empty if no codec has both.
 
     Args:
         quality: rows of the quality table.
@@ -57,6 +57,6 @@ def agreement(quality: Sequence[Row]) -> str:
 
 
 def _apart(by_backend: Mapping[Any, float]) -> float:
-    """The distance of the largest and the least of one codec's figures; 0 where both are infinite."""
+    """Return the difference of the largest and the smallest of one codec's figures; 0 if both are infinite."""
     most, least = max(by_backend.values()), min(by_backend.values())
     return 0.0 if most == least else most - least

@@ -26,12 +26,12 @@ HOW = ("device", "rounded_by", "clock")
 
 
 def entry(table: Table, asked: Mapping[str, Any], row: Row, listing: str = "") -> Entry:
-    """A row with what it was asked for by, as JSON has it: names as the row has them, numbers as they were asked.
+    """Return a row and its request, as JSON has them: names as in the row, numbers as they were requested.
 
-    Times, and what only a program reads, are left out.
+    Times, and columns that only programs read, are left out.
 
     Args:
-        listing: the instructions that its figures were counted in; empty where there are none.
+        listing: the instructions in which its figures were counted; empty if there are none.
     """
     known = fields_of(table.options)
     key = {name: row.get(name, value) if known[name].kind is str else value for name, value in asked.items()}
@@ -67,10 +67,10 @@ def _text(one: Entry) -> str:
 
 
 def write_baseline(path: Path, dumped: Sequence[str]) -> None:
-    """What was measured, as `dumped`, in place of what the file says of it; its other entries stay.
+    """Write the measured rows, given as `dumped`, in place of their entries in the file; its other entries stay.
 
     Raises:
-        UsageError: the file holds something else, two rows have one key, or it cannot be written.
+        UsageError: the file holds something else or cannot be written, or two rows have the same key.
     """
     kept = Baseline(path, True)
     for record in (new_entry for text in dumped for new_entry in json.loads(text)):
@@ -85,7 +85,7 @@ class NoRowError(AssertionError):
     """A baseline has no such row.
 
     Attributes:
-        said: what the row is called.
+        said: the name of the row.
     """
 
     def __init__(self, message: str, said: str = ""):
@@ -115,11 +115,11 @@ class Baseline:
             raise UsageError(f"two rows of a baseline are called {_name(one)}; rename one")
 
     def differences(self, one: Entry, tolerances: Mapping[str, float]) -> list[str]:
-        """What a row and its entry say differently, a line for each column.
+        """Return the differences between a row and its entry, a line for each column.
 
         Raises:
             NoRowError: the file has no such row.
-            UsageError: it is not a baseline.
+            UsageError: the file is not a baseline.
         """
         if self._read is None:
             self._read = read_baseline(self.path) if self.path.exists() else {}
@@ -137,7 +137,7 @@ class Baseline:
         return lines
 
     def _other_compilers(self, one: Entry) -> str:
-        """By which other compilers the file has a row; empty for none."""
+        """Return the other compilers for which the file has a row; empty if there are none."""
         table = TABLES.get(one["table"])
         names = table.compilers if table else ()
         alike = [e["key"] for e in (self._read or {}).values() if _less(e, names) == _less(one, names)]
@@ -148,7 +148,7 @@ class Baseline:
         return f" by {mine}; it has one by {' and by '.join(dict.fromkeys(others))}"
 
     def dumped(self) -> str:
-        """What was recorded, as text; none for nothing."""
+        """Return the recorded rows as text; empty if there are none."""
         return json.dumps(list(self.recorded.values())) if self.recorded else ""
 
 
@@ -163,7 +163,7 @@ def _name(one: Entry) -> str:
 
 
 def changes(before: Row, after: Row, tolerances: Mapping[str, float]) -> Iterator[str]:
-    """A line for each column that differs by more than is tolerated, which is nothing where nothing is said."""
+    """Yield a line for each column that differs by more than its tolerance, which is 0 if none is given."""
     for column in dict.fromkeys([*before, *after]):
         previous, other = before.get(column), after.get(column)
         if column not in HOW and not same(previous, other) and not _near(previous, other, tolerances.get(column, 0.0)):
@@ -176,7 +176,7 @@ def _near(one: Any, other: Any, tolerance: float) -> bool:
 
 
 def checked_tolerances(tolerances: Mapping[str, Any], columns: Sequence[str]) -> dict[str, float]:
-    """Raises UsageError for a column that there is not, or what is not a tolerance."""
+    """Return the tolerances. Raises UsageError for an unknown column or a value that is not a tolerance."""
     for column, value in tolerances.items():
         if column not in columns:
             raise UsageError(f"no column {column!r}; there are {', '.join(columns)}")

@@ -1,4 +1,4 @@
-"""Which gates read a file: a hook before a commit checks those alone."""
+"""Gates that read a file: a pre-commit hook checks only those."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _read_by(gate: Gate, path: Path) -> Iterator[Path]:
 
 
 def _with_includes(word: str) -> Iterator[Path]:
-    """The files of a shader, and the Python next to it. What is wrong with one is said when it is measured."""
+    """Yield the files of a shader and the Python files next to them. Errors are reported when it is measured."""
     with suppress(UsageError):
         for file in Source(UserFile(word)).files:
             yield from (file, file.with_suffix(".py"))

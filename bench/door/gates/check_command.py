@@ -1,4 +1,4 @@
-"""What `check` does."""
+"""The `check` command."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def check_command(
 
 
 def _check_baselines(path: Path, gates: Sequence[Gate], run: Path | None) -> None:
-    """Raises UsageError where there is no baseline to write, or it cannot be written."""
+    """Raise UsageError if there is no baseline to write, or it cannot be written."""
     if run:
         raise UsageError("--write-baseline writes what is measured now; leave out --run")
     named = dict.fromkeys(gate.baseline for gate in gates if gate.baseline)

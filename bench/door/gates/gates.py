@@ -31,12 +31,12 @@ class Gate:
     """Rows of a table, and what they must keep.
 
     Attributes:
-        table: whose rows.
-        options: what is measured, by the table's options; of a run's rows, which, by the values of their columns.
+        table: the table of the rows.
+        options: the table's options to measure with; for rows of a run, the column values that select them.
         limits: one for each column.
         place: file and number, for messages.
-        folder: the file's, where the files that options name are looked for.
-        baseline: the file that every row is compared with, beside the limits or without any; None for none.
+        folder: the folder of the gates file, where the files that options name are looked for.
+        baseline: the file that every row is compared with, with or without limits; None for none.
     """
 
     table: Table
@@ -70,10 +70,11 @@ class Gate:
 
 
 def read_gates(path: Path) -> list[Gate]:
-    """The gates of a TOML file: `[[gate]]` tables with options and, for columns, "at least 47.5" or "at most 0.95".
+    """Return the gates of a TOML file: `[[gate]]` tables with options and, for columns, limits such as "at least 47.5"
+    or "at most 0.95".
 
     Raises:
-        UsageError: it cannot be read, or says something else; one line with the place.
+        UsageError: the file cannot be read or holds something else; one line with the place.
     """
     try:
         data = file_toml(path)
@@ -169,7 +170,7 @@ def _finished(done: Done, gate: Gate, run: Path) -> list[Row]:
 
 
 def _check_was_measured(gate: Gate, limit: Limit, rows: list[Row], run: Path) -> None:
-    """Raises UsageError where a run lacks a figure because it was measured without the option that it needs."""
+    """Raise UsageError if a run lacks a figure because it was measured without the option that the figure needs."""
     option = limit.option_of(gate.table)
     if option and all(row.get(limit.column) is None and not row.get("skipped") for row in rows):
         flag = fields_of(gate.table.options)[option].option.flag
@@ -184,16 +185,16 @@ def _is(value: Any, asked: Any) -> bool:
 def checked(
     gates: list[Gate], run: Path | None, tick: Callable[[str], None], baselines: Baselines | None = None
 ) -> Iterator[Row]:
-    """A row for each limit on each row of each gate, and for its baseline: the figure, the limit, whether it holds, the
-    worst normal, and what the baseline says differently.
+    """Yield a row for each limit on each row of each gate, and for its baseline: the figure, the limit, whether it
+    holds, the worst normal, and the differences from the baseline.
 
     Args:
         run: a results folder to take the figures from; None to measure them.
-        baselines: those that rows are compared with, or written into.
+        baselines: the baselines that rows are compared with, or written to.
 
     Raises:
-        UsageError: a table, option or column that there is not.
-        MissingError: a table needs a GL device and there is none.
+        UsageError: a table, an option or a column is unknown.
+        MissingError: a table needs an OpenGL device and this machine has none.
     """
     measure = _rows_of_run(run) if run else measured_for
     baselines = baselines or Baselines(False)
@@ -248,7 +249,7 @@ def _held(gate: Gate, found: Found, limit: Limit) -> Row:
 
 
 def _compared(gate: Gate, found: Found, baseline: Baseline) -> Row:
-    """One row: whether the baseline says the same, and where not, what."""
+    """Return one row: whether the baseline agrees, and if not, the differences."""
     record = entry(gate.table, found.asked, found.row, found.listing)
     if baseline.writes:
         baseline.record(record)

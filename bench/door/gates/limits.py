@@ -1,4 +1,4 @@
-"""What a figure must keep. Imports nothing heavy."""
+"""Limits that figures must keep. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)(e[-+]?\d+)?|inf", re.IGNORECASE |
 
 @dataclass(frozen=True)
 class Limit:
-    """The least or the most that a column may be."""
+    """The smallest or the largest value that a column may have."""
 
     column: str
     side: str
@@ -35,7 +35,7 @@ class Limit:
         return f"{self.side} {self.value:.9g}"
 
     def check(self, table: Table) -> None:
-        """Raises UsageError where the table has no such column, or it holds no figure."""
+        """Raise UsageError if the table has no such column, or the column does not hold figures."""
         column = table.column(self.column)
         if column is None:
             figures = ", ".join(c.name for c in table.of_role(Role.FIGURE, Role.TIME))
@@ -51,7 +51,7 @@ class Limit:
         return column.option if column and column.option in fields_of(table.options) else ""
 
     def broken_by(self, table: Table, row: Mapping[str, Any]) -> str | None:
-        """What is to be said of a row that does not keep it; None where it does.
+        """Return the message for a row that breaks the limit; None if the row keeps it.
 
         Raises:
             UsageError: the row has no such column.
@@ -71,17 +71,17 @@ ALL_NUMBERS = Limit("invalid", "at most", 0.0)
 
 
 def limits_on(row: Mapping[str, Any], limits: Iterable[Limit]) -> list[Limit]:
-    """The limits on a row, and that all results are numbers where some are not and no limit is said for them."""
+    """Return the limits on a row. If some results are not numbers and no limit covers that, a limit for it is added."""
     limits = list(limits)
     is_said = any(bound.column == ALL_NUMBERS.column for bound in limits)
     return [*limits, ALL_NUMBERS] if limits and not is_said and row.get(ALL_NUMBERS.column) else limits
 
 
 def limit(column: str, text: Any) -> Limit | None:
-    """The limit that "at least 47.5" or "at most 0.95" is; None for what is none.
+    """Return the limit for text such as "at least 47.5" or "at most 0.95"; None for anything else.
 
     Raises:
-        UsageError: it begins like one, but no number follows.
+        UsageError: the text begins like a limit, but no number follows.
     """
     match = LIMIT.fullmatch(text.strip()) if isinstance(text, str) else None
     if not match:
@@ -96,7 +96,7 @@ def limit(column: str, text: Any) -> Limit | None:
 
 
 def not_a_limit(column: str, value: Any) -> UsageError:
-    """What is wrong with a value that stands where a limit belongs."""
+    """Return the error for a value that is not a limit."""
     return UsageError(f'{column}: {value!r} is not a limit; say "at least 47.5" or "at most 0.95"')
 
 

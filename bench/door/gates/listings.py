@@ -1,4 +1,4 @@
-"""What two listings of instructions say differently, line by line."""
+"""Differences between two listings of instructions, line by line."""
 
 from __future__ import annotations
 

@@ -43,12 +43,12 @@ class Found:
 
     @property
     def listing(self) -> str:
-        """The instructions that it was counted in; empty where there are none."""
+        """The instructions in which the row was counted; empty if there are none."""
         return self.list_it() or ""
 
     @cached_property
     def worst(self) -> Worst | None:
-        """That normal; None where there is none."""
+        """The normal with the largest error; None if unknown."""
         return self.find()
 
 
@@ -87,10 +87,10 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
 
 
 def named_rows(table: Table, given: Mapping[str, Any], rows: Sequence[Row]) -> list[Row]:
-    """The rows that options name by the values of key columns, where a table gives others beside them.
+    """Return the rows that options name by the values of key columns, if a table returns others as well.
 
-    `cost` measures the packing of a storage beside an encoding, and `depth` the whole range beside a distance. Where no
-    row has every value that is named, those that have no other value in its place.
+    `cost` measures the packing of a storage next to an encoding, and `depth` the whole range next to a distance. If
+    no row has every value that is named, the rows that have no other value in its place are returned.
     """
     keys = {column.name for column in table.of_role(Role.KEY)}
     words = {name: words for name, value in given.items() if name in keys and (words := _words(value))}
@@ -126,7 +126,7 @@ def located(table: Table, options: Mapping[str, Any], folder: Path) -> dict[str,
 
 
 def _root_in(folder: Path, word: str) -> str:
-    """FOLDER or NAME=FOLDER, of a folder as it is seen from another one, by its path from here."""
+    """Return FOLDER or NAME=FOLDER, relative to another folder, with its path from the working directory."""
     name, mark, root = word.rpartition("=")
     return f"{name}{mark}{os.path.relpath(folder / root)}"
 
@@ -142,9 +142,9 @@ def _found(table: Table, row: Row, step: Step, options: Mapping[str, Any]) -> Fo
 
 
 def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
-    """What a gate measures: what it says, and one row's worth of the rest.
+    """Return the options that a gate measures with: those it names, and values that give one row for the rest.
 
-    A layout is measured as it is. A shader without a Python twin is measured by GLSL.
+    A layout is measured as it is. A shader without a Python twin is measured in GLSL.
     """
     usual = {} if given.get("layout") is not None else dict(table.single)
     if "backend" in usual and any(_is_in_glsl_only(given.get(name) or ()) for name in NAMED):

@@ -1,1 +1,1 @@
-"""What runs in RenderDoc's Python, and imports nothing of this package."""
+"""Scripts that run in RenderDoc's Python and import nothing from this package."""

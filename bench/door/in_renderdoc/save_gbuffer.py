@@ -165,7 +165,7 @@ def write_text(path, text):
 
 
 def file_name(name, at, taken):
-    """A texture's name as that of a file."""
+    """Return a file name for a texture's name that is not taken."""
     plain = f"{re.sub(r'[^A-Za-z0-9]+', '_', name).strip('_').lower() or 'target'}.exr"
     is_free = plain != DEPTH and plain not in [target["file"] for target in taken.values()]
     return plain if is_free else f"{at}_{plain}"
@@ -175,13 +175,13 @@ def file_name(name, at, taken):
 
 
 def covered(plane):
-    """1 where a depth is not that of the background, which is the one of 0 and 1 that more pixels have."""
+    """Return 1 where a depth is not the background's, else 0. The background is at 0 or 1, whichever is more common."""
     background = 1.0 if plane.count(1.0) >= plane.count(0.0) else 0.0
     return [0.0 if value == background else 1.0 for value in plane]
 
 
 def normals_in(found, mask):
-    """Of unit normals "--no-unpack", of such in [0, 1] "--unpack", of anything else nothing."""
+    """Return "--no-unpack" for unit normals, "--unpack" for unit normals stored in [0, 1], and "" for anything else."""
     x, y, z = found[:3]
     inside = [i for i, is_covered in enumerate(mask) if is_covered]
     for option, scale, bias in (("--no-unpack", 1, 0), ("--unpack", 2, -1)):
@@ -235,7 +235,7 @@ def views(matrices):
 
 
 def camera_of(matrices, is_opengl):
-    """The angle of view and the planes of the first projection; None where there is none."""
+    """Return the field of view in degrees and the two planes of the first projection; None if no matrix is one."""
     for rows in matrices.values():
         ends = planes_of_projection(rows, -1.0 if is_opengl else 0.0)
         if ends:
@@ -244,7 +244,7 @@ def camera_of(matrices, is_opengl):
 
 
 def guessed(targets):
-    """What targets hold as far as their names say it, by the quantity: a description's words."""
+    """Return what targets hold, by quantity, as far as their names show it, in the form of a description."""
     letters = {
         match.group(1).lower(): buffer for name, buffer in targets.items() for match in [UNREAL.search(name)] if match
     }
@@ -269,7 +269,7 @@ def guessed(targets):
 
 
 def description(targets, camera, has_depth):
-    """What `normalbench budget --scene` reads: what is known of the frame, and null for what is not."""
+    """Return what `normalbench budget --scene` reads: known facts of the frame, and null for unknown ones."""
     scene: dict = {"fov": None, "near": None, "far": None, "view_matrix": None}
     scene.update((name, None) for name in QUANTITIES)
     if camera:
@@ -297,7 +297,7 @@ def say(text):
 
 
 def say_description(folder, said, targets):
-    """What was guessed, what people have to write, and the command."""
+    """Print what was guessed and what the user has to fill in, and return the command."""
     where = folder / "gbuffer.json"
     held = [
         f"{name} ({source['file']} {source.get('channel') or source['channels']})"
@@ -399,7 +399,7 @@ def chosen(controller, rd, event):
 
 
 def constants(controller, rd):
-    """All matrices of 4 x 4 that the draw's shaders are given, by rows, by their names."""
+    """Return all 4 x 4 matrices that the draw's shaders are given, as rows, by name."""
     state, matrices = controller.GetPipelineState(), {}
     for stage in (rd.ShaderStage.Vertex, rd.ShaderStage.Pixel):
         reflection = state.GetShaderReflection(stage)
@@ -436,7 +436,7 @@ def name_of(kind, value):
 
 
 class Saving:
-    """What a draw of a capture has left, saved into a folder."""
+    """The outputs of one draw of a capture, saved to a folder."""
 
     def __init__(self, controller, rd, folder, event):
         self.controller, self.rd, self.folder = controller, rd, folder

@@ -1,11 +1,11 @@
-"""The pytest plugin: measures a codec once a session, and holds it to limits or to a baseline.
+"""The pytest plugin: measures a codec once per session and checks it against limits or a baseline.
 
     def test_normals(normalbench):
         row = normalbench.quality(encoding="octahedral", storage="rgba8")
         row.assert_that(psnr_db="at least 49.5", angle_max_deg="at most 0.96")
 
-Nothing heavy is imported before something is measured, so that a run of tests that does not use it pays for a few
-options alone. With xdist every worker measures what its own tests ask for, at most once.
+Nothing heavy is imported before something is measured, so a test run that does not use the plugin pays only for a
+few options. With xdist, every worker measures what its own tests ask for, at most once.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def _parsed(fields: list[Field]) -> dict[str, Any]:
-    """How argparse takes an option."""
+    """Return the arguments with which argparse takes an option."""
     kinds, help_text = {field.kind for field in fields}, " ".join(dict.fromkeys(field.option.help for field in fields))
     # Where tables take different kinds, each reads the text in its own way.
     kind = kinds.pop() if len(kinds) == 1 else str
@@ -72,7 +72,7 @@ def _check_baseline(path: Path | None) -> None:
 
 @pytest.fixture
 def normalbench(request: pytest.FixtureRequest) -> Normalbench:
-    """Measures codecs: .quality(...) and .render(...) give rows to hold to limits; files lie beside the test's own."""
+    """Measure codecs: .quality(...) and .render(...) return rows to check. Files are relative to the test's folder."""
     return _measuring(request.config, request.path.parent)
 
 
@@ -85,7 +85,7 @@ def pytest_runtest_call(item: pytest.Item) -> None:
 
 
 def _measuring(config: pytest.Config, folder: Path) -> Normalbench:
-    """What measures for the tests of a folder."""
+    """Return the fixture's value for the tests of a folder."""
     from ...ground.machine.system import prepare
 
     prepare()

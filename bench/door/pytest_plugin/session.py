@@ -1,4 +1,4 @@
-"""What the pytest plugin measures, once a session, and what a test may do with it."""
+"""The measurements of the pytest plugin, made once per session, and the checks that a test can apply to them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ T = TypeVar("T")
 
 
 def ends_here(method: Callable[P, T]) -> Callable[P, T]:
-    """What a test calls: the traceback of what it did wrong, or of a limit that is broken, ends in the test."""
+    """Wrap a method that tests call: the traceback of a test's mistake, or of a broken limit, ends in the test."""
 
     @functools.wraps(method)
     def call(*arguments: P.args, **named: P.kwargs) -> T:
@@ -48,9 +48,9 @@ class Session:
     """Everything that a session of tests has measured.
 
     Attributes:
-        usual: options for tests that do not say otherwise, as typed in folder `typed_in`.
-        require_gl: whether a missing GL driver fails a test that needs one, and does not skip it.
-        baseline: the file to compare with; None where none was named.
+        usual: options for tests that do not give their own, as typed in folder `typed_in`.
+        require_gl: whether a missing OpenGL driver fails a test that needs one, instead of skipping it.
+        baseline: the file to compare with; None if none was named.
     """
 
     usual: Mapping[str, Any]
@@ -105,11 +105,11 @@ class Measured:
 
     @ends_here
     def assert_that(self, **limits: str) -> None:
-        """Every row keeps a limit on each column: psnr_db="at least 49.5", angle_max_deg="at most 0.96".
+        """Check that every row keeps a limit on each column: psnr_db="at least 49.5", angle_max_deg="at most 0.96".
 
         Raises:
-            AssertionError: one does not: the figure, the limit, and the worst normal.
-            UsageError: there is no such column, or it is not a limit.
+            AssertionError: a row breaks a limit; the message has the figure, the limit and the worst normal.
+            UsageError: a column is unknown, or its value is not a limit.
         """
         if not limits:
             raise UsageError('no limit given; add for example psnr_db="at least 47.5"')
@@ -130,13 +130,13 @@ class Measured:
 
     @ends_here
     def matches_baseline(self, **tolerances: float) -> None:
-        """Every row is what the baseline says, to the last digit where no tolerance is stated.
+        """Check that every row equals its baseline entry, to the last digit unless a tolerance is given.
 
-        With --normalbench-write-baseline it becomes what the baseline says.
+        With --normalbench-write-baseline, record the rows for the baseline instead.
 
         Raises:
-            AssertionError: it is not, or there is no such row.
-            UsageError: no baseline is named, or the file is none.
+            AssertionError: a row differs, or the baseline does not have it.
+            UsageError: no baseline is named, or the file is not a baseline.
         """
         baseline = self.session.baseline
         if not baseline:
@@ -160,7 +160,7 @@ class Measured:
         self._raise_for(wrong)
 
     def _request(self) -> dict[str, Any]:
-        """Every option, those that nobody named with what is usual."""
+        """Return every option, with the usual value for each that nobody named."""
         return asdict(self.table.options(**single(self.table, self.asked)))
 
     def _measurable(self) -> list[Found]:
@@ -191,7 +191,7 @@ def _checked_limit(column: str, text: Any) -> Limit:
 
 @dataclass(frozen=True)
 class Normalbench:
-    """What the fixture `normalbench` is: a method for each table, with the options of its command.
+    """The value of the fixture `normalbench`: a method for each table, with the options of its command.
 
     A file is looked for in the test's folder first.
     """
@@ -220,7 +220,7 @@ class Normalbench:
 
     @ends_here
     def hold_mark(self, positional: tuple[Any, ...], values: Mapping[str, Any]) -> None:
-        """What a marker says. Raises AssertionError for a row that does not keep it, UsageError where it is misused."""
+        """Check what a marker asks for. Raises AssertionError if a row breaks a limit, UsageError if it is misused."""
         if positional:
             raise UsageError(f"the marker normalbench takes options and limits by name, not {positional[0]!r}")
         table = table_named(values.get("table", USUAL))

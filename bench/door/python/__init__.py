@@ -1,1 +1,1 @@
-"""What `import normalbench` offers: tables as functions, and codecs on arrays."""
+"""The contents of `import normalbench`: tables as functions, and codecs on arrays."""

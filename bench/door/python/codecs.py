@@ -33,11 +33,11 @@ NORMAL = 3
 
 
 class Codes(NamedTuple):
-    """What is stored of normals.
+    """The stored codes of normals.
 
     Attributes:
         values: the numbers that the texels stand for, float32 of shape (..., components). `decode` takes them.
-        integers: the stored integers, of the same shape; of floats, their bits.
+        integers: the stored integers, of the same shape; for floats, their bits.
     """
 
     values: Any
@@ -71,11 +71,11 @@ def encoding(
 
 
 def codec_of(codec: Codec | str) -> Codec:
-    """A codec, or the one that "encoding/storage" or "encoding/storage/rounding" names; an encoding may be a file.
+    """Return a codec, or the one named "encoding/storage" or "encoding/storage/rounding"; an encoding may be a file.
 
     Raises:
-        UsageError: there is none.
-        MissingError: a user's shader has no Python twin, and there is no GL device.
+        UsageError: no codec has this name.
+        MissingError: a user's shader has no Python twin, and this machine has no OpenGL device.
     """
     if isinstance(codec, Codec):
         chosen_codec = codec
@@ -130,7 +130,7 @@ def encode(codec: Codec | str, normals: Any, view: Any = None) -> Codes:
         the stored numbers and integers.
 
     Raises:
-        UsageError: there is no such codec, or an array of another shape.
+        UsageError: no codec has this name, or an array has another shape.
     """
     chosen, n = codec_of(codec), _planes("normals", normals)
     stored = chosen.stored(n, _view_or_ahead(view, n))
@@ -139,17 +139,17 @@ def encode(codec: Codec | str, normals: Any, view: Any = None) -> Codes:
 
 
 def decode(codec: Codec | str, codes: Any, view: Any = None) -> Any:
-    """The normals that stored numbers decode to.
+    """Return the normals that stored numbers decode to.
 
     Args:
-        codes: what `encode` gave, or its `values`, shape (..., components).
+        codes: the result of `encode`, or its `values`, shape (..., components).
         view: as for `encode`.
 
     Returns:
-        float32 array of shape (..., 3), as the decoder gives it: not normalised again.
+        float32 array of shape (..., 3), as the decoder returns it: not normalised again.
 
     Raises:
-        UsageError: there is no such codec, or an array of another shape.
+        UsageError: no codec has this name, or an array has another shape.
     """
     chosen = codec_of(codec)
     values = jnp.asarray(codes.values if isinstance(codes, Codes) else codes)
@@ -177,7 +177,7 @@ def _view_or_ahead(view: Any, like: Vec3) -> Vec3:
 
 
 def _integer(codec: Codec, component: int, number: Any) -> Any:
-    """The integer that a stored number lies in its texel as, uint32."""
+    """Return the integer that a texel stores for a number, uint32."""
     storage: Storage = codec.storage
     if component >= codec.encoding.components:
         return (number > 0).astype(jnp.uint32)

@@ -25,20 +25,20 @@ CHANNELS = 4
 
 
 def pack(layout: Layout | str, surface: Mapping[str, Any], **settings: Any) -> tuple[np.ndarray, ...]:
-    """Return what the targets of a layout hold of surfaces: numbers as a shader reads them, or whole numbers.
+    """Return the contents of a layout's targets for surfaces: numbers as a shader reads them, or integers.
 
     Args:
-        layout: one of `normalbench list`, a TOML file, or a value.
-        surface: arrays by the names of the structure that `normalbench code` writes: "normal" of shape (..., 3),
-            "roughness" of shape (...), and so on, all that the layout holds.
-        settings: `near` and `far`, numbers, and `view` of shape (..., 3), where the layout's codes need them.
+        layout: a name from `normalbench list`, a TOML file, or a `Layout`.
+        surface: arrays by the field names of the structure that `normalbench code` writes: "normal" of shape
+            (..., 3), "roughness" of shape (...), and so on, for everything that the layout holds.
+        settings: `near` and `far`, numbers, and `view` of shape (..., 3), if the layout's encodings need them.
 
     Returns:
-        Of each target an array of shape (..., 4), or (..., channels) where it is of integers.
+        For each target an array of shape (..., 4), or (..., channels) if it holds integers.
 
     Raises:
-        UsageError: an unknown layout, a layout that is not written, or a field or a setting too many or too few.
-        NoDeviceError: there is no GL device.
+        UsageError: the layout is unknown or cannot be written, or a field or setting is missing or unexpected.
+        NoDeviceError: this machine has no OpenGL device.
     """
     code = _code_of(layout)
     kinds = {field.name: field.kind for field in code.texts.contents.fields}
@@ -55,11 +55,11 @@ def pack(layout: Layout | str, surface: Mapping[str, Any], **settings: Any) -> t
 
 
 def unpack(layout: Layout | str, targets: Sequence[Any], **settings: Any) -> dict[str, np.ndarray]:
-    """Return the surfaces that come back from what targets hold; `pack` says what is given.
+    """Return the surfaces that the contents of targets decode to; see `pack` for the arguments.
 
     Raises:
-        UsageError: as `pack`, or another number of targets.
-        NoDeviceError: there is no GL device.
+        UsageError: as for `pack`, or the number of targets is wrong.
+        NoDeviceError: this machine has no OpenGL device.
     """
     code = _code_of(layout)
     if len(targets) != len(code.texts.targets):
@@ -94,7 +94,7 @@ def _written(layout: Layout) -> GBufferCode:
 
 
 def _check_names(what: str, given: Mapping[str, Any], wanted: Mapping[str, Any] | Sequence[str]) -> None:
-    """Raises UsageError for names that are not the wanted ones."""
+    """Raise UsageError if the names are not the wanted ones."""
     if set(given) != set(wanted):
         lacking, odd = sorted(set(wanted) - set(given)), sorted(set(given) - set(wanted))
         wrong = [f"lacks {', '.join(lacking)}"] * bool(lacking) + [f"has no {', '.join(odd)}"] * bool(odd)
@@ -102,7 +102,7 @@ def _check_names(what: str, given: Mapping[str, Any], wanted: Mapping[str, Any] 
 
 
 def _ran(code: GBufferCode, rows: np.ndarray, settings: Mapping[str, Any], shape: tuple[int, ...]) -> np.ndarray:
-    """What both functions give of rows: uint32 of shape (count, numbers), the targets' first."""
+    """Return what both functions make of rows: uint32 of shape (count, numbers), the targets' first."""
     _check_names("settings", settings, code.settings)
     besides = np.zeros((len(rows), max(place.stop for place in PLACES.values())), np.uint32)
     for name, value in settings.items():

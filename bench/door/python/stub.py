@@ -1,6 +1,6 @@
-"""What type checkers and editors are told of `import normalbench`, made from the registry when the package is built.
+"""The stub of `import normalbench` for type checkers and editors, made from the registry when the package is built.
 
-setup.py writes it next to the package; an editable install has it in the checkout.
+setup.py writes it next to the package; for an editable install it is in the checkout.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ class Rows(pd.DataFrame):
 
     @property
     def _constructor(self) -> type[pd.DataFrame]:
-        """What is cut out of it is a plain data frame."""
+        """The type of anything cut out of these rows: a plain data frame."""
         return pd.DataFrame
 
     def charts(self) -> list[Any]:
@@ -110,7 +110,7 @@ def _typed(key: str, value: Any) -> Any:
 
 
 def _check_unit(name: str, array: np.ndarray) -> None:
-    """Raises UsageError for numbers that are not unit normals, zeros for background apart."""
+    """Raise UsageError for numbers that are not unit normals, except zeros for background."""
     if not np.issubdtype(array.dtype, np.floating):
         raise UsageError(f"normals: {name} is of {array.dtype}; give floats in [-1, 1]")
     if not np.isfinite(array).all():

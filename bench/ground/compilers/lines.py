@@ -52,7 +52,7 @@ def _without_nested_comments(text: str) -> str:
 
 
 def _end_of_comment(text: str, match: re.Match[str]) -> int:
-    """Where a comment of WGSL ends; 0 where it does not."""
+    """Return the end of a WGSL comment; 0 if it does not end."""
     depth = 1
     for mark in _NESTED.finditer(text, match.end()) if match[0] == "/*" else ():
         depth += 1 if mark[0] == "/*" else -1

@@ -1,7 +1,7 @@
-"""Slang's compiler as a library: what it makes of a text.
+"""Slang's compiler as a library: the results of compiling a text.
 
-Its C interface is that of slang.h, which every build of it has: the wheels `slangpy` and `slangtorch`, and the folders
-around a `slangc` on the path. A text that it cannot bear ends the process: it is called in a child.
+Its C interface is that of slang.h, which every build has: the wheels `slangpy` and `slangtorch`, and the folders
+around a `slangc` on the path. A text that the compiler cannot handle ends the process, so call it in a child.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class _Description(c.Structure):
 
 @cache
 def path_of_library() -> Path:
-    """Where the library is.
+    """Return the path of the library.
 
     Raises:
         MissingError: one line that says what to install.
@@ -121,12 +121,12 @@ def knows(word: str) -> bool:
 
 
 class Compiled:
-    """What the compiler made of a text. Its memory, a MB and more, is given back with the object.
+    """The compiler's result for a text. Its memory, 1 MB or more, is freed with the object.
 
     Attributes:
-        request: for reflection: see `Api`; what that gives lives as long as the object.
-        failed: whether it refused the text.
-        said: its messages.
+        request: for reflection, see `Api`; anything obtained from it lives as long as the object.
+        failed: whether the compiler refused the text.
+        said: the compiler's messages.
     """
 
     def __init__(self, words: Sequence[str]):
@@ -175,11 +175,11 @@ class _NotExpandedError(Exception):
 
 
 def _expanded(words: Sequence[str]) -> str:
-    """What the preprocessor makes of a file, which it prints.
+    """Return the output of the preprocessor for a file, which the library prints.
 
     Raises:
-        _NotExpandedError: it refuses the file.
-        RefusedError: what it prints is not seen here, so that nothing would be judged.
+        _NotExpandedError: the preprocessor refuses the file.
+        RefusedError: the output cannot be captured here, so nothing would be judged.
     """
     if not _is_seen(Path(words[0]).with_name("seen.slang")):
         raise RefusedError(0, "Slang's compiler does not say what its preprocessor makes of it")
@@ -193,7 +193,7 @@ def _is_seen(probe: Path) -> bool:
 
 
 def _printed(words: Sequence[str]) -> str:
-    """What the library prints to descriptor 1. Raises _NotExpandedError."""
+    """Return what the library prints to descriptor 1. Raises _NotExpandedError."""
     with tempfile.TemporaryFile() as file:
         own = os.dup(1)
         os.dup2(file.fileno(), 1)

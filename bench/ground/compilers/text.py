@@ -1,7 +1,7 @@
-"""Texts that compilers may be given. Two functions make them: `judged`, of what holds anything of a user's, and `own`.
+"""Texts that compilers may be given. Two functions make them: `judged`, if any part is a user's, and `own`.
 
-What is judged is what is compiled, byte for byte: no compiler joins lines of it, skips comments in it, or reads another
-file for it. So nobody has to guess what a compiler will make of a text that is looked at in another form.
+The text that is judged is compiled byte for byte: no compiler joins its lines, skips comments in it, or reads
+another file for it. So nobody has to guess what a compiler makes of a text that was judged in another form.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ ROOMS = ("encodings", "gbuffer", "bench", "reports")
 
 
 class RefusedError(Exception):
-    """A text that no compiler is given.
+    """A text may not be given to a compiler.
 
     Attributes:
-        line: where, counted from 1; 0 where that is not known.
+        line: the line, counted from 1; 0 if unknown.
         why: what is wrong there, in words.
-        word: the word that is wrong; empty where it is none.
+        word: the word that is wrong; empty if no word is.
     """
 
     def __init__(self, line: int, why: str, word: str = ""):
@@ -54,14 +54,14 @@ NOTHING = re.compile(r"(?!)")
 
 
 class Rules(NamedTuple):
-    """What a text of a language may hold besides what all may.
+    """Rules for texts of one language, in addition to those for all texts.
 
     Attributes:
-        heads: what lines of a program's header look like; other directives that are unknown are refused.
-        words: words that may begin with two underscores; None where such words do no harm.
-        refused: words that read other files, or write text into the program that is made.
-        marks: letters that it may not hold.
-        is_native: whether it becomes code of a processor.
+        heads: a pattern for lines of a program's header; other unknown directives are refused.
+        words: words that may begin with two underscores; None if such words do no harm.
+        refused: words that read other files, or write text into the compiled program.
+        marks: characters that a text may not contain.
+        is_native: whether a text becomes machine code.
     """
 
     heads: re.Pattern[str] = NOTHING
@@ -199,7 +199,7 @@ def _check_words(text: str, words: Iterable[str], rules: Rules, knows: Callable[
 
 
 def _line_of(text: str, word: str) -> int:
-    """The line of a word; where a macro spells it, that of the first macro that joins words; else 0."""
+    """Return the line of a word; if a macro spells it, the line of the first macro that joins words; else 0."""
     match = re.search(rf"\b{re.escape(word)}\b", text) or re.search(r"##", text)
     return text.count("\n", 0, match.start()) + 1 if match else 0
 

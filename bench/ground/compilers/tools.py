@@ -1,4 +1,4 @@
-"""The compilers that there are: where they lie, what to install where they are not, and how they are run."""
+"""The compilers: where they are, what to install if they are missing, and how they are run."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def stamp(tool: str) -> str:
 
 
 def stamp_or_empty(tool: str) -> str:
-    """Return the same; empty where there is no such tool."""
+    """Return the `stamp` of a tool; empty if the tool is missing."""
     try:
         return stamp(tool)
     except MissingError:
@@ -119,7 +119,7 @@ def put(path: Path, text: Text) -> None:
 
 
 class Ran(NamedTuple):
-    """How a tool ended, and what it printed."""
+    """The exit status of a tool, and its output."""
 
     status: int
     out: str
@@ -138,13 +138,13 @@ def run(
 
     Args:
         words: options, and names of files in the folder.
-        files: by their names, the texts that it is given.
-        seconds: how long it may take.
-        wall: what it may use, of a text that may be anybody's.
+        files: the texts that the tool is given, by file name.
+        seconds: the time limit.
+        wall: what the tool may use, if anybody may have written the text.
 
     Raises:
-        MissingError: there is no such tool.
-        ToolError: it crashes or does not end.
+        MissingError: the tool is missing.
+        ToolError: the tool crashes or does not end.
     """
     for name, text in files.items():
         put(folder / name, text)
@@ -161,23 +161,23 @@ def run(
 
 
 def wall_around(tool: str, folder: Path) -> Wall | None:
-    """Return what a tool may use that works on somebody's text in a folder; None where there are no walls.
+    """Return the wall of a tool that works on anybody's text in a folder; None if this system has no walls.
 
     Raises:
-        MissingError: there is no such tool.
+        MissingError: the tool is missing.
     """
     is_walled = landlock.is_available()
     return walls.of_tool(path_of(tool)) | Wall(writes=(str(folder),)) if is_walled else None
 
 
 def slang_text(text: str, words: Sequence[str], folder: Path) -> Text:
-    """Return a text that `slangc` may be given with some options. Its own preprocessor says which words macros spell,
-    where the text itself leaves that open.
+    """Return a text that `slangc` may be given with some options. Its own preprocessor shows which words macros spell,
+    if the text itself leaves that open.
 
     Raises:
-        RefusedError: it may not be given the text.
-        MissingError: there is no such tool.
-        ToolError: it crashes, does not end, or its preprocessor refuses the text.
+        RefusedError: `slangc` may not be given the text.
+        MissingError: the tool is missing.
+        ToolError: the tool crashes, does not end, or its preprocessor refuses the text.
     """
 
     def expanded(plain: Text) -> str:
@@ -194,7 +194,7 @@ def slang_text(text: str, words: Sequence[str], folder: Path) -> Text:
 
 
 def module_of(text: Text, words: Sequence[str]) -> tuple[Ran, bytes]:
-    """Return how glslang ended, and the module of SPIR-V that it made of a text, which it reads from standard input."""
+    """Run glslang on a text from standard input; return how it ended and the SPIR-V module that it made."""
     with file_of_child() as module_file:
         command = [str(path_of(GLSLANG)), "--stdin", *words, "-o", module_file.path]
         done = _piped(command, text.content.encode(), *module_file.descriptors)

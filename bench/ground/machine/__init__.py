@@ -1,1 +1,1 @@
-"""What this machine has: cores, devices, versions."""
+"""Properties of this machine: cores, devices, versions."""

@@ -75,7 +75,7 @@ def finished(command: Sequence[str], seconds: float, folder: Path | None = None)
 
 
 def how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
-    """How a process that limits itself ended, and the last that it said."""
+    """Return how a process that limits itself ended, and the last line that it printed to standard error."""
     limits = f"it may use {MEMORY >> 20} MiB of memory and {SECONDS} s of processor time"
     if name := signal_name(done.returncode):
         return f"killed the process ({name}); {limits}"
@@ -84,6 +84,6 @@ def how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
 
 
 def text_of(file: IO[bytes]) -> str:
-    """What was written to a file of a process."""
+    """Return the text that a process wrote to a file."""
     file.seek(0)
     return file.read().decode(errors="replace")

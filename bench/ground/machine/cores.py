@@ -27,9 +27,9 @@ on_fork(_waiting.clear)
 def on_all_cores(
     function: Callable[[Item], T], items: Iterable[Item], stop: Callable[[], None] = lambda: None
 ) -> Iterator[T]:
-    """What a function makes of each item, in order; few items are under way at once, so that any number of them is
-    constant memory. The iterable is run in the calling thread. Where that is interrupted, what is under way is waited
-    for, after `stop`, which may cut it short."""
+    """Yield a function's result for each item, in order. Only a few items are in progress at once, so memory stays
+    constant for any number of items. The iterable is run in the calling thread. If that thread is interrupted, the
+    work in progress is waited for, after `stop`, which may cut it short."""
     # Half of the threads wait: for the kernel to clear memory, and for the one that asks for the results.
     threads, ahead = 2 * cores(), deque()
     others = _waiting.setdefault(threads, [])

@@ -1,4 +1,4 @@
-"""The devices that tables are measured on, or why there is none."""
+"""The devices that tables are measured on, or why they are missing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .systems.system_files import processor_kind
 
 
 def require_jax() -> None:
-    """Raises MissingError where JAX has no device to compute on, as an unknown JAX_PLATFORMS leaves it, or no
+    """Raise MissingError if JAX has no device to compute on, as after an unknown JAX_PLATFORMS, or too little
     memory."""
     require_memory()
     keep_programs()
@@ -50,12 +50,12 @@ def keep_programs() -> None:
 
 
 def programs_folder() -> Path:
-    """Where compiled programs lie: a folder for each version of JAX and kind of processor, which they are made for."""
+    """Return the folder of compiled programs: a separate one for each version of JAX and kind of processor."""
     return cache.folder() / "programs" / cache.key_of(jax.__version__, *processor_kind())[:16]
 
 
 def found_device() -> tuple[Device | None, str]:
-    """The GL device; or None, and why there is none."""
+    """Return the OpenGL device; or None, and why it is missing."""
     # What it draws under an environment is kept: to filter one takes seconds.
     keep_levels_by(kept_arrays)
     try:
@@ -65,7 +65,7 @@ def found_device() -> tuple[Device | None, str]:
 
 
 def require_device() -> Device:
-    """The GL device. Raises MissingError where there is none."""
+    """Return the OpenGL device. Raises MissingError if this machine has none."""
     gl, missing = found_device()
     if not gl:
         raise MissingError(missing)

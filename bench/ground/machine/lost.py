@@ -7,7 +7,7 @@ from ..output.errors import MissingError
 
 
 def require_living_device() -> None:
-    """Raises MissingError where a GL device that was opened answers no longer: what it gave last is no figure."""
+    """Raise MissingError if an open OpenGL device no longer answers, because its last results are not valid figures."""
     for gl in OPENED:
         if not gl.answers:
             raise MissingError(f"{gl.renderer} was lost by its driver: it draws no longer; run the same command again")

@@ -21,14 +21,14 @@ M_TRIM_THRESHOLD, KEPT = -1, 2**30
 
 
 def require_memory() -> None:
-    """Raise MissingError where JAX and a graphics driver would not start for want of addresses: their libraries end the
-    process then, without a line of ours."""
+    """Raise MissingError if JAX and a graphics driver would not start for lack of address space: their libraries would
+    then end the process without a message from normalbench."""
     if why := lack_of_memory():
         raise MissingError(why)
 
 
 def lack_of_memory() -> str:
-    """That this process is limited to too little memory, and what to do; empty where it is not."""
+    """Return a message if this process is limited to too little memory, with what to do; empty if it is not."""
     most = most_addresses()
     if most is None or most >= LEAST:
         return ""
@@ -42,7 +42,7 @@ def have_few_heaps() -> None:
 
 
 def keep_what_is_freed() -> None:
-    """What is freed stays this process's, for what is needed next; elsewhere than on glibc nothing is done."""
+    """Keep freed memory in this process for the next use; does nothing unless the C library is glibc."""
     _mallopt(M_MMAP_THRESHOLD, LARGEST_IN_HEAPS)
     _mallopt(M_TRIM_THRESHOLD, KEPT)
 
@@ -53,14 +53,14 @@ def _mallopt(name: int, value: int) -> None:
 
 
 def give_back_what_is_freed() -> None:
-    """What is freed within the heaps is the system's again: tens of megabytes after a frame, in a few milliseconds."""
+    """Return freed memory within the heaps to the system: tens of megabytes after a frame, in a few milliseconds."""
     if trim := c_function("malloc_trim"):
         trim(0)
 
 
 def give_back_what_a_table_needed() -> None:
-    """What objects hold that nothing refers to, and compiled programs: hundreds of megabytes. The next table reads what
-    it shares of them from the cache."""
+    """Free unreferenced objects and compiled programs: hundreds of megabytes. The next table reads the programs that it
+    shares from the cache."""
     gc.collect()
     if jax := sys.modules.get("jax"):
         jax.clear_caches()

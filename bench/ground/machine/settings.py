@@ -1,4 +1,4 @@
-"""What is set from outside that figures may depend on."""
+"""External settings that figures may depend on."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the program needs of a user before anything else is used. Imports nothing heavy."""
+"""Preparation of the user's environment, before anything else is used. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def prepare() -> None:
 
 
 def _home_for_the_unknown() -> Path:
-    """A folder that this user alone can have written into; another one for each process where there is none."""
+    """Return a folder that only this user can have written to; if that fails, a new folder for each process."""
     from ..output.cache import PRIVATE
 
     home = Path(tempfile.gettempdir()) / f"normalbench-home-{user()}"

@@ -58,16 +58,16 @@ class NotElementwiseError(Exception):
 
 
 def c_function(name: str, function: Callable[..., Any], *arguments: Any) -> str:
-    """A JAX function as `void name(arguments..., *results)`.
+    """Return a JAX function as C: `void name(arguments..., *results)`.
 
     Args:
-        name: what it is called in C.
-        function: of arrays, a pytree each; its results are a pytree of arrays. Numbers of Python in it have 64 bits, as
-            where rows are measured.
+        name: the name of the function in C.
+        function: a function of arrays, one pytree per argument; its results are a pytree of arrays. Python numbers
+            in it have 64 bits, as where rows are measured.
         arguments: like those of the function, with a NumPy type in place of each array.
 
     Raises:
-        NotElementwiseError: for an operation that has no line of C, or that mixes elements.
+        NotElementwiseError: an operation has no line of C, or mixes elements.
     """
     shaped = jax.tree.map(lambda dtype: jax.ShapeDtypeStruct((LANES,), dtype), arguments)
     with jax.enable_x64(True):
@@ -89,7 +89,7 @@ def _type(aval: Any) -> str:
 
 
 def c_type(dtype: Any) -> str:
-    """The type of a NumPy number in C. Raises NotElementwiseError where there is none."""
+    """Return the C type of a NumPy number. Raises NotElementwiseError if C has none."""
     name = np.dtype(dtype).name
     if name not in TYPES:
         raise NotElementwiseError(f"numbers of type {name}")
@@ -125,7 +125,7 @@ class _Writer:
         self.lines: list[str] = []
 
     def results(self, traced: core.ClosedJaxpr, arguments: Sequence[str]) -> list[str]:
-        """What the results of a traced function are called, given what its arguments are."""
+        """Return the names of a traced function's results, given the names of its arguments."""
         names: dict[Any, str] = dict(zip(traced.jaxpr.invars, arguments, strict=True))
         names |= {var: _literal(value) for var, value in zip(traced.jaxpr.constvars, traced.consts, strict=True)}
 

@@ -34,7 +34,7 @@ class NoCompilerError(Exception):
 
 
 def compiler() -> str:
-    """Return what the C compiler calls itself; empty where there is none."""
+    """Return the first line of the C compiler's version; empty if the compiler is missing."""
     try:
         return tools.first_line(tools.C)
     except MissingError:
@@ -73,7 +73,7 @@ def library(text: Text, *functions: str) -> ctypes.CDLL:
 
 @cache
 def _made(text: Text, functions: tuple[str, ...]) -> ctypes.CDLL | str:
-    """A library, or why there is none: what failed is not tried again."""
+    """Return a library, or why it is missing: a failed compilation is not tried again."""
     if not compiler():
         return NONE
     path = kept.folder() / "native" / f"{kept.key_of(text.content, *FLAGS, compiler(), *processor_kind())}.so"
@@ -102,8 +102,8 @@ def _compiled(text: Text, folder: Path) -> Path:
 
 
 def _whole(path: Path) -> Path | None:
-    """A library as this user wrote it, without links; None where there is none. A damaged one would end the process
-    that loads it, and one of another user would do as it likes."""
+    """Return the path of a library as this user wrote it, without links; None if there is no such file. A damaged
+    library would end the process that loads it, and another user's library could do anything."""
     if not (own := kept.loadable(path)):
         return None
     try:
@@ -125,10 +125,10 @@ def _loaded(path: Path, functions: Sequence[str]) -> ctypes.CDLL:
 
 
 def _loaded_elsewhere(path: Path) -> ctypes.CDLL:
-    """A copy of a library that lies where nothing may be executed, as some mount their home or their /tmp.
+    """Load a copy of a library whose folder forbids execution, as some mount their home or their /tmp.
 
     Raises:
-        OSError: it is not a library, or no folder will do.
+        OSError: it is not a library, or no folder allows execution.
     """
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         try:
@@ -146,7 +146,7 @@ _hangs: list[str] = []
 
 
 def _compile(text: Text, folder: Path) -> None:
-    """Raises NoCompilerError where the compiler fails, and from then on where it did not end."""
+    """Compile a text. Raises NoCompilerError if that fails, and on every call after one that did not end."""
     if _hangs:
         raise NoCompilerError(_hangs[0])
     words = [*FLAGS, "library.c", "-o", "library.so", "-lm"]
@@ -163,5 +163,5 @@ def _compile(text: Text, folder: Path) -> None:
 
 
 def address(array: np.ndarray) -> ctypes.c_void_p:
-    """Where an array lies, for a function of a library; the array must outlive the call."""
+    """Return the address of an array, for a function of a library; the array must outlive the call."""
     return ctypes.c_void_p(array.__array_interface__["data"][0])

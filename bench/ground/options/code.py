@@ -11,7 +11,7 @@ from .words import Names
 
 @dataclass(frozen=True, kw_only=True)
 class CodeOptions(Sources):
-    """Which codecs, in which languages."""
+    """The codecs to write, and the languages to write them in."""
 
     codec: Annotated[Names, Option("CODEC", f"Encodings or files, {NAMED}; layouts with --of layout.", files=True)] = (
         "octahedral",

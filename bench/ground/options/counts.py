@@ -1,4 +1,4 @@
-"""How many there may be of what: normals of a set, sides of an image, repetitions. Imports nothing heavy."""
+"""Ranges of counts: normals of a set, sides of an image, repetitions. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def whole_number(text: str | int) -> int:
 
 
 def in_range(option: str, value: float, low: float, high: float) -> None:
-    """Raises UsageError where an option's value is out of range."""
+    """Raise UsageError if an option's value is out of range."""
     if not low <= value <= high:
         raise UsageError(f"{option} {value}: from {low} to {high}")
 
@@ -55,7 +55,7 @@ def checked_count(count: int) -> int:
 
 
 def check_seed(seed: int) -> None:
-    """Raises UsageError where nothing can be made with it: it is kept in 64 bits."""
+    """Raise UsageError for a seed that is out of range: seeds are kept in 64 bits."""
     in_range("--seed", seed, 0, 2**63 - 1)
 
 
@@ -68,7 +68,7 @@ def checked_sides(text: str, most: int, where: str) -> tuple[int, int]:
 
 
 def checked_numbers(option: str, words: Names, kind: Callable[[str], N], least: N, most: N) -> tuple[N, ...]:
-    """Return numbers, each once. Raises UsageError for none, or one that is none or out of range."""
+    """Return numbers, each once. Raises UsageError if none is given, or one is invalid or out of range."""
     try:
         read: Any = whole_number if kind is int else kind
         numbers: tuple[N, ...] = tuple(dict.fromkeys(read(str(word)) for word in words))

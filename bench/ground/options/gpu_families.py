@@ -19,11 +19,11 @@ class Family:
     """One generation of GPUs.
 
     Attributes:
-        title: what people call it.
+        title: the name that people use.
         vendor: "radeon", "intel" or "nvidia": also the name of the group of its families.
-        library: the driver that compiles for it: of Vulkan, or NVRTC.
-        names: every name that a Mesa may have for it; the first that the driver takes is used.
-        null_device: what a driver is told of a GPU that is not there, in the words of null_i915.c.
+        library: the driver that compiles for it: a Vulkan driver, or NVRTC.
+        names: every name that a version of Mesa may have for it; the first that the driver accepts is used.
+        null_device: what a driver is told about a GPU that is not present, in the format of null_i915.c.
         stages: the kinds of shaders that are counted.
     """
 

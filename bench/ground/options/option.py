@@ -22,14 +22,14 @@ from .words import Names, names, typed
 
 @dataclass(frozen=True)
 class Option:
-    """What an option is called and what is said of it. Its kind and default stand at the field that has it.
+    """The name and the help of an option. Its type and default are at the field that has it.
 
     Attributes:
-        flag: as typed: "--count"; "--unpack/--no-unpack" for one that may be denied; without dashes an argument.
+        flag: as typed: "--count"; "--unpack/--no-unpack" if it can be negated; without dashes for an argument.
         help: a sentence.
         files: whether its words may be files.
         in_run: whether `run` takes it too, for every table that has an option of this name in `run`.
-        letter: a short way to type it: "-D".
+        letter: a short form: "-D".
         repeats: whether a name that is given twice counts twice.
     """
 
@@ -127,13 +127,13 @@ class Options:
 
 @dataclass(frozen=True, kw_only=True)
 class Sources(Options):
-    """How users' files of encodings are read; comma-separated.
+    """Options for reading users' files of encodings; comma-separated.
 
     Attributes:
         define: macros.
         prelude: files that are put in front.
         include: folders in which includes are searched.
-        language: what the files are written in, whatever their names end in.
+        language: the language of the files, whatever their names end in.
     """
 
     define: Annotated[
@@ -154,20 +154,20 @@ class Sources(Options):
 
 @dataclass(frozen=True, kw_only=True)
 class Reading(Options):
-    """How files of normals are read.
+    """Options for reading files of normals.
 
     Attributes:
-        channels: a layer, or three channels by name; None for what looks like normals.
-        unpack: whether [0, 1] stands for [-1, 1]; None: in files of whole numbers, which have nothing else.
-        curve: one of captures.CURVES: what was done to the components before they were stored.
-        normalise: whether any length will do.
-        space: of the frame, one of captures.SPACES.
+        channels: a layer, or three channels by name; None for those that look like normals.
+        unpack: whether [0, 1] stands for [-1, 1]; None: only in files of integers, which have nothing else.
+        curve: the curve that was applied to the components before they were stored, one of captures.CURVES.
+        normalise: whether any length is accepted.
+        space: the space of the frame, one of captures.SPACES.
         code_space: the space that its normals are encoded in, one of captures.CODE_SPACES.
         view_matrix: world to view space, 9 or 16 numbers row by row or a text file of them; for world space.
-        mask: a file or a channel, 0 where there is background; None for normals of no length.
+        mask: a file or a channel that is 0 on the background; None if normals of length 0 mark it.
         nan_share: the share of normals that may be NaN or infinite; these are masked and counted.
-        fov: vertical, in degrees, of the camera; None for parallel rays.
-        size: of the picture of a mesh, WxH.
+        fov: the camera's vertical field of view in degrees; None for parallel rays.
+        size: the size of a mesh's image, WxH.
     """
 
     channels: Annotated[

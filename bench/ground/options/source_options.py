@@ -19,10 +19,10 @@ NO_FILE = "--{} is of users' shader files, and none is named; a layout has it in
 
 
 def in_names(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Values of options by name, those of Sources in the names of the files instead.
+    """Return option values by name, with the values of Sources moved into the names of the files.
 
     Raises:
-        UsageError: there is no such file, or a value cannot be.
+        UsageError: no file is named, or a value is invalid.
     """
     given = {field.name: value for field in fields(Sources) if (value := values.get(field.name))}
     settings = {

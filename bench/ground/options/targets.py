@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 
 def check_scale(scale: float) -> None:
-    """Raises UsageError for what is not a share of a size."""
+    """Raise UsageError for a scale that is not from 0.05 to 1."""
     if not 0.05 <= scale <= 1:
         raise UsageError(f"--scale {scale}: a scale is 0.05 to 1")
 
@@ -43,7 +43,7 @@ def checked_target(size: str, samples: int, frames: int, device: Device) -> tupl
 
 
 def _check_budget(size: tuple[int, int], samples: int) -> None:
-    """Raises UsageError where frames of this size, with all their samples, are too large to be held."""
+    """Raise UsageError if frames of this size, with all their samples, are too large to store."""
     if math.prod(size) * samples > MAX_SAMPLES:
         raise UsageError(
             f"--size {size[0]}x{size[1]}: with samples and frames {math.prod(size) * samples} in all; "
@@ -52,7 +52,7 @@ def _check_budget(size: tuple[int, int], samples: int) -> None:
 
 
 class Fitted(Protocol):
-    """What may not fit the storage that it is asked for in."""
+    """A codec that may not fit the storage that it is asked for in."""
 
     @property
     def name(self) -> str: ...
@@ -71,7 +71,7 @@ def that_fit(codecs: Iterable[F]) -> list[F]:
 
 
 class Noisy(Protocol):
-    """What may be rounded with noise."""
+    """A codec that may be rounded with noise."""
 
     @property
     def name(self) -> str: ...
@@ -97,7 +97,7 @@ def without_noise(codecs: Iterable[N], reason: str) -> list[N]:
 
 
 def what_is_left(made: list[T], complaints: list[str]) -> list[T]:
-    """What could be made; the rest is named on standard error. Raises UsageError where nothing is left."""
+    """Return what could be made; report the rest on standard error. Raises UsageError if nothing is left."""
     reasons = list(dict.fromkeys(complaints))
     if not made:
         raise UsageError(reasons[0] if reasons else "nothing to measure")

@@ -27,8 +27,8 @@ def names(text: str, is_whole: Callable[[str], bool] = lambda _: False, repeats:
     """Split comma-separated names: the only place where such a text is split.
 
     Args:
-        is_whole: whether several that commas separate are one name, such as that of a file.
-        repeats: whether a name that is there twice counts twice.
+        is_whole: whether a text with commas is one name, such as a file's.
+        repeats: whether a name that occurs twice counts twice.
     """
     parts, words = text.split(","), list[str]()
     while parts:

@@ -1,1 +1,1 @@
-"""What is written: rows, files, messages, progress, the journal and the cache."""
+"""Everything that is written: rows, files, messages, progress, the journal and the cache."""

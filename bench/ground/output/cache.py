@@ -1,7 +1,7 @@
-"""What was computed once and holds for good, kept in the user's cache folder: one file for each key.
+"""Results that are computed once and stay valid, kept in the user's cache folder: one file for each key.
 
-Some of it is machine code that this process loads, and all of it decides figures. So nothing is read that another user
-may have written.
+Some of them are machine code that this process loads, and all of them determine figures. So nothing is read that
+another user may have written.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def is_off() -> bool:
 
 
 def folder() -> Path:
-    """Where the cache lies: under XDG_CACHE_HOME, or where this system has caches."""
+    """Return the cache folder: under XDG_CACHE_HOME, or where this system has caches."""
     home = os.environ.get("XDG_CACHE_HOME", "")
     # The XDG specification has relative paths ignored.
     return (Path(home) if Path(home).is_absolute() else cache_home()) / "normalbench"
@@ -68,7 +68,8 @@ def make_folder(path: Path) -> None:
 
 
 def _close(path: Path) -> None:
-    """Raises PermissionError where the folder is another user's: not even root uses what others own."""
+    """Close a folder to other users and remove their entries. Raises PermissionError if the folder is another user's:
+    not even root uses what others own."""
     if not is_own(path.stat()):
         raise PermissionError(EACCES, "another user's folder", str(path))
     path.chmod(PRIVATE)
@@ -78,7 +79,7 @@ def _close(path: Path) -> None:
 
 
 def require_folder() -> None:
-    """Raises MissingError where nothing can be kept."""
+    """Raise MissingError if nothing can be kept."""
     if is_off():
         raise MissingError(f"{OFF} is set")
     try:
@@ -97,7 +98,7 @@ def keep_only_files(path: Path) -> None:
 
 
 def is_private(path: Path) -> bool:
-    """Whether there is a file, which nobody but this user can have written or put there."""
+    """Whether a file exists that nobody but this user can have written or put there."""
     above = [parent for parent in path.parents if parent.is_relative_to(folder())]
     try:
         status = path.lstat()
@@ -118,7 +119,7 @@ def loadable(path: Path) -> Path | None:
 
 
 def keeps_code() -> bool:
-    """Whether code that is to be loaded can lie in the cache: nobody else can put another folder in its place.
+    """Whether the cache may hold code to be loaded: nobody else can put another folder in its place.
 
     The cache itself is closed to others when something is put into it.
     """
@@ -130,15 +131,15 @@ def keeps_code() -> bool:
 
 @functools.cache
 def folder_of_this_process() -> Path:
-    """For what the cache cannot take; it goes with the process."""
+    """Return a folder for what the cache cannot take; it is deleted when the process ends."""
     path = tempfile.mkdtemp(prefix="normalbench-")
     atexit.register(shutil.rmtree, path, ignore_errors=True)
     return Path(path)
 
 
 def folder_to_execute_from() -> Path:
-    """The cache, or a folder of this process where the cache lies on a file system that nothing is executed from, or
-    in a folder that others can write into.
+    """Return the cache, or a folder of this process if the cache is on a file system that forbids execution or in a
+    folder that others can write to.
 
     Raises:
         OSError: the cache cannot be made, or it is another user's.
@@ -157,7 +158,7 @@ def key_of(*parts: str | bytes) -> str:
 
 
 def read(key: str) -> dict[str, Any] | None:
-    """The value of a key, or None where there is none, or it is not what was written."""
+    """Return the value of a key; None if it is missing or is not what was written."""
     if is_off():
         return None
     try:
@@ -199,7 +200,7 @@ def _digest(value: Any) -> str:
 
 
 def write(key: str, value: dict[str, Any]) -> None:
-    """Keep a value; a folder that cannot be written is no error."""
+    """Keep a value; a folder that cannot be written to is not an error."""
     if not is_off():
         with suppress(OSError):
             put(_path(key), json.dumps({"key": key, "digest": _digest(value), "value": value}).encode())

@@ -1,4 +1,4 @@
-"""What can be wrong with a command, and the exit status that says so."""
+"""The errors of a command, and the exit status of each."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LONGEST = 1500
 
 
 def names_by_reason(left_out: Iterable[tuple[str, str | None]]) -> dict[str, list[str]]:
-    """For each reason the names of what is left out for it."""
+    """Return, for each reason, the names that are left out because of it."""
     reasons: dict[str, list[str]] = {}
     for name, why in left_out:
         reasons.setdefault(str(why), []).append(name)
@@ -44,7 +44,7 @@ def leave_out(line: str) -> None:
 
 @contextmanager
 def noting_what_is_left_out() -> Iterator[list[str]]:
-    """The lines about what is left out meanwhile, which are said at its end; not where it is refused, in one line."""
+    """Collect the lines about what is left out, and print them at the end, unless an error is raised before."""
     lines: list[str] = []
     token = _noted.set(lines)
     try:
@@ -70,9 +70,9 @@ class SeveralEncodersError(UsageError):
     """A file has several encoders.
 
     Attributes:
-        pairs: the names of each and its decoder, ENCODE:DECODE.
-        alone: the file with its only function that is one by its name, translated; None where there is none.
-        failing: the names of pairs that do not undo themselves.
+        pairs: the names of each encoder and its decoder, ENCODE:DECODE.
+        alone: the file with its only function that is an encoder by its name, translated; otherwise None.
+        failing: the names of pairs that do not round-trip.
     """
 
     def __init__(self, said: str, pairs: list[str], alone: Any = None, failing: Sequence[str] = ()):
@@ -94,7 +94,7 @@ _heard: list[list[tuple[bool, str]]] = []
 
 @contextmanager
 def hearing() -> Iterator[list[tuple[bool, str]]]:
-    """Give what is said meanwhile, in its order: whether it went to standard error, and the text."""
+    """Yield the messages that are printed meanwhile, in order: whether each went to standard error, and its text."""
     _heard.append([])
     try:
         yield _heard[-1]
@@ -103,7 +103,7 @@ def hearing() -> Iterator[list[tuple[bool, str]]]:
 
 
 def hear(is_error: bool, text: str) -> None:
-    """Note what is said, where somebody listens."""
+    """Record a message for everybody who listens."""
     for listener in _heard:
         listener.append((is_error, text))
 
@@ -130,7 +130,7 @@ def _cut(number: re.Match[str]) -> str:
 
 
 def tell_together(first: str, lines: Iterable[str]) -> None:
-    """A line to standard error, and indented ones that belong to it; all of them, however often they were said."""
+    """Print a line to standard error, with indented lines that belong to it, even if they were printed before."""
     from ....reports.tables import visible
 
     for index, line in enumerate((first, *lines)):

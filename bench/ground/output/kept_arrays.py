@@ -16,10 +16,10 @@ Arrays = Mapping[str, np.ndarray]
 
 
 def kept_arrays(key: str, make: Callable[[], Arrays]) -> Arrays:
-    """The arrays of a key, or what is made now and kept. A folder that cannot be written is no error.
+    """Return the arrays of a key, or make and keep them now. A folder that cannot be written to is not an error.
 
     Args:
-        key: lower-case hexadecimal digits; it differs where the arrays would.
+        key: lower-case hexadecimal digits; it differs if the arrays would.
     """
     path = cache.folder() / "arrays" / f"{key}.npz"
     arrays = None if cache.is_off() else _read(path)
@@ -32,7 +32,7 @@ def kept_arrays(key: str, make: Callable[[], Arrays]) -> Arrays:
 
 
 def _read(path: Path) -> Arrays | None:
-    """None where there is no file, another user may have written it, or it is damaged: NPZ has a checksum."""
+    """Read the arrays of a file; None if it is missing, another user may have written it, or its checksum is wrong."""
     if not cache.is_private(path):
         return None
     try:

@@ -29,10 +29,10 @@ ending: list[BaseException] = []
 
 
 class Bar:
-    """A bar of time on standard error; none where that is no terminal.
+    """A progress bar on standard error; not shown if standard error is not a terminal.
 
     Args:
-        expected: by table its steps and how many seconds each is expected to take.
+        expected: for each table, its number of steps and the seconds that each is expected to take.
     """
 
     def __init__(self, bar: Any, expected: Mapping[str, tuple[int, float]]):
@@ -103,7 +103,7 @@ def _speak_until(ended: Event) -> None:
 
 @contextmanager
 def spoken() -> Iterator[None]:
-    """Says how far a run is, at least every ten seconds, where standard error is no terminal, such as a log of CI."""
+    """Report the progress of a run at least every ten seconds if standard error is not a terminal, as in CI logs."""
     ended = Event()
     speaker = Thread(target=_speak_until, args=(ended,), daemon=True)
     if not (os.environ.get(OFF) or sys.stderr.isatty()):

@@ -1,4 +1,4 @@
-"""Libraries in C that print what nobody asked for."""
+"""Suppression of unwanted output from C libraries."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..machine.systems.files import c_function
 
 @contextmanager
 def without_their_output() -> Iterator[None]:
-    """What C code writes to standard output meanwhile goes nowhere; what Python writes comes before it."""
+    """Discard what C code writes to standard output meanwhile; what Python wrote before is flushed first."""
     sys.stdout.flush()
     kept = os.dup(1)
     try:

@@ -1,4 +1,4 @@
-"""Which files may be replaced: those that normalbench wrote, unless the command reads them."""
+"""Files that may be replaced: those that normalbench wrote, unless the command reads them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ reads: list[Callable[[], Iterable[Path]]] = []
 
 
 def check_replaceable(path: Path, mark: bytes = b"") -> None:
-    """Raises UsageError where a file that is there is an input of the command, or has not the mark of what replaces it.
+    """Raise UsageError if an existing file is an input of the command, or lacks the mark of what replaces it.
 
     Raises OSError as well.
 
@@ -49,8 +49,8 @@ def check_replaceable(path: Path, mark: bytes = b"") -> None:
 
 
 def check_alike(path: Path, new: Path) -> None:
-    """Raises UsageError where a file must not be replaced by a new one: see `check_replaceable`. Without a mark, two
-    files are alike in their first bytes, and two texts in their first line. Raises OSError as well."""
+    """Raise UsageError if a file must not be replaced by a new one: see `check_replaceable`. Without a mark, two files
+    are alike if their first bytes match, and two texts if their first lines match. Raises OSError as well."""
     old, ends = _ends(path), _ends(new)
     mark = next((mark for mark in MARKS if mark in ends), b"")
     check_replaceable(path, mark)
@@ -59,7 +59,7 @@ def check_alike(path: Path, new: Path) -> None:
 
 
 def not_ours(path: Path, what: str) -> UsageError:
-    """What is said of a file that normalbench did not write."""
+    """Return the error for a file that normalbench did not write."""
     return UsageError(f"{path}: it is not a {what} of normalbench; name another file or delete it")
 
 
@@ -69,7 +69,7 @@ def is_empty(data: bytes) -> bool:
 
 
 def _ends(path: Path) -> bytes:
-    """Both ends of a file: matplotlib writes what made a PDF at its end."""
+    """Read both ends of a file: matplotlib writes at the end of a PDF what made it."""
     with path.open("rb") as file:
         first = file.read(MOST)
         file.seek(max(file.seek(0, 2) - MOST, len(first)))
@@ -77,7 +77,7 @@ def _ends(path: Path) -> bytes:
 
 
 def _beginning(data: bytes) -> bytes:
-    """What two files of one kind have in common: their first bytes, of JSON its bracket, of a text its first line."""
+    """Return what files of one kind share: their first bytes, for JSON the bracket, for a text the first line."""
     if b"\0" in data:
         return data[:4]
     return data[:1] if data[:1] in (b"{", b"[") else data.partition(b"\n")[0]

@@ -1,4 +1,4 @@
-"""What computes: rows of other sources may be others."""
+"""The source files that compute rows: rows from other sources may differ."""
 
 from __future__ import annotations
 

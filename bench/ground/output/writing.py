@@ -26,11 +26,11 @@ FILE_SUFFIXES = (*NOT_PAGES, ".jpg", ".jpeg", ".exr", ".html", ".txt")
 
 
 def check_writable(path: Path, makes_folder: bool = False, mark: bytes = b"") -> None:
-    """Raises UsageError where a file of this name cannot be written; asked before anything is measured.
+    """Raise UsageError if a file of this name cannot be written; called before anything is measured.
 
     Args:
-        makes_folder: whether a folder that is not there will be made.
-        mark: what a file that is there must have, see `check_replaceable`.
+        makes_folder: whether a missing folder will be made.
+        mark: the mark that an existing file must have, see `check_replaceable`.
     """
     try:
         if path.is_dir():
@@ -50,19 +50,19 @@ def check_writable(path: Path, makes_folder: bool = False, mark: bytes = b"") ->
 
 
 def _check_own(path: Path) -> None:
-    """Raises UsageError where a file is one of a run's own, which nothing but the run writes."""
+    """Raise UsageError if a file is one of a run's own, which only the run writes."""
     is_own = path.suffix in OWN_SUFFIXES and (path.parent / RUN).exists() and path.exists()
     if is_own:
         raise UsageError(f"{path} belongs to the run in its folder; name another file")
 
 
 def partial_of(path: Path) -> Path:
-    """What a file or folder is called while it is being written; no two processes share it."""
+    """Return the name of a file or folder while it is being written; no two processes share it."""
     return path.with_name(f".{path.name}.{os.getpid()}.partial")
 
 
 def check_folder(folder: Path) -> None:
-    """Raises UsageError where no file can be made in a folder, or the folder cannot be made. Leaves nothing behind."""
+    """Raise UsageError if no file can be made in a folder, or the folder cannot be made. Leaves nothing behind."""
     there = folder
     while not there.exists() and there != there.parent:
         if there.is_symlink():
@@ -100,15 +100,15 @@ def clear_away(path: Path) -> None:
 
 @contextmanager
 def whole_file(path: Path, is_checked: bool = False) -> Iterator[Path]:
-    """A name to write to that becomes `path` when all is well and vanishes otherwise.
+    """Yield a path to write to, which becomes `path` if all goes well and vanishes otherwise.
 
     Missing folders are made. A link's target is written, not the link.
 
     Args:
-        is_checked: whether the caller knows that a file that is there may be replaced.
+        is_checked: whether the caller knows that an existing file may be replaced.
 
     Raises:
-        UsageError: it cannot be written, or another kind of file has its name.
+        UsageError: the file cannot be written, or another kind of file has its name.
     """
     path = target_of(path)
     partial = path if is_special(path) else partial_of(path)
@@ -132,20 +132,20 @@ def whole_file(path: Path, is_checked: bool = False) -> Iterator[Path]:
 
 
 def check_page(path: Path | None) -> None:
-    """Raises UsageError where the name of a page is that of another kind of file; None will do."""
+    """Raise UsageError if a page has the name of another kind of file; None is allowed."""
     if path and path.suffix.lower() in NOT_PAGES:
         raise UsageError(f"{path}: the page is HTML; name it {path.with_suffix('.html')}")
 
 
 def check_is_folder(path: Path | None, what: str) -> None:
-    """Raises UsageError where a folder is called like a file, or a file has its name; None will do."""
+    """Raise UsageError if a folder is named like a file, or a file has its name; None is allowed."""
     if path and not path.is_dir() and (path.is_file() or path.suffix.lower() in FILE_SUFFIXES):
         free = path.with_suffix("") if path.suffix else path.with_name(f"{path.name}-folder")
         raise UsageError(f"{path}: {what} a folder; name one, such as {free.name or 'pictures'}")
 
 
 def check_plot(path: Path | None) -> None:
-    """Raises UsageError or PlotError where a plot of this name cannot be written; None will do."""
+    """Raise UsageError or PlotError if a plot of this name cannot be written; None is allowed."""
     if path:
         # A folder is said to be one, whatever its name ends in.
         check_writable(path, mark=PLOTS.get(path.suffix.lower(), b""))
@@ -159,9 +159,9 @@ def save_plot(path: Path, figure: Any) -> None:
 
 
 def say(text: str) -> None:
-    """Text to standard output, which leaves the terminal as it is whatever names of files hold.
+    """Write text to standard output; names of files in it cannot change the state of the terminal.
 
-    A reader that has seen enough and gone is no error.
+    It is not an error if the program at the other end has closed the pipe.
     """
     hear(False, text)
     try:
@@ -174,7 +174,7 @@ def say(text: str) -> None:
 
 
 def abandon_output() -> None:
-    """Whatever is still to come goes nowhere; Python flushes once more at exit, and would complain."""
+    """Discard all further output; Python flushes once more at exit, and would report an error."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -194,7 +194,7 @@ def write_text(make: Callable[[], str], output: Path | None, is_checked: bool = 
 
 
 def files_of(folder: Path) -> dict[str, Path]:
-    """A folder's own files by name; none where there is no folder."""
+    """Return a folder's own files by name; empty if there is no folder."""
     try:
         return {path.name: path for path in folder.iterdir() if path.is_file() and not path.is_symlink()}
     except OSError:

@@ -1,4 +1,4 @@
-"""How an encoding's axes may lie in a scene, and how exact a mean over such orientations is."""
+"""The orientations of an encoding's axes in a scene, and the accuracy of a mean over them."""
 
 from __future__ import annotations
 

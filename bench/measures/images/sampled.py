@@ -32,8 +32,9 @@ class Sample:
     Attributes:
         name: the class.
         columns: which of the image's samples they are.
-        share: of the frame's pixels that are of a surface, those of this class.
-        weights: of each pixel, so that the mean of weighted figures is that of the class; float64 of shape (count,).
+        share: the share of this class in the frame's pixels that show a surface.
+        weights: the weight of each pixel, so that the mean of weighted figures is that of the class; float64 of
+            shape (count,).
     """
 
     name: str
@@ -68,7 +69,7 @@ class SampledImage:
 
     def errors(self, trip: Trip, turns: Sequence[Turn]) -> Float[np.ndarray, "turns count"]:
         """Return the squared error of each displayed pixel in each orientation of an encoding, the mean of its
-        channels; 1 where it is no number."""
+        channels; a channel that is not a number counts as 1."""
         parts = (turns[first : first + ROWS] for first in range(0, len(turns), ROWS))
         return np.concatenate([self._errors(trip, part) for part in parts])
 
@@ -78,10 +79,11 @@ class SampledImage:
         return np.mean(np.where(np.isfinite(shown), shown - self._exact, 1.0) ** 2, axis=-1)
 
     def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
-        """Return the mean squared error of each class, and as "" that of the frame, which has classes by their share.
+        """Return the mean squared error of each class, and as "" that of the frame, in which classes count by their
+        share.
 
         Args:
-            domain: pixels whose normals lie outside do not count; a class without others is left out.
+            domain: pixels whose normals are outside do not count; a class without others is left out.
         """
         return self._means(self.errors(trip, turns), in_domain(self.normals, self.positions, domain))
 
@@ -101,8 +103,8 @@ class SampledImage:
 
 
 def _changes(whole: WholeImage, seed: int) -> np.ndarray:
-    """How much each displayed pixel changes where normals are tilted a little, at random: the mean square, (height,
-    width)."""
+    """Return how much each displayed pixel changes if normals are tilted a little, at random: the mean square,
+    (height, width)."""
     random = np.random.default_rng([seed, 3])
 
     def tilted(normals: np.ndarray, _: np.ndarray) -> np.ndarray:

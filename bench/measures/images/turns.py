@@ -1,7 +1,7 @@
-"""What an encoding's orientation does to image errors: the best pole, the mean over yaws, and how exact it is.
+"""The effect of an encoding's orientation on image errors: the best pole, the mean over yaws, and its accuracy.
 
-Mean squared errors of displayed images, by image, by pole, of each yaw in its order: {"studio": {"x": [...], ...}}. An
-encoding in view space has one orientation, whose pole is "".
+Mean squared errors of displayed images, by image, by pole, of each yaw in its order: {"studio": {"x": [...], ...}}.
+An encoding in view space has one orientation, whose pole is "".
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def two_worst_db(errors: Sequence[float]) -> float:
 def gap_db(errors: Errors, other: Errors) -> tuple[float, float]:
     """Return how far the lowest PSNR of an encoding is above that of another one, and the standard error of that.
 
-    Each is at its best pole, over the yaws that both have. One orientation has no error.
+    Each encoding is at its best pole, over the yaws that both have. The error of a single orientation is 0.
     """
     poles = best_pole(errors), best_pole(other)
     yaws = range(min(count_of(errors, poles[0]), count_of(other, poles[1])))

@@ -1,4 +1,4 @@
-"""Whole frames of a scene by exact normals and by those of encodings; its surfaces are drawn once."""
+"""Whole frames of a scene with exact normals and with those of encodings; its surfaces are drawn once."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ class WholeImage:
     """A scene at one moment.
 
     Attributes:
-        scene: that moment.
+        scene: the scene at that moment.
         display: how it is shown.
         exact: the displayed image of exact normals, (height, width, 3), row 0 on top.
-        surfaces: as `Rendering.surfaces` gives them of layout fp32.
-        classes: of each pixel the number of its class among AXIS_ALIGNED and those of UP_TO; -1 where no surface is
-            seen, or one through another; (height, width).
+        surfaces: as `Rendering.surfaces` returns them for layout fp32.
+        classes: for each pixel the number of its class among AXIS_ALIGNED and those of UP_TO; -1 where no surface
+            is visible, or one is visible through another; (height, width).
         places: view positions, float32 of shape (height, width, 3).
-        to_world: view space to the world's axes, (3, 3).
+        to_world: the matrix from view space to the world's axes, (3, 3).
     """
 
     def __init__(self, scene: Scene, maker: SceneMaker, made: Rendering):
@@ -67,7 +67,7 @@ class WholeImage:
 
     @cached_property
     def covered(self) -> Bool[np.ndarray, "height width"]:
-        """Where a surface is."""
+        """A mask of the pixels that show a surface."""
         return self._covered.pixels[::-1]
 
     def _all_classes(self) -> np.ndarray:
@@ -95,7 +95,7 @@ class WholeImage:
         return self.display.image(self._made.lit(self._covered.with_normals(self.surfaces, normals)))
 
     def held_by(self, domain: str) -> Bool[np.ndarray, "height width"]:
-        """Return where a surface's normal lies in a domain."""
+        """Return the mask of covered pixels whose normal is in a domain."""
         return self.covered & in_domain(self.surfaces[0][..., :3], self.places, domain)
 
     def view_angles(self) -> Float[np.ndarray, " covered"]:
@@ -103,7 +103,7 @@ class WholeImage:
         return view_angles(self.surfaces[0][self.covered, :3], self.places[self.covered])
 
     def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
-        """Return the mean squared error of each class, and as "" that of the frame; as `SampledImage.by_class`."""
+        """Return the mean squared error of each class and, under "", that of the frame; see `SampledImage.by_class`."""
         held, rows = self.held_by(domain), []
         numbers = {"": held} | {name: held & (self.classes == i) for i, name in enumerate((AXIS_ALIGNED, *UP_TO))}
         for turn in turns:

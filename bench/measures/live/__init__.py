@@ -1,1 +1,1 @@
-"""What a page's laboratory is given of a run: each codec's code in GLSL ES."""
+"""The data of a run for its page's laboratory: each codec's functions in GLSL ES."""

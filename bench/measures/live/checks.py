@@ -1,9 +1,10 @@
-"""What a codec's codes must be, in few bytes: checksums that tell which number of which normal is one step away.
+"""Checksums of a codec's expected codes, in few bytes: they tell which number of which normal is one step away.
 
-Codes of 2^16 normals would be hundreds of kilobytes for each codec. For each group of 128 normals the page holds one
-word: the sum of weight(normal, number) code(normal, number), modulo 2^32. A browser takes the sum of its own codes from
-it. If the difference is 0, all codes are equal. If it is plus or minus one weight, this number of this normal is one
-step away. Codes are counted in the order of the numbers that they stand for, so that a step of a float is one as well.
+The codes of 2^16 normals would be hundreds of kilobytes for each codec. Instead, the page holds one word for each
+group of 128 normals: the sum of weight(normal, number) code(normal, number), modulo 2^32. A browser subtracts the
+sum of its own codes from it. If the difference is 0, all codes are equal. If it is plus or minus one weight, this
+number of this normal is one step away. Codes are integers in the order of the numbers that they stand for, so one
+step of a float is also a difference of 1.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ DOMAINS = ("sphere", "hemisphere", "view")
 
 
 def common() -> dict[str, Any]:
-    """What browsers need to make the normals, and the weights of checksums."""
+    """Return the data from which browsers make the normals, and the weights of checksums."""
     given = normals.hard()
     starts = {"normals": normals.NORMALS, "views": normals.VIEWS, "weights": normals.WEIGHTS, "sums": normals.SUMS}
     return {
@@ -64,16 +65,16 @@ def is_whole(found: Mapping[str, Any], domain: str, size: int) -> bool:
 
 
 def checks(codec: Codec) -> dict[str, Any]:
-    """What a codec's codes of its domain's normals must be; kept in the cache.
+    """Return checksums of the expected codes of a codec for the normals of its domain; they are cached.
 
     Returns:
-        `normals`: the checksum of the normals. `groups`: one of each group of codes; `numbers`: one of each number of
-        the codes; `sample`: codes in the order of their numbers, of every STRIDE-th normal; each as base64 of integers
-        of 32 bits. `mean_deg`, `max_deg`: of the angle between the normals and what these codes are decoded to, in
-        degrees.
+        `normals`: the checksum of the normals. `groups`: a checksum for each group of codes; `numbers`: a checksum
+        for each number of the codes; `sample`: the codes of every STRIDE-th normal, in the order of the numbers
+        that they stand for; all three as base64 of 32-bit integers. `mean_deg`, `max_deg`: the mean and the largest
+        angle between the normals and their decoded codes, in degrees.
 
     Raises:
-        ShaderError, NoDeviceError: of an encoding without a Python twin, which OpenGL is asked about.
+        ShaderError, NoDeviceError: the encoding has no Python twin, and OpenGL cannot run it.
         OSError: the encoding's files cannot be read.
     """
     key = kept.key_of("live", codec.name, codec.encoding.fingerprint, repr(codec.storage), sources())

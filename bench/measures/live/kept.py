@@ -30,7 +30,7 @@ Degrees = Annotated[float, Field(ge=0, le=180)]
 
 @with_config(STRICT)
 class Channel(TypedDict):
-    """Where a number of a code lies in its texel."""
+    """The position of a number of a code in its texel."""
 
     kind: Literal["unorm", "snorm", "float"]
     bits: Annotated[int, Field(ge=1, le=32)]
@@ -50,7 +50,7 @@ class LookUpRecord(TypedDict):
 
 @with_config(STRICT)
 class Checks(TypedDict):
-    """What the codec's codes must be, as `checks.checks` makes it."""
+    """Checksums of a codec's expected codes, as `checks.checks` returns them."""
 
     normals: Number
     groups: Base64
@@ -88,7 +88,7 @@ KEPT: TypeAdapter[Any] = TypeAdapter(Kept)
 
 
 def file_name(codec: Codec) -> str:
-    """What a codec's file is called."""
+    """Return the name of a codec's file."""
     return codec.name.replace("/", "-").replace(" ", "-").replace(":", "-") + ".json"
 
 
@@ -105,7 +105,7 @@ def write_live(codecs: Iterable[Codec], folder: Path) -> None:
 
 
 def _checks_or_none(codec: Codec) -> Record | None:
-    """What its codes must be; None where the emulation cannot say it."""
+    """Return the checksums of a codec's expected codes; None if the emulation cannot compute them."""
     try:
         return checks.checks(codec)
     except (NoDeviceError, ShaderError):

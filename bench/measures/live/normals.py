@@ -1,7 +1,7 @@
-"""The normals that browsers encode, bit for bit those of live/measure.js: hard ones, then random ones from a hash.
+"""The normals that browsers encode, bit for bit those of live/measure.js: hard normals, then random normals.
 
-Random ones come from integers by a hash, and by sums, products and roots of float32, which every machine rounds alike.
-Hard ones travel inside the page, as their bits.
+Random normals are made from integers by a hash, and by sums, products and roots of float32, which every machine
+rounds alike. Hard normals are stored in the page, as their bits.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def _at_length_1(vectors: np.ndarray) -> np.ndarray:
 
 
 def _fold_normals() -> np.ndarray:
-    """Normals on the planes where maps fold, x = 0 and |x| = |y| for every pair of axes, and next to those of zeros."""
+    """Return normals on the planes where maps fold, x = 0 and |x| = |y| for every pair of axes, and next to x = 0."""
     points, parts = _random_normals(np.arange(ON_LINES, dtype=np.uint32)).astype(np.float64), []
     for axis, other in PAIRS:
         for value in BESIDE:
@@ -88,7 +88,7 @@ def _neighbour_normals(n: np.ndarray) -> np.ndarray:
 
 @cache
 def hard() -> np.ndarray:
-    """Axes with both zeros and what lies next to them, diagonals and their neighbours, and lines where maps fold:
+    """Return axes with both zeros and their neighbours, diagonals and their neighbours, and normals where maps fold:
     float32 of shape (count, 3)."""
     known = directions()[:-RANDOM]
     diagonals = known[-26:]

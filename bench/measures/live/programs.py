@@ -1,4 +1,4 @@
-"""A codec as a browser runs it: its functions in GLSL ES 3.00, and where its numbers lie in a texel."""
+"""A codec as a browser runs it: its functions in GLSL ES 3.00, and the positions of its numbers in a texel."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _file_text(own: Path) -> str:
 
 
 def _code_record(codec: Codec, code: Code) -> Record:
-    """Where the numbers of a code lie."""
+    """Return the storage of a code, and the positions of its numbers."""
     storage, channels = codec.storage, Channels(codec)
     return {
         "storage": storage.name,
@@ -107,11 +107,10 @@ def _table_record(table: np.ndarray) -> Record:
 
 
 def storage_functions(names: list[str]) -> list[Record]:
-    """What an encoder that is typed into a page can be stored by: functions of storages, for codes of two and three
-    numbers.
+    """Return functions of storages for an encoder that is typed into a page, for codes of two and three numbers.
 
     Args:
-        names: storages that the run has; unknown ones are left out. The usual ones are there as well.
+        names: storages of the run; unknown names are left out. The usual storages are always included.
     """
     chosen = [STORAGES[name] for name in dict.fromkeys((*USUAL, *names)) if name in STORAGES]
     return [program(codec) for storage in chosen for codec in _stand_ins(storage)]

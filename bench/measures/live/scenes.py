@@ -1,7 +1,7 @@
-"""The sets of normals of a run that are images, for the laboratory of its page: small ones, as a run keeps them.
+"""The sets of normals of a run that are images, for the laboratory of its page: small images, as stored in the run.
 
-A pixel's normal is kept as 12 bits in each of two numbers. It is turned first, by a rotation that has no axis in common
-with any encoding. So the normals that a page puts through a codec do not lie on the codec's own grid.
+A pixel's normal is stored in two numbers of 12 bits each. It is turned first, by a rotation that has no axis in
+common with any encoding. So the normals that a page puts through a codec are not on the codec's own grid.
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ def _slope(view: np.ndarray) -> np.ndarray:
 
 
 def read_scenes(folder: Path) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
-    """What a run keeps: names, pixels as uint8 of shape (height, width, 4), and slopes. Damaged files are left out.
+    """Yield a run's images: names, pixels as uint8 of shape (height, width, 4), and slopes. Skip damaged files.
 
-    A pixel's first 12 bits are the first number, the next 12 the second one; the fourth byte is 255 on a surface.
+    A pixel's first 12 bits are the first number, the next 12 the second; the fourth byte is 255 on a surface.
     """
     for name, path in sorted(files_of(folder).items()):
         if path.suffix != ".npz":
@@ -78,5 +78,5 @@ def _pixels(codes: np.ndarray, covered: np.ndarray) -> np.ndarray:
 
 
 def unpacking() -> Mapping[str, Any]:
-    """What a page needs to read the pixels again: levels, and the rows of the rotation back."""
+    """Return the data with which a page decodes the pixels: levels, and the rows of the inverse rotation."""
     return {"levels": LEVELS, "back": ROTATION.T.tolist()}

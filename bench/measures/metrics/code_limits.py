@@ -1,10 +1,10 @@
-"""The limit: how small the errors of N codes can be, whatever the codes.
+"""Lower bounds on the errors of N codes, whatever the codes.
 
-Of N points on a surface of area A the best any code can do, in radians of the angle between a uniform direction and its
-code: the mean square is at least 5 / (18 sqrt 3) A / N, that of regular hexagons (L. Fejes Toth's moment theorem), the
-mean at least a hexagon's, and the maximum at least what a covering of the whole sphere by N caps needs (Fejes Toth
-1943). Part of a sphere has no border to pay for here: it is held to the density, N 4 pi / A codes for all of it, which
-is asymptotic in N.
+For N points on a surface of area A, the bounds are in radians of the angle between a uniform direction and its
+code. The mean square is at least 5 / (18 sqrt 3) A / N, that of regular hexagons (L. Fejes Toth's moment theorem).
+The mean is at least a hexagon's, and the maximum at least that of a covering of the whole sphere by N caps (Fejes
+Toth 1943). The border of a part of the sphere is not counted: the bound uses its density, N 4 pi / A codes for the
+whole sphere, and is asymptotic in N.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ RESONANCE = 4
 
 @dataclass(frozen=True)
 class CodeLimit:
-    """The least mean, RMS and maximum of the angle, in degrees."""
+    """The smallest possible mean, RMS and maximum of the angle, in degrees."""
 
     mean_deg: float
     rms_deg: float
@@ -52,9 +52,10 @@ def code_limit(codes: int, area: float = SPHERE) -> CodeLimit:
 
 
 def covering_deg(codes: float) -> float:
-    """The least angle that `codes` (4 or more) equal caps need to cover the sphere, in degrees.
+    """Return the smallest angle that `codes` (4 or more) equal caps need to cover the sphere, in degrees.
 
-    arccos(cot(w) / sqrt 3) with w = pi/6 N / (N - 2); written by the sine of half the angle, which does not cancel.
+    The angle is arccos(cot(w) / sqrt 3) with w = pi/6 N / (N - 2); it is computed from the sine of half the angle,
+    which does not cancel.
     """
     excess = math.pi / (3 * (codes - 2))
     half_squared = math.sin(excess) / (math.sqrt(3) * math.sin(math.pi / 6 + excess))
@@ -77,8 +78,9 @@ def is_measurable(least: CodeLimit) -> bool:
 
 
 def broken(codes: int, area: float, s: Statistics) -> str:
-    """What a measurement over uniform directions says that so many codes cannot do, scatter apart; nothing where all is
-    well. Then the measure is wrong, or the set is not uniform."""
+    """Return which figure over uniform directions is impossible with this number of codes, allowing for sampling
+    noise; empty if all are possible. An impossible figure means that the measurement is wrong, or the set is not
+    uniform."""
     least = code_limit(codes, area)
     spared = 1 - SCATTER / math.sqrt(s.count)
     for what, figure, bound in (("RMS", s.angle_rms_deg, least.rms_deg), ("mean", s.angle_mean_deg, least.mean_deg)):

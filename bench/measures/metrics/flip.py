@@ -130,7 +130,7 @@ def _most() -> float:
 
 
 def _filtered(plane: Plane, terms: tuple[tuple[float, float], ...]) -> Plane:
-    """A plane as it is seen through a sum of Gaussians, each of which is separable."""
+    """Return a plane filtered by a sum of Gaussians, each of which is separable."""
     radius = math.ceil(3 * math.sqrt(WIDEST / (2 * math.pi**2)) * PIXELS_PER_DEGREE)
     degrees = np.arange(-radius, radius + 1) / PIXELS_PER_DEGREE
     gaussians = [np.exp(-((math.pi * degrees) ** 2) / b) for _, b in terms]

@@ -35,18 +35,18 @@ def bin_of(angle_deg: float) -> int:
 
 
 def lower_edge(number: int) -> float:
-    """The least angle of a bin; that of the first is 0."""
+    """Return the smallest angle of a bin; 0 for the first bin."""
     return float(np.uint32(number + FIRST_BIN << BIN_SHIFT).view(np.float32)) if number else 0.0
 
 
 def tally(bins: UInt[Array, "*shape"]) -> Int[Array, " bins"]:
-    """How many normals lie in each bin, int32 of shape (BINS + 1,). Integers: the order in which they are counted does
-    not matter."""
+    """Return the number of normals in each bin, int32 of shape (BINS + 1,). Integer counts do not depend on the order
+    in which normals are counted."""
     return jnp.zeros(BINS + 1, jnp.int32).at[bins.ravel()].add(1, mode="promise_in_bounds")
 
 
 def percentile(histogram: Int[np.ndarray, " bins"], largest: float, share: float) -> float:
-    """The value below which `share` of the counts lie, interpolated within its bin."""
+    """Return the value below which `share` of the counts fall, interpolated within its bin."""
     cumulative = np.cumsum(histogram[:BINS])
     rank = share * cumulative[-1]
     index = int(np.searchsorted(cumulative, rank))
@@ -56,7 +56,7 @@ def percentile(histogram: Int[np.ndarray, " bins"], largest: float, share: float
 
 
 def counts_by_angle(histogram: Int[np.ndarray, " bins"]) -> tuple[tuple[float, int], ...]:
-    """How many angles lie in each eighth of an octave that has any, by its lower edge; the first edge is 0."""
+    """Return the number of angles in each non-empty eighth of an octave, by its lower edge; the first edge is 0."""
     counts = histogram[:BINS].reshape(-1, BINS_TOGETHER).sum(axis=1)
     edges = ((np.arange(0, BINS, BINS_TOGETHER) + FIRST_BIN) << BIN_SHIFT).astype(np.uint32).view(np.float32)
     edges[0] = 0
@@ -64,7 +64,7 @@ def counts_by_angle(histogram: Int[np.ndarray, " bins"]) -> tuple[tuple[float, i
 
 
 def counts_below(histogram: Int[np.ndarray, " bins"]) -> tuple[tuple[float, int], ...]:
-    """How many angles are below each power of two of degrees, ascending."""
+    """Return the number of angles below each power of two of degrees, ascending."""
     octave = 2 ** (23 - BIN_SHIFT)
     below = np.cumsum(histogram[:BINS])[octave - 1 :: octave]
     first = np.log2(np.uint32(FIRST_BIN << BIN_SHIFT).view(np.float32))

@@ -1,4 +1,4 @@
-"""How far two rendered images are apart, as displayed."""
+"""The error of a rendered image against a reference, as displayed."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 def squared_error(image: Float[np.ndarray, "*shape 3"], reference: Float[np.ndarray, "*shape 3"]) -> tuple[float, int]:
-    """Mean squared error over every pixel and channel of two displayed images, or of some of their pixels, in [0, 1].
+    """Return the mean squared error of two displayed images, over all or some pixels and every channel, in [0, 1].
 
     Returns:
-        the error, and how many pixels are no number; each of those counts as 1 in every channel.
+        the error, and the number of pixels that are not finite; each of those counts as 1 in every channel.
     """
     finite = np.isfinite(image)
     # An image seldom has such a pixel, and looking at each one's three channels takes NumPy long.

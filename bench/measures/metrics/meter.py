@@ -1,9 +1,9 @@
-"""What is measured of a decoded normal, accumulated in a stream.
+"""Errors of decoded normals, accumulated in a stream.
 
-The angle between a and b is atan2(|a x b|, a . b). Written as a x (b - a) the cross product needs no more than float32:
-the difference of two close floats is exact, so the angle keeps six digits however small it is, where the arc cosine of
-a float32 dot product cannot tell angles below 0.02 degrees from zero. Sums are float64. Percentiles come from a
-histogram whose bins are 2^-10 of an octave wide, so they hold to 0.1 %.
+The angle between a and b is atan2(|a x b|, a . b). Float32 is enough if the cross product is written as
+a x (b - a): the difference of two close floats is exact, so the angle keeps six digits however small it is. The arc
+cosine of a float32 dot product cannot tell angles below 0.02 degrees from zero. Sums are float64. Percentiles come
+from a histogram whose bins are 2^-10 of an octave wide, so they are accurate to 0.1%.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ Load = Callable[[], Any]
 
 
 def idle() -> None:
-    """What is done at each chunk when nobody watches."""
+    """Do nothing: called for each chunk when nobody watches."""
 
 
 def angle_between(a: Vec3, b: Vec3) -> Float[Array, "*shape"]:
@@ -107,7 +107,8 @@ def _added(start: Num[Array, " lanes"], rows: Num[Array, "rows lanes"], of=_as_i
 
 
 def _traced_scan(chunk: Decoded) -> tuple[Float[Array, " figures"], Int[Array, " bins"], UInt[Array, " count"]]:
-    """Figures of one chunk, float64 in the order of `Figures`; how many normals lie in each bin; each normal's bin."""
+    """Return one chunk's figures, float64 in the order of `Figures`; the counts of normals by bin; and each normal's
+    bin."""
 
     def step(carry: Figures, block: Decoded):
         # The barrier makes XLA compute each number once, in one loop, before it is reduced several ways.
@@ -134,7 +135,7 @@ _scan = jax.jit(_traced_scan)
 
 
 def _worst(bins: UInt[np.ndarray, " count"], largest: float, n: Vec3, decoded: Vec3) -> Worst | None:
-    """The normal of a chunk with the largest angle, among those of the highest bin; None where none counts."""
+    """Return the normal of a chunk with the largest angle, among those of the highest bin; None if no normal counts."""
     indices = np.flatnonzero(bins == bin_of(largest))
     if not indices.size:
         return None
@@ -172,7 +173,7 @@ def _on_device(plane: Shaped[Array | np.ndarray, "*shape"]) -> Shaped[Array, "*s
 
 
 class Measures(Protocol):
-    """What measures chunks of normals."""
+    """An object that measures chunks of normals."""
 
     def decoded(self, block: Any) -> Vec3:
         """What a block is decoded as."""
@@ -202,14 +203,15 @@ class Once:
 
 
 class Meter:
-    """Measures what a decoder makes of normal sets; compiled once and used for every chunk.
+    """A meter of the errors of a decoder on sets of normals; compiled once and used for every chunk.
 
-    Two programs: the decoder's own, and the statistics', which is the same for all and takes longer to compile.
+    There are two programs: the decoder's own, and that of the statistics, which is the same for all decoders and
+    takes longer to compile.
 
     Args:
-        decode: a jitted function from a block to decoded normals. A block is a pytree of planes with the unit normals
-            `n`, which of them count, `covered`, and whatever else the decoder needs.
-        given: what it is called with besides, the same for every block.
+        decode: a jitted function from a block to decoded normals. A block is a pytree of planes with the unit
+            normals `n`, the mask `covered` of those that count, and whatever else the decoder needs.
+        given: its further arguments, the same for every block.
     """
 
     def __init__(self, decode: Callable[..., Vec3], given: Sequence[Any] = ()):
@@ -231,10 +233,10 @@ class Meter:
         return figures, histogram, _worst(bins, figures.largest, chunk.n, decoded)
 
     def total(self, loads: Iterable[Load], tick: Callable[[], None] = idle) -> ErrorTotal:
-        """What the chunks of a set, shared among the cores, add up to.
+        """Return the total over the chunks of a set, which are shared among the cores.
 
         Args:
-            loads: for each chunk a function that gives it. The iterable is run in the calling thread, which a GL
+            loads: for each chunk a function that returns it. The iterable is run in the calling thread, which a GL
                 context is bound to; the functions in worker threads.
             tick: called when a chunk is done.
         """
@@ -250,7 +252,7 @@ def measure_together(
     loads: Iterable[Load],
     tick: Callable[[int], None],
 ) -> list[ErrorTotal]:
-    """What each meter measures of one set, each chunk of which is made once; `tick` is told whose chunk is done.
+    """Measure one set with each meter, making each chunk once; `tick` gets the index of the meter that is done.
 
     Chunks are dealt to all devices that JAX has. The rest is as for `Meter.total`.
     """

@@ -1,4 +1,4 @@
-"""How far a method of ambient occlusion is from rays through the scene's own triangles."""
+"""The error of a method of ambient occlusion against rays through the scene's own triangles."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ HAIR = KINDS.index("hair")
 
 
 class OcclusionError(NamedTuple):
-    """A method's visibility less that of rays, over pixels.
+    """A method's visibility minus that of rays, over pixels.
 
     Attributes:
-        rms: its root mean square, without what the rays scatter by.
-        mean: its mean; above 0 where the method is too bright.
-        standard_error: of `rms`, from how many pixels and rays there were.
-        least: the smallest difference that the rays can tell from none: the RMS of their own standard errors.
+        rms: its root mean square, without the scatter of the rays.
+        mean: its mean; above 0 if the method is too bright.
+        standard_error: that of `rms`, from the number of pixels and rays.
+        least: the smallest difference that the rays can tell from zero: the RMS of their own standard errors.
         visibility: the mean visibility by rays.
     """
 
@@ -43,8 +43,7 @@ class OcclusionError(NamedTuple):
 
 
 class Pixels(NamedTuple):
-    """What was drawn at some pixels: world-space positions, drawn towards the eye, and normals; visibility by the
-    effect."""
+    """Some drawn pixels: world-space positions, moved towards the eye, normals, and visibility by the effect."""
 
     positions: Float[np.ndarray, "pixels 3"]
     normals: Float[np.ndarray, "pixels 3"]
@@ -60,16 +59,17 @@ def method_error(
     rays: int = RAYS,
     seed: int = 0,
 ) -> OcclusionError:
-    """A method of ambient occlusion against rays of its own radius and fall-off, from the same fp32 G-buffer.
+    """Compare a method of ambient occlusion with rays of its own radius and fall-off, from the same fp32 G-buffer.
 
     Args:
-        device: where it is drawn, by pipeline deferred.
+        device: draws the scene, with the deferred pipeline.
         chosen: the method and its settings; its effect is an `AmbientOcclusion`.
-        scene: what is seen, by the scene's own view.
-        size: of the picture.
-        pixels: drawn by lot from those that are covered; not of hair, of which the G-buffer keeps no normal.
-        rays: for each pixel.
-        seed: of the lot and the rays.
+        scene: the scene, drawn from its own view.
+        size: of the image.
+        pixels: the number of pixels, chosen at random among the covered pixels; without hair, whose normal the
+            G-buffer does not store.
+        rays: the number of rays for each pixel.
+        seed: of the random choice and the rays.
 
     Raises:
         MissingError: embreex is not installed.
@@ -87,7 +87,7 @@ def method_error(
 def compared(
     found: Float[np.ndarray, " pixels"], exact: Float[np.ndarray, " pixels"], error: Float[np.ndarray, " pixels"]
 ) -> OcclusionError:
-    """Visibilities against those of rays with their standard errors."""
+    """Compare visibilities with those of rays, given the rays' standard errors."""
     difference, noise = found - exact, float(np.mean(error**2))
     square = difference**2
     rms = float(np.sqrt(max(np.mean(square) - noise, 0.0)))

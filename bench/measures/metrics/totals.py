@@ -1,4 +1,4 @@
-"""What chunks of a set add up to, and the figures of a row that come of it."""
+"""The totals of the chunks of a set, and the figures of a row that are computed from them."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 
 
 class Figures(NamedTuple):
-    """Of the covered normals of a chunk: sums of the squared error, of the article's squared error (in units of 1/255),
-    of the angle and of its square (degrees), how many decodes were not numbers, and the largest angle."""
+    """Figures of the covered normals of a chunk: the sums of the squared error, of the article's squared error (in
+    units of 1/255), of the angle and of its square (degrees), the number of decodes that are not finite, and the
+    largest angle."""
 
     squared: Any
     article_squared: Any
@@ -33,19 +34,19 @@ class Figures(NamedTuple):
 
 @dataclass(frozen=True)
 class Statistics:
-    """What a set of normals lost in a codec.
+    """The errors of a set of normals in a codec.
 
     Attributes:
-        count: normals that count; background is left out.
-        pixels: all of them, background included.
-        invalid: decodes that were no number; each counts as the opposite direction.
+        count: normals that count, without the background.
+        pixels: all pixels, background included.
+        invalid: decodes that are not finite; each counts as the opposite direction.
         mse: mean squared error over the three components of covered normals, not renormalised.
         article_mse: the article's: |n - n'| rounded to 8 bits, over every pixel.
-        angle_mean_deg, angle_rms_deg, angle_p99_deg, angle_max_deg: of the angle between input and decode.
-        angle_counts: how many angles lie in each eighth of an octave that has any, by its lower edge in degrees; the
-            first holds 0 as well.
-        within: for each power of two of degrees, ascending, how many angles are below it.
-        worst: the normal that came back farthest off.
+        angle_mean_deg, angle_rms_deg, angle_p99_deg, angle_max_deg: figures of the angle between input and decode.
+        angle_counts: the number of angles in each non-empty eighth of an octave, by its lower edge in degrees; the
+            first includes 0.
+        within: for each power of two of degrees, ascending, the number of angles below it.
+        worst: the normal with the largest error.
     """
 
     count: int
@@ -76,7 +77,7 @@ class Worst:
 
 
 def psnr_db(mse: float) -> float:
-    """Peak signal to noise ratio for a peak of 1, infinite where there is no error."""
+    """Return the peak signal-to-noise ratio in dB for a peak of 1; infinite for an error of 0."""
     return 10 * math.log10(1 / mse) if mse > 0 else math.inf
 
 
@@ -85,7 +86,7 @@ ChunkTotal = tuple[Figures, np.ndarray, "Worst | None"]
 
 
 class ErrorTotal:
-    """What chunks add up to. Sums are exact, so that parts of a set give the same figures as all of it at once."""
+    """The total of chunks. Sums are exact, so that parts of a set give the same figures as the whole set."""
 
     def __init__(self):
         self.figures, self.histogram = Figures(*[Fraction()] * len(Figures._fields)), np.zeros(BINS + 1, np.int64)
@@ -97,7 +98,7 @@ class ErrorTotal:
         return self.worst.angle_deg if self.worst else 0.0
 
     def add(self, part: ChunkTotal) -> None:
-        """One chunk's figures, histogram and worst normal."""
+        """Add one chunk's figures, histogram and worst normal."""
         figures, counts, worst = part
         exact = Figures(*map(Fraction, figures))
         sums = Figures(*map(operator.add, self.figures, exact))
@@ -107,11 +108,11 @@ class ErrorTotal:
             self.worst = worst
 
     def add_total(self, other: ErrorTotal) -> None:
-        """What further chunks add up to."""
+        """Add the total of further chunks."""
         self.add((other.figures, other.histogram, other.worst))
 
     def as_text(self) -> str:
-        """All its numbers as text, from which `total_of` makes it again, exactly."""
+        """Return all its numbers as text, from which `total_of` restores the same total."""
         bins = np.flatnonzero(self.histogram)
         counted = np.stack([np.diff(bins, prepend=0), self.histogram[bins]]).astype("<i8")
         worst = self.worst and [*map(float, (*self.worst.normal, *self.worst.decoded, self.worst.angle_deg))]
@@ -132,7 +133,7 @@ def total_of(text: str) -> ErrorTotal:
 
 
 def statistics(pixels: int, total: ErrorTotal) -> Statistics:
-    """Those of a set with so many pixels, background included."""
+    """Return the statistics of a set of `pixels` pixels, background included."""
     figures, histogram = Figures(*map(float, total.figures)), total.histogram
     count = int(histogram[:BINS].sum())
     return Statistics(

@@ -27,12 +27,12 @@ NEARER = 1e-4
 
 
 class Visible(NamedTuple):
-    """What rays say of points.
+    """The visibility of points, measured by rays.
 
     Attributes:
         visibility: of each point.
         error: its standard error.
-        bent: the mean direction that light arrives from, times how much does.
+        bent: the mean direction from which light arrives, times how much light arrives.
     """
 
     visibility: Float[np.ndarray, " points"]
@@ -52,7 +52,7 @@ def triangles_of(scene: Scene) -> Float[np.ndarray, "triangles 3 3"]:
 
 
 def require_rays() -> None:
-    """Raises MissingError where there is no ray caster."""
+    """Raise MissingError if the ray caster is not installed."""
     try:
         import embreex.mesh_construction  # noqa: F401 # asked for, not used
     except ImportError as error:
@@ -80,7 +80,7 @@ class RayCaster:
     def distances(
         self, origins: Float[np.ndarray, "rays 3"], directions: Float[np.ndarray, "rays 3"]
     ) -> Float[np.ndarray, " rays"]:
-        """How far rays go until they meet a triangle; more than 1e30 where they meet none. Directions have length 1."""
+        """Return each ray's distance to a triangle; more than 1e30 if it hits none. Directions have length 1."""
         given = (np.ascontiguousarray(a, np.float32) for a in (origins, directions))
         return self._scene.run(*given, query="DISTANCE")
 

@@ -1,4 +1,4 @@
-"""What `metrics/meter.py` measures, faster: the same JAX functions, compiled by the C compiler."""
+"""A faster `metrics/meter.py`: the same JAX functions, compiled by the C compiler."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def decoder(round_trip: Callable[..., Vec3], given: Sequence[Any] = ()) -> ctype
 
     Args:
         round_trip: (normals, view positions, *given) -> decoded normals; elementwise.
-        given: like what it is called with besides, named tuples of float32; their values do not matter.
+        given: named tuples of float32, like its further arguments; their values do not matter.
 
     Raises:
         NotElementwiseError, NoCompilerError: it cannot be compiled here.
@@ -84,11 +84,11 @@ def decoder(round_trip: Callable[..., Vec3], given: Sequence[Any] = ()) -> ctype
 
 
 class NativeMeter:
-    """Measures what a round trip makes of chunks of normals.
+    """A meter of the errors of a round trip on chunks of normals.
 
     Args:
-        compiled: the round trip, by `decoder`.
-        given: what it is called with besides.
+        compiled: the round trip, from `decoder`.
+        given: its further arguments.
 
     Raises:
         NoCompilerError: the statistics cannot be compiled here.
@@ -101,7 +101,7 @@ class NativeMeter:
         self._codec, self._row_library = ctypes.byref(_Codec(decode, address(self._given))), _row_library()
 
     def decoded(self, block: Any) -> Vec3:
-        """What the normals of a chunk, a multiple of BLOCK, are decoded as."""
+        """Return the decoded normals of a chunk, whose size is a multiple of BLOCK."""
         planes = [*map(np.asarray, (*block.n, *block.view))]
         decoded = Vec3(*(np.empty(planes[0].shape, np.float32) for _ in range(3)))
         taken, given = ((ctypes.c_void_p * len(arrays))(*map(address, arrays)) for arrays in (planes, decoded))

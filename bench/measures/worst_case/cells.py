@@ -29,7 +29,7 @@ BANDS, REACH = 16, 2.0
 
 
 def way_to_corners(exact: ExactCodec) -> str:
-    """How the corners of a codec's cells are found; NONE where they cannot be."""
+    """Return the method that finds the corners of a codec's cells; NONE if no method can."""
     counts = [exact.codec.storage.count(i) for i in exact.free]
     if not counts and exact.codec.codes <= MOST_POINTS:
         return NEAREST
@@ -48,8 +48,8 @@ def corners(exact: ExactCodec, way: str) -> np.ndarray:
 
 
 def sides(exact: ExactCodec) -> list[np.ndarray]:
-    """For each free component where the share of each of its numbers begins and ends, just inside: two for each; for
-    the others their numbers."""
+    """Return for each free component the beginning and the end of each number's interval, just inside: two values for
+    each number; for the other components their numbers."""
     return [_sides(exact, i) if i in exact.free else exact.codec.numbers(i) for i in range(exact.size)]
 
 
@@ -67,7 +67,7 @@ def _sides(exact: ExactCodec, component: int) -> np.ndarray:
 
 
 def _all_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
-    """Of all cells those with the worst corners, and the three that each of these shares it with."""
+    """Return the cells with the worst corners of all, and for each the three other cells that share its corner."""
     u, v = exact.free
     rest = [range(1) if i in exact.free else range(len(table)) for i, table in enumerate(tables)]
     edges = tables[u][1:-1:2], tables[v][1:-1:2]
@@ -142,10 +142,10 @@ def _across_faces(exact: ExactCodec) -> np.ndarray:
 
 
 def across_faces(directions: np.ndarray) -> np.ndarray:
-    """Of different directions, shape (3, count), those across the faces of their hull.
+    """Return the directions across the faces of the hull of different directions, shape (3, count).
 
-    Bands of z are hulls of their own, for every core has one to find. What they give are faces of the whole hull. That
-    they give all of them is known from Euler's formula: a hull of n corners has 2 n - 4 triangles.
+    Each band of z is a hull of its own, so that every core has one to find. Their faces are faces of the whole
+    hull. Euler's formula tells whether these are all its faces: a hull of n corners has 2 n - 4 triangles.
     """
     edges = np.linspace(-1.0, 1.0, BANDS + 1)
     bands = zip(edges, (*edges[1:-1], np.inf), strict=False)

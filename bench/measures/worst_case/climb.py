@@ -1,7 +1,7 @@
-"""Climbing to a worst case: a place moves to the worst of those around it, in steps that shrink where none is worse.
+"""A climb to a worst case: a place moves to its worst neighbour, in steps that shrink if no neighbour is worse.
 
-A place is a normal, or a tangent frame: a column of numbers. A `Ground` says what errors places make, and what lies
-around them.
+A place is a normal, or a tangent frame: a column of numbers. A `Ground` gives the errors of places, and their
+neighbours.
 """
 
 from __future__ import annotations
@@ -50,14 +50,14 @@ class Starts:
 
 @dataclass(frozen=True)
 class Ground:
-    """What is climbed over.
+    """The space that is climbed over.
 
     Attributes:
-        chords: places to the squares of the distances they are moved by.
+        chords: places -> the squares of the distances that they are moved by.
         around: (places, sizes, step) -> WAYS places around each, shape (numbers of a place, WAYS, count).
-        errors: those squares as errors, in the unit of sizes.
-        degrees: one of those squares as an angle.
-        lanes: places that are climbed from at once.
+        errors: those squares -> errors, in the unit of sizes.
+        degrees: one of those squares -> an angle.
+        lanes: the number of places that are climbed from at once.
     """
 
     chords: Callable[[np.ndarray], np.ndarray]

@@ -33,7 +33,7 @@ def ahead(like) -> Vec3:
 
 
 def _unit_or_z(v: Vec3) -> Vec3:
-    """At length 1; +z where it is zero or no number."""
+    """Return vectors at length 1; +z for a vector that is zero or not finite."""
     length2 = dot(v, v)
     is_direction = (length2 > 0.0) & jnp.isfinite(length2)
     return select(is_direction, v * (1.0 / jnp.sqrt(select(is_direction, length2, 1.0))), Vec3(0.0, 0.0, 1.0))
@@ -57,7 +57,7 @@ _unit = jax.jit(unit)
 
 
 class _Programs:
-    """What is compiled of an encoding, for every fixed-point format of a kind: they are given its scales."""
+    """The compiled functions of an encoding, for every fixed-point format of a kind: the scales are arguments."""
 
     def __init__(self, encoding: Encoding, like: Storage, rounding: str, is_half: bool):
         self._encoding, self._like, self._rounding, self._is_half = encoding, like, rounding, is_half
@@ -151,16 +151,17 @@ class ExactCodec:
         return self._programs.free
 
     def corners(self, edges: Sequence[np.ndarray], numbers: Sequence[np.ndarray], others: np.ndarray) -> np.ndarray:
-        """Squared chords from the corners of a plane's cells to the farthest of the four codes around, which each have
-        normals there; of precise rounding to the nearest, which all of them have.
+        """Return squared chords from the corners of a plane's cells to the farthest of the four codes around, because
+        each of these has normals there; with precise rounding, to the nearest code, which all normals there have.
 
         Args:
-            edges: where cells end, in each of the two free components; as many as SLAB says, or fewer.
-            numbers: of those components, the ones around: one more of each.
+            edges: the ends of cells, in each of the two free components; at most the number in SLAB.
+            numbers: the numbers of those components around the edges: one more of each.
             others: the whole code, which gives the components that are not free.
 
         Returns:
-            shape (edges of the one, of the other); -1 where the code of the corner is another, or outside the domain.
+            shape (edges of the first component, of the second); -1 if the corner has another code, or is outside
+            the domain.
         """
         rows, columns = (len(side) for side in edges)
         # One shape, so that one compiled program serves every storage.
@@ -216,7 +217,7 @@ class ExactCodec:
         return around / np.linalg.norm(around, axis=0)
 
     def unit(self, n: np.ndarray) -> tuple[float, float, float]:
-        """One normal, shape (3,), as `chords` takes it."""
+        """Return one normal, shape (3,), as `chords` takes it."""
         with jax.enable_x64(True):
             x, y, z = (float(c) for c in _unit(Vec3(*n)))
         return x, y, z

@@ -1,5 +1,5 @@
-"""Columns of the quality table that stand for a codec and a domain, beside what was measured: its supremum, its odd
-codes, and its limit. A domain is "sphere", "hemisphere", or None of a set that is not uniform."""
+"""Columns of the quality table for a codec and a domain, next to the measured columns: the supremum, the odd codes and
+the bound. A domain is "sphere", "hemisphere", or None for a set that is not uniform."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def _has_exact_map(encoding: Encoding) -> bool:
 
 
 def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T:
-    """What a search in float64 finds. Raises UsageError where a user's own twin is for float32 alone."""
+    """Return the result of a search in float64. Raises UsageError if a user's own twin supports only float32."""
     try:
         return search(codec, domain != "sphere")
     except TypeError as error:
@@ -69,9 +69,9 @@ def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T
 
 
 def held(codec: Codec, domain: str | None, s: Statistics, sup_deg: float | None) -> Row:
-    """The limits and the share of each that is reached, the maximum by the supremum where it is known.
+    """Return the bounds, and how much of each is reached; the maximum is compared by the supremum if it is known.
 
-    Where float32 normals cannot tell errors of that size there is no share, and nothing is held.
+    If float32 normals cannot tell errors of that size, the shares and the check against the bounds are left out.
     """
     if not domain:
         return {}

@@ -69,7 +69,7 @@ def worst_frame(codec: FrameCodec) -> WorstFrame:
 
 
 def _moves(codec: FrameCodec, quaternions, hands):
-    """How far the axes of tangent frames are moved in all, squared; FARTHEST where what comes back is no frame."""
+    """Return the sum of the squared distances that tangent frames' axes move; FARTHEST if the result is not a frame."""
     given = rotated_frame(Vec4(*quaternions), hands)
     decoded = _at_right_angles(codec.round_trip(frame_of(*given)))
     pairs = zip((*given[:2], cross(*given[:2])), (*decoded[:2], cross(*decoded[:2])), strict=True)

@@ -1,11 +1,11 @@
-"""Codes that are wasted or strange, of all there are: never made, pointing where another points, or coming back as
-another.
+"""Wasted or strange codes among all codes: never made, pointing in the same direction as another, or decoding to a
+normal of another code.
 
-A code is used if some normal of the domain makes it. Asked are the normals at its cell's middle, corners and edges, and
-directions spread over the domain: where a code has three numbers the sphere only grazes some cells, and where it is
-looked up its cell may lie anywhere. What none of these makes is called unused; a code made by a sliver of directions
-may be among them. That and what is a duplicate is settled in float64, which stands for the exact map; what comes back
-as another code in float32, as a shader would have it.
+A code is used if some normal of the domain makes it. The search tries normals at the middle, corners and edges of
+its cell, and directions spread over the domain: if a code has three numbers, the sphere only grazes some cells, and
+if it comes from a lookup table, its cell may be anywhere. A code that none of these makes is called unused; a code
+made by a sliver of directions may be among them. Unused and duplicate codes are found in float64, which stands for
+the exact map. Codes that decode to a normal of another code are found in float32, as a shader computes them.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.
 
 @dataclass(frozen=True)
 class OddCodes:
-    """How many of a codec's codes are odd.
+    """The numbers of a codec's odd codes.
 
     Attributes:
-        unused: no normal of the domain makes them.
-        duplicate: codes less distinct directions: how many could be spared.
-        unstable: used ones that decode to a normal whose code is another.
+        unused: codes that no normal of the domain makes.
+        duplicate: codes minus distinct directions: the number of codes that could be spared.
+        unstable: used codes that decode to a normal with another code.
     """
 
     unused: int
@@ -79,7 +79,7 @@ class _Numbers:
         self._is_even = [np.allclose(np.diff(table), table[1] - table[0], rtol=1e-6) for table in self.tables]
 
     def places(self, index: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Each component's place among its numbers."""
+        """Return each component's index among its numbers."""
         return np.unravel_index(index, self.shape)
 
     def codes(self, index: np.ndarray) -> np.ndarray:
@@ -98,7 +98,7 @@ class _Numbers:
 
 
 def _made_within(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray], index: np.ndarray) -> np.ndarray:
-    """Which of some codes are made by normals at the middle, the edges and the corners of their cells."""
+    """Return those of some codes that are made by normals at the middle, the edges and the corners of their cells."""
     is_made = np.zeros(len(index), bool)
     for where in _stencil(exact):
         left = np.flatnonzero(~is_made)
@@ -111,8 +111,8 @@ def _made_within(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray],
 
 
 def _stencil(exact: ExactCodec) -> list[tuple[int, ...]]:
-    """For each free component -1, 0 or 1: the beginning, the middle or the end of its share. The middles first; edges
-    of planes only."""
+    """Return for each free component -1, 0 or 1: the beginning, the middle or the end of its interval. The middles
+    come first; edges are included only for codes in a plane."""
     every: list[tuple[int, ...]] = list(itertools.product((0, -1, 1), repeat=len(exact.free)))
     return every if len(exact.free) < 3 else [where for where in every if len({abs(side) for side in where}) == 1]
 
@@ -129,13 +129,13 @@ def _code_points(
 
 
 def _comes_back(exact: ExactCodec, numbers: _Numbers, index: np.ndarray) -> np.ndarray:
-    """Which of some codes decode to normals that have the same code, in float32."""
+    """Return whether each of some codes decodes to a normal that has the same code, in float32."""
     normals = exact.normals(numbers.codes(index).astype(np.float32))
     return numbers.index(exact.codes(normals).astype(np.float64)) == index
 
 
 def _distinct_count(exact: ExactCodec, numbers: _Numbers) -> int:
-    """How many directions the codes stand for."""
+    """Count the distinct directions of the codes."""
     keys = np.empty((len(OFFSETS), exact.codec.codes), np.uint64)
 
     def boxes(index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

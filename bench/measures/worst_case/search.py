@@ -1,15 +1,16 @@
-"""The largest angular error a codec can make, in float64, and the normal that makes it.
+"""The largest angular error of a codec, in float64, and the normal that makes it.
 
-Within the cell of a code the angle to what it decodes to grows towards the border, so the worst normals lie at corners
-of cells, approached from inside. Where a code is a point of a plane (two numbers besides signs and indices) the corners
-of all cells are tried if there are 2^24 of them at most, else cells are climbed over from many starts. Codes that are
-no planes but points on the sphere have their corners where three of them are equally near: across the faces of their
-convex hull. Besides, everywhere: directions spread over the domain, the great circles where codes are folded, and rings
-around the axes. From the worst of all these a climb in ever smaller steps goes on through whatever the cells are cut
-by: seams, the domain's rim, and the sphere itself where a code has three numbers.
+Within the cell of a code the angle to the decoded direction grows towards the border, so the worst normals are at
+corners of cells, approached from inside. If a code is a point in a plane (two numbers besides signs and indices),
+the corners of all cells are tried if there are 2^24 of them at most; otherwise cells are climbed over from many
+starts. Codes that are points on the sphere instead have their corners where three of them are equally near: across
+the faces of their convex hull. For all codecs the search also tries directions spread over the domain, the great
+circles where codes are folded, and rings around the axes. From the worst of all these a climb in ever smaller steps
+continues across whatever cuts the cells: seams, the domain's rim, and the sphere itself if a code has three
+numbers.
 
-What is found is an error that a normal makes, so it is never above the supremum; `moved_deg` says by how much the last
-round of climbing, which starts from the best alone with steps of every size, still raised it.
+The result is an error that a normal makes, so it is never above the supremum; `moved_deg` says by how much the last
+round of climbing, which starts from the best place alone with steps of every size, still raised it.
 """
 
 from __future__ import annotations
@@ -124,9 +125,9 @@ def _sphere_points(z: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def _special_starts(is_half: bool) -> Iterator:
-    """Where codes are folded, cut or singular: great circles between axes and diagonals, both sides of them; the rim of
-    a hemisphere, closely; and rings around the axes. Nearer than 1e-4 to a pole even float64 cancels in
-    some encodings, which are then not the exact map."""
+    """Yield functions that make normals where codes are folded, cut or singular: great circles between axes and
+    diagonals, and both sides of them; the rim of a hemisphere, densely; and rings around the axes. Nearer than 1e-4
+    to a pole even float64 cancels in some encodings, which are then not the exact map."""
     circle = _sphere_points(np.zeros(BLOCK // 4), np.arange(BLOCK // 4) * (8 * np.pi / BLOCK))
     diagonals = [(1, s, 0) for s in (1, -1)] + [(1, 0, s) for s in (1, -1)] + [(0, 1, s) for s in (1, -1)]
     offsets = [circle + np.array([[0.0], [0.0], [offset]]) for offset in (0.0, 1e-9, -1e-9)]
@@ -143,7 +144,7 @@ def _special_starts(is_half: bool) -> Iterator:
 
 
 def _moved_to_axis(axis: np.ndarray, around_z: np.ndarray) -> np.ndarray:
-    """Unit normals that lie around +z, turned to lie around another axis."""
+    """Return unit normals around +z, rotated to another axis."""
     axis = axis / np.linalg.norm(axis)
     least = np.eye(3)[np.argmin(np.abs(axis))]
     x = np.cross(least, axis)

@@ -1,4 +1,4 @@
-"""What rows depend on besides their keys, as marks: two processes whose marks are the same give the same rows."""
+"""Marks of all that rows depend on besides their keys: two processes with the same marks give the same rows."""
 
 from __future__ import annotations
 

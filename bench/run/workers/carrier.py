@@ -1,4 +1,4 @@
-"""What travels to workers and back, and who carries it: pipes to processes of this machine, or a scheduler of dask."""
+"""The tasks and answers of workers, and their carriers: pipes to local processes, or a dask scheduler."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ class Task:
 
 @dataclass(frozen=True)
 class Answer:
-    """What becomes of a task.
+    """The result of a task.
 
     Attributes:
-        steps: of each of its steps, in their order, the rows and the pictures by their place.
+        steps: for each of its steps, in order, the rows, and the images by their path.
         told: lines for standard error.
-        knows: whether the worker has the order; else it is to be sent along.
-        refused: why no worker measures it; empty where one does.
-        lost: how many workers were lost with it; 0 where it was measured in the end.
-        error: what measuring the step after these raised, a UsageError or MissingError; None where nothing did.
+        knows: whether the worker has the order; if not, it must be sent along.
+        refused: why no worker measures it; empty if a worker does.
+        lost: the number of workers that were lost with it; 0 if it was measured in the end.
+        error: the UsageError or MissingError that the step after these raised; None if nothing was raised.
     """
 
     steps: Sequence[tuple[list[Row], dict[str, bytes]]] = ()

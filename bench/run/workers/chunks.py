@@ -1,4 +1,4 @@
-"""How many steps travel together: ever fewer towards the end, so that all workers end at about the same time."""
+"""The number of steps sent together; it falls towards the end, so that all workers end at about the same time."""
 
 from __future__ import annotations
 

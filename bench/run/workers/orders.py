@@ -1,4 +1,4 @@
-"""What travels to a worker: a table's options as text, and the users' files that they name, as bytes."""
+"""The data that is sent to a worker: a table's options as text, and the users' files that they name, as bytes."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ PICTURES = "images"
 
 @dataclass(frozen=True)
 class Order:
-    """What a worker makes a table's steps of.
+    """The data from which a worker makes a table's steps.
 
     Attributes:
         id: the same for the same work, whoever asks.
         table: the table's name.
-        options: sets of options, each the typed values by name.
-        pictures: whether pictures are wanted.
-        files: users' files, by their place in the worker's folder.
-        typed: by a folder that the worker has under another name, how the user typed it.
+        options: sets of options, each with the typed values by name.
+        pictures: whether images are wanted.
+        files: users' files, by their path in the worker's folder.
+        typed: for each folder that has another name on the worker, the name that the user typed.
     """
 
     id: str
@@ -50,7 +50,7 @@ class Order:
 
 
 def step_name(table: str, key: Row) -> str:
-    """What a step is known by where its key would be long."""
+    """Return a short name for a step, for places where its key would be long."""
     return hashlib.sha256(key_text(table, key).encode()).hexdigest()[:24]
 
 
@@ -77,10 +77,10 @@ class Packing:
         return with_files(word, others)
 
     def _place(self, path: Path, read: Sequence[Path]) -> Path:
-        """The folder of a worker that stands for a file's.
+        """Return the folder of a worker that stands for a file's folder.
 
         Args:
-            read: what is read with it: none of that may lie above the folders of a worker.
+            read: the files read with it; they must not be above the folders of a worker.
         """
         if os.pardir not in path.parts and all(map(_is_below, read)):
             return path.parent
@@ -94,7 +94,7 @@ class Packing:
 
 
 def _is_below(path: Path) -> bool:
-    """Whether a file lies in this folder or below it, as it is named."""
+    """Whether the path of a file, as written, is in this folder or below it."""
     return not path.is_absolute() and os.pardir not in Path(os.path.normpath(path)).parts
 
 

@@ -1,4 +1,4 @@
-"""Where a command measures: in its own process, or by workers."""
+"""The places where a command measures: its own process, or workers."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from .words import place_named, require_dask
 
 @contextmanager
 def place(on: str | None) -> Iterator[Place]:
-    """Give what `--on` names, as long as a command runs; this process where it names nothing.
+    """Yield the place that `--on` names, for as long as a command runs; this process if `on` is None.
 
     Raises:
-        UsageError: a word that names no place, or an address where nobody answers.
+        UsageError: the word names no place, or no scheduler responds at the address.
         MissingError: dask.distributed is not installed, which an address needs.
     """
     if on is None:

@@ -1,4 +1,4 @@
-"""What a worker does: lay down the files of an order, make its steps, and measure those that are wanted."""
+"""The work of a worker: write the files of an order, make its steps, and measure those that are wanted."""
 
 from __future__ import annotations
 

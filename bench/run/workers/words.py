@@ -1,4 +1,4 @@
-"""What `--on` may say. Imports nothing heavy: every start of the program does."""
+"""The values of `--on`. Imports nothing heavy, because every start of the program imports it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def place_named(word: str) -> int | str:
 
 
 def check_place(on: str | None) -> None:
-    """Raises UsageError or MissingError for what `--on` cannot say; None will do."""
+    """Raise UsageError or MissingError if `--on` cannot have this value; None is allowed."""
     if on is not None and isinstance(place_named(on), str):
         require_dask()
 
@@ -47,6 +47,6 @@ def checked_address(option: str, word: str) -> str:
 
 
 def require_dask() -> None:
-    """Raises MissingError where dask.distributed is not installed."""
+    """Raise MissingError if dask.distributed is not installed."""
     if find_spec("distributed") is None:
         raise MissingError("workers of a scheduler need dask.distributed; pip install 'normalbench[workers]'")

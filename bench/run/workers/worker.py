@@ -145,10 +145,10 @@ def serve(address: str) -> str:
 
 
 def worker_command(address: str) -> int:
-    """`normalbench worker`: measure for whoever asks the scheduler.
+    """Run `normalbench worker`: measure for whoever asks the scheduler.
 
     Raises:
-        UsageError: the address is none, or nobody answers.
+        UsageError: the address is invalid, or no scheduler responds.
         MissingError: dask.distributed is not installed.
     """
     checked = checked_address("worker", address)

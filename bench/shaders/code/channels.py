@@ -1,4 +1,4 @@
-"""Where a storage keeps each number of a code, as the functions of storage.glsl.j2 say it."""
+"""The position of each number of a code in a storage, as text for the functions of storage.glsl.j2."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ RULES: Mapping[str, str] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Piece:
-    """Neighbouring bits of a number that lie in one channel of a target.
+    """Neighbouring bits of a number that are in one channel of a target.
 
     Attributes:
-        part: which channel.
-        above: how many bits of the number are higher.
-        below: how many bits of the number are lower.
+        part: the index of the channel.
+        above: the number of higher bits of the same number.
+        below: the number of lower bits of the same number.
         left: its lowest bit in the channel.
-        bits: how many they are.
+        bits: the number of its bits.
         is_first: whether it begins at the channel's highest bit.
     """
 
@@ -47,13 +47,13 @@ class Piece:
     is_first: bool
 
     def placed(self, name: str) -> str:
-        """The bits of a number where they lie in the channel."""
+        """Return the bits of a number at their place in the channel."""
         low = f"{name} >> {self.below}" if self.below else name
         kept = f"({low} & {mask_text(self.bits)})" if self.above else low
         return f"{kept} << {self.left}" if self.left else kept
 
     def taken(self, part: str) -> str:
-        """The bits of a channel where they lie in the number."""
+        """Return the bits of a channel at their place in the number."""
         low = f"{part} >> {self.left}" if self.left else part
         kept = low if self.is_first else f"({low} & {mask_text(self.bits)})"
         return f"{kept} << {self.below}" if self.below else kept
@@ -65,18 +65,18 @@ class Channel:
 
     Attributes:
         name: x, y, z or w.
-        kind: as the storage's.
-        bits: its bits.
-        first: its lowest bit among all bits of the texel; where numbers are laid across channels, of the channels read
-            as one number, the first one the highest.
+        kind: the kind of the storage.
+        bits: the number of its bits.
+        first: its lowest bit among all bits of the texel; if numbers are laid across channels, among the bits of
+            the channels read as one number, the first channel the highest.
         integer: the integer that stands for 1.
         most: the largest integer.
         rounding: one of `storage.ROUNDINGS`.
-        form: of a float.
-        share: as of `Numbers`.
-        is_offset: whether its integer is kept `integer` more than itself, so that none is negative.
-        words: how many words the texel has.
-        pieces: where its bits lie, if numbers are laid across channels.
+        form: the form of a float.
+        share: as in `Numbers`.
+        is_offset: whether `integer` is added to its integer, so that no stored integer is negative.
+        words: the number of words of the texel.
+        pieces: its bits by channel, if numbers are laid across channels.
     """
 
     name: str
@@ -141,7 +141,7 @@ class Channel:
 
     @property
     def read(self) -> str:
-        """Its bits, from what holds them."""
+        """The number's bits, taken from the word or the channels that hold them."""
         if self.pieces:
             return f"({' | '.join(f'({piece.taken(PARTS[piece.part])})' for piece in self.pieces)})"
         shift = self.first % WORD
@@ -150,13 +150,13 @@ class Channel:
 
     @property
     def signed(self) -> str:
-        """Its bits as the highest of a word."""
+        """The number's bits as the highest bits of a word."""
         shift = WORD - self.bits - self.first % WORD
         return f"{self._word_name} << {shift}" if shift else self._word_name
 
     @property
     def placed(self) -> str:
-        """Its bits where they lie."""
+        """The number's bits at their place in a word."""
         shift = self.first % WORD
         return f"{self.name} << {shift}" if shift else self.name
 
@@ -174,18 +174,18 @@ class Channels:
 
     @property
     def words(self) -> int:
-        """How many integers of 32 bits a texel is: 1, 2 or 4."""
+        """The number of 32-bit integers in a texel: 1, 2 or 4."""
         least = -(-self._end // WORD)
         return least if least < 3 else 4
 
     @property
     def part(self) -> int:
-        """The bits of a channel that numbers are laid across; 0 where each has a channel, or all lie in one integer."""
+        """The bits of a channel that numbers are laid across; 0 if each has a channel, or all are in one integer."""
         return 0 if self.numbers.storage.is_word else self.numbers.storage.part
 
     @property
     def parts(self) -> int:
-        """How many channels of a target the bits of the texel fill one after the other; 0 where each number has one."""
+        """The number of target channels that a texel's bits fill one after the other; 0 if each number has its own."""
         size = self.numbers.storage.part
         return -(-self._end // size) if size else 0
 
@@ -196,7 +196,7 @@ class Channels:
 
     @cached_property
     def channels(self) -> list[Channel]:
-        """Where each number of the code is kept."""
+        """The position and format of each number of the code."""
         storage = self.numbers.storage
         return [
             Channel(
@@ -222,7 +222,7 @@ class Channels:
         return self.part * self.parts - before - bits[at] if self.part else before
 
     def _pieces(self, at: int) -> tuple[Piece, ...]:
-        """The bits of a number, by the channels that they lie in."""
+        """Return the bits of a number, by the channels that hold them."""
         if not self.part:
             return ()
         bits = self.numbers.storage.bits
@@ -260,7 +260,7 @@ class Channels:
 
     @property
     def layout(self) -> str:
-        """Where the numbers are, in words."""
+        """The positions of the numbers, in words."""
         if self.part:
             spread = ", then ".join(f"{c.bits} bits of {c.name}" for c in self.channels)
             what = "byte" if self.part == 8 else f"channel of {self.part}"
@@ -274,7 +274,7 @@ class Channels:
 
     @property
     def rule(self) -> str:
-        """How a number becomes an integer, in words."""
+        """The rule by which a number becomes an integer, in words."""
         first = self.channels[0]
         if first.form:
             if not self.part:
@@ -289,7 +289,7 @@ class Channels:
         return f"Each is {RULES[first.rounding].format(x=x, scale=' or '.join(scales))}{offset}."
 
     def context(self) -> dict[str, Any]:
-        """What the template is given."""
+        """Return the template's variables."""
         numbers = self.numbers
         return {
             "words": self.words,
@@ -310,7 +310,7 @@ class Channels:
         }
 
     def _across_fields(self) -> dict[str, Any]:
-        """What the template is given of a texel whose bits fill channels one after the other."""
+        """Return the template's variables for a texel whose bits fill channels one after the other."""
         if not self.parts:
             return {"parts": [], "target_parts": []}
         size, each = self.numbers.storage.part, WORD // self.numbers.storage.part

@@ -1,4 +1,4 @@
-"""The files of a codec's code: one of a language, and its look-up tables beside it."""
+"""The files of a codec's functions: one file in a language, and its lookup tables next to it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Code:
 
     @property
     def name(self) -> str:
-        """Of the file: the codec and the language's ending."""
+        """The file's name: the codec and the language's extension."""
         return file_name(self.codec, self.language)
 
     def text(self, head: Iterable[str]) -> str:
@@ -53,12 +53,12 @@ class Code:
 
     @property
     def guard(self) -> str:
-        """What a language with a preprocessor takes once: a prefix that somebody chose, or the codec in its storage.
-        Codecs of one kind usually have the same names; of two, a compiler is to say so."""
+        """The include guard for a language with a preprocessor: a prefix that somebody chose, else the codec with its
+        storage. Codecs of one kind usually have the same names; if two are included, a compiler should say so."""
         return stem_of(self.codec) if self.prefix == usual_prefix(self.codec) else self.prefix
 
     def files(self, head: Iterable[str]) -> dict[str, bytes]:
-        """All its files, by name."""
+        """Return all files of the codec, by name."""
         beside = table_files(self.interface.tables, self.language, stem_of(self.codec), self.prefix)
         return {self.name: self.text(head).encode(), **beside}
 
@@ -80,18 +80,18 @@ def _lines(said: str) -> list[str]:
 
 
 def file_name(codec: Any, language: str) -> str:
-    """What the file of a codec's code is called."""
+    """Return the name of the file of a codec's functions."""
     return stem_of(codec) + LANGUAGES[language].ending
 
 
 def usual_prefix(codec: Any) -> str:
-    """What the names of a codec's functions begin with where nobody says otherwise: what it is of."""
+    """Return the default beginning of the names of a codec's functions: the word for its kind."""
     return kind_of(codec).prefix
 
 
 def stem_of(codec: Any) -> str:
-    """What the files of a codec are called: its kind, but of normals, its encoding, its storage, and how it rounds, but
-    to the nearest."""
+    """Return the beginning of the names of a codec's files: its kind (except for normals), its encoding, its storage,
+    and its rounding (except nearest)."""
     kind = kind_of(codec)
     if kind.kind is NORMAL:
         return identifier(codec.name)
@@ -136,7 +136,7 @@ def _untranslatable_reason(codec: Any, said: str) -> str:
 
 
 def _check_written(codec: Any) -> None:
-    """Raises UsageError for what is measured alone."""
+    """Raise UsageError for a codec that can only be measured."""
     if getattr(codec.encoding, "before", None):
         raise UsageError(f"{codec.encoding.name}: a chain of codecs is not written; write each codec of it")
     if getattr(codec.storage, "code", None):

@@ -51,8 +51,8 @@ def _opened(text: str) -> int:
 
 
 def _best_break(line: str, depth: int) -> int:
-    """Where a line is broken, behind a comma, before an operator or else behind a bracket: within as few
-    brackets as there can be, and as late there; 0 where it cannot be."""
+    """Return where to break a line: after a comma, before an operator or else after a bracket, within as few brackets
+    as possible, and as late as possible there; 0 if it cannot be broken."""
     begin = len(line) - len(line.lstrip())
     for pattern in (COMMA, OPERATOR, BRACKET):
         places = [match.end() for match in pattern.finditer(line[: WIDTH + 1], begin) if match.end() <= WIDTH]

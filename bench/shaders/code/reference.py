@@ -1,4 +1,4 @@
-"""What a codec's code must give: the results of its own twin by JAX, or by OpenGL of users' codes without one."""
+"""The required results of a codec's functions: those of its JAX twin, or of OpenGL for users' encodings without one."""
 
 from __future__ import annotations
 
@@ -45,17 +45,17 @@ class Reference:
 # Each has megabytes; the languages of one codec follow each other.
 @lru_cache(8)
 def reference(codec: Any) -> Reference:
-    """What the catalogue makes of the values of a codec."""
+    """Return the catalogue's results for the values of a codec."""
     return reference_of(codec, *kind_of(codec).values(codec))
 
 
 def reference_of(codec: Any, n: np.ndarray, view: np.ndarray, compiled: bool = True) -> Reference:
-    """What the catalogue makes of values, float32 of shape (count, 3 or 4).
+    """Return the catalogue's results for values, float32 of shape (count, 3 or 4).
 
     Args:
-        codec: of any kind.
-        compiled: whether XLA compiles the codec as a whole. Else each step is rounded by itself, as GPUs round it: XLA
-            may round a product and a sum once. Step by step takes less time where a codec is needed once.
+        codec: a codec of any kind.
+        compiled: whether XLA compiles the codec as a whole. Otherwise each step is rounded by itself, as GPUs round
+            it: XLA may round a product and a sum once. Step by step takes less time if a codec is needed once.
     """
     transform = jax.jit if compiled else _step_by_step
     kind, channels = kind_of(codec), Channels(codec)
@@ -111,7 +111,7 @@ def _integers(channel: Channel, texels: np.ndarray) -> np.ndarray:
 
 
 def _texels(channels: Channels, integers: np.ndarray, words: np.ndarray) -> np.ndarray:
-    """What a shader reads from a render target, float32 of shape (count, 4)."""
+    """Return the values that a shader reads from a render target, float32 of shape (count, 4)."""
     texels = np.zeros((len(integers), 4), np.float32)
     for part in range(channels.parts):
         texels[:, part] = channels.part_in(words, part) * np.float32(1 / ((1 << channels.numbers.storage.part) - 1))

@@ -1,4 +1,4 @@
-"""Look-up tables beside a codec's code: as a texture file, and as a header of C."""
+"""Lookup tables next to a codec's functions: as a texture file, and as a C header."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ GIVEN, FOUR_LETTERS, IS_TEXTURE = 0x100F, 0x4, 0x1000
 
 
 def texels_of(table: np.ndarray) -> Texels:
-    """What a table is kept as: in 8 bits where these are the same numbers.
+    """Return the format in which a table is stored: 8 bits if these are the same numbers.
 
     Args:
         table: float32 of shape (height, width, channels).
@@ -77,7 +77,7 @@ def _lines(numbers: Iterable[str]) -> list[str]:
 
 
 def table_lines(tables: Mapping[str, np.ndarray]) -> list[str]:
-    """What the head of a file says of tables, a line each."""
+    """Return the lines about tables in the head of a file, one line per table."""
     held = {name: texels_of(table) for name, table in tables.items()}
     return [
         f"Table: {name}, {texels.width} x {texels.height} texels of {texels.format}, {texels.bytes / KB:.4g} kB."
@@ -86,7 +86,7 @@ def table_lines(tables: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def table_files(tables: Mapping[str, np.ndarray], language: str, stem: str, prefix: str) -> dict[str, bytes]:
-    """What lies beside a file of a language, by name: `stem`, and a table's name without the prefix."""
+    """Return the table files next to a file of a language, by name: `stem`, and a table's name without the prefix."""
     if not tables:
         return {}
     if language == "c":

@@ -57,5 +57,5 @@ def _wgsl_code(codec: Codec) -> Code:
 
 
 def device_name() -> str:
-    """What a row calls the device. Raises MissingError."""
+    """Return the device's name in rows. Raises MissingError."""
     return wgsl.device_name()

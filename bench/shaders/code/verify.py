@@ -36,24 +36,25 @@ EPSILON = 2.0**-23
 
 @dataclass(frozen=True)
 class Agreement:
-    """How a file's results differ from the catalogue's.
+    """The differences between a file's results and the catalogue's.
 
     Attributes:
-        count: of values.
-        texels: how many different ones these have in the catalogue.
+        count: the number of values.
+        texels: the number of different texels that these have in the catalogue.
         differing: values whose texel is not the catalogue's.
-        steps: by how many steps of the storage a number differs at most, in texels that do not decode to the same.
+        steps: the largest difference of a number, in steps of the storage, in texels that do not decode to the
+            same.
         are_ties: whether no number differs by more than a step or CODE, whichever is larger.
-        share: how many of the texels may differ.
-        worse: how much farther off a texel that differs is decoded, at most, in `unit`.
-        unpacked: numbers that do not come back from the texels, or from the render target, as the catalogue's do.
+        share: the share of the texels that may differ.
+        worse: the largest error that a differing texel adds when decoded, in `unit`.
+        unpacked: numbers from the texels, or from the render target, that differ from the catalogue's.
         targets: texels that the render target's own conversion would make other than `pack` does.
-        decoded: by how much a decoded component differs at most.
-        far: values of which one differs by more than DECODED and OF_ERROR allow, or is no number.
+        decoded: the largest difference of a decoded component.
+        far: values with a component that differs by more than DECODED and OF_ERROR allow, or is not a number.
         searches: whether the encoder takes the best of several codes.
-        is_ours: whether it is the catalogue's.
-        plural: what the values are, in words.
-        unit: what errors of them are counted in.
+        is_ours: whether the codec is the catalogue's.
+        plural: the name of the values, in the plural.
+        unit: the unit of their errors.
     """
 
     count: int
@@ -107,11 +108,11 @@ class Agreement:
 
 
 def interface_of(codec: Any, prefix: str, program: Program) -> Interface:
-    """What the functions of a codec's code are called with.
+    """Return the inputs and outputs of a codec's functions.
 
     Args:
-        codec: of any kind.
-        program: its functions, from which settings that nothing reads are gone.
+        codec: a codec of any kind.
+        program: its functions, without settings that nothing reads.
     """
     parameters = program.function(f"{prefix}_encode").parameters
     names, kinds = ([getattr(parameter, word) for parameter in parameters] for word in ("name", "kind"))
@@ -145,7 +146,7 @@ def agreement(codec: Any, language: str, path: Path, interface: Interface) -> Ag
 
 
 def compared(codec: Any, expected: Reference, ran: Ran) -> Agreement:
-    """How the results of a file differ from the catalogue's."""
+    """Compare the results of a file with the catalogue's."""
     channels = Channels(codec)
     integers = np.stack([channels.bits_in(ran.words, i) for i in range(len(channels.channels))], axis=1)
     apart = np.stack(
@@ -186,18 +187,18 @@ def compared(codec: Any, expected: Reference, ran: Ran) -> Agreement:
 
 
 def _given(expected: Reference) -> np.ndarray:
-    """What was encoded, as it is decoded; float64 of shape (count, numbers)."""
+    """Return the encoded values, laid out like the decoded values; float64 of shape (count, numbers)."""
     return np.concatenate([expected.n, expected.view], axis=1)[:, : expected.decoded.shape[1]].astype(np.float64)
 
 
 def _numbers_apart(expected: Reference, ran: Ran) -> np.ndarray:
-    """How far the stored numbers of two texels are apart, (count, components)."""
+    """Return the distances between the stored numbers of a file and the catalogue, (count, components)."""
     count = expected.integers.shape[1]
     return np.abs(ran.unpacked[:, :count].astype(np.float64) - expected.stored[:, :count])
 
 
 def _worse(codec: Any, expected: Reference, ran: Ran, differs: np.ndarray) -> float:
-    """How much farther off what other texels decode to is, at most."""
+    """Return the largest error that differing texels add when decoded."""
     if not differs.any():
         return 0.0
     errors, given = kind_of(codec).errors, _given(expected)[differs]

@@ -1,1 +1,1 @@
-"""What GPU compilers make of GLSL, in processes of their own."""
+"""Results of GPU compilers for GLSL, computed in separate processes."""

@@ -1,10 +1,11 @@
-"""A process of its own for a driver that may crash or hang: shaders in, what the compiler made of them out.
+"""A separate process for a driver that may crash or hang: it reads shaders and writes the compiler's results.
 
     python -m normalbench.bench.shaders.isa.child < JOBS
 
-JOBS is JSON: the binding of the storage buffer, and for each job its key, stage and SPIR-V (base64). To standard output
-go lines of JSON, each as soon as it is known: what the driver is, the key of a job that is begun, and what came of it.
-Of an empty mapping, which files the driver consists of. The driver's files and the GPU come from the environment.
+JOBS is JSON: the binding of the storage buffer, and for each job its key, stage and SPIR-V (base64). The output is
+lines of JSON, each written as soon as it is known: a description of the driver, the key of each job that begins,
+and its result. For an empty mapping the output is the list of the driver's files. The driver's files and the GPU
+come from the environment.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ def own_output() -> Any:
 
 
 def compiled(driver: Any, job: dict[str, Any], planes: int) -> dict[str, Any]:
-    """What the driver makes of a job: its kernels, or the reason why not."""
+    """Compile a job with the driver: return its kernels, or the reason for the failure."""
     code, vertex = (base64.b64decode(job[part]) for part in ("code", "vertex"))
     try:
         kernels = driver.compile(job["stage"], code, vertex, planes)

@@ -1,7 +1,7 @@
-"""A Vulkan driver of Mesa's, asked what its compiler makes of a shader.
+"""A Vulkan driver of Mesa, with what its compiler reports about a shader.
 
-No GPU is needed: for a family named by RADV_FORCE_FAMILY RADV offers a null device, and Intel's drivers take the one of
-null_i915.c. Runs in a child process (`child`), because drivers crash.
+No GPU is needed: RADV offers a null device for a family named by RADV_FORCE_FAMILY, and Intel's drivers take the
+null device of null_i915.c. This runs in a child process (`child`), because drivers crash.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ OP_CAPABILITY, FLOAT16 = 17, 9
 
 
 class DriverError(Exception):
-    """What the driver cannot do; one line."""
+    """An operation that the driver cannot do; one line."""
 
 
 class MissingDriverError(DriverError):
-    """What is not installed; one line that names the package."""
+    """A component that is not installed; one line that names the package."""
 
 
 def _vulkan_module() -> Any:
@@ -52,19 +52,19 @@ HEAD = 4096
 
 
 def loaded_files() -> dict[str, str]:
-    """The files of the driver, and of the LLVM that disassembles for it, as they are loaded here, and their
-    fingerprints; none where the system does not say what a process has loaded.
+    """Return the loaded files of the driver, and of the LLVM that disassembles for it, with their fingerprints; empty
+    if the system does not report which files a process has loaded.
 
     Raises:
         MissingDriverError: there is no Vulkan loader.
-        DriverError: the loader takes no driver.
+        DriverError: the loader accepts no driver.
     """
     _instance(_vulkan_module())
     return {path: fingerprint(Path(path)) for path in system_files.loaded() if Path(path).name.startswith(DRIVERS)}
 
 
 def fingerprint(path: Path) -> str:
-    """What differs where two builds of a library do."""
+    """Return a text that differs between two builds of a library."""
     with path.open("rb") as file:
         return f"{path.stat().st_size} {hashlib.sha256(file.read(HEAD)).hexdigest()}"
 
@@ -89,15 +89,15 @@ def uses_halves(code: bytes) -> bool:
 
 
 class Compiler:
-    """A logical device that compiles, and tells what it made.
+    """A logical device that compiles, and reports its result.
 
     Attributes:
-        device: what the driver calls it.
+        device: the driver's name for it.
         version: Mesa's.
 
     Raises:
         MissingDriverError: there is no Vulkan loader, or no driver.
-        DriverError: the driver lacks what is needed.
+        DriverError: the driver lacks a feature that is needed.
     """
 
     def __init__(self):
@@ -124,7 +124,7 @@ class Compiler:
             raise DriverError(f"the Vulkan driver offers no device: {type(error).__name__}") from error
 
     def _half_features(self, physical: Any) -> Any:
-        """What the device computes in 16 bits."""
+        """Return the device's features of 16-bit arithmetic."""
         vk = self._vk
         halves = vk.VkPhysicalDeviceShaderFloat16Int8Features()
         vk.vkGetPhysicalDeviceFeatures2(physical, vk.VkPhysicalDeviceFeatures2(pNext=halves))
@@ -153,16 +153,16 @@ class Compiler:
             raise DriverError(f"{self.device} makes no device: {type(error).__name__}") from error
 
     def compile(self, stage: str, code: bytes, vertex: bytes, planes: int) -> list[dict[str, Any]]:
-        """What the compiler makes of a shader.
+        """Compile a shader and return its kernels.
 
         Args:
             stage: "compute" or "fragment".
-            code: the shader, and `vertex` the one before a fragment shader, as SPIR-V.
-            planes: the binding of the storage buffer; those below are look-up tables.
+            code: the shader, and `vertex` the vertex shader before a fragment shader, as SPIR-V.
+            planes: the binding of the storage buffer; lower bindings are lookup tables.
 
         Returns:
-            a kernel for each number of lanes that the driver compiles for: "simd_width", that number; "statistics" by
-            the driver's own names; and "assembly", the disassembly, empty where there is none.
+            a kernel for each number of lanes that the driver compiles for: "simd_width", that number; "statistics",
+            by the driver's own names; and "assembly", the disassembly, empty if the driver gives none.
 
         Raises:
             DriverError: it does not compile.

@@ -1,8 +1,8 @@
-"""What a Radeon's disassembly is made of: which kind each instruction is of, what it takes to issue, where it jumps.
+"""The contents of a Radeon's disassembly: the kind of each instruction, its issue slots, and its jumps.
 
-Scalar instructions run once for all lanes, beside the others. Memory is loads, stores, interpolation and export.
-Waiting is what the compiler has to say about order: waits, hints, the end. The others run once for each lane, at rates
-that depend on the family.
+Scalar instructions run once for all lanes, in parallel with the others. Memory instructions are loads, stores,
+interpolation and export. Waiting instructions are the compiler's statements about order: waits, hints, the end. The
+others run once for each lane, at rates that depend on the family.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ SLOTS: Mapping[str, Mapping[str, int]] = MappingProxyType(
 
 
 def names(assembly: str) -> list[str]:
-    """The name of each instruction, in order; labels, comments and blank lines are none."""
+    """Return the name of each instruction, in order, without labels, comments and blank lines."""
     mnemonics: list[str] = []
     for line in assembly.splitlines():
         if match := _INSTRUCTION.match(line):
@@ -69,9 +69,9 @@ def kind(name: str, family: str = "") -> str:
 
 
 def kinds(assembly: str, total: int, family: str = "") -> dict[str, int] | None:
-    """How many instructions of each kind; None where the text is not a listing of `total` instructions that are known.
+    """Count the instructions of each kind; return None unless the text is a listing of `total` known instructions.
 
-    A driver that was built without a disassembler says so in words instead.
+    A driver that was built without a disassembler writes a message instead of the listing.
     """
     try:
         counts = Counter(kind(name, family) for name in names(assembly))
@@ -81,15 +81,14 @@ def kinds(assembly: str, total: int, family: str = "") -> dict[str, int] | None:
 
 
 def issue_slots(counts: Mapping[str, int], family: str) -> int | None:
-    """What a kernel's lane instructions take of the vector ALU's issue, in full-rate instructions; sums of kernels add
-    up. None for a family whose rates are not known."""
+    """Return the issue slots of a kernel's lane instructions on the vector ALU, in full-rate instructions; the slots
+    of several kernels add up. None for a family whose rates are not known."""
     slots = rates(family)
     return sum(rate * counts[name] for name, rate in slots.items()) if slots else None
 
 
 def rates(family: str) -> Mapping[str, int] | None:
-    """How many issue slots an instruction of each kind takes; none of a kind that runs beside. None for a family whose
-    rates are not known."""
+    """Return the issue slots of each kind of instruction, without kinds that run in parallel; None if unknown."""
     return SLOTS.get(family)
 
 
@@ -99,7 +98,7 @@ def kinds_in_order(assembly: str, family: str) -> list[str]:
 
 
 def packed(assembly: str) -> int:
-    """How many instructions compute two numbers of 16 bits at once."""
+    """Count the instructions that compute two 16-bit numbers at once."""
     return sum(name.startswith("v_pk_") for name in names(assembly))
 
 
@@ -130,7 +129,7 @@ def jumps(assembly: str) -> tuple[int, int]:
 
 
 def _jumps(assembly: str) -> Iterator[tuple[bool, bool]]:
-    """Of each jump whether there is a condition, and whether it goes back."""
+    """Yield for each jump whether it is conditional, and whether it goes back."""
     passed: set[str] = set()
     for line in assembly.splitlines():
         if label := _LABEL.match(line):

@@ -1,4 +1,4 @@
-"""Where Mesa's drivers are on this machine, and the environment that has them compile as they do for everybody."""
+"""The places of Mesa's drivers on this machine, and the environment in which they compile as they do for everybody."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ UNWANTED = ("RADV_", "ACO_", "AMD_", "ANV_", "INTEL_", "NIR_", "MESA_", "VK_", "
 
 
 def no_driver(library: str) -> str:
-    """What to install where there is no description of a driver."""
+    """Return what to install if no description of a driver is found."""
     message = f"no {TITLES[library]}: no Vulkan driver file names {library}"
     return f"{message}; install Mesa's ({how_to_install('mesa-vulkan-drivers', counts=True)})"
 
 
 @cache
 def driver_file(library: str = RADV) -> Path | None:
-    """A driver's own description for the Vulkan loader; None where there is none."""
+    """Return a driver's description file for the Vulkan loader; None if it is not found."""
     paths = [path for path in _descriptions() if _library(path) == library]
     # A machine may have the driver for several architectures; the file's name says for which, if anything does.
     return next((path for path in paths if platform.machine() in path.name), paths[0] if paths else None)

@@ -1,7 +1,8 @@
-"""What an Intel GPU's disassembly is made of: which kind each instruction is of, and where it jumps.
+"""The contents of an Intel GPU's disassembly: the kind of each instruction, and its jumps.
 
-An instruction works on as many lanes as its parentheses say: "mad(16)". Mesa's own count leaves out `nop`; some Mesas
-also leave out `sync nop`, which only waits, and others count it (brw_fs_generator.cpp).
+The number of lanes that an instruction works on is in its parentheses: "mad(16)". Mesa's own count leaves out
+`nop`; some versions of Mesa also leave out `sync nop`, which only waits, and others count it
+(brw_fs_generator.cpp).
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ _FLOATS = {"HF", "F", "DF"}
 
 
 class Instruction(NamedTuple):
-    """One line of a listing: its name, what it is a function of ("math rsq") or waits for, its lanes and operands."""
+    """One line of a listing: its name, its function ("math rsq") or what it waits for, its lanes and operands."""
 
     is_predicated: bool
     name: str
@@ -43,7 +44,7 @@ class Instruction(NamedTuple):
 
 
 def instructions(assembly: str) -> Iterator[Instruction]:
-    """All but `nop`, in order; a message's second line and labels are none."""
+    """Yield all instructions except `nop`, in order, without a message's second line and labels."""
     for line in assembly.splitlines():
         if (match := _INSTRUCTION.match(line)) and match[2] != "nop":
             yield Instruction(bool(match[1]), match[2], match[3] or "", int(match[4]), match[5])
@@ -82,7 +83,7 @@ def _is_conversion(one: Instruction) -> bool:
 
 
 def kinds(assembly: str, total: int, _: str = "") -> dict[str, int] | None:
-    """How many instructions of each kind; None where the text does not list `total` instructions that are known."""
+    """Count the instructions of each kind; return None unless the text lists `total` known instructions."""
     every = list(instructions(assembly))
     without = [instruction for instruction in every if (instruction.name, instruction.function) != ("sync", "nop")]
     listed = next((some for some in (every, without) if len(some) == total), None)
@@ -104,7 +105,7 @@ def packed(_: str) -> None:
 
 
 def rates(family: str) -> Mapping[str, int]:
-    """How many issue slots an instruction of each kind takes, by Mesa's model of the units (brw_ir_performance.cpp):
+    """Return the issue slots of an instruction of each kind, by Mesa's model of the units (brw_ir_performance.cpp):
     from generation 8 on, 8 lanes occupy the unit of `math` for 4 cycles and the others for 2; before, both for 2."""
     return {**dict.fromkeys(KINDS, 1), "waiting": 0, "transcendental": 1 if family == "hsw" else 2}
 

@@ -1,8 +1,8 @@
-"""What compilers make of shaders for GPUs that are not there, family by family: Mesa's, and NVIDIA's of CUDA.
+"""Results of compilers for GPUs that need not be in this machine, family by family: Mesa's, and NVIDIA's for CUDA.
 
-Each family compiles in a child process, because drivers crash and hang: a job that does not come back costs itself,
-with the reason, and the others go on in a fresh child. What was compiled is kept in the user's cache, by the shader,
-the driver's own files and the family.
+Each family compiles in a child process, because drivers crash and hang: a job that does not come back loses only
+its own result, with the reason, and the others continue in a new child. Results are kept in the user's cache, by
+the shader, the driver's own files and the family.
 """
 
 from __future__ import annotations
@@ -63,11 +63,11 @@ class Kernel:
 
 @dataclass(frozen=True)
 class Compiled:
-    """What came of a job.
+    """The result of a job.
 
     Attributes:
-        family: the name that the driver took.
-        device, version: what the driver calls the device, and Mesa's version; of NVIDIA's compiler its name, too.
+        family: the name that the driver accepted.
+        device, version: the driver's name for the device, and Mesa's version; for NVIDIA also the compiler's name.
         kernels: one for each number of lanes; Intel's drivers compile for up to three, the others for one.
     """
 
@@ -90,8 +90,9 @@ Outcome = Compiled | Failure
 
 @cache
 def _loaded(path: Path) -> str | Failure:
-    """What differs once the driver or the library that disassembles for it does: their files' names and fingerprints,
-    as a child has them loaded. Empty where it cannot be told, a Failure where the driver cannot be loaded at all."""
+    """Return a text that changes with the driver or the library that disassembles for it: the names and fingerprints
+    of their files, as a child has loaded them. Empty if these are unknown, a Failure if the driver cannot be
+    loaded."""
     with child({}, Driver(path, threading.Event()), {}) as (lines, why):
         line = lines()
         if line is None:
@@ -105,7 +106,7 @@ def _loaded(path: Path) -> str | Failure:
 
 
 def missing(library: str = RADV) -> str:
-    """What this machine lacks for a driver to compile, in one line; empty where it lacks nothing."""
+    """Return what this machine lacks for a driver to compile, in one line; empty if nothing is missing."""
     if library == NVRTC:
         return tools.missing()
     path = driver_file(library)
@@ -130,7 +131,7 @@ def _null_device(library: str) -> None:
 def compile_all(
     jobs: Sequence[Job], families: Sequence[str], tick: Callable[[str], None]
 ) -> dict[tuple[str, Job], Outcome]:
-    """What each family's compiler makes of each job; `tick` is called with a family as it is done."""
+    """Compile each job for each family; `tick` is called with a family when it is done."""
     by_job: dict[tuple[str, Job], Outcome] = {}
     stop = threading.Event()
     with ThreadPoolExecutor(cores()) as pool:
@@ -149,7 +150,7 @@ def compile_all(
 
 
 def driver_versions() -> dict[str, str]:
-    """Each driver's version, by its name; of one that cannot compile, the reason in one line."""
+    """Return each driver's version, by its name; for a driver that cannot compile, the reason in one line."""
     with ThreadPoolExecutor(cores()) as pool:
         return dict(zip(TITLES.values(), pool.map(_driver_version, TITLES), strict=True))
 
@@ -214,7 +215,7 @@ def _driver(library: str, stop: threading.Event) -> Driver:
 
 
 def _identity(library: str) -> str:
-    """What differs once a driver does; empty where it cannot be told."""
+    """Return a text that changes with the driver; empty if its files are unknown."""
     if library == NVRTC:
         return tools.identity()
     path = driver_file(library)
@@ -223,7 +224,7 @@ def _identity(library: str) -> str:
 
 
 def _as_compiled(value: dict[str, Any] | None) -> Compiled | None:
-    """What was kept; None where it is anything else."""
+    """Return a result that was kept; None if the value is anything else."""
     texts, kernels = ("family", "device", "version"), (value or {}).get("kernels")
     if value is None or set(value) != {*texts, "kernels"} or not isinstance(kernels, list) or not kernels:
         return None
@@ -259,7 +260,7 @@ def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str,
 
 
 def _variables(family: str, name: str) -> dict[str, str]:
-    """What has a driver compile for a family, under one of its names. Raises NullDeviceError."""
+    """Return the environment that makes a driver compile for a family by this name. Raises NullDeviceError."""
     if FAMILIES[family].library == NVRTC:
         return {ARCHITECTURE: name}
     words = FAMILIES[family].null_device
@@ -295,7 +296,7 @@ def _by_children(
 def _answers(
     name: str, variables: Mapping[str, str], driver: Driver, jobs: Mapping[str, Job]
 ) -> Iterator[str | Failure | tuple[str, Outcome]]:
-    """What one child says: the key of a job that it begins, a key and its outcome, and in the end why it ended."""
+    """Yield one child's messages: the key of a job that begins, a key and its outcome, and finally why it ended."""
     facts: dict[str, str] = {}
     with child(variables, driver, _job_fields(jobs)) as (lines, why):
         while (line := lines()) is not None:

@@ -28,7 +28,7 @@ SAID = "NORMALBENCH_NULL_I915"
 
 
 class NullDeviceError(Exception):
-    """It cannot be built; one line. `is_missing` where something is to be installed."""
+    """The null device cannot be built; one line. `is_missing` is true if something must be installed."""
 
     def __init__(self, said: str, is_missing: bool = False):
         super().__init__(said)
@@ -43,7 +43,7 @@ def library() -> Path:
 
 
 def _kept_library(folder: Path, stem: str) -> Path | None:
-    """What was built before; None where others own the folder, so that building there says what is wrong."""
+    """Return the library that was built before; None if others own the folder, which the build reports."""
     try:
         paths = sorted(folder.glob(f"{stem}-*.so"))
     except OSError:
@@ -53,7 +53,7 @@ def _kept_library(folder: Path, stem: str) -> Path | None:
 
 
 def _library_folder() -> Path:
-    """Where libraries are built that processes can load."""
+    """Return a folder for built libraries from which processes can load them."""
     try:
         return kept.folder_to_execute_from()
     except OSError:
@@ -62,13 +62,12 @@ def _library_folder() -> Path:
 
 
 def variables(words: str) -> dict[str, str]:
-    """What has a process find the Intel GPU that the words describe. Raises NullDeviceError."""
+    """Return the environment in which a process finds the Intel GPU that the words describe. Raises NullDeviceError."""
     return preloaded(library()) | {SAID: words}
 
 
 def _library_name(stem: str, path: Path) -> str:
-    """What a library is called, by what it holds; the name of no file where it cannot be read, or others may have
-    written it."""
+    """Return the name of a library, by its content; empty if the file cannot be read, or others may have written it."""
     try:
         return f"{stem}-{kept.key_of(path.read_bytes())[:16]}.so" if kept.is_private(path) else ""
     except OSError:

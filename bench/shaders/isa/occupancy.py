@@ -1,4 +1,4 @@
-"""How many waves of a kernel a GPU's SIMD holds at once, by how many registers each takes."""
+"""The number of waves of a kernel that a GPU's SIMD holds at once, by the number of registers that each takes."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from types import MappingProxyType
 
 @dataclass(frozen=True)
 class Occupancy:
-    """What a SIMD has for its waves.
+    """The room of a SIMD for its waves.
 
     Attributes:
-        waves: the most that it holds, however few registers they take.
-        registers: how many it has of as many lanes as a wave has; 0 where each wave has its own share.
+        waves: the maximum that it holds, however few registers they take.
+        registers: the number of its registers, each with the lanes of a wave; 0 if each wave has its own share.
         step: the number of registers that it allots at once.
     """
 
@@ -22,7 +22,7 @@ class Occupancy:
     step: int = 1
 
     def of(self, registers: float) -> int:
-        """How many waves that take so many registers it holds.
+        """Return the number of waves that it holds if each takes this number of registers.
 
         Args:
             registers: as a driver counts them.
@@ -53,7 +53,7 @@ OCCUPANCY: Mapping[str, Occupancy] = MappingProxyType(
 
 
 def waves(family: str, registers: float | None) -> int | None:
-    """How many waves of a kernel a SIMD of a GPU family holds; None where that is not known."""
+    """Return the number of waves of a kernel that a SIMD of a GPU family holds; None if that is not known."""
     rule = OCCUPANCY.get(family)
     if rule is None or (rule.registers and registers is None):
         return None

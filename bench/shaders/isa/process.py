@@ -27,9 +27,9 @@ Lines = Callable[[], dict[str, Any] | None]
 
 @dataclass(frozen=True)
 class Driver:
-    """The driver's description for the loader, and what tells its children that nobody waits for them any more.
+    """The driver's description for the loader, and the event that tells its children that nobody waits any more.
 
-    `command` starts a child where it is not one of CHILD.
+    `command` starts a child if it is not one of CHILD.
     """
 
     path: Path
@@ -71,13 +71,13 @@ def child(
 
 
 class _Heard:
-    """What a child says, line by line, as long as it says something."""
+    """The output of a child, line by line, until the child is silent for too long."""
 
     def __init__(self, lines: queue.Queue[str | None], stop: threading.Event):
         self._lines, self._stop, self._is_silent = lines, stop, False
 
     def following(self) -> dict[str, Any] | None:
-        """The next line; None at the end, when nothing has come for SECONDS, or when nobody waits any more."""
+        """Return the next line; None at the end, when nothing has come for SECONDS, or when nobody waits any more."""
         until = time.monotonic() + SECONDS
         while not self._stop.is_set() and time.monotonic() < until:
             try:
@@ -89,7 +89,7 @@ class _Heard:
         return None
 
     def why(self, process: subprocess.Popen[str], errors: IO[bytes]) -> str:
-        """Why there is no more."""
+        """Return the reason why no more lines come."""
         if self._is_silent:
             return f"the driver did not answer within {SECONDS:g} s"
         status = process.wait(SECONDS)
@@ -98,7 +98,7 @@ class _Heard:
 
 
 def _parsed(line: str | None) -> dict[str, Any] | None:
-    """A child's line; None at the end, and for one that was cut off when the child died."""
+    """Return a child's line, parsed; None at the end, and for a line that was cut off when the child died."""
     try:
         answer = json.loads(line or "null")
     except ValueError:
@@ -113,7 +113,7 @@ def _read(stream: Any, lines: queue.Queue[str | None]) -> None:
 
 
 def _end_reason(status: int, errors: str) -> str:
-    """How a child ended, and the last that it or its driver said."""
+    """Return how a child ended, and the last line that it or its driver wrote."""
     how = f"signal {name}" if (name := signal_name(status)) else f"status {status}"
     last = [line.strip() for line in errors.splitlines() if line.strip()]
     return f"the driver ended with {how}" + (f": {last[-1][:200]}" if last else "")

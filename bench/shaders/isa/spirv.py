@@ -34,7 +34,7 @@ class Module:
 
 
 def version(tool: str) -> str | None:
-    """All that a tool says of its version; None where it is not there."""
+    """Return all that a tool reports about its version; None if it is not installed."""
     try:
         return tools.version_text(tool) or "of no version"
     except MissingError:
@@ -70,12 +70,12 @@ def _version_number(said: str) -> str:
 
 
 def compiled(source: Source, stage: str, counted: bool = True) -> Module:
-    """A source as SPIR-V; `stage` is "vert", "frag" or "comp". Kept by its text and the tools' versions.
+    """Compile a source to SPIR-V; `stage` is "vert", "frag" or "comp". It is kept by its text and the tools' versions.
 
-    Its instructions are counted if that is asked for and there is spirv-opt.
+    Its instructions are counted if that is requested and spirv-opt is installed.
 
     Raises:
-        MissingError: there is no compiler.
+        MissingError: no compiler is installed.
         ShaderError: it does not compile; the message names the file and the line.
     """
     optimiser = version(OPTIMISER) if counted else None
@@ -93,7 +93,7 @@ def compiled(source: Source, stage: str, counted: bool = True) -> Module:
 
 
 def _as_module(value: dict[str, Any] | None) -> Module | None:
-    """What was kept; None where it is anything else."""
+    """Return a module that was kept; None if the value is anything else."""
     try:
         binary, count = base64.b64decode((value or {})["binary"], validate=True), (value or {})["instructions"]
     except (KeyError, TypeError, ValueError):

@@ -120,7 +120,8 @@ def _wall_in(source: Source, folder: Path) -> None:
 
 
 def _facts_of_a_program(whole: Source, folder: Path, by: str, kind: Kind) -> dict[str, Any]:
-    """Of the first program of a file that has an encoder and its decoder. Raises what is said of the others."""
+    """Return the facts of the first program of a file that has an encoder and its decoder. If none has, raise the
+    error of one of them."""
     errors: list[Exception] = []
     for source in programs_of(whole):
         try:
@@ -157,7 +158,7 @@ def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Pa
 
 
 def _check_refused(found: Read, asked: tuple[str, str] | None) -> None:
-    """Raises TranslationError where a function that could be one of the two is refused, which is why there is none."""
+    """Raise TranslationError if a refused function could be one of the two, which explains the missing pair."""
     if why := next((why for name, why in found.refused.items() if name in (asked or ()) or role(name)), ""):
         raise TranslationError(why) from None
 
@@ -212,10 +213,10 @@ def _adapter_texts(
 def _pair_facts(
     found: Read, pair: Pair, text: str, folder: Path, by: str, asked: tuple[str, str] | None = None
 ) -> dict[str, Any]:
-    """What `Translated` has of two functions, or of one alone.
+    """Return the facts of `Translated` about two functions, or about one alone.
 
     Args:
-        text: what stands behind the user's own.
+        text: the text behind the user's own.
     """
 
     def texts(reader: Language, part: Source, prefix: str) -> list[str]:
@@ -237,12 +238,12 @@ _Texts = Callable[[Language, Source, str], list[str]]
 def _facts_of_texts(
     found: Read, text: str, names: Collection[str], name: str, by: str, texts: _Texts
 ) -> dict[str, Any]:
-    """What `Translated` has of functions, but what is of their kind.
+    """Return the facts of `Translated` about functions, except those of their kind.
 
     Args:
-        text: what stands behind the user's own.
-        names: of the functions that are called.
-        name: what rows call the code.
+        text: the text behind the user's own.
+        names: the names of the functions that are called.
+        name: the name of the encoding in rows.
     """
     prefix = "user_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
     source = found.source.with_text(reached(found.source.text + text, names))
@@ -303,7 +304,7 @@ def _wired_pair(wirings: Sequence[Wiring], found: Read) -> tuple[Pair, str, str]
 
 
 def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: str) -> tuple[str, list[str]]:
-    """What has read functions, if not the compiler of their language; and they as texts."""
+    """Return the compiler that read the functions, if it is not that of their language; and the functions as texts."""
     try:
         return by, texts(language_of(source.file, by), source, prefix)
     except TranslationError:
@@ -315,7 +316,7 @@ def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: s
 
 
 def _others(found: Sequence[Function], pair: Pair) -> list[str]:
-    """A line on each other pair, but those of numbers alone: one of 32 bits, or of functions with more parameters."""
+    """Return a line on each other pair with a 32-bit code or more parameters, but not on pairs of plain numbers."""
     others = [] if pair.is_packed else packed_pairs(found)
     packed = {other.named: f", which packs into {_A[other.encode.kind]}," for other in others}
     wired = dict.fromkeys(f"{first.function}:{other.function}" for first, other in candidates(_but(found, pair)))
@@ -334,7 +335,7 @@ def _but(found: Sequence[Function], pair: Pair) -> list[Function]:
 
 
 def _read_with(source: Source) -> list[str]:
-    """A line on what was read besides the file."""
+    """Return a line on the files and macros that were read with the file."""
     others = [str(path) for path in source.files.values() if path not in source.mains]
     more = f" and {len(others) - MOST_NAMED} others" if len(others) > MOST_NAMED else ""
     macros = [f"-D {macro}" for macro in source.settings.defines]
@@ -343,7 +344,7 @@ def _read_with(source: Source) -> list[str]:
 
 
 def _row_name(source: Source, pair: Pair, asked: tuple[str, str] | None) -> str:
-    """What rows call it: NAME of NAME_encode and NAME_decode, as in GLSL; else the file's name; and its macros."""
+    """Return the name for rows: NAME of NAME_encode and NAME_decode, as in GLSL, or the file's; and its macros."""
     names = [pair.encode.name.removesuffix("_encode"), pair.decode.name.removesuffix("_decode")]
     file = source.path.name
     function = wiring_of(asked[0]).function if asked else pair.encode.name

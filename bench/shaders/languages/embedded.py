@@ -31,7 +31,7 @@ def shader_text(text: str, ending: str) -> str:
 
 
 def _block(text: str, start: int) -> tuple[int, int]:
-    """Where the inside of braces that begin at a place starts and ends."""
+    """Return the start and the end of the text inside braces that begin at a place."""
     depth, bare = 1, without_comments(text)
     for mark in re.finditer(r"[{}]", bare[start:]):
         depth += 1 if mark[0] == "{" else -1

@@ -50,7 +50,7 @@ def _define_options(source: Source) -> list[str]:
 
 
 def _check(source: Source, status: int, said: str) -> None:
-    """Raises TranslationError where glslang refuses a source."""
+    """Raise TranslationError if glslang refuses a source."""
     if not status:
         return
     match = _ERROR.search(said)

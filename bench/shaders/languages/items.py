@@ -1,7 +1,7 @@
-"""What stands at the top of a text in a language that looks like C: functions, structures, globals, one after another.
+"""The top-level items of a text in a language that looks like C: functions, structures, globals, one after another.
 
-Nothing is understood of them but braces and semicolons; what they mean is the compiler's to say. A namespace is no
-item: what is in it is.
+Only braces and semicolons are understood; the rest is left to the compiler. A namespace is not an item, but its
+contents are.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def items(text: str) -> list[Item]:
 
 
 def _items(bare: str, start: int, end: int, body: int, space: str) -> list[Item]:
-    """What stands between two ends: an item, or a function and what stands in the lines before it, such as a macro."""
+    """Return the items between two ends: one item, or a function and the lines before it, such as a macro."""
     match = _NAME.search(bare[start:body].rstrip()) if body < end else None
     if not match:
         return [Item(start, end, "", end)]
@@ -102,7 +102,7 @@ def words_of(text: str) -> set[str]:
 
 
 def defined_in(text: str) -> Iterator[str]:
-    """What a text defines at its top: functions, types, globals, namespaces."""
+    """Yield the names that a text defines at its top level: functions, types, globals, namespaces."""
     for item in items(text):
         head = re.split(r"[{=(:;[]", _without_directives(text[item.start : item.end]), maxsplit=1)[0]
         yield from (match[1] for part in head.split(",") if (match := re.search(r"(\w+)\s*$", part)))
@@ -114,7 +114,7 @@ def heads(text: str) -> str:
 
 
 def marked_heads(text: str, mark: str) -> str:
-    """The same with a mark before the name of each function, so that none is one of the language's own."""
+    """Return the same with a mark before the name of each function, so that no name is one of the language's own."""
     functions = [item for item in items(text) if item.function]
     names = (re.search(rf"\b{item.name}\s*\(", text[item.start : item.body]) for item in functions)
     places = (item.start + name.start() for item, name in zip(functions, names, strict=True) if name)
@@ -128,7 +128,7 @@ def without(text: str, some: Iterable[Item]) -> str:
 
 
 def reached(text: str, names: Collection[str]) -> str:
-    """A text without the functions that those of these names, and what is no function, do not need."""
+    """Return a text with only the functions that these names, or the text outside functions, need."""
     every = items(text)
     words = set(_WORD.findall(" ".join(_DIRECTIVE.findall(text))))
     words |= {name.rpartition("::")[2] for name in names}

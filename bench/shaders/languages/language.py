@@ -82,6 +82,6 @@ def name_of(file: UserFile) -> str:
 
 
 def require_language(name: str) -> None:
-    """Raises MissingError where a compiler that a language needs is not there."""
+    """Raise MissingError if a compiler that a language needs is not installed."""
     for tool in BY_NAME[name].tools:
         tools.path_of(tool)

@@ -83,12 +83,12 @@ class Function:
     """A function.
 
     Attributes:
-        name: of it.
-        result: how many numbers it gives; 0 where that is no vector of two or three.
-        given: how many numbers each of its parameters has, likewise.
+        name: its name.
+        result: the number of components of its result; 0 if that is not a vector of two or three.
+        given: the number of components of each of its parameters, likewise.
         kind: the type of its result, as it is written.
-        takes: the type of its first parameter, if that is one integer or one float of 32 bits; empty for others.
-        parameters: each, if its compiler tells them.
+        takes: the type of its first parameter, if that is one integer or one float of 32 bits; else empty.
+        parameters: its parameters, if its compiler reports them.
         results: the numbers and vectors of its result, likewise.
     """
 
@@ -159,7 +159,7 @@ class Pair:
 
     @property
     def components(self) -> int:
-        """How many numbers their code has; those of an integer are its two halves."""
+        """The number of components of their code; an integer's are its two halves."""
         return HALVES if self.is_packed else self.encode.result
 
     @property
@@ -169,15 +169,15 @@ class Pair:
 
     @property
     def named(self) -> str:
-        """How it is asked for."""
+        """The name by which a pair is requested."""
         return f"{self.encode.name}:{self.decode.name}"
 
 
 class NoPairError(Exception):
-    """There are no two functions that are an encoder and its decoder.
+    """No two functions are an encoder and its decoder.
 
     Attributes:
-        alone: what is known of the one of the two that is there; empty where none is.
+        alone: the known facts about the one of the two that exists; empty if neither does.
     """
 
     alone: Mapping[str, Any] = MappingProxyType({})
@@ -248,7 +248,7 @@ def _is_half_named(pair: Pair) -> bool:
 
 
 def _fitting(found: Sequence[Function]) -> Iterator[Pair]:
-    """The pairs whose types fit; where these would be too many, of names alone that are the same otherwise."""
+    """Yield the pairs whose types fit; if these would be too many, only pairs of functions with the same stem."""
     encoders, decoders = _sides(found)
     needs_name = too_many(encoders, decoders)
     for encode, decode in itertools.product(encoders, decoders):
@@ -289,7 +289,7 @@ def _asked(found: Sequence[Function], asked: tuple[str, str], pairs: Sequence[Pa
 
 
 def _by_name(pairs: Sequence[Pair]) -> list[Pair]:
-    """Those of an encoder and a decoder by their names; of these, those whose names are the same otherwise."""
+    """Return the pairs that are an encoder and a decoder by their names, preferring those with the same stem."""
     named = [pair for pair in pairs if role(pair.encode.name) == "encode" and role(pair.decode.name) == "decode"]
     same = [pair for pair in named if stem(pair.encode.name) == stem(pair.decode.name)]
     return same or named
@@ -319,7 +319,7 @@ def name_speaks_of_normals(name: str) -> bool:
 
 
 def has_side_of_colours(pair: Pair) -> bool:
-    """Whether the name of one function alone says that it is of normals, and that of the other one of colours."""
+    """Whether the name of one function alone speaks of normals, and that of the other function of colours."""
     sides = pair.encode.name, pair.decode.name
     is_of_colours = [bool(OF_COLOURS & words_in(name)) and not name_speaks_of_normals(name) for name in sides]
     return any(is_of_colours) and speaks_of_normals(pair)
@@ -335,13 +335,14 @@ def speaks_of_others(pair: Pair) -> bool:
 
 
 def _by_size(pairs: Sequence[Pair]) -> list[Pair]:
-    """Those whose types alone tell encoder and decoder apart, and whose names do not say the contrary."""
+    """Return the pairs whose types alone tell encoder and decoder apart, unless their names say the contrary."""
     told = [pair for pair in pairs if pair.components != NORMAL]
     return [pair for pair in told if role(pair.encode.name) != "decode" and role(pair.decode.name) != "encode"]
 
 
 def _ways(name: str) -> tuple[list[str], list[str]] | None:
-    """What a name says that a function makes what of: NormalToOctahedron, oct_from_vec; None where it says neither."""
+    """Return the words for a function's input and output in its name: NormalToOctahedron, oct_from_vec; None if the
+    name does not say."""
     words = [word.lower() for word in WORD.findall(name)]
     for between in ("to", "from"):
         if between in words[1:-1]:
@@ -353,7 +354,7 @@ def _ways(name: str) -> tuple[list[str], list[str]] | None:
 
 @cache
 def role(name: str) -> str:
-    """What a function is by its name: "encode", "decode", or empty."""
+    """Return a function's role by its name: "encode", "decode", or empty."""
     if ways := _ways(name):
         given, is_code_made = (any(word.startswith(CODES) for word in words) for words in ways)
         if given != is_code_made:
@@ -383,7 +384,7 @@ def alone(found: Sequence[Function]) -> Pair | None:
 
 
 def _of_something_else(found: Sequence[Function], file: str, among: Collection[kinds.Kind] = kinds.KINDS) -> str:
-    """That a file without a pair is of something else, by the names of its functions; else empty."""
+    """Return a message if function names show that a file without a pair is of something else; else empty."""
     for name in (function.name for function in found if role(function.name)):
         if (kind := kind_spoken_of(name)) and kind in among and not name_speaks_of_normals(name):
             return OF_OTHERS.format(name, kind.plural, kinds.NORMAL.plural, kind.command.format(file))

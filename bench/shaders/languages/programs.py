@@ -1,4 +1,4 @@
-"""What is compiled: a user's source with an entry point, and macros for types that engines define elsewhere."""
+"""The compiled text: a user's source with an entry point, and macros for types that engines define elsewhere."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ ANY = ""
 
 
 class Read(NamedTuple):
-    """What a compiler reads of a source.
+    """The parts of a source that a compiler reads.
 
     Attributes:
-        source: the part of it that is compiled; each line stands where it stood.
-        functions: those of vectors in it.
+        source: the part of it that is compiled; each line keeps its number.
+        functions: the functions of vectors in it.
         refused: by its name, why a function is not among them.
-        lost: by its name, why a global or a type is not in the source; of ANY, why names are not that nobody knows.
+        lost: by its name, why a global or a type is not in the source; under ANY, why unknown names are not.
     """
 
     source: Source

@@ -15,10 +15,11 @@ FLOATS, NUMBERS = ("half", "float"), ("float", "uint", "int", "bool")
 
 
 def functions_of(compiled: Compiled, names: Mapping[str, str]) -> list[Function]:
-    """Return the functions of these names, overloads each; a name that only another branch has gives none.
+    """Return the functions of these names, with all overloads; a name that exists only in another branch gives none.
 
     Args:
-        names: what the text defines, by what its functions are called: the library does not bear names of its own.
+        names: for each function's name, the name that the text defines: the library does not tolerate names of its
+            own.
     """
     reflection = api().reflection(compiled.request)
     handles = [(name, api().find(reflection, spelled.encode())) for name, spelled in names.items()]
@@ -55,7 +56,7 @@ def _function(name: str, function: int) -> Function:
 
 
 def size_of(places: Sequence[Place]) -> int:
-    """How many numbers a vector of two or three floats has; 0 of another type."""
+    """Return the number of components of a vector of two or three floats; 0 for another type."""
     whole = places[0] if len(places) == 1 and "." not in places[0].path else None
     return whole.size if whole and whole.kind == "float" and whole.size in (2, 3) else 0
 
@@ -71,7 +72,7 @@ def _parameter(variable: int) -> Parameter:
 
 
 def _places(path: str, kind: int) -> Iterator[Place]:
-    """The numbers and vectors of a type; those of a structure one by one."""
+    """Yield the numbers and vectors of a type; those of a structure one by one."""
     library = api()
     scalar = SCALARS.get(library.scalar(kind), "")
     scalar = "float" if scalar in FLOATS else scalar

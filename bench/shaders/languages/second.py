@@ -39,14 +39,14 @@ Way = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarra
 
 
 class UndefinedError(Exception):
-    """What a program does that its language leaves undefined; one line."""
+    """A program does something that its language leaves undefined; one line."""
 
 
 class NoSecondWayError(Exception):
-    """Why there is none here; one line.
+    """The second way is not available here; one line with the reason.
 
     Attributes:
-        is_of_the_file: whether a compiler that is there refuses the file.
+        is_of_the_file: whether an installed compiler refuses the file.
     """
 
     def __init__(self, why: str, is_of_the_file: bool = False):
@@ -90,7 +90,7 @@ def _program_text(name: str, encoder: Translated) -> str:
 
 
 def _of_halves(encoder: Translated) -> str:
-    """The same of two functions whose code is one value of 32 bits."""
+    """Return the same program for two functions whose code is one value of 32 bits."""
     (pack, is_viewed), (unpack, is_viewed_back) = encoder.functions
     words = {
         "PACK": pack,

@@ -48,7 +48,7 @@ class Fitted:
     made: Mapping[CodeArgument, Place]
 
     def size(self, part: str) -> int:
-        """How many numbers a part has here; 0 where it has none."""
+        """Return the number of components of a part here; 0 if the part is missing."""
         both = [*((part, place) for place, part in self.given.items()), *self.made.items()]
         return next((place.size for argument, place in both if argument.name == part), 0)
 
@@ -63,12 +63,12 @@ class ShapedPair:
 
     @property
     def named(self) -> str:
-        """How it is asked for."""
+        """The name by which the pair is requested."""
         return f"{self.encode.function.name}:{self.decode.function.name}"
 
     @property
     def components(self) -> int:
-        """How many numbers the code has."""
+        """The number of components of the code."""
         return self.encode.size(self.shape.code.name)
 
     @property
@@ -82,11 +82,11 @@ class ShapedPair:
 
     @property
     def parts(self) -> dict[str, list[int]]:
-        """By each part how many numbers the encoder is given of it, and the decoder gives; 0 for none."""
+        """For each part, the number of components that the encoder takes and the decoder returns; 0 for none."""
         return {part.name: [side.size(part.name) for side in (self.encode, self.decode)] for part in self.shape.parts}
 
     def sides(self, adapter: Adapter) -> dict[str, tuple[Function, str]]:
-        """By the letter that a program calls it by, each adapter and its text."""
+        """Return each adapter and its text, by the letter that a program calls it by."""
         by_letter = {"e": _adapted(self.encode, "e", (self.shape.code.name,), adapter)}
         for letter, names in zip(LETTERS, self.shape.results, strict=False):
             by_letter[letter] = _adapted(self.decode, letter, names, adapter)
@@ -145,7 +145,7 @@ def _all_pairs(found: Sequence[Function], kind: Kind, asked: tuple[str, str] | N
 
 
 def _may_be(function: Function, side: str, asked: tuple[str, str] | None) -> bool:
-    """Whether a function is the one that is asked for, or is called as one of a side."""
+    """Whether a function is the requested one or, without a request, has the role of a side."""
     return function.name == asked[side == "decode"] if asked else role(function.name) == side
 
 
@@ -161,9 +161,9 @@ def _fitted(
 
 
 def _assigned(places: Sequence[Place], parts: Sequence[CodeArgument]) -> dict[Place, CodeArgument] | None:
-    """The part that each place is: by its name, then by the order; None where a part or a place is left.
+    """Return the part that each place is: by its name, then by the order; None if a part or a place is left over.
 
-    What a structure has besides may be left.
+    Further fields of a structure may be left over.
     """
     assigned: dict[Place, CodeArgument] = {}
     likely = sorted(
@@ -191,7 +191,7 @@ def _likeness(place: Place, part: CodeArgument) -> int:
 
 
 def _likeliest(pairs: Sequence[ShapedPair], kind: Kind) -> list[ShapedPair]:
-    """Those of the same name otherwise that speak of the kind, or of none."""
+    """Return the pairs with the same stem that speak of the kind, or of no kind."""
     same = [pair for pair in pairs if stem(pair.encode.function.name) == stem(pair.decode.function.name)] or pairs
     spoken = [pair for pair in same if kind_spoken_of(pair.named) is kind]
     silent = [pair for pair in same if not kind_spoken_of(pair.named) and not _is_of_colours(pair, kind)]
@@ -205,7 +205,7 @@ def _is_of_colours(pair: ShapedPair, kind: Kind) -> bool:
 
 
 def _why_not(found: Sequence[Function], kind: Kind, asked: tuple[str, str]) -> str:
-    """Why two functions that are asked for are no pair."""
+    """Return why two functions that were requested are not a pair."""
     names = {function.name for function in found}
     if missing := [name for name in asked if name not in names]:
         return f"no function is named {missing[0]}; there are: {', '.join(dict.fromkeys(names)) or 'none'}"
@@ -232,7 +232,7 @@ def _why_none(found: Sequence[Function], kind: Kind, file: str) -> str:
 
 
 def _other_kind(name: str, kind: Kind) -> Kind | None:
-    """What a function's name says that it is of, if that is not a kind."""
+    """Return the kind that a function's name speaks of, if it is not this kind."""
     spoken = kind_spoken_of(name)
     if spoken is kind:
         return None

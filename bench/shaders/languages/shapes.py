@@ -1,8 +1,8 @@
-"""What the two functions of a user's code take and give, by what the code is of: a value for each kind but normals.
+"""The inputs and outputs of the two functions of a user's encoding, for each kind of value but normals.
 
 A program calls the functions of every kind in one way, by adapters `float4 NAME(float4 n, float3 view)`: a
-`CodeArgument` says where in these seven numbers it lies. GLSL around the adapters then has the functions that the
-catalogue's codes have.
+`CodeArgument` gives the place of a value among these seven numbers. GLSL around the adapters then has the functions
+that the catalogue's encodings have.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class CodeArgument:
     is_needed: bool = True
 
     def likeness(self, called: str) -> int:
-        """How many letters of a name, in lower case, are those of this part."""
+        """Return the number of letters of a name, in lower case, that match a word of this part."""
         return max(
             (len(word) for word in self.words if word == called or (len(word) > 1 and word in called)), default=0
         )
@@ -39,16 +39,16 @@ class CodeArgument:
 
 @dataclass(frozen=True)
 class Shape:
-    """What two functions take and give.
+    """The inputs and outputs of two functions.
 
     Attributes:
-        parts: what is encoded.
-        code: its code.
-        settings: what both functions may be given besides.
-        results: the names of the parts that each adapter of a decoder gives, with 0 for what is not there.
-        template: the file of GLSL around the adapters.
-        wanted: how the two functions look, for messages.
-        has_sign: whether its numbers may lie in [-1, 1]: then [0, 1] is another way to write them.
+        parts: the encoded values.
+        code: their code.
+        settings: further inputs that both functions may have.
+        results: the names of the parts that each adapter of a decoder returns, with 0 for a part that is missing.
+        template: the GLSL file around the adapters.
+        wanted: the form of the two functions, for messages.
+        has_sign: whether its numbers may be in [-1, 1]: then [0, 1] is another way to write them.
     """
 
     parts: tuple[CodeArgument, ...]

@@ -67,17 +67,17 @@ class RefusedWordError(TranslationError):
 
 
 def read(source: Source, folder: Path) -> Read:
-    """What can be read of a source in HLSL or Slang. Raises TranslationError and MissingError."""
+    """Return the readable part of a source in HLSL or Slang. Raises TranslationError and MissingError."""
     return _readable_part(source, with_known_directives, folder, ())
 
 
 def read_glsl(source: Source, folder: Path) -> Read:
-    """What can be read of a source in GLSL, which Slang's compiler knows. Raises TranslationError and MissingError."""
+    """Return the readable part of a source in GLSL, for Slang's compiler. Raises TranslationError and MissingError."""
     return _readable_part(source, _text_of_no_stage, folder, GLSL)
 
 
 def _diagonals(text: str) -> Iterator[int]:
-    """The lines in which a matrix is made of one value."""
+    """Yield the lines in which a matrix is made of one value."""
     for match in _DIAGONAL.finditer(text):
         depth, commas = 1, 0
         for index in range(match.end(), len(text)):
@@ -123,8 +123,8 @@ def _readable_part(source: Source, first: Callable[[str], str], folder: Path, op
 
 
 def _refused_now(source: Source, options: tuple[str, ...], folder: Path) -> dict[Item, str]:
-    """The items of a source that are refused, each with the first message; none where its heads compile. Raises
-    TranslationError where what is refused is none."""
+    """Return the items of a source that are refused, each with the first message; empty if the heads compile. Raises
+    TranslationError if the refused text is not an item."""
     try:
         compiled = _compiled(source, heads(source.text) + NO_ENTRY, (*options, *TARGET), folder)
     except RefusedWordError as error:
@@ -159,7 +159,7 @@ def _live_part(source: Source, folder: Path, options: tuple[str, ...]) -> Source
 
 
 def _names_in_head(text: str, item: Item) -> list[str]:
-    """The names that an item may give a function: that of the one that it defines, else all that stand before (."""
+    """Return the names that an item may give a function: that of its function, else all names before "("."""
     before, brace, _ = text[item.start : item.end].partition("{")
     if item.function:
         return [item.name]
@@ -167,7 +167,7 @@ def _names_in_head(text: str, item: Item) -> list[str]:
 
 
 def _any_name(why: str) -> list[str]:
-    """ANY where what is cut out reads another file, whose names nobody knows."""
+    """Return ANY if the removed text reads another file, whose names are unknown."""
     return [ANY] if why.endswith(INSTEAD) else []
 
 
@@ -212,7 +212,7 @@ def shader_of_glsl(source: Source, function: Function, folder: Path) -> str:
 
 
 def _compiled(source: Source, text: str, options: tuple[str, ...], folder: Path) -> library.Compiled:
-    """What the compiler makes of a part of a source with what stands behind it. Raises TranslationError."""
+    """Compile a part of a source with the text behind it. Raises TranslationError."""
     defined = [word for macro in macros(source, TYPES) for word in ("-D", macro)]
     # A text without an entry point is checked, and nothing is written of it.
     target = () if "-target" in options else ("-target", "glsl")
@@ -240,7 +240,7 @@ def _explained(error: RefusedError) -> str:
 
 
 def check(source: Source, said: str, status: int) -> None:
-    """Raises TranslationError where Slang's compiler ended with a status and said this."""
+    """Raise TranslationError if Slang's compiler ended with an error status; `said` is its output."""
     if status:
         raise TranslationError(_explanation(source, said))
 
@@ -254,7 +254,7 @@ def _explanation(source: Source, said: str) -> str:
 
 
 def _messages(said: str) -> Iterator[tuple[int, int, str]]:
-    """Line, column and what is wrong there, of each error but that there is no entry point."""
+    """Yield the line, column and message of each error, except the error that the entry point is missing."""
     errors = list(_ERROR.finditer(said))
     starts = [error.start() for error in errors]
     for error, end in zip(errors, [*starts[1:], len(said)], strict=False):

@@ -49,13 +49,13 @@ Part = tuple[int, int]
 
 
 def _homes() -> Iterator[Path]:
-    """The home folder, as it is named and where its links lead; none where nobody knows it."""
+    """Yield the home folder, as it is named and with its links resolved; nothing if it is unknown."""
     with suppress(RuntimeError, OSError):
         yield from (Path.home(), Path.home().resolve())
 
 
 def _resolved(path: Path) -> Path:
-    """Where a path's links lead; where they lead nowhere, or no file can be named so, the path."""
+    """Return a path with its links resolved; the absolute path if they cannot be resolved or the name is invalid."""
     try:
         return path.absolute().resolve()
     except (RuntimeError, OSError, ValueError):
@@ -63,8 +63,8 @@ def _resolved(path: Path) -> Path:
 
 
 def _searched(folder: Path) -> list[Path]:
-    """Where includes are searched: a folder and those above it, up to a repository's, at most eight more; never the
-    home folder, what is above it, or the top of all, but where the file itself lies there."""
+    """Return the folders to search for includes: a folder and at most eight above it, up to a repository's root. Of
+    these, only the first may be the home folder, a folder above it, or the file system's root."""
     paths, homes = [folder], list(_homes())
     for above in folder.parents[:MOST_ABOVE]:
         if (paths[-1] / ".git").exists() or any(home.is_relative_to(above) for home in homes) or above == above.parent:
@@ -143,7 +143,7 @@ def _guard(lines: list[str]) -> tuple[int, ...]:
 
 
 def _defined(lines: list[Line]) -> set[str]:
-    """What stands at the top of lines."""
+    """Return the names defined at the top level of lines."""
     return set(defined_in("".join(f"{line.text}\n" for line in lines)))
 
 
@@ -172,17 +172,18 @@ class _Branches:
 
 
 class Source:
-    """A file and what it includes: from its own folder and the folders below, from those above it up to that of its
-    repository, and from nowhere else.
+    """A file together with its includes, which are searched in its own folder, the folders below it and those above it
+    up to its repository's, and nowhere else.
 
-    A file is included where its includes say, in each branch; one that guards itself only where it may not have been
-    read yet; one that includes itself not again.
+    A file is included wherever an #include names it, in each branch. A file with an include guard is included only
+    where it may not have been read yet. A file never includes itself again.
 
-    An include of a file that is elsewhere, or not there, becomes an #error: in a branch that is left out it does no
-    harm.
+    An #include of a file that is missing or elsewhere becomes an #error, which does no harm in a branch that is not
+    compiled.
 
     Raises:
-        UsageError: a file cannot be read, they are too large or too many together, or they include each other too deep.
+        UsageError: a file cannot be read, the files are too large or too many together, or they are nested too
+            deep.
     """
 
     def __init__(self, file: UserFile):
@@ -211,7 +212,7 @@ class Source:
         self.text = "".join(f"{line.text}\n" for line in self.lines)
 
     def _all_lines(self) -> Iterator[Line]:
-        """Those of macros, of preludes and of the file."""
+        """Yield the lines of macros, of preludes and of the file."""
         for macro in self.settings.defines:
             name, _, value = macro.partition("=")
             yield Line(f"#define {name} {value if '=' in macro else 1}", Path("--define"), 1)
@@ -266,7 +267,7 @@ class Source:
             yield Line("#endif", path, len(text.lines))
 
     def _take(self, text: _Text) -> None:
-        """Raises UsageError where this is more than is read."""
+        """Count a text toward the limits. Raises UsageError if one is exceeded."""
         self._left -= sum(map(len, text.lines)) + len(text.lines)
         self._lines_left -= len(text.lines)
         self._count += 1
@@ -293,7 +294,7 @@ class Source:
             yield from self._expanded(target)
 
     def _targets(self, path: Path, name: str) -> list[Path]:
-        """Where a file may lie that another one includes."""
+        """Return the paths at which an included file may be."""
         if name.endswith(SLANG) and "_" in name:
             # A module's file may have hyphens for underscores.
             return [*self._targets(path, name.replace("_", "-")), *self._targets_as_written(path, name)]
@@ -321,29 +322,29 @@ class Source:
         return False
 
     def with_text(self, text: str) -> Source:
-        """The same with another text of as many lines, which stand where they stood."""
+        """Return a copy with another text of as many lines, which keep their places."""
         clone = copy(self)
         clone.text = text
         return clone
 
     @property
     def own_text(self) -> str:
-        """What is left of the lines of the file itself, or of both."""
+        """The remaining text of the file itself, or of both files."""
         texts = zip(self.text.split("\n"), self.lines, strict=False)
         return "".join(f"{text}\n" for text, line in texts if line.path in self.mains)
 
     def without_missing(self) -> Source:
-        """The same without the lines that include what is not there."""
+        """Return a copy without the lines that include missing files."""
         texts = zip(self.text.split("\n"), self.lines, strict=False)
         return self.with_text("".join(f"{'' if line.wrong else text}\n" for text, line in texts))
 
     @property
     def missing(self) -> list[str]:
-        """What is wrong with the lines that include what is not there, with their places."""
+        """The errors of lines that include missing files, with their places."""
         return [f"{line.path}:{line.number}: {line.wrong}" for line in self.lines if line.wrong]
 
     def without_part(self) -> Source:
-        """The same without the part of its declarations that is to be left out."""
+        """Return a copy without those of its declarations that `part` selects."""
         number, count = self.part
         if not count:
             return self
@@ -356,7 +357,7 @@ class Source:
         return self.with_text(without(self.text, some))
 
     def may_read(self, target: Path) -> bool:
-        """Whether a file, whose links are resolved, lies where includes are searched and ends as a shader does."""
+        """Whether a file, whose links are resolved, is in a searched folder and has a shader's extension."""
         return any(map(target.is_relative_to, self._tops)) and target.suffix.lower() in ENDINGS
 
     def place(self, number: int) -> tuple[Path, int]:
@@ -369,11 +370,11 @@ class Source:
         return self.lines[min(max(number, 1), len(self.lines)) - 1]
 
     def explained(self, number: int, said: str, token: str = "", column: int = 0) -> str:
-        """What a compiler says of a line of `text`, with the user's file, line and column.
+        """Return a compiler's message about a line of `text`, with the user's file, line and column.
 
         Args:
-            token: what the compiler quotes; its column is added where it stands once in that line.
-            column: as the compiler says; 0 where it does not.
+            token: the text that the compiler quotes; its column is added if it occurs once in that line.
+            column: the compiler's column; 0 if it gives none.
         """
         path, line = self.place(number)
         if wrong := self._line(number).wrong:
@@ -384,6 +385,6 @@ class Source:
         return f"{path}:{line}{f':{column}' if column else ''}: {said}"
 
     def _column(self, number: int, token: str) -> int:
-        """Where a word stands in a line, counted from 1; 0 where it does not, or not once."""
+        """Return the column of a word in a line, counted from 1; 0 unless the word occurs exactly once."""
         matches = list(re.finditer(rf"(?<!\w){re.escape(token)}(?!\w)", self._line(number).text)) if token else []
         return matches[0].start() + 1 if len(matches) == 1 else 0

@@ -35,18 +35,20 @@ class Translated:
     """A user's encoder in GLSL.
 
     Attributes:
-        name: what rows call it.
-        prefix: what the names of its GLSL functions begin with.
-        components: how many numbers its code has.
-        packed: the type of the one value of 32 bits that its code is, whose halves are its numbers; empty for others.
-        notes: what is to be said of it, lines.
-        texts: its GLSL; and its GLSL where codes in [0, 1] become [-1, 1] on their way out, and come back.
+        name: its name in rows.
+        prefix: the prefix of its GLSL functions' names.
+        components: the number of components of its code.
+        packed: the type of the single 32-bit value that is its code and whose halves are its numbers; otherwise
+            empty.
+        notes: lines to report about it.
+        texts: its GLSL; and its GLSL with codes in [0, 1] converted to [-1, 1] on output and back on input.
         text: the part of the user's file that was compiled.
-        functions: encoder and decoder: the name of each in the user's file, and whether it takes the view.
-        named: the two, as they are asked for, ENCODE:DECODE.
-        read_by: what has read it, if not the compiler of its language: see `BY_NAME`.
-        shaped: of a code of something else than normals: `template`, the file around it, `settings`, what its functions
-            are given besides, and `parts`, how many numbers of each part they are given and give: see `shapes.py`.
+        functions: the name of the encoder and of the decoder in the user's file, and whether each takes the view.
+        named: the two as a user names them, ENCODE:DECODE.
+        read_by: the compiler that read it, if not its language's own: see `BY_NAME`.
+        shaped: for an encoding of something other than normals: `template`, the file around it, `settings`, the
+            further inputs of its functions, and `parts`, how many numbers of each part they take and return: see
+            `shapes.py`.
     """
 
     name: str
@@ -117,13 +119,14 @@ def own() -> str:
 
 
 def sources_of_this() -> list[Path]:
-    """What `own` is a hash of."""
+    """Return the files that `own` hashes."""
     folders = (Path(file).parent for file in (__file__, tree.__file__, tools.__file__))
     return sorted([Path(kinds.__file__), *(file for folder in folders for file in folder.iterdir() if file.is_file())])
 
 
 def _translated_or_none(value: Any) -> Translated | None:
-    """What was kept or said; None where it is anything else: a file could have misled the process that says it."""
+    """Return a cached or reported encoder; None if it is malformed, because a file could have misled the process that
+    reports it."""
     try:
         encoder = Translated(**(value or {}))
     except TypeError:
@@ -165,7 +168,7 @@ def _ended_child(file: UserFile, by: str, kind: Kind, part: Part = (0, 0)) -> su
 
 
 def _answer(done: subprocess.CompletedProcess[str]) -> dict[str, Any] | None:
-    """What a child printed; None where it died before."""
+    """Return the answer that a child printed; None if it died before."""
     try:
         answer = json.loads(done.stdout)
     except (ValueError, RecursionError):

@@ -69,7 +69,7 @@ def _places(path: str, kind: str, structs: _Structs) -> Iterator[Place]:
 
 
 def _free(place: Place) -> str:
-    """What is given where nothing else is, as `FREE` has it."""
+    """Return the value of an unbound input, as in `FREE`."""
     value = FREE[place.kind]
     return value if place.size == 1 else f"vec{place.size}<{TYPES[place.kind]}>({value})"
 
@@ -106,7 +106,7 @@ def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: AR
 
 
 def _checked(source: Source, made):
-    """What is made. Raises TranslationError, at the user's line and column."""
+    """Return what `made` returns. Raises TranslationError, at the user's line and column."""
     try:
         return made()
     except tree.TranslationError as error:

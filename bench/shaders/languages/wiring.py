@@ -46,12 +46,12 @@ SWIZZLES = ("xy", "xyz", "xyw", "zw", "yzw")
 
 @dataclass(frozen=True)
 class Wiring:
-    """How a function is called.
+    """The inputs and outputs of a call of a function.
 
     Attributes:
         function: its name.
-        bound: by its place, what a number or a vector that it is given is: n, view, e or e.xy, or a number.
-        made: the places of what it gives that are the code, or the normal; none for its whole result.
+        bound: by place, the value of a number or a vector that it takes: n, view, e or e.xy, or a number.
+        made: the places in its output that hold the code, or the normal; empty for its whole result.
     """
 
     function: str
@@ -65,7 +65,7 @@ class Wiring:
 
     @property
     def is_plain(self) -> bool:
-        """Whether nothing is said but the name."""
+        """Whether only the name is given."""
         return not (self.bound or self.made)
 
 
@@ -88,10 +88,10 @@ def wiring_of(text: str) -> Wiring:
 
 
 def wired(pair: Sequence[Wiring], found: Sequence[Function]) -> tuple[str, Pair]:
-    """A text in HLSL of two functions that call two others as they are wired, and these two.
+    """Return HLSL text of two functions that call two others as they are wired, and the pair of these two.
 
     Raises:
-        NoPairError: what is wired is not there, or is no normal and no code.
+        NoPairError: a wired place does not exist, or does not hold a normal or a code.
     """
     encode, decode = (_function_of(side, found) for side in pair)
     for wiring, not_given, given in zip(pair, (CODE, N), (N, CODE), strict=True):
@@ -135,7 +135,7 @@ def _swizzles(size: int) -> Iterator[str]:
 
 
 def outputs_of(function: Function) -> list[Place]:
-    """What a function gives: its result, and its parameters."""
+    """Return the outputs of a function: its result and its output parameters."""
     outputs = [place for parameter in function.parameters if parameter.is_made for place in parameter.places]
     return [*function.results, *outputs]
 
@@ -154,7 +154,7 @@ def _output(function: Function, path: str) -> Place:
 
 
 def _made(function: Function, wiring: Wiring) -> tuple[int, str]:
-    """How many numbers a wired function gives, and of which type."""
+    """Return how many numbers a wired function outputs, and their type."""
     places = [_output(function, path) for path in wiring.made] or outputs_of(function)
     kinds = {place.kind for place in places}
     return sum(place.size for place in places), kinds.pop() if len(places) == 1 else "float"
@@ -188,10 +188,10 @@ def _caller(function: Function, wiring: Wiring, given: str, called: str, made: s
 
 
 def _body(function: Function, head: str, bound: Mapping[str, str], made: str) -> str:
-    """A function with this head that calls another one, and gives what is made of its results.
+    """Return a function with this head that calls another one and returns `made`, an expression of its results.
 
     Args:
-        bound: by its place, the value of what the other one is given.
+        bound: by place, the values of the called function's inputs.
     """
     asked = {place.partition(".")[0] for place in bound}
     parameters = list(itertools.takewhile(lambda one: not one.has_default or one.name in asked, function.parameters))
@@ -228,7 +228,7 @@ def adapter(function: Function, name: str, given: Mapping[str, str], made: Seque
 
 
 def with_words(text: str, words: Mapping[str, str]) -> str:
-    """A text with other words in place of its own; a swizzle is none."""
+    """Return a text with some words replaced; swizzles are left alone."""
     return re.sub(rf"(?<![.\w])(?:{'|'.join(words)})\b", lambda match: words[match[0]], text)
 
 
@@ -281,7 +281,7 @@ def candidates(found: Sequence[Function]) -> list[tuple[Wiring, Wiring]]:
 
 
 def _of_normals(pairs: Sequence[tuple[Function, Function]]) -> list[tuple[Function, Function]]:
-    """Those pairs whose names do not say that they are of something else."""
+    """Return the pairs whose names do not say that they encode something other than normals."""
     return [pair for pair in pairs if not speaks_of_others(Pair(*pair)) and not has_side_of_colours(Pair(*pair))]
 
 
@@ -313,7 +313,7 @@ def _named(function: Function, path: str, size: int) -> tuple[str, ...]:
 
 
 def _free(function: Function, taken: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """What else a function is given: the position by its name, and values in the middle."""
+    """Yield the other inputs of a function: the position, recognised by its name, and middle values for the rest."""
     for parameter in function.parameters:
         for place in parameter.places if parameter.is_given and not parameter.has_default else ():
             is_view = place.size == NORMAL and any(word in place.path.lower() for word in OF_VIEW)
@@ -322,7 +322,7 @@ def _free(function: Function, taken: Sequence[str]) -> Iterator[tuple[str, str]]
 
 
 def _normal_of(places: Sequence[Place]) -> Place | None:
-    """Which of some vectors is the normal: the only one of three numbers, or the only one that is called so; or the
+    """Return the normal among some vectors: the only one of three numbers, the only such one whose name says so, or the
     only one of four, if there is nothing else."""
     vectors = [place for place in places if place.kind == "float" and place.size == NORMAL]
     named = [place for place in vectors if _is_called_normal(place)]

@@ -25,7 +25,7 @@ FETCH = "texelFetch"
 
 
 def result_of(name: str, given: Sequence[str]) -> str | None:
-    """The type that a built-in function gives for arguments of these types; None where there is none of that name."""
+    """Return the type of a built-in function's result for arguments of these types; None for an unknown name."""
     if name in LIKE_GIVEN:
         size = max(map(size_of, given))
         return vector(scalar_of(given[0]), size)

@@ -1,4 +1,4 @@
-"""What C leaves undefined of whole numbers: functions that define it, and where they are not needed."""
+"""Integer operations that C leaves undefined: functions that define them, and where these are not needed."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def counted(loop: For) -> dict[str, Range]:
 
 
 def range_of(mark: str, left: Range | None, right: Range | None) -> Range | None:
-    """What an operation of two ranges gives; None where that is not known or does not fit."""
+    """Return the range of an operation's result from those of its operands; None if it is unknown or does not fit."""
     if mark == "&":
         known = [most for operand in (left, right) if operand and operand[0] >= 0 for most in operand[1:]]
         return (0, min(known)) if known else None

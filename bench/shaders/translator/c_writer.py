@@ -1,8 +1,8 @@
-"""C99, which has no vectors: what a shader says of a vector is said of each of its components.
+"""A writer of C99, which has no vectors: each vector operation is written once per component.
 
-What GLSL leaves undefined has a meaning in the file. As an integer, what is not a number is 0 and what is out of range
-the nearest one, as in Direct3D. x / 0 is x and x % 0 is 0, as in WGSL. Shifts go modulo 32, sums of integers wrap, and
-an index that an array does not have is its nearest. What is not a number has one pattern of bits.
+The file defines what GLSL leaves undefined. Conversion to an integer makes NaN 0 and clamps what is out of range,
+as in Direct3D. x / 0 is x and x % 0 is 0, as in WGSL. Shifts are modulo 32, integer sums wrap, and an array index
+out of range becomes the nearest valid one. NaN has one bit pattern.
 """
 
 from __future__ import annotations
@@ -185,7 +185,7 @@ class CWriter(Writer):
         return self._comments(statement, indent) + hoisted + text
 
     def _apart(self, write: Callable[[], str], indent: str) -> tuple[str, str]:
-        """A text, and what is to be said before it."""
+        """Return a text, and the statements that must precede it."""
         outer = self._hoisted, self._indent
         self._hoisted, self._indent = [], indent
         text = write()
@@ -347,7 +347,7 @@ class CWriter(Writer):
         return self._member_parts(f"(&{whole}.x)[{self._within(index, count)}]", value.kind)
 
     def _count_of(self, kind: str) -> int:
-        """How many scalars a value has."""
+        """Return how many scalars a value has."""
         if kind in self._structs:
             return sum(map(self._count_of, self._structs[kind].kinds.values()))
         return int(kind[3]) ** 2 if kind in MATRICES else size_of(kind)
@@ -407,7 +407,7 @@ class CWriter(Writer):
         return [(f"{_bracketed(a, level)} {mark} {_bracketed(b, level + 1)}", level) for a, b in pairs]
 
     def _size(self, value: Binary) -> int:
-        """How many components an operation has."""
+        """Return how many components an operation has."""
         kinds = (value.kind, value.left.kind, value.right.kind)
         return max(map(self._count_of, kinds))
 
@@ -424,7 +424,7 @@ class CWriter(Writer):
         return scalar_of(value.kind) == "uint" or self._range(value) is not None
 
     def _range(self, value: Expression) -> Range | None:
-        """What a signed number is at least and at most; None where that is not known."""
+        """Return the smallest and the largest value that a signed number can have; None if they are unknown."""
         match value:
             case Literal("int" | "uint", text):
                 return int(text, 0), int(text, 0)
@@ -509,7 +509,7 @@ class CWriter(Writer):
         return texts if kind in SCALARS else f"({self._kind(kind)}){texts}"
 
     def _braced_text(self, kind: str, texts: Iterator[str]) -> str:
-        """What a value begins with, of the scalars that are left."""
+        """Return a value's braced initialiser, taking scalars from `texts`."""
         if kind in SCALARS:
             return next(texts)
         inner = [scalar_of(kind)] * size_of(kind)

@@ -38,12 +38,12 @@ RESULT = "result"
 
 @dataclass(frozen=True)
 class _Changing:
-    """A function that changes what it is given.
+    """A function that changes its arguments.
 
     Attributes:
-        made: the structure that it gives in place of that.
-        parameters: its parameters as they were.
-        has_result: whether it gives something besides.
+        made: the structure that it returns instead.
+        parameters: its original parameters.
+        has_result: whether it also returns a value of its own.
     """
 
     made: Struct
@@ -92,7 +92,7 @@ def _give_back(function: Function, changing: _Changing) -> None:
 
 
 def _is_taken(parameter: Parameter) -> bool:
-    """Whether a function still takes a parameter: where nobody sees what it is changed to, one is like any other."""
+    """Whether a function still takes a parameter: not if it is output only and callers use its changes."""
     return parameter.is_given or not parameter.is_changed
 
 

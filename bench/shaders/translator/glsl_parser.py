@@ -253,7 +253,7 @@ class GlslParser(Parser):
         return For(starts[0] if starts else None, condition, step, body)
 
     def _starts(self) -> list[Statement]:
-        """What stands first between a loop's parentheses."""
+        """Read the first part between a loop's parentheses."""
         if self._skip(";"):
             return []
         if self._is_type(self._next_token.text) or self._next_token.text in ("const", *PRECISIONS):
@@ -275,7 +275,7 @@ class GlslParser(Parser):
         return Block([Declare("bool", is_first, Literal("bool", "true")), loop])
 
     def _declaration(self) -> list[Statement]:
-        """One statement for each name; a constant that stands for another is that other."""
+        """Read a declaration as one statement per name; a constant that equals another constant is an alias of it."""
         is_constant, is_precise = self._skip("const"), self._next_token.text == "precise"
         kind, is_open = self._kind(), self._next_token.text == "[" and self._text_ahead(1) == "]"
         self._at += 2 * is_open
@@ -342,7 +342,7 @@ class GlslParser(Parser):
         return Construct(struct.name, values)
 
     def _choice_of(self, condition: Expression, chosen: Expression, other: Expression) -> Expression:
-        """A choice; of structures it is one of each field: not every language has that of wholes."""
+        """Return a choice; between structures, one for each field: not every language can choose structures."""
         if chosen.kind not in self._structs or chosen.kind != other.kind:
             return super()._choice_of(condition, chosen, other)
         pairs = zip(self._field_values(chosen), self._field_values(other), strict=True)
@@ -351,7 +351,7 @@ class GlslParser(Parser):
         return Construct(chosen.kind, list(choices))
 
     def _field_values(self, value: Expression) -> list[Expression]:
-        """A structure's fields; of a name or of what is made of its fields, as others would be computed for each."""
+        """Return a structure's fields, if it is a name or is made of its fields: others would be computed per field."""
         whole = value
         while isinstance(whole, Member):
             whole = whole.value

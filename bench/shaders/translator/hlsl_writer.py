@@ -138,7 +138,7 @@ class HlslWriter(Writer):
         return super()._operand(parent, child, UNARY if parent.operator in TRUTHS and is_less(child) else least)
 
     def _choice_and_level(self, value: Choice) -> tuple[str, int]:
-        """Of vectors one component after the other: HLSL 2021 has no `?:` of vectors, earlier ones have no select."""
+        """Write a choice of vectors by component: HLSL 2021 has no `?:` of vectors, earlier versions have no select."""
         size = size_of(value.condition.kind)
         if size == 1:
             text, level = super()._choice_and_level(value)

@@ -108,7 +108,7 @@ class MslWriter(Writer):
         return super()._construct(value)
 
     def _conversion(self, value: Construct, given: Expression, size: int) -> str:
-        """Of truth values, what a comparison or a choice makes of them: compilers differ in what a true one is."""
+        """Convert to or from Booleans by a choice or a comparison: compilers differ in the value of true."""
         from_kind, to_kind = scalar_of(given.kind), scalar_of(value.kind)
         if size > 1 and from_kind == "bool":
             ones, zero = (Construct(value.kind, [Literal(to_kind, text)]) for text in _ends(to_kind))

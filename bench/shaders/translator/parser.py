@@ -1,4 +1,4 @@
-"""What readers of C-like languages share: tokens one after the other, scopes, and expressions with their types."""
+"""The common part of parsers of C-like languages: a sequence of tokens, scopes, and expressions with their types."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ class Parser:
         return TranslationError(f"{place.line}:{place.column}: {what}")
 
     def _deeper(self, read: Callable):
-        """What a reader reads, one level deeper. Raises TranslationError where that is too deep."""
+        """Return the result of `read`, one level deeper. Raises TranslationError if that is too deep."""
         self._depth += 1
         if self._depth > MOST_DEPTH:
             raise self._error(f"nested more than {MOST_DEPTH} deep")
@@ -179,7 +179,7 @@ class Parser:
         return free_name
 
     def _add(self, function: Function) -> None:
-        """Make a function known; its name becomes its own among those of that name."""
+        """Make a function known, under a name that is unique among its overloads."""
         same = self._functions.setdefault(function.name, [])
         kinds = ",".join(p.kind for p in function.parameters)
         function.name = f"{function.name}({kinds})"
@@ -212,7 +212,7 @@ class Parser:
         return left
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
-        """What a mark between two values means in this language."""
+        """Return the expression for an operator between two values in this language."""
         return self._combined(mark, left, right)
 
     def _combined(self, mark: str, left: Expression, right: Expression) -> Expression:
@@ -325,7 +325,7 @@ class Parser:
         return f"{kind}[{count}]"
 
     def _whole_number(self, value: Expression | None) -> int | None:
-        """What a constant expression of whole numbers is; None of any other."""
+        """Return the value of a constant expression of integers; None for any other expression."""
         match value:
             case Literal("int" | "uint", text):
                 return int(text, 0)
@@ -337,7 +337,7 @@ class Parser:
         return None
 
     def _arguments(self) -> list[Expression]:
-        """What stands between parentheses, the first of which is taken."""
+        """Read the arguments in parentheses; the opening one is already taken."""
         arguments: list[Expression] = []
         if self._skip(")"):
             return arguments
@@ -372,7 +372,7 @@ class Parser:
         return Call(kind, name, arguments)
 
     def _given(self, name: str, arguments: list[Expression]) -> list[Expression]:
-        """What a built-in function is given: of one type, and floats where it has no other."""
+        """Return a built-in function's arguments converted to one type, which is float if it takes no other."""
         if name in OF_FLOATS:
             return [self._converted(a, "float") for a in arguments]
         return self._all_alike(arguments) if len(arguments) > 1 and name != FETCH else arguments
@@ -471,7 +471,7 @@ class Parser:
         return statements
 
     def _about(self, statement: Statement, first: Token) -> Statement:
-        """A statement with the comments around its tokens, the last of which was just taken."""
+        """Return a statement with the comments around its tokens, the last of which was just taken."""
         statement.above = [*first.above, *statement.above]
         statement.behind = statement.behind or self._tokens[self._at - 1].behind
         return statement

@@ -46,15 +46,15 @@ def reduced(
     bound: Mapping[str, float] = MappingProxyType({}),
     pair: tuple[str, str] = PAIR,
 ) -> Program:
-    """What the functions of some names need, and no more.
+    """Reduce a program to what the functions of some names need.
 
     Args:
-        program: all of it; it is changed.
-        roots: what functions are to be called, by the name that they have.
-        prefix: what every name begins with.
-        own: what the names of an encoding's own functions begin with, which the prefix stands for.
+        program: the whole program, which is changed.
+        roots: new names of functions by their present names.
+        prefix: the prefix of every name.
+        own: the prefix of an encoding's own functions, which `prefix` replaces.
         bound: settings of the encoder and the decoder that are numbers.
-        pair: what of `roots` is called with the same settings.
+        pair: which of `roots` are called with the same settings.
 
     Raises:
         TranslationError: one of these functions could not be read.
@@ -114,10 +114,10 @@ def _reached_names(program: Program, names: list[str]) -> set[str]:
 
 
 def _keep_changes_inside(functions: list[Function]) -> None:
-    """Makes plain parameters of those whose changes nobody sees.
+    """Make parameters plain if no caller uses their changed values.
 
-    Translators from SPIR-V write every parameter that is assigned to as an inout one, and give it a variable of its
-    own, which is assigned to before each call and not read behind it.
+    Translators from SPIR-V write every parameter that is assigned to as an inout parameter with a variable of its
+    own, which is assigned before each call and not read after it.
     """
     by_name = {f.name: f for f in functions}
     seen: set[tuple[str, int]] = set()
@@ -218,12 +218,12 @@ def _rename(functions: list[Function], names: dict[str, str], prefix: str, own: 
 
 
 def table_name(name: str, prefix: str, own: str) -> str:
-    """What a look-up table is called."""
+    """Return the name of a lookup table."""
     return f"{prefix}_{_without(own, name)}"
 
 
 def _without(own: str, name: str) -> str:
-    """A name without what those of an encoding's own functions begin with."""
+    """Return a name without the prefix of an encoding's own functions."""
     return re.sub(f"^{own}_(?=.)", "", name)
 
 

@@ -1,4 +1,4 @@
-"""What a program's look-up tables hold."""
+"""The contents of a program's lookup tables."""
 
 from __future__ import annotations
 
@@ -29,5 +29,5 @@ class Texels:
 
     @property
     def bytes(self) -> int:
-        """How much it takes."""
+        """The size in bytes."""
         return self.height * self.width * self.channels * (1 if self.is_bytes else 4)

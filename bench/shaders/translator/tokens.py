@@ -28,7 +28,7 @@ TOO_LONG = f"more than {MOST_TOKENS} words and marks: no encoder is so long"
 
 @dataclass(frozen=True)
 class Token:
-    """A word, a number or a mark; `above` are the comments before it, `behind` the one after it on its line."""
+    """A word, a number or a mark; `above` holds the comments before it, `behind` the comment after it on its line."""
 
     kind: str
     text: str
@@ -188,7 +188,7 @@ class Preprocessor:
             above = ()
 
     def _words(self, token: Token, depth: int) -> Iterator[Token]:
-        """What a token stands for, one at a time: macros of macros may stand for more than fits."""
+        """Yield the tokens that a token expands to, one at a time: nested macros may expand to more than fits."""
         if token.kind != "word" or token.text not in self._macros:
             yield token
             return
@@ -203,7 +203,7 @@ def _blanked_comment(comment: re.Match[str]) -> str:
 
 
 def _open_comment(line: str, bare: str) -> str:
-    """Of a directive's line, the comment that began before it or that ends behind it; nothing where there is none."""
+    """Return the comment in a directive's line that began before it or ends after it; empty if it has none."""
     only = "".join(" " if left == letter else letter for letter, left in zip(line, bare, strict=True))
     return only if only.count("/*") != only.count("*/") else ""
 

@@ -1,4 +1,4 @@
-"""What functions are made of, whatever language they were read from. Types are named as GLSL names them."""
+"""The parts of functions, whatever language they were read from. Types have their GLSL names."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ UNEXPECTED = (ArithmeticError, AssertionError, AttributeError, LookupError, Recu
 
 
 class TranslationError(Exception):
-    """What cannot be read or said in another language; one line, with line and column where they are known."""
+    """Something that cannot be read or written in another language; one line, with line and column if known."""
 
 
 @contextmanager
@@ -61,7 +61,7 @@ _room = _Room()
 
 @dataclass(frozen=True)
 class Place:
-    """Where a token stands, counted from 1."""
+    """The place of a token, counted from 1."""
 
     line: int
     column: int
@@ -75,7 +75,7 @@ def scalar_of(kind: str) -> str:
 
 
 def size_of(kind: str) -> int:
-    """How many components a type has; 1 for a scalar."""
+    """Return how many components a type has; 1 for a scalar."""
     return SIZES.get(kind, 1)
 
 
@@ -170,7 +170,7 @@ class Elements(Expression):
 
 @dataclass
 class Statement:
-    """`above` are the comments before it, `behind` the one at its end; both without their marks."""
+    """A statement; `above` holds the comments before it, `behind` the one at its end, both without comment marks."""
 
     above: list[str] = field(default_factory=list, kw_only=True)
     behind: str = field(default="", kw_only=True)
@@ -178,7 +178,7 @@ class Statement:
 
 @dataclass
 class Declare(Statement):
-    """`is_precise` where no compiler may compute the value otherwise than it is written."""
+    """A declaration; `is_precise` if compilers must compute the value exactly as written."""
 
     kind: str
     name: str
@@ -258,7 +258,7 @@ class Parameter:
 
 @dataclass
 class Function(Statement):
-    """`unread` is why its body could not be read, which is nobody's loss unless somebody needs it."""
+    """A function; `unread` is why its body could not be read, which matters only if the function is needed."""
 
     kind: str
     name: str

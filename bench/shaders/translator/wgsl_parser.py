@@ -131,7 +131,7 @@ class WgslParser(Parser):
         self._unread: dict[str, TranslationError] = {}
 
     def _program(self) -> Program:
-        """All of it; functions that call later ones come after these."""
+        """Read the whole program; each function comes after those that it calls."""
         declarations = list(self._declarations())
         self._know_all(declarations)
         for declared in declarations:
@@ -169,7 +169,7 @@ class WgslParser(Parser):
         return word, self._tokens[max(next(behind, declared.stop) - 1, self._at)].text
 
     def _skip_group(self) -> None:
-        """What stands in parentheses here, if anything does."""
+        """Skip a group in parentheses, if one begins here."""
         depth = 0
         while self._next_token is not END:
             depth += (self._next_token.text == "(") - (self._next_token.text == ")")
@@ -213,7 +213,7 @@ class WgslParser(Parser):
         return text in self._unread or bool(OF_A_PIPELINE.fullmatch(text))
 
     def _know_types(self, declared: Mapping[str, range]) -> None:
-        """Aliases and structures, each after those that it is made of."""
+        """Make aliases and structures known, each after those that it is made of."""
         for name, span in declared.items():
             self._known_by(span)
             self._types[name] = self._at
@@ -300,7 +300,7 @@ class WgslParser(Parser):
         return super()._name_expression(token)
 
     def _read_constant(self, token: Token) -> None:
-        """One outside of functions, where a name is of one that was not read. Raises TranslationError."""
+        """Read the global constant that a name refers to, unless it was read already. Raises TranslationError."""
         if token.text in self._constants and token.text not in self._read:
             before, inner = self._at, self._scopes
             self._at, self._scopes = self._constants[token.text] + 1, self._scopes[:1]

@@ -1,4 +1,4 @@
-"""A program written as text, for languages that look like C. GLSL's is the one whose words stay as they are."""
+"""A writer of a program's text in C-like languages. For GLSL no words are replaced."""
 
 from __future__ import annotations
 
@@ -62,25 +62,25 @@ BUILTINS = frozenset((*LIKE_GIVEN, *OF_VECTORS, *BITS, *COMPARISONS, FETCH, "cro
 
 
 class Writer:
-    """The text of a program. Subclasses say what is otherwise in their language.
+    """The text of a program. Subclasses define how their language differs.
 
     Args:
-        prefix: what the program's names begin with.
-        texels: what each table holds, by its name.
-        stem: what the names of files beside the program's begin with; the prefix where it is empty.
+        prefix: the prefix of the program's names.
+        texels: the contents of each table, by its name.
+        stem: the prefix of the names of files next to the program's; `prefix` if it is empty.
 
     Attributes:
-        head: what stands before all else.
-        binding_advice: how a table is bound, in a sentence.
+        head: the text before everything else.
+        binding_advice: a sentence on how to bind a table.
         has_tables: whether tables are variables of the program.
-        splats: whether a function of vectors takes no scalar in place of one.
-        has_rich_parameters: whether functions take and give arrays, and change what they are given.
-        assigns_to_parts: whether several components of a vector are assigned to at once.
-        has_precise: whether a variable can be said to be computed as it is written.
+        splats: whether functions of vectors need vectors in place of scalar arguments.
+        has_rich_parameters: whether functions can take and return arrays, and change their arguments.
+        assigns_to_parts: whether several components of a vector can be assigned to at once.
+        has_precise: whether a variable can be declared to be computed as written.
         has_templates: whether `a < b, c > (d)` may be read as a template and a call.
-        kinds: types' names where they are not GLSL's.
-        functions: built-in functions' names where they are not GLSL's.
-        reserved: words that no variable may be called.
+        kinds: types' names that differ from GLSL's.
+        functions: built-in functions' names that differ from GLSL's.
+        reserved: words that cannot be variables' names.
     """
 
     kinds: Mapping[str, str] = {}
@@ -150,7 +150,7 @@ class Writer:
         return f"layout(binding = {binding}) uniform sampler2D {table.name};"
 
     def _table_note(self, name: str) -> str:
-        """What a texture holds, in comments; nothing of a table that is not known."""
+        """Return comments on a texture's contents; empty for an unknown table."""
         if name not in self._texels:
             return ""
         texels, file = self._texels[name], f"{self._stem}_{name.removeprefix(f'{self._prefix}_')}.dds"
@@ -200,7 +200,7 @@ class Writer:
         return unused_name
 
     def _check_parameters(self, function: Function) -> None:
-        """Raises TranslationError for what not every language has."""
+        """Raise TranslationError for parameters and results that not every language supports."""
         if any(kind.endswith("]") for kind in (function.kind, *(p.kind for p in function.parameters))):
             raise TranslationError(f"{function.name} takes or gives an array; write its numbers one by one")
         if any(p.is_changed for p in function.parameters):
@@ -369,7 +369,7 @@ class Writer:
         return f"{name}({self._arguments(value.arguments)})"
 
     def _arguments(self, values: Sequence[Expression]) -> str:
-        """What a function is given. f(a < b, c > (d)) may be read as a template's name and a call."""
+        """Write a call's arguments. `f(a < b, c > (d))` may be read as a template's name and a call."""
         return ", ".join([*map(self._argument_text, values[:-1]), *map(self._text, values[-1:])])
 
     def _argument_text(self, value: Expression) -> str:
@@ -397,7 +397,7 @@ class Writer:
 
 
 def _applied(kind: str, assigned: Assign) -> Expression:
-    """What x OPERATOR= VALUE assigns."""
+    """Return the value that `x OPERATOR= VALUE` assigns."""
     return Binary(kind, assigned.operator[:-1], assigned.target, assigned.value)
 
 
@@ -407,8 +407,8 @@ def _splat(value: Expression, kind: str) -> Expression:
 
 
 def least_of(parent: Binary, child: Expression, least: int) -> int:
-    """How tightly an operand has to bind. What mixes bits or truths is in parentheses, as readers and some languages
-    want it."""
+    """Return how tightly an operand has to bind. Mixed bitwise or logical operators get parentheses, because people and
+    some languages want them."""
     is_mixed = isinstance(child, Binary) and child.operator != parent.operator and _is_unclear(parent, child)
     return UNARY if is_mixed else least
 

@@ -2,18 +2,18 @@
 
     python -m normalbench.bench.subjects.codecs.first_look FILE [DOMAIN]
 
-With DOMAIN it is looked at closely: what its author says that it is made for, or "any".
+With DOMAIN the look is close: DOMAIN is what the author says that the encoding is made for, or "any".
 
-Prints a line of JSON of the GLSL, and another of the Python twin where there is one. Of the GLSL: `error`, what the
-compiler says; `broken`, where it is not finite or does not end; `missing`, that there is no GL device; else `domain`,
-what comes back, `half`, the axis and the side of a hemisphere that is not z >= 0, `wrong`, a list of what is likely
-wrong, `hole`, a direction outside of the domain where it is not finite, and `is_unit`, where its codes fill [0, 1].
-Closely also `like`, the encodings of the catalogue that both its functions are, `bad`, directions that come back
-elsewhere, `spared`, lines on ranges that may be unused, and `lattice`, to which bits it rounds by itself and whether in
-[0, 1]. Of a code that is an integer also `packed_bits`, how many of its bits are used. Of a translation also `by`, the
-language whose compiler reads it right, `pair`, which of several pairs was looked at, as only that one undoes itself,
-`language`, what it is written in if its ending says something else, and `notes`, lines. Of the twin: `error`, what it
-raises; `apart`, where it contradicts the GLSL.
+Prints a line of JSON on the GLSL, and another on the Python twin if there is one. On the GLSL: `error`, the
+compiler's message; `broken`, if it is not finite or does not end; `missing`, if there is no GL device; otherwise
+`domain`, the directions that round-trip, `half`, the axis and the side of a hemisphere that is not z >= 0, `wrong`,
+a list of likely mistakes, `hole`, a direction outside the domain where it is not finite, and `is_unit`, if its
+codes fill [0, 1]. A close look adds `like`, the encodings of the catalogue that both its functions match, `bad`,
+directions that decode to other directions, `spared`, lines on ranges that may be unused, and `lattice`, the bits
+that it rounds to by itself and whether in [0, 1]. A code that is an integer adds `packed_bits`, how many of its
+bits are used. A translation adds `by`, the language whose compiler reads it correctly, `pair`, the only one of
+several pairs that round-trips, which was looked at, `language`, the language it is written in if its extension says
+another, and `notes`, lines. On the twin: `error`, its exception; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
@@ -74,10 +74,10 @@ APART, APART_SHARE = 1e-3, 0.01
 
 
 def first_look(file: UserFile, domain: str = "") -> dict[str, Any]:
-    """What there is to say of a file; see above.
+    """Return the findings on a file; see above.
 
     Args:
-        domain: what its author says that it is made for, or ANY, to look closely.
+        domain: the domain that its author says it is made for, or ANY, to look closely.
     """
     look = _first_look(file, domain, "")
     if "error" not in look or file.is_translated:
@@ -123,7 +123,7 @@ def _first_look(file: UserFile, domain: str, by: str) -> dict[str, Any]:
 
 
 def _alike(failing: Mapping[str, str]) -> dict[str, str]:
-    """Those of pairs that are an encoder and its decoder by their names, with why they do not undo themselves."""
+    """Return the pairs that are an encoder and its decoder by their names, with why they do not round-trip."""
     return {pair: why for pair, why in failing.items() if why and _is_pair(pair)}
 
 
@@ -147,7 +147,7 @@ def _untried(failing: Mapping[str, str]) -> str:
 
 
 def _wirings_of(file: UserFile) -> list[Wiring]:
-    """How the two functions are called that a word names."""
+    """Return the wirings of the two functions that a word names."""
     return [wiring_of(text) for text in file.functions or ()]
 
 
@@ -157,8 +157,8 @@ def _functions_of(file: UserFile) -> tuple[str, ...]:
 
 
 def _that_undo_themselves(file: UserFile, pairs: Sequence[str], by: str) -> tuple[list[str], dict[str, str]]:
-    """Those of some pairs that undo themselves, of two functions as they are called where that holds most normals; and
-    by the functions of the others why these do not, empty for those that were not tried."""
+    """Return the pairs that round-trip, each with the wiring that holds most normals; and by their functions' names,
+    why the other pairs do not, empty for those that were not tried."""
     kept: dict[tuple[str, ...], tuple[bool, str]] = {}
     failing: dict[tuple[str, ...], str] = {}
     tries = Counter()
@@ -194,7 +194,7 @@ def _undone(file: UserFile, by: str) -> tuple[str, str]:
 
 
 def _look_at_one(file: UserFile, domain: str, by: str) -> dict[str, Any]:
-    """The same of a file of which one pair is meant. Raises SeveralEncodersError."""
+    """Look at a file of which one pair is meant. Raises SeveralEncodersError."""
     try:
         encoding, gl = read_encoding(file, NOT_ASKED, by=by), device()
         broken = _endless(gl, encoding)
@@ -222,8 +222,8 @@ def _look_at_one(file: UserFile, domain: str, by: str) -> dict[str, Any]:
 
 
 def _of_one(file: UserFile, made: Translated) -> dict[str, Any]:
-    """What an encoder or a decoder is that has no partner, in words; and as `alone` its side, its name, and the
-    encodings of the catalogue that it is of."""
+    """Describe an encoder or a decoder without a partner; as `alone` give its side, its name, and the encodings of the
+    catalogue that it matches."""
     side, (name, _) = next(
         (side, function) for side, function in zip(SIDES, made.functions, strict=True) if function[0]
     )
@@ -238,7 +238,7 @@ def _of_one(file: UserFile, made: Translated) -> dict[str, Any]:
 
 
 def _is_unit(probe: Probe) -> bool:
-    """Whether the codes of all directions fill [0, 1], or those of the directions that come back."""
+    """Whether the codes of all directions fill [0, 1], or those of the directions that round-trip."""
     n = directions()
     codes = probe.encode(n)
     kept = np.isfinite(codes).all(axis=1)
@@ -308,10 +308,10 @@ def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
 
 
 def twin_look(file: UserFile, found: Mapping[str, Any]) -> dict[str, Any]:
-    """What there is to say of a file's Python twin; see above.
+    """Return the findings on a file's Python twin; see above.
 
     Args:
-        found: what a first look found of its shader: the twin is of the functions that it took.
+        found: the first look's findings on its shader: the twin is of the same functions.
     """
     n = directions()
     view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(n), 1))
@@ -332,7 +332,7 @@ def twin_look(file: UserFile, found: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _by_twin(function: Callable[..., Any], given: np.ndarray, view: np.ndarray) -> np.ndarray:
-    """What a twin's function makes of arrays of shape (count, 2 or 3), which it sees as it does when it is measured."""
+    """Return a twin function's results for arrays of shape (count, 2 or 3), passed as they are when it is measured."""
     kind = {2: Vec2, 3: Vec3}[given.shape[1]]
     components = jax.jit(function)(kind(*map(jnp.asarray, given.T)), Vec3(*map(jnp.asarray, view.T[:3])))
     return np.stack(
@@ -363,7 +363,7 @@ def _widened(array: np.ndarray) -> np.ndarray:
 
 
 def _alone() -> int:
-    """A file for what is to be said; whatever users' code prints goes to stderr."""
+    """Return a file descriptor for the answer; whatever users' code prints goes to stderr."""
     descriptor = os.dup(1)
     os.dup2(2, 1)
     return descriptor
@@ -377,7 +377,7 @@ def _looks(file: UserFile, domain: str = "") -> Iterator[dict[str, Any]]:
 
 
 def main(words: Sequence[str]) -> None:
-    """What the command does; see above."""
+    """Run the command; see above."""
     children.limit_this_process()
     answer = _alone()
     for look in _looks(UserFile(words[0]), *words[1:]):

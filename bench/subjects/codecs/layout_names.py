@@ -51,7 +51,7 @@ def layouts_named(names: Names) -> list[Layout]:
 
 
 def _check_encodings(layouts: Sequence[Layout]) -> None:
-    """Raises UsageError for two encodings of one name, which rows could not tell apart."""
+    """Raise UsageError if two encodings have the same name, because rows could not tell them apart."""
     files: dict[str, set[tuple[Path | None, Path]]] = {}
     for encoding in (layout.encoding for layout in layouts):
         files.setdefault(encoding.name, set()).add((encoding.source, encoding.glsl))
@@ -79,10 +79,10 @@ def _encoding_named(word: str) -> Encoding:
 
 
 def _from_here(path: Path, word: str) -> str:
-    """The encoding that a layout names, with its file as seen from the working folder.
+    """Return the encoding that a layout names, with its file as seen from the working folder.
 
     Raises:
-        LayoutError: the file lies outside the layout's folder: it would not travel to workers with the layout.
+        LayoutError: the file is outside the layout's folder, so it would not travel to workers with the layout.
     """
     if names_an_encoder(word) or lacks_a_function(word):
         named_file = UserFile(word)
@@ -113,7 +113,7 @@ def _leads_inside(folder: Path, place: Path) -> bool:
 
 
 def files_of_layout(path: Path) -> list[Path]:
-    """The file that a layout's encoding is read from; none where there is none, or the layout cannot be read."""
+    """Return the file that a layout's encoding is read from; empty if it has none, or the layout cannot be read."""
     try:
         word = _from_here(path, str(file_toml(path).get("encoding", "")))
     except (OSError, ValueError, LayoutError):

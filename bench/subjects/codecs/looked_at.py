@@ -1,5 +1,4 @@
-"""Names of codes of one kind, of which some are users' files: those are looked at first, and left out where that
-fails."""
+"""Names of encodings of one kind. Users' files get a first look, and are left out if that fails."""
 
 from __future__ import annotations
 

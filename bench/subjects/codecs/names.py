@@ -81,9 +81,9 @@ def _chained_encoding(word: str, own: Sequence[Given]) -> Encoding:
 
 
 def with_arithmetics(encodings: Sequence[Encoding], names: Iterable[Word]) -> list[Encoding]:
-    """Return encodings computed in each of some arithmetics, those of a name that says half once.
+    """Return encodings computed in each of some arithmetics; an encoding whose name says half appears once.
 
-    DECLARED is both for files that declare numbers of 16 bits, and float for all others. Raises UsageError.
+    DECLARED means both for files that declare 16-bit numbers, and float for all others. Raises UsageError.
     """
     chosen = choose("arithmetic", names, {word: word for word in (*ARITHMETICS, DECLARED)})
     named = [encoding for encoding in encodings if encoding.is_half or {FLOAT, DECLARED} & set(chosen)]
@@ -131,10 +131,10 @@ def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
 
 
 def check_twin(encoding: Encoding) -> None:
-    """Traces the Python half of a user's encoding on one normal; those of the catalogue are tested.
+    """Trace the Python half of a user's encoding on one normal; those of the catalogue are covered by tests.
 
     Raises:
-        UsageError: it raises, or its code has another size than it says; one line with its file.
+        UsageError: it raises, or its code does not have the declared size; one line with its file.
     """
     if ENCODINGS.get(encoding.name) is encoding:
         return

@@ -44,16 +44,16 @@ Function = Callable[[np.ndarray], np.ndarray]
 def second_look(
     file: UserFile, gl: Device, encoding: Encoding, hard: np.ndarray, read: Callable[[str], Encoding]
 ) -> dict[str, Any]:
-    """What the second way of a file says of its first; kept in the cache by the file and both ways.
+    """Compare a file's encoding with its second way; the result is cached by the file and both ways.
 
     Args:
         file: the file.
-        encoding: it, by its first way.
-        hard: normals of shape (count, 3), beside random ones.
-        read: makes the encoding as a reader of a name of `BY_NAME` has it.
+        encoding: the encoding, by its first way.
+        hard: normals of shape (count, 3), in addition to random ones.
+        read: returns the encoding as read by a compiler that is named in `BY_NAME`.
 
     Returns:
-        Nothing where they agree. `error`: where they do not; `notes`: lines that are to be said.
+        Nothing if they agree. `error`: if they do not; `notes`: lines to report.
     """
     source, language = Source(file), language_of(file)
     stamps = [tools.stamp_or_empty(tool) for tool in (tools.SLANG, *language.tools, *language.others)]
@@ -72,7 +72,7 @@ def second_look(
 
 
 def _unchecked_finding(file: UserFile, why: str) -> dict[str, Any]:
-    """What is said of a file that one compiler alone has read; it is refused where that one is known to be wrong."""
+    """Return findings on a file that only one compiler has read; refuse it if that compiler is known to be wrong."""
     encoder = translated(file)
     if encoder.read_by == GLSLANG:
         if not (used := MISREAD.search(encoder.text)):
@@ -114,7 +114,7 @@ def _by_second_way(file: UserFile, difference: Callable[[Way, tuple[str, str]], 
 def _by_glslang(
     file: UserFile, gl: Device, read: Callable[[str], Encoding], difference: Callable[[Way, tuple[str, str]], str]
 ) -> str | None:
-    """Where glslang differs; None where it has not read the file, or has read it alone."""
+    """Return where glslang differs; None if it has not read the file, or if only glslang has."""
     if name_of(file) != "HLSL" or translated(file).read_by:
         return None
     try:
@@ -133,7 +133,7 @@ def _by_glslang(
 def _difference(
     file: UserFile, gl: Device, encoding: Encoding, way: Way, n: np.ndarray, tolerance: float, ways: tuple[str, str]
 ) -> str:
-    """Where the two ways, which have these names, differ, in words; empty where they do not."""
+    """Describe where the two ways, which have these names, differ; empty if they agree."""
     size = encoding.components
 
     def encode(given: np.ndarray) -> np.ndarray:
@@ -160,7 +160,7 @@ def _difference(
 def _first_apart(
     function: Function, given: np.ndarray, mine: np.ndarray, theirs: np.ndarray, tolerance: float
 ) -> int | None:
-    """The first value of which two results differ that no rounding explains; None where there is none, or few."""
+    """Return the index of a value whose two results differ by more than rounding; None if there are none, or few."""
     with np.errstate(all="ignore"):
         bound = tolerance * np.maximum(1, np.abs(theirs))
         is_near = (np.abs(mine - theirs) <= bound) | (mine == theirs) | (np.isnan(mine) & np.isnan(theirs))
@@ -173,7 +173,7 @@ def _first_apart(
 
 
 def _is_beside(function: Function, given: np.ndarray, theirs: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """Whether results lie among those that a function gives next to the values."""
+    """Whether results are within the range of the function's results next to the values."""
     steps = np.array(list(itertools.product((-1, 0, 1), repeat=3)), np.float32) * np.float32(BESIDE)
     neighbours = function((given[:, None, :] + steps).reshape(-1, 3)).reshape(len(given), len(steps), -1)
     with np.errstate(all="ignore"):

@@ -63,10 +63,10 @@ def encode_of(file: UserFile, text: str) -> Encode:
 
 
 def check_given(file: UserFile, code: str) -> None:
-    """Raises UsageError where a shader reads what it is given from outside: a uniform, a texture or a buffer.
+    """Raise UsageError if a shader reads input from outside: a uniform, a texture or a buffer.
 
     Args:
-        code: the file with what it includes, without comments.
+        code: the file with its includes, without comments.
     """
     if given := _given_and_read(code):
         raise UsageError(f"{file}: it reads {given}, which has no value here; write a constant in its place")
@@ -112,7 +112,7 @@ def _no_encode(found: list[tuple[str, ...]]) -> str:
 
 
 def _check_decode(file: UserFile, code: str, name: str, kind: str) -> None:
-    """Raises UsageError where there is a decode, but not one of the right types."""
+    """Raise UsageError if there is a decode, but none of the right types."""
     signatures = [match.groups() for match in re.finditer(FUNCTION.format(name=f"{name}_decode"), code)]
     if signatures and not any(
         signature[0] == "vec3" and _types(signature[2]) in ([kind], [kind, "vec3"]) for signature in signatures
@@ -131,6 +131,6 @@ def _should_be(function: tuple[str, ...], wanted: str) -> str:
 
 
 def of_hlsl(text: str) -> str:
-    """What to do with GLSL that has types of HLSL; empty where it has none."""
+    """Say what to do with GLSL that has HLSL types; empty if it has none."""
     match = HLSL.search(COMMENT.sub(" ", text))
     return f"{match[0]} is HLSL: {FROM_HLSL}" if match else ""

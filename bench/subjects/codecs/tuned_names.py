@@ -17,10 +17,11 @@ from ...ground.spelling import spelled
 
 
 def tuned(word: str) -> Encoding:
-    """The encoding that a name with parameters stands for.
+    """Return the encoding that a name with parameters stands for.
 
     Raises:
-        UsageError: an unknown encoding or parameter, a value that is none or out of range, a file that is not a table.
+        UsageError: an unknown encoding or parameter, an invalid value or one out of range, a file that is not a
+            table.
     """
     typed_name = word.partition(MARK)[0]
     name = spelled("encoding", typed_name, ENCODINGS)

@@ -51,11 +51,11 @@ UNIT = "{} are in [0, 1]; every storage holds them as they are, signed and float
 
 
 def looked_at(file: UserFile) -> Looked[Encoding]:
-    """Return a file's encoding after the first look, and what is to be said of it.
+    """Return a file's encoding after the first look, and lines to report about it.
 
     Raises:
-        UsageError, MissingError: there is none.
-        SeveralEncodersError: it has several pairs that undo themselves.
+        UsageError, MissingError: there is no encoding.
+        SeveralEncodersError: the file has several pairs that round-trip.
     """
     looks = _look(file)
     if pairs := looks.glsl.get("pairs"):
@@ -84,19 +84,19 @@ class OneFunctionError(UsageError):
 
 
 class Examined(NamedTuple):
-    """What a close look at a file found.
+    """The findings of a close look at a file.
 
     Attributes:
-        encoding: the file's.
-        domain: what it is made for.
-        wrong: what is likely wrong with it, lines.
-        notes: what else there is to say, lines.
+        encoding: the file's encoding.
+        domain: the directions it is made for.
+        wrong: likely mistakes, as lines.
+        notes: other remarks, as lines.
         is_measurable: whether it can be measured.
-        like: the name of the encoding of the catalogue that it is, whatever its axes; empty where it is none.
-        bad: directions that come back elsewhere, in its own axes.
-        lattice: the steps that it rounds codes to by itself; None where it does not.
+        like: the name of the encoding of the catalogue that it matches, in any axes; empty if it matches none.
+        bad: directions that decode to other directions, in its own axes.
+        lattice: the steps that it rounds codes to by itself; None if it does not round.
         functions: its encoder and its decoder, ENCODE:DECODE.
-        failing: by other pairs of the file, ENCODE:DECODE, why they do not undo themselves.
+        failing: by other pairs of the file, ENCODE:DECODE, why they do not round-trip.
     """
 
     encoding: Encoding
@@ -112,13 +112,13 @@ class Examined(NamedTuple):
 
 
 def examined(file: UserFile, domain: str = ANY) -> Examined:
-    """What there is to say of a file.
+    """Return the findings on a file.
 
     Args:
         domain: the normals that its author says it is made for; "any" to find out.
 
     Raises:
-        UsageError: it is not an encoding, or does not compile.
+        UsageError: the file is not an encoding, or does not compile.
         MissingError: there is no GL device to look at it with.
     """
     check_word(str(file), ENCODINGS)
@@ -164,17 +164,17 @@ def what_names(encoding: Encoding) -> str:
 
 
 def read_encoding(file: UserFile, fault: str = "", is_unit: bool = False, by: str = "") -> Encoding:
-    """An encoding from its file, and from the Python file of the same name where there is one.
+    """Return an encoding from its file, and from the Python file of the same name if there is one.
 
     Args:
-        file: of a name with its functions behind it where they are needed.
-        fault: why the Python file is not to be used; what it would measure says so.
-        is_unit: whether its codes lie in [0, 1].
+        file: its name, followed by its functions if they are needed.
+        fault: why the Python file must not be used; whatever would measure it says so.
+        is_unit: whether its codes are in [0, 1].
         by: the language whose compiler reads it, if not its own.
 
     Raises:
         UsageError: it cannot be read, or does not define its two functions.
-        MissingError: the compiler of its language is not there.
+        MissingError: the compiler of its language is missing.
     """
     text = _text(file, is_unit, by)
     encode, decode = _lacking_functions(fault) if fault else _twin_functions(file.twin)
@@ -209,7 +209,7 @@ def _encoding(file: UserFile, text: _Text, encode: Callable[..., Any], decode: C
 
 
 def _of_unit(encode: Callable[..., Any], decode: Callable[..., Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """A twin whose codes lie in [0, 1] as one of codes in [-1, 1]."""
+    """Return a twin with codes in [0, 1] as a twin with codes in [-1, 1]."""
     return lambda n, view: encode(n, view) * 2.0 - 1.0, lambda e, view: decode(e * 0.5 + 0.5, view)
 
 
@@ -244,7 +244,7 @@ def _text(file: UserFile, is_unit: bool, by: str) -> _Text:
 
 
 def _of_unit_text(file: Path, name: str, components: int) -> _Text:
-    """A file that includes one of GLSL whose codes lie in [0, 1], and has functions of codes in [-1, 1]."""
+    """Return a text that includes a GLSL file with codes in [0, 1] and defines functions with codes in [-1, 1]."""
     sizes = {"encode": (components, NORMAL), "decode": (NORMAL, components)}
     encoder, decoder = (
         Function(f"{name}_{side}", output_size, (given, NORMAL) if takes_view(file, f"{name}_{side}") else (given,))
@@ -259,8 +259,8 @@ def _of_unit_text(file: Path, name: str, components: int) -> _Text:
 
 
 def _with_includes(file: UserFile) -> str:
-    """What its compiler is given of a file and of what it includes, without comments. Raises UsageError where it cannot
-    be read, or includes a file that lies elsewhere."""
+    """Return the text of a file and its includes as its compiler gets it, without comments. Raises UsageError if it
+    cannot be read, or includes a file that is elsewhere."""
     try:
         return bare(Shader(file.path, may_read=Source(file).may_read).text)
     except ShaderError as error:
@@ -311,14 +311,14 @@ def _guarded(path: Path, function: Callable[..., Any], kinds: tuple[type, ...]) 
 
 @dataclass(frozen=True)
 class Looks:
-    """What a first look found, see first_look.py.
+    """The findings of a first look, see first_look.py.
 
     Attributes:
-        file: of the file, with the names of its functions where they are needed.
-        glsl: of the shader.
-        said: what a translation says of it.
-        twin: of the Python twin; empty where there is none, or the shader is of no use.
-        fault: why the twin cannot be measured; empty where it can be.
+        file: the file, with the names of its functions if they are needed.
+        glsl: findings on the shader.
+        said: remarks of a translation.
+        twin: findings on the Python twin; empty without a twin, or if the shader is unusable.
+        fault: why the twin cannot be measured; empty if it can be.
         is_asked: whether the user says what it is made for.
     """
 
@@ -337,28 +337,28 @@ class Looks:
 
     @property
     def is_unit(self) -> bool:
-        """Whether its codes lie in [0, 1]."""
+        """Whether its codes are in [0, 1]."""
         return self.glsl.get("is_unit", False)
 
     @property
     def domain(self) -> Domain:
-        """What the shader is made for, as far as what comes back of it says."""
+        """The domain that the shader is made for, as far as the directions that round-trip show it."""
         return Domain(self.glsl.get("domain") or SPHERE.name, *self.glsl.get("half", ()))
 
     @property
     def wrong(self) -> list[str]:
-        """What is likely wrong with a shader that can be measured."""
+        """The likely mistakes in a shader that can be measured."""
         return self.glsl.get("wrong", [])
 
     @property
     def notes(self) -> list[str]:
-        """What was guessed of the file, in sentences."""
+        """The guesses about the file, in sentences."""
         notes = [*self.said, *self.glsl.get("notes", []), *([self.unit_note] if self.is_unit else [])]
         return [*notes, *self._of_domain()]
 
     @property
     def unit_note(self) -> str:
-        """That codes lie in [0, 1], and of which normals."""
+        """The note that codes are in [0, 1], and of which normals."""
         made_for = self.domain.made_for
         return UNIT.format(f"the codes of {made_for}" if made_for else "its codes")
 
@@ -408,7 +408,7 @@ def file_with(file: UserFile, found: Mapping[str, Any]) -> UserFile:
 
 
 def _said_of(file: UserFile, by: str) -> tuple[str, ...]:
-    """What the text of a file says by itself."""
+    """Return remarks on the text of a file."""
     if by or file.is_translated:
         return tuple(translated(file).notes)
     name, _, others = encode_of(file, read_shader(file.path))
@@ -416,7 +416,7 @@ def _said_of(file: UserFile, by: str) -> tuple[str, ...]:
 
 
 def twin_is_looked_at(file: UserFile, found: dict[str, Any]) -> bool:
-    """Whether a shader of which this was found has a twin, and is of use."""
+    """Whether a shader with these findings has a twin and is usable."""
     return not {"error", "broken"} & set(found) and file.twin.exists()
 
 
@@ -429,7 +429,7 @@ def _answers(said: str) -> Iterator[dict[str, Any]]:
 
 
 def _check(file: UserFile, found: dict[str, Any]) -> None:
-    """Raises UsageError where a shader does not compile, or is not finite."""
+    """Raise UsageError if a shader does not compile, or is not finite."""
     if "error" in found:
         raise UsageError(found["error"])
     if "broken" in found:

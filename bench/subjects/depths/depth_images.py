@@ -23,13 +23,13 @@ CODES = tuple(name for name, encoding in DEPTH_ENCODINGS.items() if not encoding
 
 @dataclass(frozen=True, kw_only=True)
 class DepthReading:
-    """How an image of depths is read.
+    """Options for reading an image of depths.
 
     Attributes:
-        channel: by name; None for the one called like depths, or the only one.
+        channel: its name; None for the channel named like depths, or the only channel.
         depths_are: VIEW, or one of CODES.
-        depth_unit: what 1 is of a view depth, in the unit of the planes.
-        fov: vertical, in degrees; None where nobody says.
+        depth_unit: the length of 1 in a view depth, in the unit of the planes.
+        fov: vertical, in degrees; None if it is unknown.
     """
 
     channel: str | None = None
@@ -40,16 +40,17 @@ class DepthReading:
 
 @dataclass(frozen=True, eq=False)
 class DepthImage:
-    """A frame's depths.
+    """The depths of a frame.
 
     Attributes:
-        name: the file's.
-        numbers: as the file has them, whole numbers of a code as shares of 1; float64 of shape (height, width).
-        code: what they are: VIEW, or a depth code's name.
-        channel: the one that was asked for.
-        unit: what 1 is of a view depth, in the unit of the planes.
-        fov: vertical, in degrees; None where nobody says.
-        notes: what is to be said of them.
+        name: the file's name.
+        numbers: the numbers in the file, whole numbers of a code as fractions of 1; float64 of shape (height,
+            width).
+        code: their meaning: VIEW, or a depth encoding's name.
+        channel: the channel that was asked for.
+        unit: the length of 1 in a view depth, in the unit of the planes.
+        fov: vertical, in degrees; None if it is unknown.
+        notes: remarks on them.
     """
 
     name: str
@@ -75,7 +76,7 @@ class DepthImage:
             return np.abs(np.asarray(encoding.decode(self.numbers, np.float64(camera.near), np.float64(camera.far))))
 
     def surface(self, camera: Camera) -> np.ndarray:
-        """Depths where there is surface, 0 elsewhere: float32 of shape (height, width). The far plane is none."""
+        """Return depths on surface, 0 elsewhere: float32 of shape (height, width). The far plane is not surface."""
         depths = self.depths(camera)
         with np.errstate(over="ignore"):
             float_depths = depths.astype(np.float32)
@@ -87,7 +88,7 @@ class DepthImage:
 
     @property
     def not_finite(self) -> int:
-        """How many numbers are NaN."""
+        """The number of NaN values."""
         return int(np.isnan(self.numbers).sum())
 
 
@@ -99,7 +100,7 @@ def read_depths(path: Path, channel: str | None) -> Pixels:
 
 
 def depth_image(path: Path, pixels: Pixels, reading: DepthReading) -> DepthImage:
-    """What the pixels of a file are as `reading` says. Raises UsageError where they are not that."""
+    """Return the pixels of a file as depths, read as `reading` says. Raises UsageError if they cannot be read so."""
     code = reading.depths_are
     numbers = pixels.planes[0].astype(np.float64)
     if code != VIEW:
@@ -110,7 +111,7 @@ def depth_image(path: Path, pixels: Pixels, reading: DepthReading) -> DepthImage
 
 
 def _check_code(path: Path, numbers: np.ndarray, code: str) -> None:
-    """Raises UsageError where numbers are not those of a code, which are in [0, 1]."""
+    """Raise UsageError if numbers cannot be those of a depth encoding, which are in [0, 1]."""
     valid_numbers = numbers[~np.isnan(numbers)]
     if len(valid_numbers) and not 0 <= valid_numbers.min() <= valid_numbers.max() <= 1:
         what = f"its numbers are {valid_numbers.min():.3g} to {valid_numbers.max():.3g}, and those of {code} 0 to 1"
@@ -118,7 +119,7 @@ def _check_code(path: Path, numbers: np.ndarray, code: str) -> None:
 
 
 def _channel(path: Path, names: Sequence[str], asked: str | None) -> str:
-    """The channel of depths: the one asked for, the one that is called like depths, or the only one."""
+    """Return the channel of depths: the one asked for, the one named like depths, or the only one."""
     shown = ", ".join(names[:40])
     if asked is not None:
         if asked not in names:

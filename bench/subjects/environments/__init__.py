@@ -1,1 +1,1 @@
-"""What lies around scenes: environments by their names and from files."""
+"""The surroundings of scenes: environments by their names and from files."""

@@ -22,10 +22,10 @@ COLOURS = ("R", "G", "B")
 
 
 def environment_of(path: Path) -> Environment:
-    """The environment in a file; averaged to at most 1024 x 512 texels, and to a width that 8 divides.
+    """Return the environment in a file, averaged to at most 1024 x 512 texels and to a width that is a multiple of 8.
 
     Raises:
-        UsageError: it cannot be read, is not equirectangular, or its radiance is no light; one line with a remedy.
+        UsageError: it cannot be read, is not equirectangular, or its radiance is invalid; one line with a remedy.
     """
 
     def choose(names: Sequence[str]) -> Sequence[str]:
@@ -53,7 +53,7 @@ def _colours(path: Path, names: Sequence[str]) -> Sequence[str]:
 
 
 def _check(path: Path, sides: tuple[int, int], channels: int) -> None:
-    """Raises UsageError where an image has not the sides of an environment."""
+    """Raise UsageError if an image does not have the width and height of an environment."""
     width, height = sides
     if width != 2 * height:
         remedy = "an equirectangular environment is twice as wide as high: export it as one"
@@ -68,7 +68,7 @@ def _check(path: Path, sides: tuple[int, int], channels: int) -> None:
 
 
 def _check_light(path: Path, planes: np.ndarray) -> None:
-    """Raises UsageError for radiance that is no light, with the place of the first."""
+    """Raise UsageError for radiance that is negative or not finite, with the place of the first such value."""
     wrong = ~(np.isfinite(planes) & (planes >= 0))
     if wrong.any():
         raise _no_light(path, planes, wrong)

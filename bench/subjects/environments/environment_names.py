@@ -22,11 +22,11 @@ OTHERS: Mapping[str, str] = MappingProxyType(
 
 
 def environment_named(word: str) -> Environment:
-    """The environment that a word stands for: one of the catalogue, or a file. A sun in it is taken out as a light; a
-    lamp of the catalogue's is none.
+    """Return the environment that a word stands for: one of the catalogue, or a file. A sun in it is taken out as a
+    light; a lamp of the catalogue is not.
 
     Raises:
-        UsageError: an unknown name, or a file that is no environment; one line.
+        UsageError: an unknown name, or a file that is not an environment; one line.
     """
     ending = Path(word).suffix.lower()
     if ending in ENDINGS:

@@ -14,10 +14,10 @@ from .environment_names import environment_named
 
 
 def scenes_under(word: str | None, makers: Iterable[SceneMaker]) -> Iterator[SceneMaker]:
-    """Scenes with the environment that a word names, a sun in it as a light; as they are where it is None.
+    """Yield scenes with the environment that a word names and a sun in it as a light; unchanged if the word is None.
 
     Raises:
-        UsageError: there is no such environment, or a scene is not metal/rough.
+        UsageError: there is no such environment, or a scene is not metallic-roughness.
     """
     if word is None:
         yield from makers

@@ -1,1 +1,1 @@
-"""What tables have in common, by the names that people give it."""
+"""The subjects that tables share, by the names that people give them."""

@@ -30,7 +30,7 @@ def backends_named(names: Names, has: Collection[str]) -> list[str]:
 
 
 def backends_here(names: Names, has: Collection[str]) -> list[str]:
-    """Return the back ends of some names that a table has and this machine runs.
+    """Return those of the named backends that a table has and this machine runs.
 
     Raises:
         UsageError: as `backends_named`.

@@ -30,7 +30,7 @@ def effects_named(names: Names) -> list[ChosenEffect]:
 
 
 def name_of(effects: Iterable[ChosenEffect]) -> str | None:
-    """What rows call effects that are in one image; None where there are none."""
+    """Return the name in rows of the effects in one image; None if there are no effects."""
     return ",".join(effect.name for effect in effects) or None
 
 

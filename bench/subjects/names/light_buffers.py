@@ -19,12 +19,12 @@ PLAIN = "plain"
 
 
 def light_buffers_named(names: Iterable[Word]) -> list[LightCodec]:
-    """Return the light codecs that names stand for; `linear:1` and `linear:range=1` are over [0, 1], and
-    `linear/unorm:10:10:10` is in other bits. Bits alone, as in `ufloat:6:9`, are those of light as it is.
+    """Return the light codecs that names stand for; `linear:1` and `linear:range=1` cover [0, 1], and
+    `linear/unorm:10:10:10` uses other bits. Bits alone, as in `ufloat:6:9`, store light as it is.
 
     Raises:
-        UsageError: an unknown name, a range that is none or that the encoding does not have, or a storage that does not
-            hold the code.
+        UsageError: an unknown name, a range that is invalid or that the encoding does not have, or a storage that
+            does not hold the code.
     """
     words = list(names)
     typed_codecs = {word: _said_codec(word) for word in words if isinstance(word, str) and (":" in word or "/" in word)}
@@ -56,10 +56,10 @@ def _plain_codec(name: str, word: str) -> LightCodec:
 
 
 def ranged_light_buffer(word: str) -> LightCodec:
-    """The light codec over the range that a name gives.
+    """Return the light codec over the range that a name gives.
 
     Raises:
-        UsageError: a range that is none or that the encoding does not have.
+        UsageError: a range that is invalid or that the encoding does not have.
     """
     name, text = name_and_range(word)
     known = {name: codec for name, codec in LIGHT_BUFFERS.items() if codec.encoding.ranged}
@@ -76,7 +76,7 @@ def name_and_range(word: str) -> tuple[str, str]:
 
 
 def range_in(what: str, text: str) -> float:
-    """The range that a text is. Raises UsageError for what is none; `what` is called so there."""
+    """Return the range that a text gives. Raises UsageError, which names `what`, for an invalid range."""
     try:
         limit = float(text)
     except ValueError:

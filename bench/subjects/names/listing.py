@@ -1,4 +1,4 @@
-"""What there is to choose from. Imports nothing heavy."""
+"""The names to choose from. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _encodings() -> list[Row]:
 
 
 def _settings_of(encoding: Encoding) -> str | None:
-    """What may be said of an encoding by name, after a colon."""
+    """Return the settings that may follow an encoding's name, after a colon."""
     settings = ", ".join(known_settings(encoding))
     return f"settings: {settings}" if settings else None
 
@@ -94,7 +94,7 @@ def _rule_text(storage: Storage) -> str:
 
 
 def _texel_text(storage: Storage) -> str:
-    """Where the numbers of a storage lie."""
+    """Say how a storage places its numbers in a texel."""
     texel = f"{storage.texel_bytes} bytes"
     return f"{texel}, across channels" if storage.is_packed else f"{texel}, a channel each"
 
@@ -161,7 +161,7 @@ def _pipelines() -> list[Row]:
 
 
 def said(setting: Number | Choice) -> str:
-    """What a setting is usually, and what else it may be."""
+    """Return the usual value of a setting and its other possible values."""
     if isinstance(setting, Choice):
         return "|".join(setting.words)
     return f"{setting.usual:g} ({setting.least:g} to {setting.most:g})"

@@ -1,7 +1,7 @@
-"""What is likely wrong with a captured frame, from what no camera can see.
+"""Likely mistakes in a captured frame, found from normals that no camera can see.
 
-A camera sees a surface from its front: n . ray < 0 for the ray from the eye through the pixel. In a frame that is read
-as it was meant nearly all normals obey that at some angle of view. In a frame of another space, with a transposed
+A camera sees a surface from its front: n . ray < 0 for the ray from the eye through the pixel. In a frame that is
+read as intended, nearly all normals obey that at some angle of view. In a frame of another space, with a transposed
 matrix or with swapped channels, many do not.
 
 Arrays are float of shape (count, 3): unit normals as the file has them, before they are turned to view space.
@@ -47,9 +47,9 @@ class Pixels:
 
     Attributes:
         n: their normals.
-        across, up: where they lie in the picture, each of shape (count,), in halves of its height from its middle; 0
+        across, up: their places in the image, each of shape (count,), in halves of its height from its middle; 0
             for normals without places.
-        has_places: whether they have any.
+        has_places: whether they have places.
     """
 
     n: np.ndarray
@@ -71,11 +71,11 @@ class Pixels:
 
 
 def some_pixels(n: np.ndarray, covered: np.ndarray) -> Pixels:
-    """At most MOST of a frame's pixels, spread over it.
+    """Return at most MOST of a frame's pixels, spread over it.
 
     Args:
         n: (height, width, 3) or (count, 3).
-        covered: which count, of the shape before the 3.
+        covered: which pixels count, of the shape before the 3.
     """
     index = np.flatnonzero(covered)
     index = index[:: max(1, -(-len(index) // MOST))]
@@ -88,11 +88,11 @@ def some_pixels(n: np.ndarray, covered: np.ndarray) -> Pixels:
 
 
 class Finding(NamedTuple):
-    """What is likely wrong with the space that normals are read in.
+    """A likely mistake in the space that normals are read in.
 
     Attributes:
-        said: a line that lacks its remedy.
-        remedy: a matrix (3, 3) to use instead, an angle of view, or None where nothing helps that is known here.
+        said: a line without its remedy.
+        remedy: a matrix (3, 3) to use instead, an angle of view, or None if no known remedy helps.
     """
 
     said: str
@@ -100,10 +100,10 @@ class Finding(NamedTuple):
 
 
 def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: bool) -> Finding | None:
-    """What is likely wrong with the space that the normals are read in; None where nothing is.
+    """Return the likely mistake in the space that the normals are read in; None if there is no mistake.
 
     Args:
-        to_view: what turns the file's normals to view space, as the frame is read.
+        to_view: the matrix that turns the file's normals to view space, as the frame is read.
         fov: the vertical angle of view in degrees as it was given, if it was.
         is_world: whether `to_view` is a view matrix.
     """
@@ -124,7 +124,7 @@ def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: 
 
 
 def _of_a_matrix(to_view: np.ndarray) -> dict[str, np.ndarray]:
-    """How a frame in world space is read wrongly."""
+    """Return the possible misreadings of a frame in world space, with the matrices that correct them."""
     return {
         "the matrix is transposed (it may be for row vectors, or turn view space to world space)": to_view.T,
         "the matrix turns to a left-handed view space, z into the screen": MIRRORED @ to_view,

@@ -59,12 +59,13 @@ class Captured:
     """The normals of an image file.
 
     Attributes:
-        normals: (3, height, width) or (3, count), in the space that they are encoded in; unit where they count, else 0.
+        normals: (3, height, width) or (3, count), in the space that they are encoded in; unit where they count,
+            else 0.
         covered: which of them count.
         not_finite: how many are NaN or infinite on surface.
-        own_error_deg: the mean angle by which they are off themselves; None where nothing is known of it.
+        own_error_deg: the mean angle of the file's own error; None if it is unknown.
         turns: how they were turned.
-        notes: what is to be said of them.
+        notes: remarks on them.
     """
 
     normals: np.ndarray
@@ -76,7 +77,7 @@ class Captured:
 
 
 def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
-    """The normals of an image file as a set, and what is to be said of them. Raises as `captured` does."""
+    """Return the normals of an image file as a set, and remarks on them. Raises as `captured` does."""
     image = captured(path, reading)
     shape = image.covered.shape if image.covered.ndim == 2 else None
     n = np.moveaxis(image.normals, 0, -1).astype(np.float32)
@@ -124,28 +125,28 @@ def captured(path: Path, reading: Reading, within: np.ndarray | None = None) -> 
 
 
 def check_size(path: Path, shape: tuple[int, ...], wanted: tuple[int, ...]) -> None:
-    """Raises UsageError where an image has not the (height, width) of another."""
+    """Raise UsageError if an image does not have the (height, width) of another."""
     if shape != wanted:
         sides, others = (" x ".join(map(str, size[::-1])) for size in (shape, wanted))
         raise refused(path, f"it is {sides}, and the depth is {others}", "save all of a frame in one size")
 
 
 def is_in_object_space(path: Path, reading: Reading) -> bool:
-    """Whether a file is a cloud of points of which nothing says that a camera saw them."""
+    """Whether a file is a point cloud and no option says that a camera saw it."""
     usual = Reading()
     options = (reading.space, reading.code_space, reading.view_matrix, reading.fov)
     return path.suffix.lower() in CLOUDS and options == (usual.space, usual.code_space, usual.view_matrix, usual.fov)
 
 
 def _roundings(pixels: Pixels, reading: Reading) -> Sequence[Rounding]:
-    """What normals were rounded to; nothing where that is not known, as under a curve."""
+    """Return what normals were rounded to; empty if that is unknown, as under a curve."""
     if pixels.roundings or pixels.steps is None or reading.curve != "linear":
         return pixels.roundings
     return (Rounding(pixels.steps / 2),)
 
 
 def _of_roundings(roundings: Sequence[Rounding], own: float | None, is_image: bool) -> list[str]:
-    """What is to be said of normals that their file has in few bits, off by `own` degrees."""
+    """Return remarks on normals that their file stores in few bits, with an error of `own` degrees."""
     if is_image and roundings == (EIGHT_BITS,):
         return [
             "8 bits a channel, off by about 0.2 degrees themselves: storages of 8 bits look better on them than "
@@ -157,7 +158,7 @@ def _of_roundings(roundings: Sequence[Rounding], own: float | None, is_image: bo
 
 
 def checked(reading: Reading) -> Reading:
-    """How files are read, by the names that are known. Raises UsageError."""
+    """Return how files are read, with the known names. Raises UsageError."""
     if not 0 <= reading.nan_share <= 1:
         raise UsageError(f"--nan-share {reading.nan_share}: a share is 0 to 1")
     if reading.fov is not None and not 1 <= reading.fov <= 175:
@@ -184,10 +185,10 @@ def _layer_channels(names: Sequence[str]) -> Iterator[tuple[str, list[str]]]:
 
 
 def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list[str]:
-    """Three channels: those asked for, or those that are called like normals, or the only ones, or R, G and B.
+    """Return three channels: those asked for, or those named like normals, or the only ones, or R, G and B.
 
     Raises:
-        UsageError: there are none, or several that could be meant.
+        UsageError: there are no such channels, or several that could be meant.
     """
     layers = dict(_layer_channels(names))
     shown = ", ".join(names[:40]) + (", ..." if len(names) > 40 else "")
@@ -213,7 +214,7 @@ def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list
 
 
 def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
-    """Where there is surface as far as a mask says, bool of the image's shape."""
+    """Return where a mask says that there is surface, bool of the image's shape."""
     asked = reading.mask
     if asked is None:
         return np.ones(shape, bool)
@@ -243,7 +244,7 @@ def _one_channel(path: Path, names: Sequence[str], asked: str) -> list[str]:
 def _directions_and_remarks(
     path: Path, pixels: Pixels, surface: np.ndarray, reading: Reading
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
-    """Normals as planes, unit where they count; where they do; and what is to be said of them."""
+    """Return normals as planes, unit where they count; where they count; and remarks on them."""
     stored = pixels.planes if pixels.full is None else pixels.planes / pixels.planes.dtype.type(pixels.full)
     stored = CURVES[reading.curve](stored)
     unpack = pixels.full is not None if reading.unpack is None else reading.unpack
@@ -287,8 +288,8 @@ def _check_finite(path: Path, surface: np.ndarray, finite: np.ndarray, share: fl
 def _checked_unit(
     path: Path, stored: np.ndarray, length: np.ndarray, covered: np.ndarray, reading: Reading, unpacked: bool
 ) -> list[str]:
-    """What is to be said where a few normals are not unit. Raises UsageError where more are, with the option that would
-    read them."""
+    """Return remarks if a few normals are not unit. If more are not, raise UsageError with the option that would read
+    them."""
     off = float(np.mean(abs(length[covered] - 1) > UNIT_WITHIN))
     complaint = f"{off:.1%} of the normals are not unit"
     if off <= OFF_UNIT_SHARE:
@@ -336,10 +337,10 @@ def _readings_that_fit(found: np.ndarray, curve: str, unpacked: bool) -> Iterato
 
 @dataclass(frozen=True, eq=False)
 class Turns:
-    """How a frame is turned, (3, 3) for column vectors.
+    """The transforms of a frame, (3, 3) for column vectors.
 
     Attributes:
-        to_view: the file's normals to view space; None where nobody says.
+        to_view: the file's normals to view space; None if it is unknown.
         to_code: the file's normals to the space that they are encoded in.
         of_rays: rays in view space to that space.
     """
@@ -350,10 +351,11 @@ class Turns:
 
 
 def turns_of(reading: Reading) -> tuple[Turns, list[str]]:
-    """How a frame is turned, and what is to be said of it.
+    """Return the transforms of a frame, and remarks on them.
 
     Raises:
-        UsageError: two spaces without a matrix between them, a matrix that nothing needs, or one that does not rotate.
+        UsageError: two spaces without a matrix between them, a matrix that is not needed, or one that does not
+            rotate.
     """
     known, is_world, same = SPACES[reading.space], reading.code_space == CODE_SPACES[1], np.eye(3)
     if reading.view_matrix is None:
@@ -415,7 +417,7 @@ def _numbers_of(text: str, said: str) -> np.ndarray:
 
 
 def _check_affine(matrix: np.ndarray, said: str) -> None:
-    """Raises UsageError for a matrix of 4 x 4 numbers that moves row vectors, or projects."""
+    """Raise UsageError for a matrix of 4 x 4 numbers that translates row vectors, or projects."""
     below, beside = matrix[3, :3], matrix[:3, 3]
     if below.any() and not beside.any():
         turned = typed(matrix[:3, :3].T)
@@ -434,7 +436,7 @@ def typed(matrix: np.ndarray) -> str:
 def _which_way(
     n: np.ndarray, covered: np.ndarray, to_view: np.ndarray | None, reading: Reading, chosen: Sequence[str]
 ) -> list[str]:
-    """What is likely wrong with the space of a file's normals, (3, height, width) or (3, count), and what mends it."""
+    """Say what is likely wrong with the space of normals, (3, height, width) or (3, count), and its remedy."""
     if to_view is None:
         return []
     is_world = SPACES[reading.space] is None

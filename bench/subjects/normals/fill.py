@@ -16,11 +16,11 @@ LANE = np.dtype(np.uint32)
 
 
 class Fill:
-    """Makes planes of normals.
+    """A compiled function that makes planes of normals.
 
     Args:
         made: (number, *given) -> a normal of float32; elementwise.
-        types: those of `given`, numbers that a float64 holds.
+        types: the types of `given`, numbers that a float64 holds.
 
     Raises:
         NotElementwiseError, NoCompilerError: it cannot be compiled here.

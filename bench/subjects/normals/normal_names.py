@@ -41,10 +41,10 @@ def normal_sets_named(
 ) -> list[NormalSet]:
     """Return the sets that names stand for: those of the catalogue, captures, or meshes seen by a camera.
 
-    Where something to be measured `needs_rays`, a capture without any is named on standard error.
+    If something to be measured `needs_rays`, a capture without rays is named on standard error.
 
     Raises:
-        UsageError: an unknown name, a file that cannot be read, or an option that no file is there for.
+        UsageError: an unknown name, a file that cannot be read, or an option that applies to no file.
     """
     typed = [word for word in names if isinstance(word, str)]
     for word in typed:
@@ -76,7 +76,7 @@ def normal_sets_named(
 
 
 def lacking_rays(pairs: Iterable[tuple[Encoding, NormalSet]]) -> list[str]:
-    """Of encodings and sets a line on each that cannot be measured, as the set has no rays."""
+    """Return a line on each pair of an encoding and a set that cannot be measured, because the set has no rays."""
     return [
         f"{encoding.name} of {normal_set.name}: {LACKS_RAYS}"
         for encoding, normal_set in pairs
@@ -85,13 +85,13 @@ def lacking_rays(pairs: Iterable[tuple[Encoding, NormalSet]]) -> list[str]:
 
 
 def check_rays(sets: Iterable[NormalSet], needs_rays: bool) -> None:
-    """Raises UsageError where something to be measured needs rays that a set has not."""
+    """Raise UsageError if something to be measured needs rays and a set has none."""
     if needs_rays and (lacking := next((normal_set for normal_set in sets if not normal_set.has_rays), None)):
         raise UsageError(f"--normals {lacking.name}: a code cannot be measured of it: {LACKS_RAYS}")
 
 
 def _check_kind(word: str) -> None:
-    """Raises UsageError for a file of a kind that is not read, for a folder, and for a part that no file has."""
+    """Raise UsageError for a file of a kind that is not read, for a folder, and for an unknown part of a file."""
     vertices.check_part(word)
     if (ending := Path(word).suffix.lower()) in OTHERS:
         raise UsageError(f"{word}: {OTHERS[ending]}")
@@ -112,7 +112,7 @@ def say_count_is_unused(options: Any) -> None:
 
 
 def _is_of_normals(options: type) -> bool:
-    """Whether its count is that of normals in a set, and not of what is made of them."""
+    """Whether the `count` of options is that of normals in a set, not of what is made of them."""
     return get_type_hints(options, include_extras=True)["count"] == Count
 
 
@@ -122,7 +122,7 @@ def given(made: NormalSet) -> Callable[[int, int], NormalSet]:
 
 
 def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:
-    """The meshes of a file as its camera sees them, or one that frames them; and what is to be said of them.
+    """Return the meshes of a file as its camera sees them, or a camera that frames them; and remarks on them.
 
     Raises UsageError.
     """

@@ -53,17 +53,17 @@ class NormalSet:
 
     Attributes:
         name: the catalogue's key.
-        title: what a reader calls it.
-        area: steradians it covers uniformly, or None where it is not uniform.
+        title: its name for people.
+        area: steradians it covers uniformly, or None if it is not uniform.
         count: how many normals, background included.
         shape: (height, width) of a set that is an image, else None.
-        seed: what the set was made with.
+        seed: the seed that the set was made with.
         chunk: start index -> Chunk.
-        background: how many of them are of no surface and do not count; None where nothing is to be said of that.
+        background: how many of them are not on a surface and do not count; None if that does not apply.
         not_finite: how many of a file's were NaN or infinite, which do not count either.
-        code_space: of a file the space that its normals are in: "view", "world" or "object".
-        own_error_deg: of a file whose normals are rounded, the mean angle by which they are off themselves.
-        of: by number the chunks that are meant where this is a part of a set; None for all.
+        code_space: for a file, the space that its normals are in: "view", "world" or "object".
+        own_error_deg: for a file whose normals are rounded, the mean angle of that error.
+        of: for a part of a set, the numbers of its chunks; None for all.
     """
 
     name: str
@@ -90,7 +90,7 @@ class NormalSet:
 
     @property
     def starts(self) -> range:
-        """Where its chunks start."""
+        """The start indices of its chunks."""
         whole = range(0, self.count, CHUNK)
         return whole[self.of.start : self.of.stop] if self.of else whole
 
@@ -112,7 +112,7 @@ class NormalSet:
         return replace(self, name=f"{self.name}, facing the viewer", chunk=chunk)
 
     def loads(self) -> Iterator[Callable[[], Chunk]]:
-        """For each chunk, in order, a function that gives it."""
+        """Yield, for each chunk in order, a function that returns it."""
         return (partial(self.chunk, start) for start in self.starts)
 
 

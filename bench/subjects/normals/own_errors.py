@@ -1,8 +1,8 @@
-"""By how much normals are off themselves because of how their file stores them.
+"""Errors that normals have because of how their file stores them.
 
-The error of a rounding is estimated from the normals themselves: they are rounded again, to steps about four times as
-wide, and a quarter of what that turns them by is what the file's own rounding did. Normals that lie on every grid, such
-as those along an axis, are exact in both.
+The error of a rounding is estimated from the normals themselves: they are rounded again, to steps about four times
+as wide, and a quarter of the angle by which that turns them is the error of the file's own rounding. Normals that
+are on every grid, such as those along an axis, are exact in both.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ def _some(n: np.ndarray) -> np.ndarray:
 
 
 def all_roundings(n: np.ndarray, roundings: Sequence[Rounding]) -> tuple[Rounding, ...]:
-    """Those that a file says, and the octahedral map that unit normals, (count, 3), show to have been packed by."""
+    """Return the roundings that a file declares, and the octahedral map by which unit normals, (count, 3), were
+    evidently packed."""
     if any(rounding.is_octahedral for rounding in roundings):
         return tuple(roundings)
     return (*octahedral_grid(_some(n), roundings), *roundings)
@@ -85,7 +86,7 @@ def _rounded_on_octahedron(n: np.ndarray, most: float) -> np.ndarray:
 
 
 def own_error_note(what: str, own: float) -> str:
-    """What is to be said of a source's own error in degrees."""
+    """Return a remark on a source's own error in degrees."""
     finer = f"a code with a mean below {own * WASTED:.1g} spends bits that these normals do not have"
     return f"{what} are off by about {own:.2g} degrees themselves: {finer}"
 

@@ -87,8 +87,8 @@ class Pixels:
 
     @cached_property
     def steps(self) -> int | None:
-        """What stands for 1 of the whole numbers that the channels are, or were before they became floats in [0, 1];
-        None for other floats."""
+        """The value of 1 in the whole numbers that the channels are, or were before they became floats in [0, 1]; None
+        for other floats."""
         return self.full or next((full for full in STEPS if _are_shares(self.planes, full)), None)
 
 
@@ -120,7 +120,7 @@ def has_normals_alone(path: Path) -> bool:
 
 
 def refused(path: Path, what: str, remedy: str = "save it again") -> UsageError:
-    """What is wrong with a file, in one line."""
+    """Return an error that says in one line what is wrong with a file."""
     return UsageError(f"{path}: {what}; {remedy}")
 
 
@@ -207,7 +207,7 @@ def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]], check: Ch
 
 
 def _check_alike(path: Path, kind: str, parts: list[dict[str, Any]], chosen: Sequence[str]) -> None:
-    """Raises UsageError where channels are of parts that do not lie over each other, or whose 1 is another."""
+    """Raise UsageError if channels are in parts that do not cover each other, or that store 1 as different values."""
     used = [part for part in parts if set(chosen) & set(part["names"])]
     layouts = [(part["place"], part["sides"], kind == EXR or part["types"]) for part in used]
     if any(layout != layouts[0] for layout in layouts):
@@ -247,7 +247,7 @@ def _read_npy(path: Path, choose: Choice) -> Pixels:
 
 
 def read_plane(path: Path, choose: Choice) -> Pixels:
-    """One channel of an image, as `read_pixels` gives it; an array of (height, width) is one.
+    """Read one channel of an image, as `read_pixels` returns it; an array of (height, width) is one channel.
 
     Raises:
         UsageError: see `read_pixels`.
@@ -267,7 +267,7 @@ def _npy_pixels(path: Path, found: np.ndarray, choose: Choice) -> Pixels:
 
 
 def _npy_array(path: Path) -> np.ndarray:
-    """The array of an NPY file, of two or three sides; it lies in the file's bytes."""
+    """Return the array of an NPY file, which has two or three sides and shares the file's bytes."""
     stream = io.BytesIO(_bytes(path))
     shape, in_columns, kind = _npy_header(path, stream)
     if kind.kind not in "fub" or kind.itemsize > 8 or (kind.kind == "u" and kind.itemsize > 2):

@@ -50,7 +50,7 @@ def opened(kind: str, path: str) -> oiio.ImageInput:
 
 
 def parts_of(file: oiio.ImageInput) -> list[dict[str, Any]]:
-    """What the header says of each part, layer or page: its name, sides, place, channels and their types."""
+    """Return the header's facts about each part, layer or page: its name, sides, place, channels and their types."""
     parts: list[dict[str, Any]] = []
     while file.seek_subimage(len(parts), 0):
         spec = file.spec()
@@ -68,8 +68,8 @@ def parts_of(file: oiio.ImageInput) -> list[dict[str, Any]]:
 
 
 def full_names(parts: list[dict[str, Any]]) -> list[list[str]]:
-    """Each part's channels by names that differ: a part's name, or its number from 2 on, comes first where there are
-    several parts."""
+    """Return unique names of each part's channels: if there are several parts, each name begins with the part's name,
+    or with its number from 2 on."""
     stems = [part["name"] or (str(number) if number > 1 else "") for number, part in enumerate(parts, 1)]
     if len(parts) == 1:
         stems = [""]

@@ -1,7 +1,7 @@
-"""What libpng passes over in a PNG file (ISO/IEC 15948): rows beyond those that its header says.
+"""A check for what libpng ignores in a PNG file (ISO/IEC 15948): rows beyond those that its header declares.
 
-It refuses missing rows, wrong checksums and unknown filters, but reads a picture whose header says fewer rows or
-narrower ones than there are as if nothing were wrong: sheared, or a part of it.
+It refuses missing rows, wrong checksums and unknown filters. But if the header declares fewer rows or narrower ones
+than there are, libpng reads the image without an error: sheared, or a part of it.
 """
 
 from __future__ import annotations

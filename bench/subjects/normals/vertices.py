@@ -28,11 +28,11 @@ MAY_BE_ROUNDED = (".glb", ".gltf", ".ply")
 
 @dataclass(frozen=True)
 class OwnRounding:
-    """How a file's normals are rounded.
+    """The rounding of a file's normals.
 
     Attributes:
-        roundings: all that its meshes have.
-        error_deg: the mean angle by which that has turned its vertices; None where nothing is known.
+        roundings: all roundings of its meshes.
+        error_deg: the mean angle by which they have turned its vertices' normals; None if it is unknown.
     """
 
     roundings: tuple[Rounding, ...]
@@ -40,7 +40,7 @@ class OwnRounding:
 
     @property
     def notes(self) -> list[str]:
-        """What is to be said of it; nothing where no code of 24 bits is as fine."""
+        """Remarks on the rounding; empty if it is finer than any 24-bit encoding."""
         own = self.error_deg
         if own is None or own < FINE:
             return []
@@ -66,14 +66,14 @@ class Vertices:
 
 
 def check_part(word: str) -> None:
-    """Raises UsageError where what stands behind a mesh file is no part that can be named."""
+    """Raise UsageError if the text after a mesh file's name is not a known part."""
     file, mark, part = word.rpartition(PART)
     if mark and part != VERTICES and Path(file).suffix.lower() in MESHES:
         raise UsageError(f"{word}: unknown part {part!r} of a mesh file; known: {file}{PART}{VERTICES}")
 
 
 def vertex_set(path: Path) -> tuple[NormalSet, list[str]]:
-    """The vertex normals of a mesh file, and what is to be said of them. Raises UsageError."""
+    """Return the vertex normals of a mesh file, and remarks on them. Raises UsageError."""
     file = Path(whole_file_of(str(path)))
     vertices = vertices_of(file)
     lost = vertices.zero + vertices.not_finite
@@ -92,8 +92,8 @@ def vertex_set(path: Path) -> tuple[NormalSet, list[str]]:
 
 
 def drawn_error(path: Path) -> tuple[float, list[str]]:
-    """By how many degrees the vertex normals of a mesh file are off in the mean, and what is to be said of that; 0
-    where nothing is known. What is drawn between them is off by less, where they are off to different sides.
+    """Return the mean error of a mesh file's vertex normals in degrees, and remarks on it; 0 if it is unknown. Normals
+    drawn between vertices have a smaller error, if the vertices' errors have different directions.
 
     Raises UsageError.
     """
@@ -142,19 +142,20 @@ def _used(path: Path, stored: Stored) -> np.ndarray:
 
 
 def _lengths(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Which normals are finite, as far as their squares are, and how long these are; (count,) each."""
+    """Return which normals are finite, as far as their squares are, and their lengths; (count,) each."""
     with np.errstate(invalid="ignore"):
         finite = np.asarray((np.abs(normals) < TOO_LARGE).all(axis=1))
     return finite, np.linalg.norm(np.where(finite[:, None], normals, 0), axis=1)
 
 
 def _least(roundings: Sequence[Rounding]) -> float:
-    """What is shorter has no direction. Whole numbers without a sign have no 0: the nearest is half a step away."""
+    """Return the length below which a normal has no direction. Unsigned integers have no 0: the nearest value is half a
+    step away."""
     return max([NOTHING, *(1 / rounding.most for rounding in roundings if not rounding.is_octahedral)])
 
 
 def _own_rounding(used: Sequence[np.ndarray], meshes: Sequence[Stored]) -> OwnRounding:
-    """What all meshes' normals were rounded to; in the mean over all vertices, of which some may be exact."""
+    """Return the roundings of all meshes' normals, with the mean error over all vertices; some may be exact."""
     known_roundings: dict[Rounding, None] = {}
     turned, known = 0.0, False
     for rows, mesh in zip(used, meshes, strict=True):

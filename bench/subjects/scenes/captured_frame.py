@@ -36,9 +36,9 @@ class CapturedFrame:
     """A frame as a scene.
 
     Attributes:
-        scene: it, under the environment that mesh files have.
-        sides: width and height in pixels of what is drawn.
-        notes: what is to be said of it, a line each.
+        scene: the scene, under the environment that mesh files have.
+        sides: width and height in pixels of the drawn part.
+        notes: remarks on it, a line each.
     """
 
     scene: Scene
@@ -47,7 +47,7 @@ class CapturedFrame:
 
 
 def captured_frame(frame: FrameFile) -> CapturedFrame:
-    """What a description stands for. Raises UsageError, in one line, for images that are not what it says."""
+    """Return the frame that a description stands for. Raises UsageError, in one line, for images that do not fit."""
     reader = _Reader(frame)
     pixels = reader.pixels()
     pixels, every, fov = _fewer(pixels, frame.fov)
@@ -66,7 +66,7 @@ def _view(frame: FrameFile, fov: float, to_world: np.ndarray) -> View:
 
 
 def _fewer(pixels: PixelSurfaces, fov: float) -> tuple[PixelSurfaces, int, float]:
-    """So many pixels that they can be drawn, every so manyth of them, and the angle of view of what is left."""
+    """Return as many pixels as can be drawn, the step between them, and the angle of view of what is left."""
     height, width = pixels.depth.shape
     every = math.isqrt(max(height * width - 1, 0) // MOST_PIXELS) + 1
     rows, columns = height // every, width // every
@@ -78,11 +78,11 @@ def _fewer(pixels: PixelSurfaces, fov: float) -> tuple[PixelSurfaces, int, float
 
 
 class _Reader:
-    """What the images of a frame say.
+    """The contents of a frame's images.
 
     Attributes:
-        notes: what is to be said of them.
-        to_world: (3, 3), view space to world space for column vectors; the identity where no matrix is known. The
+        notes: remarks on them.
+        to_world: (3, 3), view space to world space for column vectors; the identity if no matrix is known. The
             world is right-handed, and y is up.
     """
 
@@ -111,7 +111,7 @@ class _Reader:
         return PixelSurfaces(depth=depth, normal=normal, roughness=roughness, **quantities)
 
     def _asked(self, name: str, read: Callable[[], Any]) -> Any:
-        """What is read of an entry. Raises UsageError that names it."""
+        """Return what `read` reads of an entry. Raises UsageError that names the entry."""
         try:
             return read()
         except UsageError as error:
@@ -257,7 +257,7 @@ def _check_finite(path: Path, planes: np.ndarray, covered: np.ndarray) -> None:
 
 
 def _check_range(name: str, found: np.ndarray) -> None:
-    """Raises UsageError for numbers that a quantity cannot have."""
+    """Raise UsageError for numbers that a quantity cannot have."""
     low, high = float(found.min()), float(found.max())
     if name == "emissive":
         if not 0 <= low <= high <= MOST_LIGHT:
@@ -267,5 +267,5 @@ def _check_range(name: str, found: np.ndarray) -> None:
 
 
 def lines_of(frame: FrameFile, found: CapturedFrame) -> Iterator[str]:
-    """What is said of a frame on standard error."""
+    """Yield the lines to report about a frame on standard error."""
     yield from (f"{frame.path}: {note}" for note in found.notes)

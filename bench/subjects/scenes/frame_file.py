@@ -54,13 +54,13 @@ NEEDED = (*CAMERA, "depth", "normal", "base_color", "roughness")
 
 @dataclass(frozen=True)
 class FrameFile:
-    """A description, checked; of the images nothing is read.
+    """A checked description; none of its images has been read.
 
     Attributes:
-        path: where it was read from.
-        fov, near, far: the camera's; vertical, in degrees.
-        view_matrix: world to view space, as --view-matrix takes it; None where nobody says.
-        entries: by name, what is said of each: words with a file, or a number, or three.
+        path: the file it was read from.
+        fov, near, far: the camera's; fov is vertical, in degrees.
+        view_matrix: world to view space, as --view-matrix takes it; None if it is unknown.
+        entries: by name, the value of each: words with a file, or a number, or three.
     """
 
     path: Path
@@ -71,12 +71,12 @@ class FrameFile:
     entries: Mapping[str, Any]
 
     def error(self, name: str, said: object) -> UsageError:
-        """One line about an entry, in which options are the keys that they are here."""
+        """Return a one-line error about an entry, in which options have their names as keys."""
         return UsageError(f"{self.path}: {name}: {as_keys(str(said))}")
 
 
 def as_keys(text: str) -> str:
-    """What is said of options, of the keys of a description: --no-unpack is "unpack": false."""
+    """Return a text about options as a text about a description's keys: --no-unpack is "unpack": false."""
     flags = {name for name in OF_NORMALS if fields_of(Reading)[name].kind is bool}
 
     def key(match: re.Match[str]) -> str:
@@ -140,7 +140,7 @@ def _check_names(path: Path, place: str, found: Mapping[str, Any], known: tuple[
 
 
 def _how(name: str) -> str:
-    """How somebody writes what is missing."""
+    """Say how to write what is missing."""
     if name in CAMERA:
         return f'write "{name}": NUMBER'
     return f'write "{name}": {{"file": "FILE", "{"channel" if "channel" in ENTRIES[name] else "channels"}": "..."}}'
@@ -165,7 +165,7 @@ def _check_camera(path: Path, fov: float, near: float, far: float) -> None:
 
 
 def _matrix(path: Path, value: object) -> str | None:
-    """Numbers as they are typed, or where the file of them lies."""
+    """Return the numbers of a matrix as they are typed, or the path of the file that holds them."""
     if value is None:
         return None
     if isinstance(value, list):
@@ -178,7 +178,7 @@ def _matrix(path: Path, value: object) -> str | None:
 
 
 def _entry(path: Path, name: str, value: object) -> Any:
-    """What is said of a quantity, with its files where they lie."""
+    """Return the value of a quantity, with the paths of its files."""
     kinds = ENTRIES[name]
     if kinds is NUMBER and not isinstance(value, dict):
         return _number(path, name, value)

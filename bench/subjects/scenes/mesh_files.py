@@ -1,4 +1,4 @@
-"""Mesh files as they are read, and what is said of them."""
+"""Reading of mesh files, and remarks on them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def mesh_file(path: Path) -> MeshFile:
 
 
 def read_or_refused(read: Callable[[], T]) -> T:
-    """What is read of a mesh file. Raises as `mesh_file` does."""
+    """Return what `read` reads of a mesh file. Raises as `mesh_file` does."""
     try:
         return read()
     except MissingPackageError as error:
@@ -30,7 +30,7 @@ def read_or_refused(read: Callable[[], T]) -> T:
 
 
 def say_notes(notes: Mapping[Path, Sequence[str]]) -> None:
-    """What is to be said of files, a line each, on standard error; once all are read, as an error is one line alone."""
+    """Report remarks on files, a line each, on standard error, once all are read: an error must be the only line."""
     for path, lines in notes.items():
         if lines:
             tell(f"{path}: {'; '.join(lines)}")

@@ -1,1 +1,1 @@
-"""How few bytes a pixel an image bears."""
+"""The fewest bytes per pixel for an image quality."""

@@ -1,5 +1,4 @@
-"""What a G-buffer stores of a surface, and the codes that each attribute may have, with the words that say them in a
-layout."""
+"""The attributes that a G-buffer stores of a surface, their possible encodings, and the words for them in a layout."""
 
 from __future__ import annotations
 
@@ -43,8 +42,8 @@ ITSELF = "linear"
 
 @dataclass(frozen=True)
 class Surfaces:
-    """What pixels see, float32: normals in the world's axes, base colours and the light that is given off (height,
-    width, 3), the others (height, width). Named as attributes are."""
+    """The surfaces that pixels show, float32: world-space normals, base colours and emitted light (height, width,
+    3), the others (height, width). The fields are named like the attributes."""
 
     normal: np.ndarray
     base_color: np.ndarray
@@ -57,18 +56,18 @@ class Surfaces:
 
 @dataclass(frozen=True)
 class Code:
-    """How an attribute may lie in a G-buffer.
+    """An encoding of an attribute in a G-buffer.
 
     Attributes:
-        attribute: its name.
-        name: what the code is called, such as `octahedral 11:11`.
-        words: a layout's words, without bits, in the order of their numbers.
-        bits: of each number.
+        attribute: name of the attribute.
+        name: name of the encoding, such as `octahedral 11:11`.
+        words: words of a layout, without bits, in the order of their numbers.
+        bits: bits of each number.
         kind: what a channel of its own must hold: UNORM, SRGB or FLOAT.
         blends: whether the mean of two texels is the texel of the mean, so that decals may blend into it.
-        in_fields: whether it may share a channel with others, as bits.
-        is_exact: whether it is bits that must come back as they are.
-        trip: what surfaces come back as; None where the image does not read it.
+        in_fields: whether it may share a channel with others, as a bit field.
+        is_exact: whether its bits must come back unchanged.
+        trip: function from surfaces to the surfaces that come back; None if the image does not read the attribute.
     """
 
     attribute: str
@@ -83,7 +82,7 @@ class Code:
 
     @property
     def key(self) -> tuple[str, str]:
-        """What tells it from all others."""
+        """The names that identify the encoding: its attribute and its own name."""
         return self.attribute, self.name
 
     @property
@@ -170,7 +169,7 @@ def _base_colors() -> Iterator[Code]:
 
 
 def _singles(attribute: str, sizes: Iterable[int], curve: str = ITSELF) -> Iterator[Code]:
-    """Of an attribute of one number."""
+    """Yield the encodings of an attribute with one component, by bit count."""
     (component,) = COMPONENTS[attribute]
     for bits in sizes:
         yield _on_curve(attribute, component, curve, (bits,))
@@ -178,13 +177,13 @@ def _singles(attribute: str, sizes: Iterable[int], curve: str = ITSELF) -> Itera
 
 @dataclass(frozen=True)
 class Attribute:
-    """What is stored of a surface.
+    """An attribute of a surface that a G-buffer stores.
 
     Attributes:
-        name: what it is called.
-        codes: the ones that it may have, the floor's and all above it.
-        usual_bits: what it has at least where no scene shows what its code loses.
-        is_seen: whether an image reads it; where not, its bits are by contract.
+        name: name of the attribute.
+        codes: possible encodings: the minimum and everything above it.
+        usual_bits: minimum number of bits if no scene shows the loss of its encodings.
+        is_seen: whether an image reads the attribute; if not, its bits are set by contract.
     """
 
     name: str
@@ -194,7 +193,7 @@ class Attribute:
 
 
 def exact_bits(name: str, word: str, bits: int) -> Attribute:
-    """So many bits that come back as they are, as ids do."""
+    """Return an attribute whose bits must come back unchanged, such as an ID."""
     parts = tuple(min(bits - start, MOST_PART) for start in range(0, bits, MOST_PART))
     code = Code(name, f"{bits} bits", (word,) * len(parts), parts, is_exact=True)
     return Attribute(name, (code,), bits, False)
@@ -286,5 +285,5 @@ SEEN: Mapping[str, Attribute] = MappingProxyType(
 
 
 def usual(attribute: Attribute) -> Attribute:
-    """An attribute that no scene shows: of its codes those of the usual bits and more."""
+    """Return an attribute that no scene shows, with only its encodings of the usual bits or more."""
     return replace(attribute, codes=tuple(c for c in attribute.codes if c.total_bits >= attribute.usual_bits))

@@ -42,11 +42,11 @@ class Bin:
 
     @property
     def part(self) -> int:
-        """The bits of a channel that fields lie in."""
+        """The number of bits in each channel that holds bit fields."""
         return TARGET_FORMATS[self.format].bits[0]
 
     def need(self, code: Code) -> Mapping[Channel, float] | None:
-        """What a code takes of its channels, or of its bits; None where it cannot lie here."""
+        """Return the channels or bits that an encoding takes in this target; None if it does not fit."""
         if self.blends and not code.blends:
             return None
         if self.fields:
@@ -65,7 +65,7 @@ class Bin:
         return self._need_of_exact(code) if code.is_exact else None
 
     def channels_of(self, code: Code) -> list[Channel]:
-        """The kind of channel that each number of a code lies in, in a target of channels."""
+        """Return the kind of channel for each number of an encoding, in a target with separate channels."""
         if not code.is_exact:
             return [(code.kind, bits) for bits in code.bits]
         sizes = sorted(bits for kind, bits in self.channels if kind == UNORM)
@@ -171,7 +171,7 @@ WEBGPU_BYTES = 32
 
 
 def webgpu_cost(formats: Sequence[str]) -> int | None:
-    """What targets, in their order, cost of WebGPU's bytes a sample; None where it does not render to one of them."""
+    """Return the bytes per sample that WebGPU counts for ordered targets; None if it cannot render to one."""
     total = 0
     for name in formats:
         if name not in WEBGPU:

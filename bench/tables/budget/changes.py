@@ -1,4 +1,4 @@
-"""What a layout of somebody's loses by each of its attributes, and which of a proposal's codes would bring most."""
+"""The loss from each attribute in a user's layout, and the encodings of a proposal that would improve it most."""
 
 from __future__ import annotations
 
@@ -34,10 +34,11 @@ def completed(layout: Layout) -> Layout:
 
 
 def alone(layout: Layout, attribute: str) -> Layout:
-    """A layout's own words of one attribute, and all else in 32-bit floats; without the attribute where it has none.
+    """Return a layout's own words for one attribute, with everything else in 32-bit floats. If the layout lacks the
+    attribute, so does the result.
 
     Raises:
-        LayoutError: the words cannot stand alone, as a roughness that carries a sign of the normal.
+        LayoutError: the words cannot be used alone, such as a roughness that stores a sign of the normal.
     """
     kept = [_only(layout, i, target, COMPONENTS[attribute]) for i, target in enumerate(layout.targets)]
     held = [target for target in kept if any(not word.startswith(FREE) for word in target.holds.split())]
@@ -55,7 +56,7 @@ def alone(layout: Layout, attribute: str) -> Layout:
 
 
 def _only(layout: Layout, at: int, target: Target, components: Sequence[str]) -> Target:
-    """A target with some of its words, and bits or channels free where the others lie."""
+    """Return a target with the words of some components only; the bits or channels of its other words become free."""
     words = []
     for text in spelt_out(place_of(layout.name, at, target), target):
         bits = text.partition(":")[2] if "(" not in text else text.rpartition(")")[2].partition(":")[2]

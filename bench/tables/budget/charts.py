@@ -15,7 +15,7 @@ NEAR_DB = 30.0
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """One chart, where there are two proposals, or one and something to compare it with."""
+    """Yield one chart if there are two proposals, or one and something to compare it with."""
     usable = having(rows, "held_back_db", "contract_bytes")
     if len(usable) > 1 and any(row["kind"] == PROPOSAL for row in usable):
         yield budget_chart(usable)
@@ -72,7 +72,7 @@ def budget_chart(rows: Sequence[Row]) -> Chart:
 
 
 def _judged(scenes: str) -> str:
-    """What the figures are of."""
+    """Return the part of the subtitle on the class and the scenes of the figures."""
     names = scenes.split(",")
     if len(names) == 1:
         return f"Worst class of surfaces in {scenes}, which also chose the proposals,"
@@ -87,7 +87,7 @@ def _ticks(points: Sequence[Row]) -> tuple[tuple[float, str], ...]:
 
 
 def _finding(ours: Sequence[Row], others: Sequence[Row]) -> str:
-    """What the proposals gain on others of as many bytes or fewer."""
+    """Return the gain of the proposals over layouts of as many bytes or more, or else the PSNR of the proposals."""
     gains = [
         max(point["y"] for point in ours if point["x"] <= other["x"]) - other["y"]
         for other in others

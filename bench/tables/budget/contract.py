@@ -1,4 +1,4 @@
-"""What `--hold` names: the attributes that a G-buffer stores."""
+"""The attributes that a G-buffer stores, as named by `--hold`."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def attributes_held(words: Names, speed: float) -> list[Attribute]:
 
 
 def _attribute(word: str, speed: float) -> Attribute | None:
-    """Raises UsageError."""
+    """Return the attribute that a word of `--hold` names; None if it takes no bytes here. Raises UsageError."""
     name, _, size = word.partition(":")
     # What lies in the light buffer or in the stencil takes no bytes here.
     if word == IN_LIGHT or (name in IN_STENCIL and size == STENCIL):
@@ -86,7 +86,7 @@ def held_in_stencil(words: Names) -> list[str]:
 
 
 def names_held(option: str, words: Names | None, held: Sequence[str]) -> list[str]:
-    """Return the attributes that an option names, each of which is held. Raises UsageError."""
+    """Return the attributes that an option names, without depth. Raises UsageError if one is not held."""
     names = [str(word) for word in words or () if word != "depth"]
     for word in names:
         if word not in held:

@@ -1,5 +1,5 @@
-"""What the code of a layout costs: issue slots to pack a surface and to unpack it, and layouts that keep to a limit of
-both."""
+"""The cost of packing and unpacking a surface in a layout, in issue slots, and layouts that keep the sum within a
+limit."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Price:
 
 
 def check_compilers(families: Iterable[str]) -> None:
-    """Raises MissingError where a family's compiler is not on this machine."""
+    """Raise MissingError if a family's compiler is not on this machine."""
     spirv.compiler()
     for reason in filter(None, (isa.missing(FAMILIES[family].library) for family in families)):
         raise MissingError(f"--most-instructions counts by a compiler: {reason}")
@@ -80,17 +80,17 @@ class Slots:
             self._known[key] = tuple(filter(None, prices))
 
     def of(self, layout: Layout) -> tuple[Price, ...]:
-        """The price on each family; none where it is not known."""
+        """Return the cost on each family, without the families on which it is not known."""
         self.count([layout])
         return self._known[layout.summary]
 
     def once(self, layout: Layout) -> float:
-        """What packing and unpacking once take on the family where that is most; UNKNOWN where not all count it."""
+        """Return the slots to pack and unpack once on the most expensive family; UNKNOWN if one is not counted."""
         prices = self.of(layout)
         return max(price.once for price in prices) if len(prices) == len(self._families) else UNKNOWN
 
     def count_codes(self, problem: Problem) -> None:
-        """Counts every code of a problem in each way in which it may lie in a target."""
+        """Count the slots of every encoding of a problem for each way to store it in a target."""
         for code in (code for attribute in problem.attributes for code in attribute.codes):
             for target in problem.bins:
                 if target.need(code) is not None and _key(code, target) not in self._alone:
@@ -98,11 +98,11 @@ class Slots:
         self.count(self._alone.values())
 
     def of_code(self, code: Code, one: Bin) -> float:
-        """What a code takes by itself in a target, after `count_codes`."""
+        """Return the slots that an encoding takes by itself in a target, after `count_codes`."""
         return self.once(self._alone[_key(code, one)])
 
     def columns(self, layout: Layout, overdraw: float, readers: float) -> Row:
-        """The columns of costs, of the family where a pixel is dearest; empty where nothing is known."""
+        """Return the cost columns for the family with the highest cost per pixel; empty if no cost is known."""
 
         def pixel(price: Price) -> float:
             return overdraw * price.pack + readers * price.unpack
@@ -165,7 +165,8 @@ def within(problem: Problem, most: float, slots: Slots, solve: Solve) -> list[So
 
 
 def least(problem: Problem, slots: Slots, solve: Solve) -> Solution | None:
-    """Of layouts whose codes take least, the one that takes least as a whole; None where none keeps to the rules."""
+    """Return the layout that takes the fewest slots as a whole, among layouts whose encodings take the fewest
+    separately; None if no layout keeps to the rules."""
     slots.count_codes(problem)
     first = cheapest(replace(problem, cost=slots.of_code))
     if first is None:
@@ -176,10 +177,10 @@ def least(problem: Problem, slots: Slots, solve: Solve) -> Solution | None:
 
 
 def _total(slots: Slots, found: Solution) -> float:
-    """What the codes of a layout take one by one."""
+    """Return the sum of the slots that the encodings of a layout take separately."""
     return sum(slots.of_code(placed.code, placed.bin) for placed in found.placed)
 
 
 def whole(slots: Slots, found: Solution) -> float:
-    """What the code of a layout takes to pack and unpack once."""
+    """Return the slots to pack and unpack a layout once."""
     return slots.once(layout_of("", found))

@@ -114,20 +114,21 @@ class Judged:
 
     @property
     def classes(self) -> list[str]:
-        """Those whose worst counts: of each scene its classes of surfaces, not its frame."""
+        """The classes whose worst error counts: the judging classes of surfaces in each scene, without its frame."""
         names = dict.fromkeys(name for errors in self._errors.values() for name in errors)
         return [name for name in names if name.rpartition(" ")[2] in self._question.judging]
 
     def _usual(self, attributes: Sequence[Attribute]) -> list[Attribute]:
-        """Those that no scene shows in their usual bits, and others without codes of needless words."""
+        """Give attributes that no scene shows their usual bits, and drop needlessly wide encodings of the others."""
         return [
             usual(attribute) if attribute.is_seen and not self._shows(attribute) else self._in_one_word(attribute)
             for attribute in attributes
         ]
 
     def _in_one_word(self, attribute: Attribute) -> Attribute:
-        """An attribute without codes of more than 32 bits, where one of as many or fewer shows in no class: nobody
-        spends 48 bits on a normal then. What decals blend into may need them."""
+        """Return an attribute without encodings over 32 bits if a smaller one has no visible error in any class:
+        nobody spends 48 bits on a normal then. Attributes that decals blend into are unchanged, because these may
+        need wide encodings."""
         if attribute.name in self._question.rules[0].blended:
             return attribute
         small = [code for code in attribute.codes if code.total_bits <= ONE_WORD]
@@ -143,10 +144,11 @@ class Judged:
         return next(filter(None, (self._kept(problem, count) for problem in self._problems(asked))), [])
 
     def _problems(self, asked: Own, classes: Sequence[str] = ()) -> Iterator[Problem]:
-        """What nobody sees has its usual bits where there is room for them, and its floor where there is not.
+        """Yield a problem with the usual bits for attributes that no scene shows, then one down to their minimum
+        bits, in case the usual bits do not fit.
 
         Args:
-            classes: those that judge; empty for all.
+            classes: classes that judge; empty for all.
         """
         usually = self._usual(asked.attributes)
         for held in (usually, *([asked.attributes] if usually != asked.attributes else [])):
@@ -192,7 +194,7 @@ class Judged:
         return best
 
     def _best_drawn(self, name: str, asked: Own, depth: DepthEncoding | None) -> tuple[Solution, Layout, Row] | None:
-        """Of the layouts that count as equal the one whose FLIP is least; the plainest where that is as good."""
+        """Return the layout with the lowest FLIP among those that count as equal; the plainest if it is as good."""
         best = None
         for solution in self._finalists(asked, FINALISTS):
             layout = _with_depth(layout_of(name, solution), depth)
@@ -270,7 +272,7 @@ class Judged:
         return next((size for size in sizes if size is not None), asked.rules.bytes)
 
     def mine(self, layout: Layout) -> Iterator[Row]:
-        """The row of somebody's layout, and that of a proposal that holds the same in targets of the same formats."""
+        """Yield the row of a user's layout, and of a proposal that holds the same in targets of the same formats."""
         row = self.row_of(MINE, layout)
         if changes.holds_other_quantities(layout):
             note = "it keeps no metallic: its materials are other quantities than these codes are for"
@@ -293,7 +295,7 @@ class Judged:
         )
 
     def _next(self, rules: Rules, found: Solution) -> Row:
-        """How many bytes more bring something, and what; empty where a few bring nothing."""
+        """Return how many more bytes bring a gain, and the gain; empty if a few more bytes bring none."""
         worst = found.worst_of(self.classes)
         now = psnr_db(worst)
         for size in MORE if worst > HALF_STEP else ():
@@ -304,7 +306,7 @@ class Judged:
         return {}
 
     def _why(self, rules: Rules) -> str:
-        """What the least is that can be, for a limit that cannot."""
+        """Return why no layout fits a limit, and the minimum that is possible."""
         q = self._question
         problem = Problem(q.attributes, self._errors, self.classes, q.bins, rules)
         least_bytes = fewest_bytes(problem)
@@ -318,7 +320,7 @@ class Judged:
         return f"{few}: {smallest}{self._dropped(problem)}"
 
     def _dropped(self, problem: Problem) -> str:
-        """Say without which attributes a layout fits, those that an image loses least by first."""
+        """Say which attributes to leave out so that a layout fits, smallest loss in the image first."""
         losses = {
             attribute.name: loss for attribute in problem.attributes if (loss := self._loss(attribute)) is not None
         }
@@ -346,7 +348,7 @@ class Judged:
         return max(errors[name] for name in self.classes)
 
     def _why_never(self, rules: Rules) -> str:
-        """What no target can hold, or that all of it together is too much."""
+        """Return which attribute no target can hold, or that no targets can hold all of the attributes together."""
         q = self._question
         for attribute in q.attributes:
             is_blended = attribute.name in rules.blended
@@ -366,7 +368,7 @@ class Judged:
         )
 
     def _predicted(self, found: Solution, row: Row) -> Row:
-        """What is predicted of a layout, and where the error of the class comes from that is worst in its image."""
+        """Return the predicted figures of a layout, and the sources of the error in the worst class of its image."""
         worst = row["worst_class"] or max(self.classes, key=lambda name: found.errors.get(name, 0.0))
         total = found.errors[worst]
         shares = {placed.code.attribute: self._errors.get(placed.key, {}).get(worst, 0.0) for placed in found.placed}
@@ -425,7 +427,7 @@ class Judged:
         return psnr_db(float(np.mean(list(worst.values()))))
 
     def _beside(self, layout: Layout) -> float:
-        """Bytes that a layout lacks of what is held, less those of emission that is not."""
+        """Return the bytes of held attributes that a layout lacks, less those of emission that is not held."""
         kept = {word.component for word in layout.words}
         held = {
             attribute.name: min(code.total_bits for code in attribute.codes) for attribute in self._question.attributes
@@ -439,7 +441,7 @@ class Judged:
         return math.ceil(layout.bytes_per_pixel + self._beside(layout))
 
     def _changes(self, layout: Layout, found: Solution) -> str:
-        """What of a proposal would bring a layout most."""
+        """Return the changes from a proposal that would improve a layout most."""
         whole, mine = changes.completed(layout), {}
         for name in COMPONENTS:
             # A number that carries a sign of the normal does not stand alone.

@@ -1,4 +1,4 @@
-"""What a layout of somebody's holds, and in which targets: what a proposal for the same has to hold and may use."""
+"""The attributes and targets of a user's layout: what a proposal for the same has to hold and may use."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ class Own:
 
 
 def own(layout: Layout, asked: Rules) -> Own:
-    """What a layout is compared by: what it holds in as many targets of its formats.
+    """Return what a layout is compared on: its attributes, in as many targets of its formats.
 
     Args:
-        asked: rules of the question. What the layout itself does not keep to is left out, but for a limit of WebGPU.
+        asked: rules of the question. Rules that the layout itself breaks are left out, except a WebGPU limit.
     """
     formats = Counter(_format(target) for target in layout.targets)
     attributes = list(_attributes(layout))
@@ -88,7 +88,8 @@ def _kind(storage: Storage, channel: int) -> str:
 
 
 def _attributes(layout: Layout) -> Iterator[Attribute]:
-    """What an image shows, in all of its codes; then the rest, in as many bits of the same kind as it has."""
+    """Yield the attributes that an image shows, in all of their encodings; then the rest, in as many bits of the
+    same kind as the layout has."""
     has_halves = any(t.storage.kind == "float" and max(t.storage.bits) == 16 for t in layout.targets)
     for name, attribute in SEEN.items():
         if layout.components & {*COMPONENTS[name]}:

@@ -1,4 +1,4 @@
-"""What a budget is asked for."""
+"""The question that a budget answers."""
 
 from __future__ import annotations
 
@@ -42,23 +42,23 @@ ONE_BYTE = frozenset({"shading_model", "flags"})
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked for.
+    """The scenes, attributes, targets and limits of a budget.
 
     Attributes:
-        stages: the scenes that judge.
-        attributes: what is stored.
-        bins: targets that there may be.
-        rules: for each limit.
+        stages: scenes that judge.
+        attributes: attributes to store.
+        bins: possible targets.
+        rules: rules for each limit.
         overdraw, readers: how often a pixel is written, and the passes that fetch it.
         against: layouts to compare with.
-        engines: whether engines' layouts of the same kind are measured as well.
-        tile: the bytes a pixel that a tile of a GPU has at full rate; None where nobody asks.
-        light_bytes: of the light buffer that is drawn with the G-buffer; 0 where the G-buffer holds emission.
-        threshold: of FLIP's 99th percentile, for which the fewest bytes are looked for; None to take the rules.
-        search: between which numbers of bytes.
-        judging: classes of surfaces of which the worst counts.
-        families: of GPUs that issue slots are counted for.
-        most_instructions: the issue slots that packing and unpacking once may take; None where nobody asks.
+        engines: whether engine layouts of the same kind are measured as well.
+        tile: bytes per pixel that a GPU tile has at full rate; None if not requested.
+        light_bytes: bytes of the light buffer that is drawn with the G-buffer; 0 if the G-buffer holds emission.
+        threshold: 99th percentile of FLIP for which to find the fewest bytes; None to use the rules.
+        search: smallest and largest number of bytes to search.
+        judging: classes of surfaces whose worst error counts.
+        families: GPU families to count issue slots for.
+        most_instructions: most issue slots to pack and unpack once; None if not requested.
     """
 
     stages: Sequence[Stage]
@@ -83,7 +83,7 @@ class Question:
 
 
 def question(options: BudgetOptions) -> Question:
-    """What is asked for. Raises UsageError for what cannot be asked."""
+    """Return the question that the options ask. Raises UsageError for options that cannot be used."""
     device = require_device()
     named = {name: as_known(getattr(options, name)) for name in OF_ATTRIBUTES if getattr(options, name)}
     options = _of_held(replace(options, **named))
@@ -148,12 +148,12 @@ def _of_held(options: BudgetOptions) -> BudgetOptions:
 
 
 def _read_alone(said: Names, names: Sequence[str]) -> frozenset[str]:
-    """What a pass reads by itself. Raises UsageError for what is not held."""
+    """Return the attributes that a pass reads without the rest. Raises UsageError for attributes that are not held."""
     return frozenset() if said == ("none",) else frozenset(names_held("--read-alone", said, names))
 
 
 def _webgpu_cost(light: str) -> int:
-    """Raises UsageError for a light buffer that WebGPU does not render to."""
+    """Return the bytes per sample of a light buffer in WebGPU. Raises UsageError if WebGPU does not render to it."""
     name = LIGHT_BUFFERS[light].storage.target.name
     if name not in WEBGPU:
         raise UsageError(f"--light {light}: WebGPU does not render to it; it does to r11g11b10f and rgba16f")
@@ -161,7 +161,7 @@ def _webgpu_cost(light: str) -> int:
 
 
 def _limits(options: BudgetOptions) -> tuple[bool, int | None]:
-    """Whether WebGPU's limit holds, and the bytes of a tile's pixel. Raises UsageError for a limit that is none."""
+    """Return whether WebGPU's limit applies, and the bytes of a tile's pixel. Raises UsageError for unknown limits."""
     webgpu, tile = False, None
     for word in map(str, options.limit or ()):
         prefix, _, size = word.partition(":")

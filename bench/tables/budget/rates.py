@@ -1,5 +1,5 @@
-"""What each code of an attribute does to the displayed image, when all else is exact: mean squared errors, by class of
-surfaces."""
+"""The effect of each encoding of an attribute on the displayed image when everything else is exact: mean squared
+errors by class of surfaces."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class Exact:
         self.classes = self._masks(light[..., :3].max(axis=-1) > 0)
 
     def _masks(self, gives_light: np.ndarray) -> dict[str, np.ndarray]:
-        """Where each class is, those of too few pixels left out; and the frame, which is all that is covered."""
+        """Return the mask of each class, without classes of too few pixels, and of the frame: all covered pixels."""
         roughness, masks, low = self.surfaces.roughness, {FRAME: self.covered}, -np.inf
         for name, high in UP_TO.items():
             masks[name] = self.covered & ~gives_light & (roughness > low) & (roughness <= high)
@@ -99,15 +99,15 @@ class Exact:
 
     @cached_property
     def key(self) -> str:
-        """What tells it from every other exact image: what computes it and from what, and what it shows."""
+        """A digest that identifies the exact image: the program and inputs that compute it, and its pixels."""
         digest = hashlib.sha256(f"{sources()} {jax.__version__} {self._device.renderer}".encode())
         for array in (*self._textures, self.shown):
             digest.update(np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()
 
     def errors(self, shown: np.ndarray) -> dict[str, float]:
-        """The mean squared error of each class of a displayed image, (height, width, 3) in [0, 1]; what is no number
-        counts as 1."""
+        """Return the mean squared error of each class of a displayed image, (height, width, 3) in [0, 1]; values
+        that are not finite count as an error of 1."""
         apart = np.where(np.isfinite(shown), shown - self.shown, 1.0) ** 2
         return {name: float(apart[mask].mean()) for name, mask in self.classes.items()}
 
@@ -116,7 +116,7 @@ class Exact:
         return self.errors(self.display.image(self._made.lit(self._texels(trip(self.surfaces)))))
 
     def of_layout(self, layout: Layout) -> ImageErrors:
-        """What a layout makes of the image, drawn by it. Raises ShaderError, FormatError and LayoutError."""
+        """Return the errors of the image drawn with a layout. Raises ShaderError, FormatError and LayoutError."""
         is_known = is_in_catalogue(layout.encoding)
         key = cache.key_of("budget layout", self.key, layout.summary) if is_known else ""
         figures = cache.figures(key, lambda: self._drawn(layout))
@@ -144,8 +144,8 @@ class Exact:
 
 @dataclass(frozen=True)
 class ImageErrors:
-    """What an image of a layout is off by: the mean squared error of each class, and FLIP's 99th percentile over what
-    is covered."""
+    """The errors of a layout's image: the mean squared error of each class, and the 99th percentile of FLIP over
+    covered pixels."""
 
     errors: Mapping[str, float]
     flip: float
@@ -162,8 +162,8 @@ Rates = Mapping[str, Mapping[str, float]]
 
 
 def rates(exact: Exact, codes: Sequence[Code], tick: Callable[[str], None]) -> Rates:
-    """By the name of each code of an attribute that an image shows, the error of each class. Kept in the cache
-    by what the image is made of."""
+    """Return the error of each class by the name of the encoding, for encodings that an image shows. Cached by
+    everything that the image is made from."""
     key, errors = exact.key, {}
     for code in codes:
         if code.trip is not None:

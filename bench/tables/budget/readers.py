@@ -51,12 +51,12 @@ class Readers:
 
     @property
     def said(self) -> str:
-        """How often a G-buffer is read, in words, first in full: once in full, once for normal and roughness."""
+        """The reads of a G-buffer in words, full reads first: once in full, once for normal and roughness."""
         return ", ".join([f"{times(self.full)} in full", *(f"once for {' and '.join(part)}" for part in self.parts)])
 
 
 def times(count: float) -> str:
-    """How often: once, twice, 3 times."""
+    """Return a count in words: once, twice, 3 times."""
     return TIMES.get(count, f"{count:g} times")
 
 
@@ -75,7 +75,7 @@ def read_readers(words: Names) -> Readers:
 
 
 def check_held(readers: Readers, held: Collection[str], stencil: Collection[str]) -> None:
-    """Raises UsageError where a pass reads what is not held, or lies in the stencil."""
+    """Raise UsageError if a pass reads an attribute that is not held, or that is in the stencil."""
     for name in (name for part in readers.parts for name in part):
         if name in stencil:
             raise UsageError(f"--readers {name}: it lies in the stencil, whose bytes are not counted")

@@ -1,4 +1,4 @@
-"""What a budget says, in sentences."""
+"""The sentences that describe a budget."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def targets(row: Row) -> list[Row]:
 
 
 def _held(word: str, codes: Mapping[str, str]) -> str:
-    """What a word of a layout holds: an attribute and its code, or the word itself where that is nobody's."""
+    """Return what a word of a layout stores: an attribute and its encoding, or the word itself if it matches none."""
     attribute = next((name for name in reversed(re.findall(r"[a-z_0-9]+", word)) if name in codes), None)
     return word if attribute is None else _code(f"{attribute} {codes[attribute]}")
 
@@ -78,7 +78,7 @@ def _subject(row: Row) -> str:
 
 
 def _answer(row: Row) -> str:
-    """What to take, its worst class of surfaces, and whether errors are visible."""
+    """Return the recommended layout with its worst class of surfaces, and whether errors are visible."""
     fewer = f"{row['bytes_per_pixel']:g} are enough, for " if row["bytes_per_pixel"] != row["limit"] else ""
     scene, _, surfaces = row["worst_class"].rpartition(" ")
     worst = f"{row['worst_db']:.1f} dB in the worst class ({surfaces} in {scene})"
@@ -87,7 +87,7 @@ def _answer(row: Row) -> str:
 
 
 def _free(row: Row) -> str:
-    """What the bytes that a limit leaves may hold, of what the layout does not."""
+    """Return a sentence on the bytes that a limit leaves free, and the missing attributes that they could hold."""
     free = (row["limit"] or 0) - row["bytes_per_pixel"] if row["kind"] == PROPOSAL else 0
     uses = [use for size, word, use in FREE_FOR if size <= free and word not in row["targets"]]
     which = f" for {' or '.join(uses)}" if uses else ""
@@ -153,7 +153,7 @@ def _rules(row: Row) -> str:
 
 
 def unmeasured(row: Row) -> tuple[str, ...]:
-    """Return a sentence on the attributes that no scene shows; none where there are none."""
+    """Return a sentence on the attributes that no scene shows; empty if there are no such attributes."""
     names = row["by_contract"]
     return (f"Not measured, because no scene shows them: {_names(names)}.",) if names else ()
 

@@ -1,13 +1,13 @@
-"""Which code each attribute has and in which target it lies: the least error of the worst class, by an integer program.
+"""The encoding of each attribute and its target, with the smallest error of the worst class, by an integer program.
 
-With y = 1 where a code lies in a target, z = 1 where a target is used, d the error that a code makes in a class, and e
-what two codes make together beyond that, which counts where w = 1, of both:
+With y = 1 if an encoding is in a target, z = 1 if a target is used, d the error that an encoding makes in a class,
+and e the error that two encodings make together beyond that, which counts if w = 1, that is, if both are used:
 
     minimise t   where for each class   sum of d y + sum of e w <= t
-    each attribute has one code in one target; what lies in a target fits it; the targets' bytes fit the limit
+    each attribute has one encoding in one target that it fits; the targets' bytes fit the limit
 
-solved by HiGHS. Errors of many orders of magnitude meet, so it is solved again with errors in units of the last t.
-Then, of all layouts within a fifth of a decibel of it, the plainest one.
+HiGHS solves the program. Errors differ by many orders of magnitude, so it is solved again with errors in units of
+the last t. The result is the plainest of all layouts within a fifth of a decibel of the best.
 """
 
 from __future__ import annotations
@@ -47,18 +47,18 @@ SMALL = 1e-6
 
 @dataclass(frozen=True)
 class Rules:
-    """What a layout must keep to.
+    """The rules that a layout must keep to.
 
     Attributes:
-        bytes: a pixel, of all targets.
-        targets: at most so many.
+        bytes: maximum bytes per pixel, over all targets.
+        targets: maximum number of targets.
         blended: attributes that decals blend into.
-        together: sets of attributes that lie in one target each.
-        read: what a pass reads by itself: of no more than READ_BYTES for each, from targets that hold nothing large
-            besides.
+        together: sets of attributes that must share one target each.
+        read: attributes that a pass reads by themselves: at most READ_BYTES for each, from targets that hold no
+            other large attribute.
         apart: attributes whose target holds nothing else.
-        formats: at most so many targets of each; empty where all may be of one.
-        webgpu: what is left to the targets of WebGPU's bytes a sample; None where these do not count.
+        formats: maximum number of targets of each format; empty if any format may be used for all.
+        webgpu: WebGPU's bytes per sample that remain for the targets; None if that limit does not apply.
     """
 
     bytes: int
@@ -105,17 +105,18 @@ class Solution:
 
 @dataclass(frozen=True)
 class Problem:
-    """What is asked for.
+    """The choice of a layout as an optimisation problem.
 
     Attributes:
-        attributes: what is stored.
-        errors: by attribute and name of a code, the error of each class; nothing of a code that no image shows.
-        together: what two codes make beyond their own errors, by class.
-        classes: those whose worst is to be least.
-        bins: targets that there may be.
-        rules: what the layout must keep to.
-        cost: what a code costs in a target; None where nobody asks.
-        most_cost: of all codes together.
+        attributes: attributes to store.
+        errors: error of each class, by attribute and name of the encoding; an encoding that no image shows has no
+            entry.
+        together: error of two encodings together beyond their own errors, by class.
+        classes: classes whose worst error is minimised.
+        bins: possible targets.
+        rules: rules that the layout must keep to.
+        cost: cost of an encoding in a target; None if not requested.
+        most_cost: maximum cost of all encodings together.
     """
 
     attributes: Sequence[Attribute]
@@ -172,7 +173,8 @@ class _Program:
         self._rows.append((dict(terms), low, high))
 
     def _hold(self) -> None:
-        """Each attribute has one code in one target; those that are read together lie in one."""
+        """Require one encoding in one target for each attribute, a shared target for attributes that are read
+        together, and a separate target for those that must be apart."""
         for attribute in self.problem.attributes:
             self.row({i: 1 for i, (code, *_) in enumerate(self.choices) if code.attribute == attribute.name}, 1, 1)
         for slot in range(len(self.slots)):
@@ -225,7 +227,7 @@ class _Program:
             self.row(self.costs(), 0, self.problem.most_cost)
 
     def _fetch(self) -> None:
-        """What a pass reads by itself is in few bytes."""
+        """Limit the bytes that a pass fetches for the attributes that it reads by themselves."""
         read = self.problem.rules.read
         if not read:
             return
@@ -269,7 +271,8 @@ class _Program:
         return sum(target_bin.bytes for slot, (target_bin, _) in enumerate(self.slots) if values[self.used(slot)] > 0.5)
 
     def others(self, best: Solution) -> Terms:
-        """The sum of the errors of all classes, each in units of what the best has, or of what is seen."""
+        """Return the sum of the errors of all classes, each relative to the best solution's error, or to UNSEEN if
+        that is larger."""
         classes = self.problem.classes
         units = {name: max(best.errors.get(name, 0.0), UNSEEN) for name in classes}
         return {
@@ -278,27 +281,27 @@ class _Program:
         }
 
     def costs(self) -> Terms:
-        """What the codes cost by themselves; 0 where nobody asks."""
+        """Return the cost of each encoding by itself; 0 if no cost is requested."""
         cost = self.problem.cost
         return {i: cost(code, self.slots[slot][0]) if cost else 0.0 for i, (code, slot, _) in enumerate(self.choices)}
 
     def fusses(self) -> Terms:
-        """What an engineer would rather do without."""
+        """Return the penalties for what an engineer would rather avoid."""
         codes = {i: fuss(code, self.slots[place][0]) for i, (code, place, _) in enumerate(self.choices)}
         return codes | {
             self.used(slot): target_bin.fuss + TARGET_FUSS for slot, (target_bin, _) in enumerate(self.slots)
         }
 
     def solved(self, unit: float, most: float | None = None, least: Terms | None = None) -> np.ndarray | None:
-        """The variables where a sum is least; None where there are none.
+        """Return the variables that minimise a sum; None if there are no such variables.
 
         Args:
-            unit: the error that is 1.
-            most: the largest t in units; any where None.
-            least: the sum, of variables by what each counts; t where None.
+            unit: the error that counts as 1.
+            most: the largest t in these units; None for any.
+            least: the sum to minimise, as the weight of each variable; None for t.
 
         Raises:
-            UsageError: none was found in time.
+            UsageError: no solution was found in time.
         """
         rows, last = list(self._rows), self.count - 1
         for name in self.problem.classes:
@@ -344,11 +347,11 @@ class _Program:
 def _least(
     cost: np.ndarray, matrix: csr_array, lows: np.ndarray, highs: np.ndarray, upper: np.ndarray, integral: np.ndarray
 ) -> np.ndarray | None:
-    """The variables from 0 to ``upper`` where ``cost`` is least and ``matrix`` times them lies between bounds; None
-    where there are none. What was solved once is kept.
+    """Return the variables from 0 to ``upper`` that minimise ``cost`` while ``matrix`` times the variables is within
+    bounds; None if there are no such variables. Solutions are cached.
 
     Raises:
-        UsageError: none was found in time.
+        UsageError: no solution was found in time.
     """
     arrays = cost, matrix.data, matrix.indices, matrix.indptr, lows, highs, upper, integral
     key = cache.key_of(f"milp {scipy.__version__} {GAP}", *(np.ascontiguousarray(array).tobytes() for array in arrays))
@@ -385,7 +388,7 @@ WORST = 1e3
 
 
 def fuss(code: Code, one: Bin) -> float:
-    """What an engineer would rather do without about a code in a target."""
+    """Return the penalty for what an engineer would rather avoid about an encoding in a target."""
     is_shared = one.fields or SHARED in (one.need(code) or {})
     curve = CURVE_FUSS * any("(" in word for word in code.words)
     if not is_shared:
@@ -468,7 +471,7 @@ def fewest_bytes(problem: Problem) -> int | None:
 
 
 def cheapest(problem: Problem) -> Solution | None:
-    """The layout whose codes cost least together; None where none keeps to the rules."""
+    """Return the layout whose encodings have the lowest total cost; None if no layout keeps to the rules."""
     program = _Program(problem)
     values = program.solved(1.0, least=program.costs())
     return None if values is None else program.solution(values)

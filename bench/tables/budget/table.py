@@ -1,4 +1,4 @@
-"""The table of budgets: how few bytes a pixel an image bears, and the layout that does it."""
+"""The table of budgets: the fewest bytes per pixel for an image quality, and the layout that achieves it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PROPOSAL, ENGINE, MINE, IMPROVED = "proposal", "engine", "mine", "improved"
 
 @dataclass(frozen=True, kw_only=True)
 class BudgetOptions(Options):
-    """What `budget` measures. Names and numbers are comma-separated."""
+    """Options for what `budget` measures. Names and numbers are comma-separated."""
 
     bytes: Annotated[Names, Option("--bytes", "Bytes a pixel without native depth, comma-separated.")] = (
         "12",
@@ -119,7 +119,7 @@ class BudgetOptions(Options):
 
 @dataclass(frozen=True, kw_only=True)
 class BudgetOutputs:
-    """What `budget` writes beside its rows."""
+    """Files that `budget` writes besides its rows."""
 
     layouts: Annotated[Path | None, Option("--layouts", "Folder for the layouts, as TOML files.")] = None
     plot: Plot = None

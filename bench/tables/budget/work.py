@@ -1,4 +1,4 @@
-"""How the budget table is measured and shown."""
+"""Measurement and display of the budget table."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
 
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """For each limit what to take, in sentences and target by target, and what somebody's layout could be; then all
-    layouts."""
+    """Yield for each limit the recommendation, in sentences and target by target, and possible changes to a user's
+    layout; then all layouts."""
     for row in rows:
         if row["kind"] == MINE and row["changes"]:
             yield Sheet("", [], said=(f"{row['layout']}: {row['changes']}",))
@@ -90,7 +90,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """For each limit the answer in a dozen lines, and all layouts where there are several."""
+    """Yield for each limit the answer in a dozen lines, then all layouts if there are several."""
     answered: set[str] = set()
     rest = [f"{row['layout']}: {row['changes']}" for row in rows if row["kind"] == MINE and row["changes"]]
     for row in rows:

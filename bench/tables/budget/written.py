@@ -38,7 +38,7 @@ def _by_target(solution: Solution) -> Iterator[tuple[Bin, list[Placed]]]:
 
 
 def target_of(one: Bin, placed: Sequence[Placed]) -> Target:
-    """The target of codes that lie in a bin."""
+    """Return the target for the encodings that are placed in a bin."""
     if one.fields:
         # The widest first, so that the numbers of a code begin at the top.
         order = sorted(placed, key=lambda p: (p.code.is_exact, -p.code.total_bits))

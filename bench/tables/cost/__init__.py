@@ -1,1 +1,1 @@
-"""What encoding and decoding cost."""
+"""The cost of encoding and decoding."""

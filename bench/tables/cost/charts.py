@@ -16,13 +16,13 @@ HEIGHT = 420
 
 
 def front_chart(name: str, label: str, panels: Sequence[Panel]) -> Chart:
-    """Draw cost against error. What another beats is grey; the others are joined by steps, those of as many bits.
+    """Draw cost against error. Points that another one beats are grey; steps join the others of the same bit count.
 
     Panels of one kind and several machines are one panel, with a switch between the machines.
 
     Args:
-        label: what the decibels are of.
-        panels: each with a point at least.
+        label: the quantity that the decibels measure.
+        panels: panels with at least one point each.
     """
     rows = [row for panel in panels for row in _rows(panel)]
     best = tuple(row for row in rows if not row["rest"])
@@ -74,7 +74,7 @@ def _switch(panels: Sequence[Panel]) -> Switch | None:
 
 
 def _finding_sentence(panels: Sequence[Panel]) -> str:
-    """How many codecs of each panel are beaten by no other, on the machine that is shown first."""
+    """Return how many codecs of each panel are Pareto-optimal, on the machine that is shown first."""
     parts = []
     for panel in (panel for panel in panels if panel.is_usual):
         front = pareto_front(panel.points)

@@ -1,4 +1,4 @@
-"""What operations cost by the clock of the GL device."""
+"""The cost of operations, measured by the OpenGL device's clock."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ def clock(device: Device) -> Clock:
 
 
 class Field:
-    """What the passes of one size share: targets, and what is fetched by how many numbers it has; released with the
-    stack."""
+    """The targets and input textures that passes of one size share, the textures by their number of components.
+    Released with the stack."""
 
     def __init__(self, device: Device, stack: ExitStack, size: tuple[int, int]):
         self.device, self.stack, self.size = device, stack, size
@@ -67,12 +67,12 @@ class Field:
 
 
 class Pair:
-    """An operation's pass beside the empty one's: turns until they can be told apart from starting them, and what the
-    operation takes more.
+    """The pass of an operation next to the empty pass: enough turns to tell both from the time to start them, and
+    the additional time that the operation takes.
 
     Args:
-        milliseconds: of one pass with so many turns: the operation's for 0, the empty one's for 1.
-        pixels: how many a pass computes.
+        milliseconds: time of one pass with a number of turns: the operation's for 0, the empty pass's for 1.
+        pixels: number of pixels that a pass computes.
     """
 
     def __init__(self, milliseconds: Callable[[int, int], float], pixels: int):
@@ -107,12 +107,12 @@ class Passes:
         ]
 
     def milliseconds(self, which: int, turns: int) -> float:
-        """What one of the two takes."""
+        """Return the milliseconds that one of the two passes takes."""
         return self._clock.measure(lambda: self.render(which, turns))
 
     def render(self, which: int, turns: int, nothing: float = 0.0) -> None:
-        """One of the two into the field's targets. What is added to the inputs at each turn is nothing but for a
-        test."""
+        """Draw one of the two passes into the field's targets. `nothing` is added to the inputs at each turn, and is
+        0 except in a test."""
         passed = self._passes[which]
         for name, value in (("kernel_turns", turns), ("kernel_nothing", nothing)):
             if name in passed.program:
@@ -121,7 +121,7 @@ class Passes:
 
 
 def _points(size: tuple[int, int], numbers: int) -> np.ndarray:
-    """Directions, or codes of other than three numbers; float32 of shape (height, width, 4), 0 where there is none."""
+    """Return directions, or codes if not of three numbers; float32 of shape (height, width, 4), 0 where unused."""
     points = np.random.default_rng(0).normal(size=(size[1], size[0], numbers)).astype(np.float32)
     # Codes of two numbers lie within the circle, where no method is at its limit.
     points *= (1.0 if numbers == 3 else 0.7) / np.linalg.norm(points, axis=-1, keepdims=True)
@@ -172,8 +172,8 @@ def summary(column: str, taken: Sequence[float]) -> dict[str, float]:
 
 
 def median_interval(taken: Sequence[float]) -> tuple[float, float]:
-    """Order statistics that the median of what was sampled lies between, SURE to the least: of nine the second and the
-    eighth, of fewer than six the least and the largest, which are less sure."""
+    """Return the order statistics that enclose the median of the sampled quantity with a probability of at least
+    SURE: of nine the second and the eighth, of fewer than six the smallest and the largest, which are less sure."""
     ordered, count = sorted(taken), len(taken)
     # The chance that fewer than k of the samples lie below the median.
     beyond = np.cumsum([math.comb(count, k) for k in range(count)]) / 2.0**count

@@ -1,4 +1,4 @@
-"""What a codec costs by the rows of the cost table: its encoding, its storage, and its sign bits together."""
+"""The cost of a codec from the rows of the cost table: its encoding, its storage and its sign bits together."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class LeftOutError(Exception):
 
 @dataclass(frozen=True)
 class Where:
-    """By which measure, and of what compilers make for which family and stage."""
+    """The measure of a cost, and the GPU family and stage that compilers generate code for."""
 
     measure: str
     family: str | None
@@ -41,10 +41,10 @@ class Costs:
         self._rows = {tuple(row.get(part) for part in KEY): row for row in rows}
 
     def of(self, codec: Codec, where: Where, operation: str, column: str) -> CostSum:
-        """What a codec's encode or decode costs.
+        """Return the cost of a codec's encode or decode.
 
         Raises:
-            LeftOutError: a part of it is not known, or counts a loop once.
+            LeftOutError: the cost of a part is not known, or counts a loop only once.
         """
         rows = [(sign, self._known_row(key, column)) for sign, key in self._parts(codec, where, operation)]
         cost = sum(sign * row[column] for sign, row in rows)

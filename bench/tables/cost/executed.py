@@ -1,4 +1,4 @@
-"""How often the loops of an encoding run, and what a kernel then executes."""
+"""The number of times that the loops of an encoding run, and the issue slots that a kernel then executes."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ VIEW = (0.0, 0.0, -5.0, 0.0)
 
 @cache
 def turns_of(encoding: Encoding) -> Mapping[str, Sequence[Sequence[float]]] | None:
-    """By operation, for each loop of the text that runs, the mean number of turns and its standard deviation.
+    """Return the mean number of turns and its standard deviation, by operation and for each loop that runs.
 
-    None where no device counts them, or their text cannot be counted.
+    None if no device can count the turns, or the shader code cannot be counted.
     """
     # It imports JAX, which only loops are worth.
     from ...ground.machine.devices import found_device

@@ -1,4 +1,4 @@
-"""What the page shows of costs beside their rows: cost against error, disassemblies, and where orders differ."""
+"""Costs that the page shows besides their rows: cost against error, disassemblies, and differences in ranking."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def _panels(
 def _points(
     costs: Sequence[Row], operation: str, errors: Mapping[Codec, float], lost: dict[str, dict[str, None]]
 ) -> Iterator[Point]:
-    """Each codec whose cost is known; the others by the reason why not."""
+    """Yield a point for each codec whose cost is known, and add the other codecs to `lost` by the reason."""
     known, where = Costs(costs), Where("isa", costs[-1].get("family"), costs[-1].get("stage"))
     for codec, error in errors.items():
         label = CodecKey(codec.encoding.name, codec.storage.name, codec.rounding).label
@@ -152,8 +152,8 @@ def _codec(row: Row) -> Codec | None:
 
 
 def _encoding(row: Row, storage: Storage) -> Encoding | None:
-    """The encoding of a row. Of a user's own, whose file the report does not read, the bits say how many numbers its
-    code has: that is all that its cost depends on besides its name."""
+    """Return the encoding of a row. A user's encoding, whose file the report does not read, gets its number of
+    components from the bits: apart from the name, its cost depends on nothing else."""
     name = str(row.get("encoding"))
     # octahedral:axis=y has as many numbers as octahedral, and a chain as many as its last encoding.
     if base := ENCODINGS.get(name.rpartition(CHAIN)[2].partition(MARK)[0]):

@@ -1,4 +1,4 @@
-"""What an encoding costs: the rows, and how many instructions compilers make of it."""
+"""The cost of an encoding: the rows, and the number of instructions that compilers generate for it."""
 
 from __future__ import annotations
 
@@ -103,9 +103,9 @@ def _operation(encoding: Encoding, operation: str) -> Operation:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A case as its compilers are given it, and the empty kernel beside it: as SPIR-V, and as CUDA where that is asked.
+    """A case and the empty kernel in the form that compilers accept: as SPIR-V, and as CUDA on request.
 
-    `cuda` is a Failure where there is none.
+    `cuda` is a Failure if there is no CUDA version.
     """
 
     job: Job
@@ -119,8 +119,8 @@ class Prepared:
 
 
 def prepare(case: CostCase, stage: str, as_cuda: bool = False) -> Prepared | Failure:
-    """A case's kernels, as CUDA where that is asked, or why there are none. Raises MissingError where there is no
-    compiler of SPIR-V."""
+    """Return a case's kernels, with CUDA on request, or the reason why there are none. Raises MissingError if there
+    is no SPIR-V compiler."""
     try:
         operation = case.make()
         (job, count), (empty, empty_count) = (
@@ -162,14 +162,14 @@ def isa_rows(
     lacks: list[str],
     tick: Callable[[str], None],
 ) -> Iterator[tuple[Row, str]]:
-    """A row for each case, stage and family, and its disassembly.
+    """Yield a row for each case, stage and family, with its disassembly.
 
-    A family that gives nothing at all has one row, with the reason; where none gives anything, rows without a family
-    keep what SPIR-V says.
+    A family that compiles nothing at all has one row, with the reason. If no family compiles anything, rows without
+    a family keep the SPIR-V figures.
 
     Args:
-        lacks: is told what this machine lacks, in one line each.
-        tick: called with a family as it is done.
+        lacks: receives what this machine lacks, one line for each.
+        tick: called with a family when it is done.
 
     Raises:
         MissingError: there is no GLSL compiler.
@@ -205,7 +205,7 @@ def isa_rows(
 
 
 def _jobs(prepared: Iterable[Prepared | Failure], family: str) -> list[Job]:
-    """What there is to compile for a family."""
+    """Return the jobs to compile for a family."""
     pairs = (build.jobs(family) for build in prepared if isinstance(build, Prepared))
     return list(dict.fromkeys(job for pair in pairs if isinstance(pair, tuple) for job in pair))
 
@@ -255,8 +255,8 @@ def _driver_text(outcome: Compiled, family: str) -> str:
 
 
 def alike(kernels: Sequence[Kernel], empties: Sequence[Kernel]) -> tuple[Kernel, Kernel] | None:
-    """A kernel and the empty one for the same number of lanes: the most that both are compiled for without spilling, or
-    the most where each spills. None where there is no such number."""
+    """Return a kernel and the empty kernel for the same number of lanes: the largest number for which the kernel
+    does not spill, or the largest of all if it always spills. None if there is no such number."""
     widths = {empty.simd_width: empty for empty in empties}
     pairs = [(kernel, widths[kernel.simd_width]) for kernel in kernels if kernel.simd_width in widths]
     return max(pairs, key=lambda pair: (not _total(pair[0], SPILLS), pair[0].simd_width), default=None)
@@ -279,7 +279,7 @@ def _difference(a: float | None, b: float | None) -> float | None:
 
 @cache
 def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] | None:
-    """What a kernel's disassembly says; None where there is none, or one that cannot be understood."""
+    """Return the figures of a kernel's disassembly; None if there is no disassembly, or it cannot be parsed."""
     read = listings_of(family)
     counts = read.kinds(assembly, total, family)
     if counts is None:
@@ -309,8 +309,8 @@ def _executed_slots(case: CostCase, row: Row, assembly: str) -> float | None:
 
 
 def listings_of(family: str) -> Any:
-    """What reads the listings of a family's vendor: `names`, `kinds`, `jumps`, `issue_slots`, `rates`, and
-    of some `packed`, and `loops` with `kinds_in_order`."""
+    """Return the module that parses the disassemblies of a family's vendor: `names`, `kinds`, `jumps`,
+    `issue_slots`, `rates`, for some vendors `packed`, and `loops` with `kinds_in_order`."""
     known = FAMILIES.get(family)
     return READERS[known.vendor] if known else disassembly
 
@@ -328,8 +328,8 @@ def counted(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tuple[s
 
 
 def known_counts(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tuple[str, str], Row]:
-    """Return the same rows with `recorded.COLUMNS` alone. What was recorded is not counted again if this machine's
-    compilers are those that recorded it, of which one operation tells."""
+    """Return the rows of `counted` with only `recorded.COLUMNS`. Recorded figures are not counted again if this
+    machine's compilers are the ones that recorded them, which one operation shows."""
     known = dict(recorded(chosen, family, stage))
     if not known:
         return counted(chosen, family, stage)
@@ -348,7 +348,7 @@ def _operation_of(case: CostCase) -> tuple[str, str]:
 
 
 def nobody(_: str) -> None:
-    """For ticks that no bar shows."""
+    """Do nothing, for ticks that no progress bar shows."""
 
 
 def static_notes(rows: Iterable[Row]) -> list[str]:

@@ -41,7 +41,7 @@ def recorded(chosen: Sequence[Any], family: str, stage: str) -> Iterator[tuple[A
 
 
 def source_key(case: Counted, stage: str) -> str:
-    """What differs wherever the GLSL of an operation's kernel does. Raises ShaderError."""
+    """Return a key that changes whenever the GLSL of an operation's kernel does. Raises ShaderError."""
     return key_of(case.make().source(kernels.STAGES[stage]).text)[:16]
 
 

@@ -1,4 +1,4 @@
-"""The cost table for people: what each family's compiler makes of an operation, beside the article's own figures."""
+"""The cost table for people: instructions of an operation by compiler, next to the article's own figures."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 
 @dataclass(frozen=True, kw_only=True)
 class CostOptions(SourceOptions):
-    """What `cost` measures. Names are comma-separated."""
+    """Options for what `cost` measures. Names are comma-separated."""
 
     encoding: Encodings = ("all",)
     isa: Annotated[bool, Option("--isa", "Instructions that compilers make of the GLSL; needs no GPU.")] = False
@@ -54,7 +54,7 @@ class CostOptions(SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class CostOutputs:
-    """What `cost` writes beside its rows."""
+    """Files that `cost` writes besides its rows."""
 
     disassembly: Annotated[
         Path | None, Option("--disassembly", "Write what each family's compiler made into this folder.")

@@ -1,6 +1,6 @@
-"""How the cost table is measured and shown.
+"""Measurement and display of the cost table.
 
-JAX is imported only for what needs it: instructions from the cache are there sooner than it is.
+JAX is imported only when needed, because cached instructions are read in less time than the import takes.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ def packings(names: Names) -> list[Packing]:
 
 
 def chosen_families(names: Names) -> list[str]:
-    """What `--family` names: families, and vendors for all of theirs. NVIDIA's, whose compiler
-    people install themselves, are among all of them where it is there. Raises UsageError."""
+    """Return the families that `--family` names; a vendor stands for all of its families. `all` includes those of
+    NVIDIA, whose compiler people install themselves, only if that compiler is present. Raises UsageError."""
     chosen = families_named(names)
     if names != ("all",) or not isa.missing(families.NVRTC):
         return chosen
@@ -65,7 +65,7 @@ def chosen_families(names: Names) -> list[str]:
 
 @dataclass
 class Costing:
-    """What is asked for, as values, and what this machine turns out to lack."""
+    """The request as values, and what this machine turns out to lack."""
 
     options: CostOptions
     encodings: list[Encoding]
@@ -78,7 +78,7 @@ class Costing:
 
     @property
     def cases(self) -> list[measure.CostCase]:
-        """What is compiled or timed: encodings, and what packings add."""
+        """The cases to compile or time: encodings, and the additional work of packings."""
         return measure.cases(self.encodings, self.packings, self.operations)
 
     @cached_property
@@ -88,7 +88,7 @@ class Costing:
 
 
 def costing(options: CostOptions) -> Costing:
-    """What the options name. Raises UsageError for what is unknown or out of range."""
+    """Return the request that the options name. Raises UsageError for values that are unknown or out of range."""
     in_range("--repeats", options.repeats, 2, MAX_REPEATS)
     asked = Costing(
         options,
@@ -134,7 +134,7 @@ def _steps(options: CostOptions, outputs: CostOutputs) -> list[Step]:
 
 
 def _check(asked: Costing, outputs: CostOutputs) -> None:
-    """Raises UsageError for what cannot be written, before anything is measured."""
+    """Raise UsageError for output that cannot be written, before anything is measured."""
     chosen = measures(asked.options)
     if outputs.disassembly:
         check_folder(outputs.disassembly)
@@ -144,14 +144,14 @@ def _check(asked: Costing, outputs: CostOutputs) -> None:
 
 @dataclass(frozen=True, eq=False)
 class CostMeasure:
-    """One measure of what is asked for."""
+    """One measure of a request."""
 
     asked: Costing
     name: str
     rows: Callable[[Costing], Iterable[Row]]
 
     def measured(self) -> list[Row]:
-        """Its rows; one with the reason where this machine lacks what it needs."""
+        """Return the rows; if this machine lacks what the measure needs, one row with the reason."""
         try:
             return list(self.rows(self.asked))
         except MissingError as error:
@@ -235,7 +235,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Families side by side, those of one vendor in one sheet."""
+    """Yield the families next to each other, with one sheet for each vendor."""
     first = next((row for row in rows if row["stage"]), None)
     chosen = [row for row in rows if first and row["stage"] == first["stage"] and row["encoding"]]
     article = sheets.article_rows(dict.fromkeys(row["encoding"] for row in chosen), measure.OPERATIONS)
@@ -270,14 +270,14 @@ def _listing(step: Step, row: Row) -> str | None:
 
 
 def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
-    """Each row's disassembly as a file, what it costs at its head, in a folder for each family."""
+    """Write each row's disassembly to a file with its cost at the top, in a folder for each family."""
     for path, text in (measure.listing(row, text) for row, text in listed if text):
         with whole_file(folder / path) as partial:
             partial.write_text(text, encoding="utf-8", newline="\n")
 
 
 def write_sources(folder: Path, encodings: Iterable[Encoding]) -> None:
-    """Each encoding's own GLSL, to be read beside what was made of it."""
+    """Write each encoding's own GLSL, to be read next to its disassemblies."""
     for encoding in encodings:
         if encoding.glsl.is_file():
             with whole_file(folder / f"{file_name(encoding.name)}.glsl") as partial:

@@ -1,1 +1,1 @@
-"""How exact roughness, metalness, occlusion and the channels of colours are."""
+"""The accuracy of roughness, metallic, ambient occlusion and the channels of colours."""

@@ -68,7 +68,7 @@ BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _trip_by_jax, "glsl":
 
 
 def measure(case: CurveCase) -> Row:
-    """One row; one that the device cannot give has its reason in `skipped` and no figures."""
+    """Return one row; a row that the device cannot measure has its reason in `skipped` and no figures."""
     codec = case.codec
     row = TABLE.empty() | {
         "encoding": codec.encoding.name,
@@ -109,7 +109,7 @@ def _figures(case: CurveCase, trip: Trip) -> Row:
 
 
 def _display_columns(case: CurveCase, trip: Trip, shown: np.ndarray) -> Row:
-    """How far colours are off on the sRGB curve; `shown` are values of that curve."""
+    """Return the errors of colours on the sRGB curve; `shown` are values on that curve."""
     largest = case.codec.range
     x = np.asarray(from_srgb(shown.astype(np.float32))) * np.float32(largest)
     back = _through(case, trip, x.astype(np.float32)) / np.float32(largest)

@@ -16,7 +16,8 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class CurvesOptions(SourceOptions):
-    """What `curves` measures. Names and numbers are comma-separated; no storage: where each curve usually lies."""
+    """Options for what `curves` measures. Names and numbers are comma-separated; without a storage, each curve uses
+    its usual one."""
 
     encoding: Annotated[Names, Option("--encoding", f"Curves or files of yours, {NAMED}.", files=True)] = ("all",)
     storage: Annotated[Names | None, Option("--storage", f"Storages, {NAMED}. Default: each curve's usual.")] = None

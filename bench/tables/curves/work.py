@@ -1,4 +1,4 @@
-"""How the table of curves is measured and shown."""
+"""Measurement and display of the table of curves."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ MAX_QUANTITIES, RANGES = 2**22, (1e-4, 65504.0)
 
 
 def cases(options: CurvesOptions) -> list[measure.CurveCase]:
-    """One case for each curve, range, storage, rounding and back end.
+    """Return one case for each curve, range, storage, rounding and backend.
 
     Raises:
-        UsageError: unknown names, numbers beyond what is possible, or nothing that fits.
-        MissingError: only GLSL is asked for and there is no GL device.
+        UsageError: unknown names, numbers out of range, or nothing that fits.
+        MissingError: only GLSL is requested and there is no OpenGL device.
     """
     check_seed(options.seed)
     in_range("--count", options.count, 2, MAX_QUANTITIES)
@@ -59,7 +59,7 @@ def _key(case: measure.CurveCase) -> Row:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Rows by bits, the least largest error first; those without figures last."""
+    """Return the rows by bits, then by largest error, smallest first; rows without figures come last."""
     return sorted(rows, key=lambda row: (row["bits"], math.inf if row["error_max"] is None else row["error_max"]))
 
 

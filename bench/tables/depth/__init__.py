@@ -1,1 +1,1 @@
-"""How far off positions are that were rebuilt from a stored depth."""
+"""The error of positions that are rebuilt from a stored depth."""

@@ -59,7 +59,7 @@ def _range_text(row: Row) -> str:
 
 
 def _line_name(row: Row, rows: Sequence[Row]) -> str:
-    """What a line is called; with the way to its positions where codes have several."""
+    """Return the name of a line, with the way to rebuild positions if an encoding has several."""
     several = len({(other["depth"], other["rebuilt"]) for other in rows}) > len({other["depth"] for other in rows})
     rounding = "" if row["rounding"] == "nearest" else row["rounding"]
     words = (row["depth"], row["storage"], rounding, row["rebuilt"] if several else "")
@@ -67,7 +67,7 @@ def _line_name(row: Row, rows: Sequence[Row]) -> str:
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:
-    """Which line is the best and the worst at the greatest distance."""
+    """Return which line is the best and which the worst at the greatest distance."""
     if not points:
         return "Nothing is lost"
     farthest = max(point["x"] for point in points)

@@ -1,4 +1,4 @@
-"""The frames of `depth --depths`: which they are, what a camera sees of them, and what is to be said of that."""
+"""The frames of `depth --depths`: the files, the surfaces that a camera sees in them, and the notes on both."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class DepthFrame:
 
 @lru_cache(maxsize=4)
 def seen(frame: DepthImage, camera: Camera) -> DepthFrame:
-    """What is measured of a frame."""
+    """Return the points of a frame to measure."""
     surface = frame.surface(camera)
     index = np.flatnonzero(surface)
     every = max(1, -(-len(index) // MOST_PIXELS))
@@ -92,7 +92,7 @@ def _checked(words: Names, options: DepthOptions) -> DepthOptions:
 
 
 def _check_unused(options: DepthOptions) -> None:
-    """Raises UsageError where something is said of files and there are none."""
+    """Raise UsageError if an option for files is set and there are no files."""
     usual = DepthOptions()
     for flag, name in (("--channel", "channel"), ("--depths-are", "depths_are"), ("--depth-unit", "depth_unit")):
         if getattr(options, name) != getattr(usual, name):
@@ -105,7 +105,7 @@ def _pixels_of(array: np.ndarray) -> Pixels:
 
 
 def check_and_say(frames: Sequence[DepthImage], cameras: Sequence[Camera]) -> None:
-    """Say what is to be said of frames, once each is seen. Raises UsageError where a camera sees nothing of one."""
+    """Print the notes on the frames, once all are checked. Raises UsageError if a camera sees nothing of a frame."""
     lines = {}
     for frame in frames:
         lines[Path(frame.name)] = [*frame.notes, *(line for camera in cameras for line in _left_out(frame, camera))]

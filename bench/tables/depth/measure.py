@@ -55,17 +55,18 @@ def all_points(camera: Camera, distances: tuple[float | None, ...], count: int, 
 
 @dataclass(frozen=True)
 class DepthCase:
-    """What a few rows are measured of: one for each distance, None for the whole range.
+    """A case with one row for each distance; a distance of None stands for the whole range.
 
     Attributes:
-        codec: the depth's encoding and storage.
-        rebuilt: the way to the position, a key of REBUILDS.
+        codec: encoding and storage of the depth.
+        rebuilt: way to the position, a key of REBUILDS.
         backend: "jax" or "glsl".
         camera: near, far and field of view.
-        distances: in the unit of near and far.
-        count: points of each row.
-        seed: what they are made with.
-        frame: whose depths are measured in one row, if any; `distances` is (None,) and `count` is of no use.
+        distances: distances in the unit of near and far.
+        count: number of points in each row.
+        seed: seed of the points.
+        frame: frame whose depths are measured in one row, if any; `distances` is then (None,) and `count` is not
+            used.
     """
 
     codec: DepthCodec
@@ -84,24 +85,25 @@ class DepthCase:
 
     @property
     def points(self) -> Points:
-        """What it is measured on: the points of every distance, one after the other, or the frame's."""
+        """The points to measure: those of every distance, one distance after the other, or those of the frame."""
         if self.frame:
             return seen(self.frame, self.camera).points
         return all_points(self.camera, self.distances, self.count, self.seed)
 
 
 def ways(codec: DepthCodec) -> list[str]:
-    """How positions can be rebuilt from a codec's numbers."""
+    """Return the ways to rebuild positions from a codec's numbers."""
     return [name for name, way in REBUILDS.items() if codec.is_window or not way.by_projection]
 
 
 def usual_ways(codec: DepthCodec) -> list[str]:
-    """How renderers rebuild positions from such numbers: by the projection, where the number is a depth buffer's."""
+    """Return the ways in which renderers rebuild positions from such numbers: by the projection if the number is a
+    depth buffer's."""
     return [name for name, way in REBUILDS.items() if way.by_projection == codec.is_window]
 
 
 def _in_blocks(function: Callable[..., Sequence[Any]], *arrays: np.ndarray) -> list[np.ndarray]:
-    """What a function makes of arrays, BLOCK rows at a time: JAX compiles every operation for every shape."""
+    """Apply a function to arrays, BLOCK rows at a time, because JAX compiles every operation for every shape."""
     count, blocks = len(arrays[0]), []
     for start in range(0, count, BLOCK):
         parts = [array[start : start + BLOCK] for array in arrays]
@@ -143,16 +145,16 @@ BACKENDS: Mapping[str, Callable[[DepthCase, np.ndarray, Points], tuple[Rebuilt, 
 
 @dataclass(frozen=True)
 class Measured:
-    """Points through a codec, float64 arrays of shape (count,).
+    """The results of points through a codec, float64 arrays of shape (count,).
 
     Attributes:
-        errors: between the true position and the rebuilt one; infinite where that is not a position.
-        half_steps: how far rounding may move the position: half a step to the nearest, otherwise a step.
+        errors: distance between the true position and the rebuilt one; infinite if that is not a position.
+        half_steps: how far rounding may move the position: half a step for rounding to nearest, otherwise a step.
         bounds: the same with float32 arithmetic.
-        relative: how far the depth along the axis is off, as a share of it; infinite likewise.
-        lost: bool, whether the depth's sign came back as the other; never where the encoding keeps none.
-        positions: as rebuilt, of shape (count, 3).
-        how: the device, and who rounded.
+        relative: error of the depth along the axis, as a share of it; infinite likewise.
+        lost: bool, whether the depth's sign came back inverted; never if the encoding keeps no sign.
+        positions: rebuilt positions, of shape (count, 3).
+        how: the device, and what did the rounding.
     """
 
     errors: np.ndarray
@@ -166,8 +168,8 @@ class Measured:
 
 @lru_cache(maxsize=1)
 def _limits(codec: DepthCodec, camera: Camera, on: Points) -> tuple[np.ndarray, np.ndarray]:
-    """How far positions may move, without and with float32 arithmetic; the same for every back end. NaN where only
-    shaders have the code: the exact maps are JAX's."""
+    """Return how far positions may move, without and with float32 arithmetic; the same for every backend. NaN for an
+    encoding that exists only in shaders: the exact maps are in JAX."""
     if codec.storage.code:
         unknown = np.full(len(on.depths), np.nan)
         return unknown, unknown
@@ -231,7 +233,7 @@ def measure(case: DepthCase) -> list[Row]:
 
 
 def _frame_columns(frame: DepthImage, camera: Camera) -> Row:
-    """What is said of a frame in place of points that are made."""
+    """Return the columns that describe a frame instead of generated points."""
     background = seen(frame, camera).background
     return {
         "depths": frame.name,

@@ -1,4 +1,4 @@
-"""Where depths are measured."""
+"""The points at which depths are measured."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ WIDTH = 4096
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Places on the screen and depths to measure on.
+    """Places on the screen and depths to measure at.
 
     Attributes:
-        places: from -1 to 1, right and up; float32 of shape (count, 2).
+        places: coordinates from -1 to 1, right and up; float32 of shape (count, 2).
         depths: view depth, float32 of shape (count,).
-        width: how many of them lie side by side where they are drawn, which says what noise each has.
+        width: number of points in a row when they are drawn, which determines the noise of each.
     """
 
     places: np.ndarray
@@ -26,7 +26,7 @@ class Points:
     width: int = WIDTH
 
     def positions(self, camera: Camera) -> np.ndarray:
-        """Where they truly are, view space, float64 of shape (count, 3)."""
+        """Return the true positions in view space, float64 of shape (count, 3)."""
         return self.rays(camera) * self.depths[:, None].astype(np.float64)
 
     def rays(self, camera: Camera) -> np.ndarray:

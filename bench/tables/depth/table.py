@@ -16,7 +16,7 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class DepthOptions(SourceOptions):
-    """What `depth` measures. Names and numbers are comma-separated; None stands for what is usual."""
+    """Options for what `depth` measures. Names and numbers are comma-separated; None stands for the usual value."""
 
     depth: Annotated[Names, Option("--depth", f"Depth codes or files of yours, {NAMED}.", files=True)] = ("all",)
     storage: Annotated[Names | None, Option("--storage", f"Depth storages, {NAMED}. Default: each code's usual.")] = (
@@ -69,7 +69,7 @@ class DepthOptions(SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class DepthOutputs:
-    """What `depth` writes beside its rows."""
+    """Files that `depth` writes besides its rows."""
 
     images: Images = None
     plot: Plot = None

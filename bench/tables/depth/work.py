@@ -1,4 +1,4 @@
-"""How the depth table is measured and shown."""
+"""Measurement and display of the depth table."""
 
 from __future__ import annotations
 
@@ -58,11 +58,11 @@ USUAL_FOV = 60.0
 
 
 def cases(options: DepthOptions) -> list[measure.DepthCase]:
-    """One case for each code, way to the position, near and far plane, and back end.
+    """Return one case for each encoding, way to the position, near and far plane, and backend.
 
     Raises:
-        UsageError: unknown names, or numbers beyond what is possible.
-        MissingError: only GLSL is asked for and there is no GL device.
+        UsageError: unknown names, or numbers out of range.
+        MissingError: only GLSL is requested and there is no OpenGL device.
     """
     check_seed(options.seed)
     fov = USUAL_FOV if options.fov is None else options.fov
@@ -236,12 +236,12 @@ def _of_frames(rows: Sequence[Row]) -> list[Row]:
 
 
 def _said(value: object) -> object:
-    """What was asked for as it was typed, where a figure would have its digits."""
+    """Return a requested value as it was typed, without the additional digits of a figure."""
     return f"{value:g}" if isinstance(value, float) else value
 
 
 def _for_drawing(cases: Iterable[measure.DepthCase]) -> list[measure.DepthCase]:
-    """One case for each code, camera and way to the position: by GLSL where that was asked for."""
+    """Return one case for each encoding, camera and way to the position: the GLSL case if it was requested."""
     chosen = {(c.codec, c.camera, c.rebuilt, c.frame): c for c in sorted(cases, key=lambda c: c.backend, reverse=True)}
     return [case for case in cases if case in chosen.values()]
 
@@ -275,11 +275,11 @@ class Surface:
         return width / height
 
     def within(self, camera: Camera) -> np.ndarray:
-        """Which pixels lie between near and far, bool of shape (height, width)."""
+        """Return which pixels are between near and far, bool of shape (height, width)."""
         return (self.depths >= np.float32(camera.near)) & (self.depths <= np.float32(camera.far))
 
     def points(self, camera: Camera) -> measure.Points:
-        """The pixels' middles at the depths of what is seen there; what is not within the range is at its far end."""
+        """Return the centres of the pixels at their visible depths; pixels outside the range are at its far end."""
         height, width = self.depths.shape
         x, y = (np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2
         places = np.stack(np.meshgrid(x, y), axis=-1).astype(np.float32).reshape(-1, 2)
@@ -298,7 +298,7 @@ def _seen(device: Device) -> Surface:
 
 
 def _pictured(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface | None:
-    """What the pictures show: the scene, or None where each case has a frame of its own. Raises as `_scene`."""
+    """Return the scene that the images show, or None if each case has a frame of its own. Raises as `_scene`."""
     if not any(case.frame for case in cases):
         return _scene(folder, cases)
     check_folder(folder)
@@ -306,7 +306,7 @@ def _pictured(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface | Non
 
 
 def _seen_by(case: measure.DepthCase, scene: Surface | None) -> Surface:
-    """What the pictures of a case show."""
+    """Return the surface that the images of a case show."""
     if case.frame:
         return Surface(case.frame.name, case.frame.surface(case.camera), case.camera.fov)
     assert scene
@@ -314,11 +314,11 @@ def _seen_by(case: measure.DepthCase, scene: Surface | None) -> Surface:
 
 
 def _scene(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface:
-    """What the pictures show, rendered in 32-bit floats.
+    """Return the scene that the images show, rendered in 32-bit floats.
 
     Raises:
-        MissingError: there is no GL device.
-        UsageError: the folder cannot be written to, or a range leaves nothing to see.
+        MissingError: there is no OpenGL device.
+        UsageError: the folder cannot be written to, or a range contains nothing of the scene.
     """
     device = require_device()
     check_folder(folder)

@@ -1,1 +1,1 @@
-"""What readers' devices make of the codes."""
+"""The codes that readers' devices produce."""

@@ -1,4 +1,4 @@
-"""Where devices agree with the run's codes, and where not: sentences and tables, from rows alone."""
+"""Agreement and differences between devices' codes and the run's: sentences and tables, from rows alone."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_NAMED = 4
 
 
 def device_of(row: Row) -> str:
-    """What sentences and columns call a row's device."""
+    """Return the name of a row's device for sentences and columns."""
     return called(row["device"], row["browser"])
 
 
@@ -31,7 +31,7 @@ def differs(row: Row) -> bool:
 
 
 def codec_name(row: Row) -> str:
-    """A codec as sentences call it; the usual rounding is not said."""
+    """Return the name of a codec for sentences, without the usual rounding."""
     return CodecKey.of(row).label
 
 
@@ -49,7 +49,7 @@ def many(count: int, what: str) -> str:
 
 
 def sentences(rows: Sequence[Row]) -> list[str]:
-    """Which devices agree in every code, then a sentence for each of the others, the worst first."""
+    """Return which devices agree in every code, then a sentence for each of the others, the worst first."""
     parts = by_device(rows)
     off = {name: part for name, part in parts.items() if any(map(differs, part))}
     whole = [name for name in parts if name not in off]
@@ -60,7 +60,7 @@ def sentences(rows: Sequence[Row]) -> list[str]:
 
 
 def _other_runs(rows: Sequence[Row]) -> Iterator[str]:
-    """That devices were compared with codes of several versions, which may differ themselves."""
+    """Yield a warning if devices were compared with codes of several versions, which may differ themselves."""
     versions = len({row.get("sources") for row in rows})
     if versions > 1:
         yield f"The pages that were measured on came from {versions} versions of the program, whose codes may differ."
@@ -78,7 +78,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def difference(rows: Sequence[Row]) -> str:
-    """How a device's codes differ from the run's: a sentence without its subject."""
+    """Return how a device's codes differ from the run's, as a sentence without its subject."""
     off = [row for row in rows if differs(row)]
     if not off:
         return f"agrees with the run in every code of {many(len(rows), 'codec')}"
@@ -112,7 +112,7 @@ def pivot(rows: Sequence[Row]) -> list[Row]:
 
 
 def sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """What people look at first."""
+    """Yield the sheets that people look at first."""
     if not rows:
         return
     lines = tuple(sentences(rows))
@@ -145,6 +145,6 @@ def time_of(row: Row) -> float | None:
 
 
 def fastest(rows: Sequence[Row]) -> Row | None:
-    """The codec with the least time to encode and decode; None where no time was measured."""
+    """Return the row of the codec that encodes and decodes the fastest; None if no time was measured."""
     timed = [(time, index) for index, row in enumerate(rows) if (time := time_of(row)) is not None]
     return rows[min(timed)[1]] if timed else None

@@ -36,9 +36,9 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def timed(rows: Sequence[Row]) -> list[Row]:
-    """What the chart shows: codec, device and milliseconds, the codec with the least geometric mean first.
+    """Return the codecs, devices and milliseconds of the chart, the codec with the lowest geometric mean first.
 
-    A logarithmic axis has no place for times that are not above 0.
+    Times that are not above 0 are left out, because the axis is logarithmic.
     """
     points = [{"codec": codec_name(row), "device": device_of(row), "ms": time_of(row)} for row in rows]
     points = [row for row in points if row["ms"] is not None and row["ms"] > 0]
@@ -50,7 +50,7 @@ def timed(rows: Sequence[Row]) -> list[Row]:
 
 
 def _finding_sentence(drawn: Sequence[Row]) -> str:
-    """Which codec is the fastest, and by how much."""
+    """Return which codec is the fastest and which the slowest, with their times."""
     first, last = drawn[0]["codec"], drawn[-1]["codec"]
     least, most = (min(row["ms"] for row in drawn if row["codec"] == codec) for codec in (first, last))
     devices = many(len(distinct(drawn, "device")), "device")

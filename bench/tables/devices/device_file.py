@@ -51,7 +51,7 @@ def _plain_line(text: str) -> str:
 
 
 def _utc_time(text: str) -> str:
-    """A time as UTC, to the second, so that the order of texts is that of times."""
+    """Return a time as UTC, to the second, so that the order of texts is that of times."""
     try:
         moment = datetime.fromisoformat(text)
         moment = moment.replace(tzinfo=moment.tzinfo or UTC).astimezone(UTC)
@@ -98,7 +98,7 @@ STRICT = ConfigDict(strict=True, extra="ignore", frozen=True)
 
 
 class CodecRow(BaseModel):
-    """What a device made of one codec; see the table's columns."""
+    """The results of one codec on a device; see the table's columns."""
 
     model_config = STRICT
 
@@ -119,7 +119,7 @@ class CodecRow(BaseModel):
 
     @model_validator(mode="after")
     def adds_up(self) -> CodecRow:
-        """Raises ValueError where the counts are not those of the normals."""
+        """Raise ValueError if the counts do not add up to the number of normals."""
         total = self.equal + self.one_step + self.further
         if total != self.normals:
             raise ValueError(f"equal, one_step and further add up to {total}; normals is {self.normals}")
@@ -127,18 +127,18 @@ class CodecRow(BaseModel):
 
     @property
     def key(self) -> tuple[str, str, str, str]:
-        """What no two rows of a file share."""
+        """The fields that no two rows of a file share."""
         return self.encoding, self.storage, self.rounding, self.target
 
 
 class DeviceFile(BaseModel):
-    """One file.
+    """The contents of one file.
 
     Attributes:
-        renderer, vendor, browser: what the browser says of the GPU and of itself; plain text.
-        made: when it was saved, in UTC.
-        program, sources: the version of the page, and the fingerprint of the run that it shows.
-        codecs, facts: what was measured.
+        renderer, vendor, browser: the GPU and the browser as the browser reports them; plain text.
+        made: time at which the file was saved, in UTC.
+        program, sources: version of the page, and fingerprint of the run that it shows.
+        codecs, facts: the measurements.
     """
 
     model_config = STRICT
@@ -155,7 +155,7 @@ class DeviceFile(BaseModel):
 
     @model_validator(mode="after")
     def has_each_codec_once(self) -> DeviceFile:
-        """Raises ValueError where two rows are of one codec and target."""
+        """Raise ValueError if two rows are of the same codec and target."""
         key, count = Counter(row.key for row in self.codecs).most_common(1)[0]
         if count > 1:
             raise ValueError(f"codecs has {' '.join(key)} twice")
@@ -204,7 +204,7 @@ def file_of_rows(codecs: Sequence[Mapping[str, Any]], facts: Mapping[str, Any]) 
 
 
 def _parsed(data: bytes) -> Any:
-    """What JSON holds. Raises ValueError where it is not JSON, or says something twice or NaN."""
+    """Return the contents of JSON data. Raises ValueError if the data is not JSON, repeats a name or contains NaN."""
     if data.startswith(BOM):
         raise ValueError("it begins with a byte-order mark; save it as UTF-8 without one")
     if not data.strip():
@@ -225,7 +225,7 @@ def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _checked_file(found: Any) -> DeviceFile:
-    """Raises ValueError where it is not a device's, or of another version."""
+    """Return the checked file. Raises ValueError if it is not a device file, or has another version."""
     if not isinstance(found, dict) or "normalbench_device" not in found:
         raise ValueError('it is not a device file, which the live section of a page saves by "Save this device"')
     version = found["normalbench_device"]

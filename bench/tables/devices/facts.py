@@ -21,7 +21,7 @@ def _is_told_apart(row: Row) -> bool:
 
 
 def sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """What people look at first of fact rows."""
+    """Yield the sheet of fact rows that people look at first."""
     if not rows:
         return
     table, devices = side_by_side(rows), len(by_device(rows))

@@ -49,7 +49,7 @@ def device_name(renderer: str) -> str:
 
 
 def _comma_parts(text: str) -> list[str]:
-    """What commas separate, but for those inside parentheses."""
+    """Return the parts of a text that commas separate, except commas inside parentheses."""
     parts, depth = [""], 0
     for letter in text:
         depth += {"(": 1, ")": -1}.get(letter, 0)
@@ -69,9 +69,9 @@ def browser_name(agent: str) -> str:
 
 
 def told_apart(renderers: Iterable[str]) -> dict[str, str]:
-    """By renderer a short name that no other renderer has. The order does not matter.
+    """Return a short name for each renderer, which no other renderer has. The order does not matter.
 
-    Those that share one get their API behind it; where that is the same too, four digits of a hash.
+    Renderers that share a name get their API appended; if that is the same too, four digits of a hash.
     """
     every = sorted(set(renderers))
     short_names = {renderer: device_name(renderer) for renderer in every}

@@ -36,7 +36,7 @@ class Device:
         return called(self.name, self.browser)
 
     def key(self, row_of: str) -> Row:
-        """What tells its rows of a kind from all others."""
+        """Return the columns that distinguish the device's rows of a kind from all others."""
         file = self.file
         known = {"renderer": file.renderer, "browser": self.browser, "made": file.made, "digest": file.digest}
         return {"device": self.name, "row_of": row_of, **known}
@@ -157,7 +157,7 @@ def _device_row(device: Device, row_of: str) -> Row:
 
 
 def newest(rows: Sequence[Row], keys: Sequence[str]) -> list[Row]:
-    """Of rows that share their keys the newest: a run may hold an older file's rows as well."""
+    """Return the newest of the rows that share their keys: a run may hold an older file's rows as well."""
     latest: dict[tuple[Any, ...], Row] = {}
     for row in rows:
         key = tuple(row.get(name) for name in keys)

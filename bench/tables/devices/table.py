@@ -17,7 +17,7 @@ CODEC, FACT = "codec", "fact"
 
 @dataclass(frozen=True, kw_only=True)
 class DevicesOptions(Options):
-    """Which device files are read, and what of them is shown."""
+    """Options for which device files are read, and what is shown of them."""
 
     devices: Annotated[
         Names,

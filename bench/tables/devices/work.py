@@ -1,4 +1,4 @@
-"""How the table of readers' devices is made of their files, and shown."""
+"""Construction of the table of readers' devices from their files, and its display."""
 
 from __future__ import annotations
 

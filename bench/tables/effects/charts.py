@@ -41,7 +41,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:
-    """Which effect suffers the most, and by which codec."""
+    """Return which effect suffers the most and which the least, each with its codec."""
     worst = min(points, key=lambda point: point["y"])
     best = max(points, key=lambda point: point["y"])
     return (

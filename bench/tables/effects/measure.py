@@ -31,11 +31,11 @@ class EffectsCase:
     """One row to measure.
 
     Attributes:
-        effect: what reads the G-buffer.
-        pipeline: with the effect in it.
-        plan: what renders it.
-        maker, setting: the scene and what it is made with.
-        depth: the depth code by name, where it is what the row is about.
+        effect: effect that reads the G-buffer.
+        pipeline: pipeline with the effect in it.
+        plan: plan by which it is rendered.
+        maker, setting: the scene, and the setting that it is made with.
+        depth: name of the depth encoding if the row is about one.
     """
 
     effect: ChosenEffect
@@ -52,7 +52,7 @@ class EffectsCase:
 
     @property
     def reference(self) -> EffectsCase:
-        """The same effect from a G-buffer in 32-bit floats."""
+        """The case of the same effect from a G-buffer in 32-bit floats."""
         return replace(self, plan=replace(self.plan, layout=LAYOUTS["fp32"]), depth=None)
 
 
@@ -115,7 +115,7 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
         return row | {"invalid": max(image["invalid"], int(lost))} | self._method(case.reference)
 
     def _method(self, case: EffectsCase) -> Row:
-        """How far the effect from exact normals is from rays; nothing where there is no oracle or no ray caster."""
+        """Return how far the effect from exact normals is from ray casting; empty without an oracle or ray caster."""
         if not self._rays or not isinstance(case.effect.effect, AmbientOcclusion):
             return {}
         if case not in self._methods:
@@ -141,12 +141,13 @@ def _effect_times(case: EffectsCase, made: Rendering, repeats: int) -> Row:
 
 
 def drawn_at(own: np.ndarray, surfaces: np.ndarray) -> np.ndarray:
-    """Where an effect is, bool of shape (height, width): where its alpha says so; of one without, on all surfaces."""
+    """Return where an effect is, bool of shape (height, width): where alpha is above 0; without alpha, on all
+    surfaces."""
     return own[..., 3] > 0 if own.shape[-1] == 4 else surfaces
 
 
 def _distance_columns(drawn: Drawn, exact: Drawn) -> Row:
-    """How far the effect's own image is from the exact one's, and the normals from the exact ones."""
+    """Return the errors of the effect's own image and of the normals, compared with the exact ones."""
     covered = exact.covered
     own, other = (frame.own[covered].astype(np.float64) for frame in (drawn, exact))
     peak = float(np.max(np.abs(np.nan_to_num(other))))
@@ -164,11 +165,11 @@ def _distance_columns(drawn: Drawn, exact: Drawn) -> Row:
 
 
 def moved_percent(hits: np.ndarray, exact: np.ndarray) -> float | None:
-    """Of the pixels whose ray meets something in the exact frame, the share whose ray meets nothing, or something more
-    than a pixel away; None where no ray meets anything.
+    """Return the percentage of pixels whose ray hits nothing, or something more than a pixel away, among those whose
+    ray hits something in the exact frame; None if no ray hits anything.
 
     Args:
-        hits, exact: (height, width, 4), as `Effect.hits` says.
+        hits, exact: arrays of shape (height, width, 4), as described by `Effect.hits`.
     """
     there = exact[..., 3] > 0
     if not np.any(there):
@@ -211,5 +212,5 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
 
 
 def group_of(row: Row) -> tuple[str, ...]:
-    """What rows are of that are compared with each other."""
+    """Return the key that rows share if they are compared with each other."""
     return row["effect"], row["pipeline"], row["scene"]

@@ -23,14 +23,14 @@ WHITE = 0.99
 
 
 def _file_stem(row: Row, of_reference: bool = False) -> str:
-    """What the files of a row are called, without what they show."""
+    """Return the part of a row's file names that comes before the kind of image."""
     start = [name_of_file(row["effect"]), row["scene"], row["pipeline"]]
     code = [row["depth"].replace("/", "-")] if row["depth"] else [row["encoding"], row["storage"], row["rounding"]]
     return "-".join([*start, *([] if of_reference else [row["layout"], *code])])
 
 
 def write(folder: Path, row: Row, drawn: Drawn, exact: Drawn) -> None:
-    """The effect's own image and the final one, and those of the reference, which rows of one effect share."""
+    """Write the effect's own image and the final one, and those of the reference, which rows of one effect share."""
     # What few pixels mirror of a lamp would leave all others black.
     peak = float(np.quantile(exact.own, WHITE)) or float(np.max(exact.own)) or 1.0
     for stem, frame in ((_file_stem(row), drawn), (f"{_file_stem(row, True)}-{REFERENCE}", exact)):
@@ -51,7 +51,7 @@ def own_picture(own: np.ndarray, peak: float) -> np.ndarray:
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """What lies in a folder of rows. A name is looked up, so that none leads out of the folder."""
+    """Yield the subjects of rows from the images in a folder. Names are looked up: none leads out of the folder."""
     there = files_of(folder)
     groups: dict[str, list[Row]] = {}
     for row in rows:

@@ -31,7 +31,7 @@ DEPTHS = ("linear/packed16", "window/depth24", "window/depth32f")
 
 @dataclass(frozen=True, kw_only=True)
 class EffectsOptions(SourceOptions):
-    """What `effects` measures. Names are comma-separated."""
+    """Options for what `effects` measures. Names are comma-separated."""
 
     effect: Annotated[
         Names,
@@ -74,7 +74,7 @@ class EffectsOptions(SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class EffectsOutputs:
-    """What `effects` writes beside its rows."""
+    """Files that `effects` writes besides its rows."""
 
     images: Images = None
 

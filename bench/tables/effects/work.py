@@ -1,4 +1,4 @@
-"""How the effects table is measured and shown."""
+"""Measurement and display of the effects table."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ NO_GBUFFER = "has no G-buffer that an effect could read a code from"
 
 
 def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
-    """What lies in the G-buffer of each row, and the depth code where the row is about one.
+    """Return the layout of the G-buffer of each row, and the depth encoding if the row is about one.
 
     Raises:
         UsageError: unknown names, or nothing left.

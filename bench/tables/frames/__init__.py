@@ -1,1 +1,1 @@
-"""What tangent frame codes lose."""
+"""The accuracy of tangent frame encodings."""

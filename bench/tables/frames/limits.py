@@ -28,13 +28,14 @@ def ball_moment(theta: float, power: int) -> float:
 
 
 def _root_angle(function: Callable[[float], float], least: float) -> float:
-    """Where a function that rises is 0, between an angle where it is not above 0 and pi; to float64's own digits."""
+    """Return the root of an increasing function between `least`, where it is not above 0, and pi, to the precision
+    of float64."""
     return float(root_scalar(function, bracket=(least, math.pi), method="brentq", xtol=1e-30).root)
 
 
 def frame_limit(codes: int, hands: int = HANDS) -> CodeLimit:
-    """The least mean, RMS and maximum of the angle that so many codes (2 or more) have over all frames, or over all
-    rotations where they are of one hand."""
+    """Return the smallest possible mean, RMS and maximum of the angle for this number of codes (2 or more), over all
+    frames, or over all rotations if the codes are of one handedness."""
     share = hands / codes
     # theta - sin theta is below theta^3 / 6.
     least = min((6 * math.pi * share) ** (1 / 3), math.pi)
@@ -61,8 +62,8 @@ def frame_effective_bits(rms_deg: float, hands: int = HANDS) -> float:
 
 
 def frames_broken(codes: int, count: int, mean_deg: float, rms_deg: float, hands: int = HANDS) -> str:
-    """What a measurement over uniform frames says that so many codes cannot do, scatter apart; nothing where all is
-    well. Then the measure is wrong, or the set is not uniform."""
+    """Return which figure of a measurement over uniform frames is below the bound for this number of codes, apart
+    from scatter; empty if none is. A lower figure means a wrong measurement or a set that is not uniform."""
     least, spared = frame_limit(codes, hands), 1 - SCATTER / math.sqrt(count)
     for what, figure, bound in (("RMS", rms_deg, least.rms_deg), ("mean", mean_deg, least.mean_deg)):
         if figure < bound * spared:

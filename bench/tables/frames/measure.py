@@ -90,8 +90,8 @@ BACKENDS: Mapping[str, Callable[[FrameCodec], AbstractContextManager[tuple[Trip,
 
 @dataclass
 class FrameTotal:
-    """What chunks add up to: angles of normals, tangents and rotations in degrees, decodes that were no number, each of
-    which counts as 180, and hands that came back as the other."""
+    """Totals over chunks: angles of normals, tangents and rotations in degrees, decodes that are not finite, each of
+    which counts as 180 degrees, and inverted handedness."""
 
     count: int = 0
     invalid: int = 0
@@ -114,10 +114,10 @@ class FrameTotal:
 
 
 def frame_angles(given: Frames, found: Frames) -> np.ndarray:
-    """The angles between normals, between tangents, and of the rotation from the one frame to the other, whatever their
-    hands: float64 degrees of shape (3, count), NaN where one is not a number.
+    """Return the angles between normals, between tangents, and of the rotation between the two frames, whatever
+    their handedness: float64 degrees of shape (3, count), NaN where a value is not a number.
 
-    A rotation by theta moves the three axes by 8 sin^2(theta / 2) in all, the sum of their squared distances.
+    A rotation by theta moves the three axes by 8 sin^2(theta / 2) in total, the sum of their squared distances.
     """
     (n, t), (other_n, other_t) = (_unit_axes(frames) for frames in (given, found))
     apart = [n - other_n, t - other_t, np.cross(n, t) - np.cross(other_n, other_t)]
@@ -134,7 +134,7 @@ def _unit_axes(frames: Frames) -> tuple[np.ndarray, np.ndarray]:
 
 
 def measure(case: FrameCase) -> Row:
-    """One row; one that the device cannot give has its reason in `skipped` and no figures."""
+    """Return one row; a row that the device cannot measure has its reason in `skipped` and no figures."""
     row = TABLE.empty() | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
@@ -159,8 +159,8 @@ def measure(case: FrameCase) -> Row:
 
 
 def _supremum_columns(case: FrameCase) -> Row:
-    """Of all tangent frames by search; of a mesh, whose frames are all measured, there is no other. None of a code that
-    is written for shaders alone: the search is of exact arithmetic, which is JAX's."""
+    """Return the supremum over all tangent frames, found by search. Empty for a mesh, whose frames are all measured,
+    and for an encoding that exists only in shaders, because the search uses exact arithmetic in JAX."""
     if not case.frame_set.is_uniform:
         return {}
     try:

@@ -54,11 +54,11 @@ class FrameSet:
 
     @property
     def starts(self) -> range:
-        """Where its chunks start."""
+        """The start index of each chunk."""
         return range(0, self.count, CHUNK)
 
     def chunks(self) -> Iterator[Frames]:
-        """Its frames, a chunk at a time."""
+        """Return the frames, a chunk at a time."""
         return map(self.chunk, self.starts)
 
 
@@ -96,7 +96,7 @@ FRAME_SETS: Mapping[str, Callable[[int, int], FrameSet]] = MappingProxyType({"ro
 
 
 def frame_sets_named(names: Names, count: int, seed: int) -> list[FrameSet]:
-    """Return the sets that names stand for: those of the catalogue, or the vertices of mesh files.
+    """Return the frame sets with these names: sets of the catalogue, or the vertices of mesh files.
 
     Raises:
         UsageError: an unknown name, or a file that cannot be read.

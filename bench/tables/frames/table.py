@@ -16,7 +16,8 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class FramesOptions(SourceOptions):
-    """What `frames` measures. Names are comma-separated; no storage: where each code usually lies."""
+    """Options for what `frames` measures. Names are comma-separated; by default each encoding uses its usual
+    storage."""
 
     encoding: Annotated[Names, Option("--encoding", f"Tangent frame codes or files of yours, {NAMED}.", files=True)] = (
         "all",

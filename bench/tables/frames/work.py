@@ -1,4 +1,4 @@
-"""How the table of tangent frames is measured and shown."""
+"""Measurement and display of the table of tangent frames."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from .table import FramesOptions
 
 
 def cases(options: FramesOptions) -> list[measure.FrameCase]:
-    """One case for each row.
+    """Return one case for each row.
 
     Raises:
         UsageError: unknown names, a file that cannot be read, or nothing that fits.
-        MissingError: only GLSL is asked for and there is no GL device.
+        MissingError: only GLSL is requested and there is no OpenGL device.
     """
     check_seed(options.seed)
     count = checked_count(options.count)

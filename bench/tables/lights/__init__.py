@@ -1,1 +1,1 @@
-"""What light buffers lose."""
+"""The accuracy of light buffers."""

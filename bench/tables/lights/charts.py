@@ -50,14 +50,14 @@ def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
 
 
 def _equal_rows(rows: Sequence[Row]) -> list[Row]:
-    """Of equal lights of the least sum: each buffer's worst channel."""
+    """Return the rows of equal lights with the smallest sum: the worst channel of each buffer."""
     total = min((row["sum"] for row in rows), default=0.0)
     panel = f"equal lights that sum to {total:g}, worst channel"
     return _worst(panel, [(row, abs(row["error"])) for row in rows if row["sum"] == total])
 
 
 def _random_rows(rows: Sequence[Row]) -> list[Row]:
-    """Of coloured lights: the largest error of the worst order."""
+    """Return the rows of coloured lights: the largest error of the worst order."""
     return _worst(RANDOM, [(row, row["model_max"]) for row in rows])
 
 
@@ -74,7 +74,7 @@ def _worst(panel: str, errors: Sequence[tuple[Row, float]]) -> list[Row]:
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:
-    """Which buffers lose the least and the most of the most lights, in the last panel."""
+    """Return which buffers have the smallest and the largest error with the most lights, in the last panel."""
     panel, most = points[-1]["panel"], max(point["x"] for point in points)
     last = sorted((p for p in points if (p["panel"], p["x"]) == (panel, most)), key=lambda p: p["y"])
     best, worst = last[0], last[-1]

@@ -26,7 +26,7 @@ UNMEASURABLE = (ShaderError, FormatError)
 
 @dataclass(frozen=True)
 class Sums:
-    """What is added up: sums of light, numbers of lights, peaks of falloff, and a seed."""
+    """The values to add up: sums of light, numbers of lights, peaks of falloff, and a seed."""
 
     sums: tuple[float, ...]
     counts: tuple[int, ...]
@@ -38,7 +38,7 @@ class Sums:
         return equal_lights(adder, self.sums, self.counts)
 
     def random(self, adder: Adder) -> Iterator[Row]:
-        """Coloured lights with falloff, in three orders; up to the least of the sums."""
+        """Return the rows of coloured lights with falloff, in three orders; their sum is the smallest of the sums."""
         return random_lights(adder, min(self.sums), self.counts, self.seed)
 
     def banding(self, adder: Adder) -> Iterator[Row]:
@@ -111,10 +111,10 @@ def sorted_rows(rows: list[Row]) -> list[Row]:
 
 
 def banded(encoding: LightCodec, peak: float, device: Device | None) -> np.ndarray:
-    """A lamp's falloff as a light buffer keeps it by the model, (width, 3); on the device where there is no model.
+    """Return a lamp's falloff as a light buffer stores it by the model, (width, 3); on the device if there is no model.
 
     Raises:
-        MissingError: there is neither.
+        MissingError: there is neither a model nor a device.
     """
     with Adder(encoding, device if not has_light_twin(encoding) else None) as adder:
         light = gradient(peak)[None]

@@ -1,4 +1,4 @@
-"""What is lost when light is added up: the model of each light buffer beside the GL device's own."""
+"""The loss from adding up light: the model of each light buffer next to the OpenGL device's own result."""
 
 from __future__ import annotations
 
@@ -58,14 +58,14 @@ def _sum_and_texels(encoding: LightCodec, lights: Vec4, count, blending: Blendin
 
 @dataclass(frozen=True)
 class Rounding:
-    """How the device adds up: in words, and for which share of pixels the model that rounds so gives its texels."""
+    """The way in which the device adds up, in words, and the share of pixels that a model of it reproduces."""
 
     name: str
     share: float
 
 
 class Adder:
-    """One light encoding, by the model and, where there is one, by the GL device; a context manager.
+    """A context manager that adds up light in one encoding, by the model and, if there is one, by the OpenGL device.
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.
@@ -104,7 +104,7 @@ class Adder:
 
     @cached_property
     def rounding(self) -> Rounding | None:
-        """How the GL device adds up: the plainest way that explains it best; None without a device."""
+        """The way in which the OpenGL device adds up: the plainest way that explains it best; None without a device."""
         lights = (np.random.default_rng(0).uniform(0, 1, (64, PIXELS, 4)) ** 2 * 0.05).astype(np.float32)
         got = self.device(lights) if self._has_model else None
         if not got:
@@ -132,7 +132,7 @@ class Adder:
         return float(np.mean(np.all(apart <= allowed, axis=-1)))
 
     def _conversion_error(self) -> str:
-        """By how many steps the device moves a number of fixed point that it stores, at most; half is the least."""
+        """Return the largest error, in steps, of a fixed-point number that the device stores; at best half a step."""
         if self.encoding.storage.kind != "unorm":
             return ""
         lights = np.repeat(np.linspace(0, self.encoding.limit, 2**14, dtype=np.float32)[:, None], 4, axis=1)[None]
@@ -242,7 +242,7 @@ def ordered(lights: np.ndarray, order: str) -> np.ndarray:
 
 
 def random_lights(adder: Adder, total: float, counts: Sequence[int], seed: int) -> Iterator[Row]:
-    """Coloured lights with falloff, in three orders: errors over pixels and channels, beside what they are bound by."""
+    """Yield the errors of coloured lights with falloff in three orders, over pixels and channels, and their bound."""
     for count in counts:
         lights = coloured_lights(count, total, seed)
         exact = lights.sum(axis=0, dtype=np.float64)[:, : adder.channels]
@@ -272,7 +272,7 @@ def gradient(peak: float) -> np.ndarray:
 
 
 def banding(adder: Adder, peaks: Sequence[float]) -> Iterator[Row]:
-    """One lamp's falloff: how many levels are left of it, and how far the largest step goes, in light and as shown."""
+    """Yield how many levels of one lamp's falloff are left, and the largest step, in light and as displayed."""
     for peak in peaks:
         light = gradient(peak)
         by_channel: list[tuple[Any, ...]] = []
@@ -296,7 +296,8 @@ def _band_figures(light: np.ndarray) -> tuple[int, float, float]:
 
 
 def chromaticity(adder: Adder) -> Iterator[Row]:
-    """A highlight's colour rebuilt from the diffuse light's: how far its error exceeds that of what was stored."""
+    """Yield the error of a highlight's colour that is rebuilt from the diffuse light's, and how far it exceeds the
+    error of the stored value."""
     for name, colour in COLOURS.items():
         lights = np.zeros((GRADIENT, 4), np.float32)
         lights[:, :3] = colour

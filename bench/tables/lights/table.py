@@ -22,7 +22,7 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class LightsOptions(SourceOptions):
-    """What `lights` measures. Names and numbers are comma-separated."""
+    """Options for what `lights` measures. Names and numbers are comma-separated."""
 
     experiment: Annotated[Names, Option("--experiment", "equal, random, banding, chromaticity; or all.")] = ("all",)
     light_buffer: LightBuffers = ("all",)
@@ -34,7 +34,7 @@ class LightsOptions(SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class LightsOutputs:
-    """What `lights` writes beside its rows."""
+    """Files that `lights` writes besides its rows."""
 
     images: Images = None
     plot: Plot = None

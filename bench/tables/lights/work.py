@@ -1,4 +1,4 @@
-"""How the lights table is measured and shown."""
+"""Measurement and display of the lights table."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def encodings(options: LightsOptions) -> list[LightCodec]:
 
 
 def added(options: LightsOptions) -> measure.Sums:
-    """What is added up. Raises UsageError."""
+    """Return the values to add up. Raises UsageError."""
     check_seed(options.seed)
     return measure.Sums(
         checked_numbers("--sum", options.sums, float, 1e-6, MOST_LIGHT),
@@ -58,7 +58,7 @@ def added(options: LightsOptions) -> measure.Sums:
 
 
 def _check(outputs: LightsOutputs, names: Sequence[str]) -> None:
-    """Raises UsageError for what cannot be written."""
+    """Raise UsageError for output that cannot be written."""
     if outputs.plot and not PLOTTED & set(names):
         raise UsageError("--plot draws the experiments equal and random; ask for one of them")
     if outputs.images:

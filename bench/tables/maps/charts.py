@@ -54,7 +54,7 @@ def _chart(at: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
 
 
 def _finding_sentence(name: str, rows: Sequence[Row]) -> str:
-    """Which code and format of each number of bits lose the least."""
+    """Return the encoding and format with the smallest mean angle for each number of bits."""
     best: dict[float, Row] = {}
     for row in sorted(rows, key=lambda row: (row["bits_per_texel"], row["angle_mean_deg"])):
         best.setdefault(row["bits_per_texel"], row)
@@ -63,5 +63,5 @@ def _finding_sentence(name: str, rows: Sequence[Row]) -> str:
 
 
 def _line_name(row: Row) -> str:
-    """What a line is called: the code, the format, its swizzle, and its bits."""
+    """Return the name of a line: the encoding, the format, its swizzle and its bits."""
     return f"{row['encoding']} {row['block']} {row['swizzle']}, {row['bits_per_texel']} bits"

@@ -19,12 +19,12 @@ BC7_EFFORT, ASTC_EFFORT, BC3_EFFORT = 4, 60, 5
 
 @dataclass(frozen=True)
 class Texels:
-    """What an encoder is given.
+    """The input of a texture encoder.
 
     Attributes:
-        texels: RGBA of 8 bits, row by row.
+        texels: 8-bit RGBA texels, row by row.
         size: width and height, multiples of 4.
-        used: the channels that matter.
+        used: channels that matter.
     """
 
     texels: bytes
@@ -37,11 +37,11 @@ class Encoder:
     """A package that compresses textures.
 
     Attributes:
-        package: what pip calls it; empty for none.
-        modules: what is imported.
-        said: its effort, as a row says it.
+        package: its name in pip; empty if there is no package.
+        modules: modules to import.
+        said: its effort, as a row shows it.
         make: (the modules, texels) -> blocks, row by row.
-        undo: (the modules, blocks, size) -> texels, float32 of shape (height, width, 4); None where nobody needs it.
+        undo: (the modules, blocks, size) -> texels, float32 of shape (height, width, 4); None if nothing needs it.
     """
 
     package: str

@@ -22,12 +22,12 @@ CHANNELS, ONE = "rgba", 255
 
 @dataclass(frozen=True)
 class Swizzle:
-    """Where the numbers of a code lie in a texel.
+    """The channels of a texel that hold the numbers of a code.
 
     Attributes:
-        name: the catalogue's key.
-        laid: what each channel is given: the first, second or third number as `r`, `g` and `b`, or 0 or 1.
-        read: the channel that each number is read from.
+        name: key in the catalogue.
+        laid: content of each channel: the first, second or third number as `r`, `g` and `b`, or 0 or 1.
+        read: channel that each number is read from.
     """
 
     name: str
@@ -80,7 +80,7 @@ class BlockFormat:
 
     @property
     def is_compressed(self) -> bool:
-        """Whether texels lie in blocks."""
+        """Whether texels are stored in blocks."""
         return bool(self.internal_format)
 
     def bits(self, components: int) -> int:

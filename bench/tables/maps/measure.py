@@ -76,7 +76,7 @@ class Band:
 
 @dataclass
 class Clock:
-    """What adds up over the bands of an image: seconds of encoding, texels, squared errors of the code's numbers."""
+    """Totals over the bands of an image: seconds of encoding, texels, and squared errors of the code's numbers."""
 
     seconds: float = 0.0
     texels: int = 0
@@ -124,7 +124,7 @@ def _vectors(pixels: np.ndarray) -> list[jax.Array]:
 
 
 def _pixels(planes: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """Those planes as pixels again, (height, width, planes)."""
+    """Return planes as pixels again, of shape (height, width, planes)."""
     return np.stack([np.asarray(p).ravel()[: math.prod(shape)].reshape(shape) for p in planes], axis=-1)
 
 
@@ -175,7 +175,7 @@ def through(case: MapCase, band: Band, clock: Clock) -> np.ndarray:
 
 
 def measure(case: MapCase) -> list[Row]:
-    """One row; one that cannot be measured here has its reason in `skipped` and no figures."""
+    """Return one row; a row that cannot be measured here has its reason in `skipped` and no figures."""
     row, clock, whole = _case_columns(case), Clock(), case.normal_set
 
     def loads() -> Iterator[Callable[[], Decoded]]:

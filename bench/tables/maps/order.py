@@ -8,7 +8,7 @@ from ..table import Row
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Rows by set and decoder, the least RMS angle first; those without figures last."""
+    """Return the rows by set and decoder, smallest RMS angle first; rows without figures come last."""
     groups = list(dict.fromkeys(group_of(row) for row in rows))
 
     def place(row: Row) -> tuple[int, bool, float]:

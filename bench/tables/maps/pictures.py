@@ -16,7 +16,7 @@ KINDS = ("decoded", "error")
 
 
 def stem(case: MapCase) -> str:
-    """What the files of a case are called, without what they show."""
+    """Return the part of a case's file names that comes before the kind of image."""
     parts = (case.normal_set.name, case.encoding.name, case.block.name, case.swizzle.name, case.decoder)
     return "-".join(parts).replace("/", "_in_")
 

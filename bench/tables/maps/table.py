@@ -48,7 +48,7 @@ def _listed_text(known: Mapping[str, str]) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class MapsOptions(Reading, SourceOptions):
-    """What `maps` measures. Names are comma-separated."""
+    """Options for what `maps` measures. Names are comma-separated."""
 
     encoding: Encodings = ("xy", "hemi_octahedral", "octahedral", "xyz")
     block: Annotated[Names, Option("--block", f"{', '.join(BLOCKS)}; comma-separated, or all.")] = ("all",)
@@ -71,7 +71,7 @@ class MapsOptions(Reading, SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class MapsOutputs:
-    """What `maps` writes beside its rows."""
+    """Files that `maps` writes besides its rows."""
 
     images: Images = None
     plot: Plot = None

@@ -1,4 +1,4 @@
-"""How the maps table is measured and shown."""
+"""Measurement and display of the maps table."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from .table import MapsOptions, MapsOutputs
 
 
 def cases(options: MapsOptions) -> list[MapCase]:
-    """One case for each row; what does not fit is named on standard error.
+    """Return one case for each row; combinations that do not fit are named on standard error.
 
     Raises:
         UsageError: unknown names, a file that cannot be read, no image, or nothing that fits.
-        MissingError: an encoder that is asked for is not installed, or there is no GL device to decode by.
+        MissingError: a requested encoder is not installed, or there is no OpenGL device to decode with.
     """
     blocks, asked = _blocks(options.block), choose("swizzle", options.swizzle, SWIZZLES) if options.swizzle else []
     decoders = choose("decoder", options.decoder, {name: name for name in measure.DECODERS})

@@ -1,1 +1,1 @@
-"""What happens to a code when texels meet: filtering, mip levels, resolve and blending."""
+"""The effect on codes of mixing texels: filtering, mip levels, resolve and blending."""

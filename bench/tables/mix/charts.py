@@ -15,10 +15,11 @@ LEAST, MOST, BRIGHT = 0.1, 180.0, 10.0
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """What mixing makes of each codec: a cell for each operation, coloured by the largest error, its garbage in it.
+    """Yield a chart of mixing with one cell for each codec and operation, coloured by the largest error, with its
+    garbage as text.
 
     Args:
-        rows: of the mix table; the worst of those that decide are drawn, or of all where none does.
+        rows: rows of the mix table; the worst of those that decide are drawn, or of all rows if none decides.
     """
     cells = _cells(_deciding_rows(rows))
     tips = (("codec", "codec"), ("operation", "operation"), ("angle", "largest error, degrees"))
@@ -43,8 +44,8 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def _cells(rows: Sequence[Row]) -> list[Row]:
-    """Of each codec and operation, one row each, the largest error of a mix, and its garbage as a text; the codes with
-    the most last."""
+    """Return one cell for each codec and operation, with the largest error of a mix and its garbage as text; the
+    codecs with the most garbage come last."""
     cells: list[Row] = [
         {
             "codec": f"{row['encoding']} {row['storage']}",
@@ -76,7 +77,7 @@ def _garbage_text(percent: float) -> str:
 
 
 def _finding_sentence(cells: Sequence[Row]) -> str:
-    """How many codes survive all mixing, and which suffers the most."""
+    """Return how many codecs survive all mixing, and which one suffers the most."""
     codecs = distinct(cells, "codec")
     bad = {cell["codec"] for cell in cells if cell["garbage"]}
     worst = max(cells, key=lambda cell: (cell["garbage"], cell["angle"]))

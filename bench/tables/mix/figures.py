@@ -1,4 +1,4 @@
-"""The figures of a row: how far what comes back lies from the right normal, and what of it is garbage."""
+"""The figures of a row: the error of mixed normals, and the share of garbage."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from .table import GARBAGE_DEG, MOST_ALONE_DEG
 
 
 class Figures:
-    """What mixes gave, over those that an encoding can hold.
+    """The results of mixes, over those that an encoding can represent.
 
     Args:
-        mixes: what was mixed.
-        domain: of the encoding.
-        power: what Toksvig's formula starts from.
+        mixes: the mixes.
+        domain: domain of the encoding.
+        power: specular power that Toksvig's formula starts from.
         texels: decoded texels of the patches, (TEXELS, patches, 3).
-        mixed: by operation what it gave, decoded, not renormalised, (patches, 3).
+        mixed: result of each operation, decoded, not renormalised, (patches, 3).
     """
 
     def __init__(self, mixes: Mixes, domain: str, power: float, texels: np.ndarray, mixed: Mapping[str, np.ndarray]):
@@ -30,7 +30,7 @@ class Figures:
         self._alone = angles_between(texels[:, self._held], self._normals[:, self._held])
 
     def errors(self, operation: str) -> np.ndarray:
-        """How far each mix is off in degrees, (patches,); -1 where the encoding cannot hold it."""
+        """Return the error of each mix in degrees, (patches,); -1 if the encoding cannot represent the mix."""
         angles = angles_between(self._mixed[operation], right_of(self._mixes, operation).normals)
         return np.where(self._held_mask(operation), angles, -1.0)
 
@@ -77,8 +77,8 @@ class Figures:
 
 
 def excused(operation: str, alone_deg: float) -> float:
-    """What of the largest error of the texels alone excuses a result: all of it where each texel is decoded first,
-    which adds nothing; else no more than a good code has."""
+    """Return the part of the largest error of the texels alone that excuses a result: all of it if each texel is
+    decoded first, which adds no error; otherwise at most that of a good encoding."""
     return alone_deg if operation in BY_NORMALS else min(alone_deg, MOST_ALONE_DEG)
 
 
@@ -100,7 +100,7 @@ def outside(name: str, domain: str) -> str:
 
 
 def error_of_percent(which: np.ndarray) -> float:
-    """The standard error of a share, in percent, by the rule of succession: it is not 0 where nothing was met.
+    """Return the standard error of a share, in percent, by the rule of succession: it is not 0 even if the count is 0.
 
     With k of n it is that of a share of (k + 1) / (n + 2), whose uncertainty is a beta distribution's.
     """

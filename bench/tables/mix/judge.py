@@ -54,13 +54,13 @@ def _mixes_of_set(normals: NormalSet) -> tuple[Mixes, ...]:
 
 @dataclass(frozen=True)
 class Judgement:
-    """What mixing does to a codec.
+    """The effect of mixing on a codec.
 
     Attributes:
-        inside, across: why it cannot be used so, by use: inside a surface, and across an edge; nothing where it can.
-        mean_deg, max_deg: the errors of what is mixed inside a surface: the mean of all operations at all distances,
-            and the largest; None where nothing was measured.
-        count: how many errors that mean is of.
+        inside, across: by use, why the codec cannot be used inside a surface and across an edge; empty if it can.
+        mean_deg, max_deg: errors of mixes inside a surface: the mean of all operations at all distances, and the
+            largest; None if nothing was measured.
+        count: number of errors in the mean.
     """
 
     inside: dict[str, str]
@@ -71,7 +71,7 @@ class Judgement:
 
 
 def judgement(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> Judgement:
-    """What all of several uses together do to a codec; the arguments are those of `judgements`."""
+    """Return the effect of several uses together on a codec; the arguments are those of `judgements`."""
     parts = judgements(codec, uses, normals, domain).values()
     count = sum(part.count for part in parts)
     inside, across = ({use: why for part in parts for use, why in of(part).items()} for of in (_INSIDE, _ACROSS))
@@ -85,14 +85,14 @@ def judgement(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str
 
 
 def judgements(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> dict[str, Judgement]:
-    """What each of several uses does to a codec.
+    """Return the effect of each of several uses on a codec.
 
     Args:
         uses: some of table.USES.
-        normals: an image whose neighbours are mixed; of any other set the seed alone counts.
-        domain: the normals that are mixed: "sphere", "hemisphere" or "view".
+        normals: an image whose neighbours are mixed; of any other set only the seed counts.
+        domain: domain of the normals that are mixed: "sphere", "hemisphere" or "view".
 
-    A codec without a twin in JAX is measured by GLSL; what cannot be measured has no fault.
+    A codec without a twin in JAX is measured in GLSL; a codec that cannot be measured has no fault.
     """
     is_usual = not normals.shape and not normals.seed and domain == codec.encoding.domain
     if is_usual and (known := RECORDED.find(codec.name, codec)):
@@ -101,7 +101,7 @@ def judgements(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: st
 
 
 def judged_now(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> dict[str, Judgement]:
-    """The same, measured."""
+    """Measure the effects that `judgements` returns."""
     rows = _measured_rows(codec, uses, normals, domain)
     return {use: _judged(codec, [use], [row for row in rows if row["operation"] in USES[use]]) for use in uses}
 

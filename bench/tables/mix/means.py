@@ -78,13 +78,13 @@ USED: Mapping[str, Any] = MappingProxyType(
 
 @dataclass(frozen=True, eq=False)
 class Right:
-    """What an operation should give, whatever the code.
+    """The correct result of an operation, whatever the encoding.
 
     Attributes:
-        mean: the mix of exact normals, not renormalised, (patches, 3); `normals` is at length 1.
-        used: the exact normals that are mixed, (texels, patches, 3).
-        reach_deg: how far the farthest of them is from the right normal, (patches,).
-        geometry_deg: how far off exact normals would be, (patches,).
+        mean: mix of exact normals, not renormalised, (patches, 3); `normals` is the same at length 1.
+        used: exact normals that are mixed, (texels, patches, 3).
+        reach_deg: angle between the correct normal and the farthest of those that are mixed, (patches,).
+        geometry_deg: error of exact normals, (patches,).
     """
 
     mean: np.ndarray
@@ -96,7 +96,7 @@ class Right:
 
 @lru_cache(maxsize=128)
 def right_of(mixes: Mixes, operation: str) -> Right:
-    """What an operation should give of some mixes; kept for the next code."""
+    """Return the correct result of an operation on mixes; cached for the next codec."""
     texels = mixes.patches.normals
     mean = MEANS[operation](texels, mixes)
     normals, straight = unit_rows(mean), STRAIGHT.get(operation, MEANS[operation])(texels, mixes)

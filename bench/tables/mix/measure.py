@@ -62,13 +62,13 @@ class MixCase:
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What operations gave.
+    """The results of operations.
 
     Attributes:
         texels: decoded texels of the patches, (TEXELS, patches, 3).
-        mixed: by operation what it gave, decoded, not renormalised, (patches, 3).
-        how: by operation, columns of how it was mixed.
-        said: columns of the device.
+        mixed: result of each operation, decoded, not renormalised, (patches, 3).
+        how: by operation, columns on how it was mixed.
+        said: columns on the device.
     """
 
     texels: np.ndarray
@@ -103,7 +103,7 @@ class Modelled:
         return self._raw_and_stored(self._mixes.patches.normals)[1]
 
     def given(self, codes: np.ndarray) -> Given:
-        """What the model mixes: stored codes of the texels, and what shaders write over them."""
+        """Return the input of the model: stored codes of the texels, and the values that shaders write over them."""
         over = np.stack([self._mixes.patches.normals[1], self._mixes.decals])
         written = self._texels.of(self._raw_and_stored(over)[0])
         # What was stored is written once more: float32 has moved it by a unit, and means of texels lie on ties.
@@ -114,7 +114,7 @@ class Modelled:
         return self._texels.code(BY_MODEL[operation](self._texels, given, self._mixes, way))
 
     def of_normals(self, operation: str, texels: np.ndarray) -> np.ndarray:
-        """What an operation on decoded texels (TEXELS, patches, 3) gives, (patches, 3)."""
+        """Return the result of an operation on decoded texels (TEXELS, patches, 3), of shape (patches, 3)."""
         normals = BY_NORMALS[operation](texels.astype(np.float64), self._mixes)
         return self.decoded(self._raw_and_stored(normals)[1]) if operation in STORED_AGAIN else normals
 
@@ -152,7 +152,7 @@ def _blocked_image(image: np.ndarray, height: int, width: int) -> np.ndarray:
 
 
 def _compared(case: MixCase, codes: np.ndarray, found: Mapping[str, Decoded]) -> dict[str, Row]:
-    """By operation, the way to mix that explains the device's numbers best, and in how many results it agrees.
+    """Return by operation the way of mixing that best explains the device's numbers, and the share that agrees.
 
     The model mixes the codes that the device stored.
     """

@@ -29,14 +29,15 @@ QUAD = (0, 1, 4, 5)
 
 @dataclass(frozen=True)
 class Way:
-    """How a device mixes.
+    """A device's way of mixing texels.
 
     Attributes:
-        is_fixed: fixed-point numbers are mixed as integers: each step of a filter is rounded, and a blend's products
-            are made of shifts, p + p / 256 + 1/2 for p / 255.
-        fraction_bits: of a filter's place between two texels; 0 for as many as a float32 has.
-        rounding: of what is written, one of storage.ROUNDINGS; CUT is to 16 bits, of which the lowest are cut off.
-        rounds_source: whether what a shader writes is rounded as the codec asks before it is blended.
+        is_fixed: whether fixed-point numbers are mixed as integers: each step of a filter is rounded, and a blend's
+            products use shifts, p + p / 256 + 1/2 for p / 255.
+        fraction_bits: bits of a filter's position between two texels; 0 for those of a float32.
+        rounding: rounding of what is written, one of storage.ROUNDINGS; CUT rounds to 16 bits and truncates the
+            lowest.
+        rounds_source: whether a shader's output is rounded as the codec requires before it is blended.
     """
 
     is_fixed: bool = False
@@ -151,7 +152,7 @@ class Texels:
         return np.concatenate([np.stack([np.asarray(p) for p in kept]), texels[channels:]])
 
     def _cut_planes(self, texels: np.ndarray) -> np.ndarray:
-        """UNORM that is made of the upper bits of 16, of planes without a sign's; other formats as they are."""
+        """Return UNORM from the upper bits of 16-bit numbers, for planes without a sign; other formats unchanged."""
         if self._storage.kind != "unorm":
             return texels
         scales = [self._storage.scale(channel) for channel in range(len(texels))]
@@ -160,7 +161,7 @@ class Texels:
         return (np.floor(sixteen * (scale + 1) / 2**16) / scale).astype(F32)
 
     def _whole_values(self, texels: np.ndarray) -> np.ndarray:
-        """What stands for 1 in each plane, of a shape that broadcasts; 0 for floats, and for the sign's."""
+        """Return the integer that stands for 1 in each plane, of a shape that broadcasts; 0 for floats and signs."""
         channels = len(texels) - self._signs
         is_float = self._storage.kind == "float"
         scales = [0 if is_float else self._storage.scale(c) for c in range(channels)] + [0] * self._signs
@@ -229,7 +230,7 @@ def _mip_texel(level: int, texels: Texels, planes: np.ndarray, way: Way) -> np.n
 
 
 def _resolved_texels(texels: Texels, planes: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:
-    """The mean of a pixel's samples, the first `counts` of which are the first texel, written."""
+    """Return the mean of a pixel's samples as written; the first `counts` samples are the first texel."""
     total = np.zeros_like(planes[:, 0])
     for sample in range(mixes.samples):
         total = total + np.where(sample < mixes.counts, planes[:, 0], planes[:, 1])

@@ -1,4 +1,4 @@
-"""What meets: patches of 4 x 4 texels, built about directions or cut out of images, and how their texels are mixed."""
+"""Patches of 4 x 4 texels, built around directions or cut out of images, and the mixing of their texels."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ class Patches:
     """Patches of one set.
 
     Attributes:
-        name: the set's.
-        angle_deg: between neighbours; None where they are an image's own.
-        edge_deg: across an edge that runs through each patch; None where none does.
-        count: how many of the patches count; the others fill the image up.
+        name: name of the set.
+        angle_deg: angle between neighbours; None if they are an image's own.
+        edge_deg: angle across an edge through each patch; None if there is no edge.
+        count: number of patches that count; the others fill the image.
         normals: unit normals, float64 of shape (TEXELS, patches, 3), row by row from the first texel.
         views: float32 of shape (patches, 3).
-        seed: what it was made with.
-        code_space: of a captured frame the space that its normals are in.
-        is_anywhere: whether patches may lie anywhere on the sphere, turned in any way: those of the whole of it.
+        seed: seed of the set.
+        code_space: for a captured frame, the space of its normals.
+        is_anywhere: whether patches may be anywhere on the sphere in any rotation: those of the whole sphere.
     """
 
     name: str
@@ -59,7 +59,7 @@ class Patches:
         return 1 << (bits + 1) // 2, 1 << bits // 2
 
     def held_by(self, domain: str) -> np.ndarray:
-        """Which patches an encoding of a domain can hold all texels of, bool of shape (patches,)."""
+        """Return the patches of which an encoding of a domain can represent all texels, bool of shape (patches,)."""
         is_held = np.arange(self.normals.shape[1]) < self.count
         return np.logical_and(is_held, np.all(in_domain(self.normals, self.views, domain), axis=0))
 
@@ -86,14 +86,15 @@ class Mixes:
     details: np.ndarray
 
     def held_by(self, operation: str, domain: str) -> np.ndarray:
-        """Which mixes an encoding of a domain can hold beside the patches' texels: a detail may lie outside."""
+        """Return which mixes an encoding of a domain can represent, besides the patches' texels: a detail may be
+        outside the domain."""
         if operation != "detail":
             return np.ones(len(self.alphas), bool)
         both = np.stack([self.decals, self.details])
         return np.all(in_domain(both, self.patches.views, domain), axis=0)
 
     def meetings(self) -> Meetings:
-        """The same as images for a device."""
+        """Return the mixes as images for a device."""
         width, height = self.patches.size
         blocks = _with_fourth(self.patches.normals).reshape(SIDE, SIDE, height, width, 4)
 
@@ -180,7 +181,7 @@ def _chosen_directions(normals: NormalSet, count: int, seed: int) -> np.ndarray:
 
 
 def _turned_patches(name: str, directions: np.ndarray, angle_deg: float, seed: int) -> Patches:
-    """Patches whose neighbours lie an angle apart, turned at random, their direction somewhere in the first quad.
+    """Return randomly rotated patches with an angle between neighbours, their direction somewhere in the first quad.
 
     n(w) = cos |w| n + sin |w| w / |w|, w a step on the tangent plane.
     """

@@ -19,7 +19,8 @@ from ....encodings.vec import Vec2, Vec3, direction_or_forward
 
 @cache
 def _encoder(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Any]:
-    """From normals to the code as it is, or as it is rounded precisely, and as it comes back from the storage."""
+    """Return a compiled function from normals to codes before storage (precisely rounded if the encoding requires
+    it) and as they come back from the storage."""
 
     def encode(n: Vec3, view: Vec3, *scales: Any):
         codec = Codec(encoding, fixed(like, scales), rounding)
@@ -64,7 +65,7 @@ class Programs:
         return code, stored
 
     def normals(self, codes: np.ndarray, views: np.ndarray) -> np.ndarray:
-        """What codes (numbers, count) are decoded as, float32 of shape (count, 3), not renormalised."""
+        """Return the normals that codes (numbers, count) decode to, float32 of shape (count, 3), not renormalised."""
         decode = _decoder(self._codec.encoding)
         parts = [
             np.asarray(decode(tuple(code), Vec3(*view)))[:, :count].T

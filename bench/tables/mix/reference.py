@@ -61,7 +61,7 @@ def toksvig_power(length: np.ndarray, power: float) -> np.ndarray:
 
 
 def angles_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Degrees between rows; 180 where one is no direction."""
+    """Return the angles between rows in degrees; 180 if a row is not a direction."""
     a, b = a.astype(np.float64), b.astype(np.float64)
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
         angles = angles_deg(unit_rows(a), unit_rows(b))

@@ -65,7 +65,7 @@ MOST_COUNT = 2**16
 
 @dataclass(frozen=True, kw_only=True)
 class MixOptions(Reading, SourceOptions):
-    """What `mix` measures. Names and numbers are comma-separated."""
+    """Options for what `mix` measures. Names and numbers are comma-separated."""
 
     encoding: Encodings = (
         *("xyz", "xyz_renormalised", "xy", "xy_sign", "spherical", "latitude_longitude", "spheremap", "stereographic"),
@@ -95,7 +95,7 @@ class MixOptions(Reading, SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class MixOutputs:
-    """What `mix` writes beside its rows."""
+    """Files that `mix` writes besides its rows."""
 
     plot: Plot = None
 

@@ -36,7 +36,7 @@ def is_faulty(row: Row) -> bool:
 
 
 def summed_up(row: Row) -> str:
-    """What a row is and how far off it is, in a few words."""
+    """Return a few words on what a row measures and how large its error is."""
     angle = row["angle_deg"]
     apart = "neighbours" if angle is None else f"normals {angle:g} degree{'s' * (angle != 1)} apart"
     apart = f"an edge of {row['edge_deg']:g} degrees" if row["edge_deg"] else apart
@@ -47,7 +47,7 @@ def summed_up(row: Row) -> str:
 
 
 def _fault_reason(row: Row) -> str:
-    """The same, and the pair that shows it."""
+    """Return the words of `summed_up` and the pair that shows the fault, or the error without mixing."""
     if not row["garbage_percent"]:
         return f"{summed_up(row)}, {row['alone_max_deg']:.3g} without mixing"
     return f"{summed_up(row)}: {row['worst_first']} with {row['worst_second']} gives {row['worst_result']}"
@@ -69,7 +69,7 @@ def judged(rows: Sequence[Row]) -> list[Row]:
 
 
 def codec_of(row: Row) -> tuple[str, ...]:
-    """What a verdict is of."""
+    """Return the key of a verdict: encoding, storage and backend."""
     return row["encoding"], row["storage"], row["backend"]
 
 
@@ -98,8 +98,8 @@ def _is_integer(row: Row, is_across: bool) -> bool:
 
 
 def decides(row: Row) -> bool:
-    """Whether a row decides inside a surface: it has figures, no edge, and its neighbours are as close as those of a
-    surface."""
+    """Whether a row decides inside a surface: it has figures and no edge, and its neighbours are as close as those
+    of a surface."""
     return row["angle_max_deg"] is not None and not row["edge_deg"] and (row["angle_deg"] or 0) <= MOST_JUDGED_DEG
 
 
@@ -132,7 +132,7 @@ def lines(rows: Sequence[Row]) -> Iterator[Row]:
 
 
 def worst_of_each(rows: Sequence[Row]) -> list[Row]:
-    """Of each operation on a codec by a back end, the row with the most garbage, or with the largest error."""
+    """Return for each operation on a codec by a backend the row with the most garbage, or with the largest error."""
     worst: dict[tuple[Any, ...], Row] = {}
     for row in rows:
         key = (row["operation"], row["encoding"], row["storage"], row["backend"])

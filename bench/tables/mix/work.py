@@ -1,4 +1,4 @@
-"""How the mix table is measured and shown."""
+"""Measurement and display of the mix table."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ SUMMARY_DROPS = ("why", "storage", "alone_max_deg")
 
 
 def cases(options: MixOptions) -> list[MixCase]:
-    """One case for each codec, set, angle and back end.
+    """Return one case for each codec, set, angle and backend.
 
     Raises:
         UsageError: unknown names, numbers out of range, a file that cannot be read, or nothing that fits.
-        MissingError: only GLSL is asked for and there is no GL device.
+        MissingError: only GLSL is requested and there is no OpenGL device.
     """
     in_range("--count", options.count, 1, MOST_COUNT)
     in_range("--samples", options.samples, 2, MOST_SAMPLES)
@@ -88,7 +88,7 @@ def _patches(
 
 
 def _samples(asked: int, backends: Sequence[str]) -> dict[str, int]:
-    """By back end the samples of a pixel: the device may have more than were asked for."""
+    """Return the samples per pixel by backend: the device may have more than were requested."""
     gl, _ = found_device()
     return {name: gl.given_samples(asked) if gl and name == "glsl" else asked for name in backends}
 
@@ -106,7 +106,7 @@ def _key(case: MixCase) -> Row:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Rows by set, angle and operation, the least garbage first, each with its codec's verdicts."""
+    """Return the rows by set, angle and operation, smallest share of garbage first, each with its codec's verdicts."""
     groups = list(dict.fromkeys(_group(row) for row in rows))
 
     def place(row: Row) -> tuple[Any, ...]:

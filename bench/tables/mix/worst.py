@@ -1,7 +1,7 @@
-"""The worst mix of an operation, climbed to from the worst of a sample: a sample's largest error is no bound.
+"""A search for the worst mix of an operation from the worst of a sample: the largest error of a sample is not a bound.
 
-Patches are turned as a whole, so that neighbours stay as far apart as they are, and their weights are changed. What is
-better is kept; steps grow where that succeeds and shrink where it does not. Mixes are computed by the model.
+Patches are turned as a whole, so that the angles between neighbours are unchanged, and their weights are varied. A
+larger error is kept; steps grow after a success and shrink otherwise. The model computes the mixes.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ Errors = Callable[[Mixes], np.ndarray]
 
 
 def climbed(mixes: Mixes, errors: np.ndarray, of: Errors, seed: int) -> Mixes:
-    """The worst mix that is found, alone.
+    """Return the worst mix that is found, alone.
 
     Args:
-        mixes: the sample; where its patches may lie anywhere on the sphere, they are turned.
-        errors: of the sample.
-        of: measures other mixes.
+        mixes: the sample; if its patches may be anywhere on the sphere, they are turned.
+        errors: errors of the sample.
+        of: function that measures other mixes.
     """
     random = np.random.default_rng([seed, 3])
     best = chosen(mixes, np.argsort(errors)[::-1][:STARTS])
@@ -58,7 +58,7 @@ OF_EACH = ("shares", "quarters", "counts", "alphas", "decals", "details")
 
 
 def _moved(mixes: Mixes, steps: np.ndarray, random: np.random.Generator) -> Mixes:
-    """Mixes turned and weighed otherwise, by steps in degrees, (patches,)."""
+    """Return mixes with other rotations and weights, changed by steps in degrees, (patches,)."""
     count, patches = len(steps), mixes.patches
     turn = _random_rotations(steps * random.standard_normal(count) * patches.is_anywhere, random)
     moved = mixes.shares + SHARE_OF_STEP * steps[:, None] * random.standard_normal((count, 2))
@@ -78,7 +78,7 @@ def _moved(mixes: Mixes, steps: np.ndarray, random: np.random.Generator) -> Mixe
 
 
 def _between(base: np.ndarray, detail: np.ndarray, alpha: np.ndarray) -> np.ndarray:
-    """A detail over its base whose tilt is scaled by alpha, which lies on the arc between the two; (patches, 3)."""
+    """Return details over a base with their tilt scaled by alpha, on the arc between the two; (patches, 3)."""
     tilt = np.radians(angles_between(base, detail))[:, None]
     # slerp: (sin((1 - a) t) base + sin(a t) detail) / sin t
     a, whole = alpha[:, None], np.sin(tilt)

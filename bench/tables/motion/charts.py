@@ -53,12 +53,12 @@ def _line_name(row: Row, rows: Sequence[Row]) -> str:
 
 
 def _conditions_text(row: Row, rows: Sequence[Row]) -> str:
-    """What tells lines of one codec apart; empty where nothing does."""
+    """Return the conditions that distinguish lines of one codec; empty if there are no such conditions."""
     return " ".join(str(row.get(name)) for name in CONDITIONS if len({other.get(name) for other in rows}) > 1)
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:
-    """Which code wobbles the most."""
+    """Return which codec wobbles the most."""
     if not points:
         return "No code wobbles"
     worst = max(points, key=lambda point: point["y"])

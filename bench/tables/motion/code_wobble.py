@@ -22,11 +22,11 @@ from .trips import Trip
 
 @dataclass(frozen=True)
 class Frame:
-    """What became of points in a frame.
+    """The results of points in a frame.
 
     Attributes:
-        error: decoded less true normal on the surface, both of length 1, float64 of shape (count, 3).
-        codes: what was stored, (count, numbers).
+        error: decoded minus true normal on the surface, both of length 1, float64 of shape (count, 3).
+        codes: stored codes, (count, numbers).
         counts: whether the encoding is made for the normal, bool of shape (count,).
     """
 
@@ -37,7 +37,7 @@ class Frame:
 
 @dataclass
 class WobbleTotal:
-    """What pairs of frames add up to; angles are small, so that a difference of unit vectors is one, in radians."""
+    """Totals over pairs of frames; angles are small, so that a difference of unit vectors is an angle in radians."""
 
     points: int = 0
     squares: float = 0.0
@@ -77,13 +77,13 @@ class WobbleTotal:
 
 @dataclass(frozen=True)
 class Motion:
-    """What turns, and how.
+    """A rotation of the camera or of an object.
 
     Attributes:
-        space, moves: of turning.SPACES and turning.MOVES.
-        axis: of gbuffer's TURNS.
-        turn: degrees a frame.
-        frames: how many, 2 or more.
+        space, moves: elements of turning.SPACES and turning.MOVES.
+        axis: element of gbuffer's TURNS.
+        turn: degrees per frame.
+        frames: number of frames, 2 or more.
     """
 
     space: str
@@ -98,13 +98,13 @@ class Motion:
         return (self.space, self.moves) == ("world", "camera")
 
     def matrices(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """What turns normals and positions in each frame, (3, 3) each. Of a still code two frames say all."""
+        """Yield the matrices that turn normals and positions in each frame, (3, 3) each; only two for a still code."""
         turned = turning.rotations(self.axis, self.turn, 2 if self.is_still else self.frames)
         still = np.broadcast_to(np.eye(3), turned.shape)
         yield from zip(still if self.is_still else turned, turned if self.moves == "camera" else still, strict=True)
 
     def followed(self, count: int) -> int:
-        """How many normals are followed where `count` are asked for: more in the two frames of a still code."""
+        """Return how many normals are followed if `count` are requested: more in the two frames of a still code."""
         return count * max(self.frames // 2, 1) if self.is_still else count
 
 
@@ -144,7 +144,7 @@ def _frame(trip: Trip, domain: str, n: np.ndarray, view: np.ndarray, matrix: np.
 
 
 def _row_lengths(v: np.ndarray) -> np.ndarray:
-    """Of rows, by columns: to add up each row of three NumPy takes longer."""
+    """Return the lengths of rows, computed by columns: NumPy takes longer to add up each row of three."""
     x, y, z = v.T
     return np.sqrt(x * x + y * y + z * z)
 

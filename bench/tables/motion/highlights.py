@@ -1,4 +1,4 @@
-"""Highlights on the spheres of scene gloss: where they lie in a frame, and how bright they are."""
+"""Highlights on the spheres of scene gloss: their positions in a frame, and their brightness."""
 
 from __future__ import annotations
 
@@ -38,7 +38,8 @@ class Spots:
 
 
 def spheres_of(power: np.ndarray, covered: np.ndarray) -> np.ndarray:
-    """Which sphere a pixel shows, int of shape (height, width): 0 for none, 1 for the first of POWERS, and so on."""
+    """Return the sphere in each pixel, int of shape (height, width): 0 for none, 1 for the first of POWERS, and so
+    on."""
     match = np.abs(power[..., None] - np.array(POWERS)) < 0.01 * np.array(POWERS)
     return np.where(covered & match.any(axis=-1), match.argmax(axis=-1) + 1, 0)
 
@@ -64,15 +65,15 @@ def spots(linear: np.ndarray, spheres: np.ndarray) -> Spots:
 
 
 def wobble(frames: list[Spots], exact: Spots) -> tuple[np.ndarray, np.ndarray]:
-    """How far highlights move and flicker from frame to frame.
+    """Return how far highlights move and flicker from frame to frame.
 
     Args:
-        frames: of a code, two or more.
-        exact: the same of exact normals, which stay.
+        frames: highlights of an encoding in two or more frames.
+        exact: highlights of exact normals, which do not move.
 
     Returns:
         squared pixels, and squared percent of the exact peak, each a mean over pairs of frames and lights, of shape
-        (spheres,); NaN where a sphere has no light.
+        (spheres,); NaN if a sphere has no light.
     """
     moved = np.diff(np.stack([frame.centroids for frame in frames]), axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -64,10 +64,10 @@ class MotionCase:
     """One row to measure.
 
     Attributes:
-        codec: what is measured.
-        motion: what turns.
-        count, seed: of the normals that are followed.
-        pictures: the frames to render; None for none.
+        codec: codec to measure.
+        motion: rotation to follow.
+        count, seed: number and seed of the normals that are followed.
+        pictures: frames to render; None for none.
     """
 
     codec: Codec
@@ -109,11 +109,11 @@ class Filmed:
 
 
 class Bench:
-    """Measures cases, each reference once.
+    """A bench that measures cases, and each reference only once.
 
     Args:
-        device: where frames are rendered; None where there is no need.
-        keeps_frames: whether what is rendered is wanted afterwards.
+        device: device that renders frames; None if it is not needed.
+        keeps_frames: whether the rendered frames are needed afterwards.
     """
 
     def __init__(self, device: Device | None, keeps_frames: bool):
@@ -122,7 +122,7 @@ class Bench:
         self._panels: dict[tuple[str, float, int], panel.Exact] = {}
 
     def measure(self, case: MotionCase) -> tuple[Row, Filmed | None]:
-        """One row of the table, and the frames; a row that cannot be measured has its reason in `skipped`."""
+        """Return one row of the table and its frames; a row that cannot be measured has its reason in `skipped`."""
         row = TABLE.empty([f"{power:g}" for power in POWERS]) | _case_columns(case)
         try:
             with trip_of(case.codec) as trip:
@@ -178,14 +178,14 @@ class Bench:
 
 @dataclass
 class Differences:
-    """What a code changes of the displayed images of a sequence, and how that changes from one to the next."""
+    """The error of an encoding in the displayed images of a sequence, and its change from one image to the next."""
 
     static: list[float] = field(default_factory=list)
     moving: list[float] = field(default_factory=list)
     _before: tuple[np.ndarray, np.ndarray] | None = None
 
     def add(self, difference: np.ndarray, covered: np.ndarray) -> None:
-        """A frame's image less that of exact normals, (height, width, 3), and where it has a surface."""
+        """Add a frame's image minus that of exact normals, (height, width, 3), and the mask of its surfaces."""
         # What is no number is as far off as can be.
         difference = np.where(np.isfinite(difference), difference, 1.0)
         self.static.append(float(np.mean(difference[covered] ** 2)))
@@ -257,7 +257,7 @@ def _exact_film(projector: Projector) -> Filmed:
 
 
 def in_space(trip: Trip, space: str, view: View) -> Keeps:
-    """What the G-buffer of a turned camera keeps in place of normals: what comes back of them, in view space again."""
+    """Return a function that gives the normals from the G-buffer of a turned camera, in view space again."""
     to_view = view.matrix()[:3, :3] if space == turning.SPACES[1] else np.eye(3)
 
     def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
@@ -267,14 +267,15 @@ def in_space(trip: Trip, space: str, view: View) -> Keeps:
 
 
 def on_surfaces(trip: Trip, of_normals: np.ndarray, of_positions: np.ndarray) -> Keeps:
-    """What the G-buffer of a still camera keeps where a turned one's codes lie on the same surfaces.
+    """Return a function that gives the normals that come back from the G-buffer of a still camera if the codes on
+    its surfaces are those of a turned camera.
 
-    So a frame is seen as if the picture turned with the camera, every surface at its pixel: what changes is the code's
-    doing, and not that of the raster of pixels.
+    The frame looks as if the image turned with the camera, with every surface at its pixel: changes come from the
+    code, not from the raster of pixels.
 
     Args:
-        trip: the codec.
-        of_normals, of_positions: as code_wobble.Motion gives them.
+        trip: round trip of the codec.
+        of_normals, of_positions: matrices from code_wobble.Motion.
     """
 
     def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:

@@ -56,7 +56,7 @@ class Around:
         return self.made.image()
 
     def covered(self) -> np.ndarray:
-        """Where the frame that was drawn last shows the panel, bool of shape (height, width)."""
+        """Return which pixels of the last frame show the panel, bool of shape (height, width)."""
         return self.made.gbuffer()[0][..., 2] != 0
 
 
@@ -92,7 +92,7 @@ def exact(panel: Around) -> Exact:
 def differences(
     panel: Around, right: Exact, keeps_of: Callable[[View], Keeps]
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Of each frame its image less that of exact normals, and where the panel is."""
+    """Yield for each frame its image minus that of exact normals, and the pixels that show the panel."""
     for index, view in enumerate(panel.views()):
         image = right.display.image(panel.light(view, keeps_of(view))).astype(np.float32)
         yield image - right.shown[index], right.covered[index]

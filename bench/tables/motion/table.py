@@ -19,7 +19,7 @@ USUAL = ("octahedral", "spheremap", "per_pixel_view")
 
 @dataclass(frozen=True, kw_only=True)
 class MotionOptions(SourceOptions):
-    """What `motion` measures. Names and numbers are comma-separated."""
+    """Options for what `motion` measures. Names and numbers are comma-separated."""
 
     encoding: Encodings = USUAL
     storage: StorageNames = ("rg8",)
@@ -62,7 +62,7 @@ class MotionOptions(SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class MotionOutputs:
-    """What `motion` writes beside its rows."""
+    """Files that `motion` writes besides its rows."""
 
     plot: Plot = None
     images: Images = None

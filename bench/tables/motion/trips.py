@@ -28,11 +28,11 @@ Trip = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 @contextmanager
 def trip_of(codec: Codec) -> Iterator[Trip]:
-    """A codec made ready.
+    """Prepare the round trip of a codec.
 
     Raises:
-        MissingError: the encoding is in GLSL only, and there is no GL device.
-        ShaderError, FormatError: the device cannot have it.
+        MissingError: the encoding exists only in GLSL, and there is no OpenGL device.
+        ShaderError, FormatError: the device does not support the codec.
     """
     if has_twin(codec.encoding):
         yield _in_chunks(_trip_by_jax(codec))
@@ -42,7 +42,7 @@ def trip_of(codec: Codec) -> Iterator[Trip]:
 
 
 def backend_of(codec: Codec) -> str:
-    """By what `trip_of` measures: "jax" or "glsl"."""
+    """Return the backend that `trip_of` uses: "jax" or "glsl"."""
     return "jax" if has_twin(codec.encoding) else "glsl"
 
 
@@ -89,7 +89,8 @@ def _trip_by_glsl(codec: Codec, passes: CodecPasses) -> Trip:
 
 
 def _in_chunks(trip: Trip) -> Trip:
-    """The same for any count, CHUNK rows at a time: compiled once, and a rectangle of pixels."""
+    """Return the same round trip for any count, CHUNK rows at a time: it is compiled once, and a chunk is a
+    rectangle of pixels."""
 
     def whole(n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         codes, decoded = zip(*(part(n, view, start) for start in range(0, len(n), CHUNK)), strict=True)

@@ -1,4 +1,4 @@
-"""What turns how, and which normals are followed."""
+"""The rotations of cameras and objects, and the normals that are followed."""
 
 from __future__ import annotations
 
@@ -47,9 +47,10 @@ def angles(turn: float, frames: int, swing: float = SWING_DEG) -> np.ndarray:
 
 
 def rotations(axis: str, turn: float, frames: int) -> np.ndarray:
-    """From the first frame's view space to that of each frame of a turning camera, float64 of shape (frames, 3, 3).
+    """Return the rotations from the first frame's view space to that of each frame of a turning camera, float64 of
+    shape (frames, 3, 3).
 
-    An object that turns the other way does the same to its normals.
+    An object that turns the other way has the same effect on its normals.
     """
     return np.stack([AHEAD.turned(axis, angle).matrix()[:3, :3] for angle in angles(turn, frames)])
 

@@ -1,4 +1,4 @@
-"""How the motion table is measured and shown."""
+"""Measurement and display of the motion table."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ OTHER_DOMAIN = "in world space normals have all directions, and it is made for t
 
 
 def motions(options: MotionOptions) -> list[Motion]:
-    """What turns, and how, in each row. Raises UsageError."""
+    """Return the rotation of each row. Raises UsageError."""
     in_range("--frames", options.frames, 2, MAX_FRAMES)
     chosen = [
         choose(what, given, {name: name for name in known})
@@ -82,7 +82,7 @@ def picture_turns(options: MotionOptions) -> tuple[float, ...]:
 
 
 def cases(options: MotionOptions, device: Device | None) -> list[MotionCase]:
-    """One case for each row; what cannot be is named on standard error.
+    """Return one case for each row; combinations that cannot be measured are named on standard error.
 
     Raises:
         UsageError: unknown names, numbers out of range, or nothing left.
@@ -181,7 +181,8 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _plotted(rows: Sequence[Row]) -> list[Row]:
-    """Rows in lines over the turn, less those of codes that stay: on a logarithmic axis they would squash the rest."""
+    """Return the rows of lines over the turn, without encodings that do not wobble: on a logarithmic axis they would
+    compress the rest."""
     return [row for line in _lines(rows) if any((row["ratio"] or 0) > LEAST_PLOTTED for row in line) for row in line]
 
 

@@ -1,1 +1,1 @@
-"""Which code to take."""
+"""The choice of an encoding."""

@@ -66,12 +66,12 @@ ERRORS = 2
 
 
 def places_of(row: Row) -> list[str]:
-    """What a row is in the answer, as `place` says it; nothing of one without a place."""
+    """Return the places of a row in the answer, as listed in `place`; only an empty name if the row has no place."""
     return str(row.get("place") or "").split(", ")
 
 
 def largest(row: Row) -> float | None:
-    """The supremum, or the largest angle that was met: float32 may lose what exact arithmetic does not."""
+    """Return the supremum or a larger sampled angle: float32 may lose what exact arithmetic does not."""
     return _largest_angle(row["angle_max_deg"], row["angle_sup_deg"])
 
 
@@ -97,7 +97,7 @@ def images(row: Row) -> dict[tuple[str, str], float]:
 
 
 def image_name(scene: str, power: float | None) -> str:
-    """What an image is called: `gloss_47`, or `studio` whose materials have no specular power."""
+    """Return the name of an image: `gloss_47`, or `studio`, whose materials have no specular power."""
     return scene if power is None else f"{scene}_{power:g}"
 
 
@@ -133,12 +133,12 @@ AIMS: Mapping[str, Callable[[Row], float]] = MappingProxyType(
 
 
 def loss_db(row: Row) -> float:
-    """What a code loses by the row's aim, in decibels; less is better, infinite where it is not known."""
+    """Return the loss of an encoding by the row's aim, in decibels; lower is better, infinite if it is not known."""
     return AIMS[row["aim"]](row)
 
 
 def floor(row: Row) -> float:
-    """The issue slots that take no longer than the target's memory traffic: every code costs at least these."""
+    """Return the issue slots that the target's memory traffic hides; every encoding costs at least these."""
     return _hidden(row) * (1 + row["readers"])
 
 
@@ -148,14 +148,14 @@ def _hidden(row: Row) -> float:
 
 
 def price(row: Row) -> float:
-    """The issue slots to encode once and to decode for each reader, in each pass at least those that hide; these alone
-    where the slots are not known."""
+    """Return the issue slots to encode once and to decode in each decoding pass, with at least the hidden slots in
+    each pass; only the hidden slots if the slots are not known."""
     encode, decode = (max(row[name] or 0.0, _hidden(row)) for name in ("encode_slots", "decode_slots"))
     return encode + row["readers"] * decode
 
 
 def doublings(row: Row) -> float:
-    """How often the price that takes no time is doubled."""
+    """Return the number of doublings from the lowest cost, `floor`, to the cost of an encoding."""
     return math.log2(price(row) / floor(row))
 
 
@@ -167,11 +167,12 @@ def is_enough(row: Row) -> bool:
 
 
 def order(row: Row) -> tuple[float, ...]:
-    """By what rows are sorted, less is better.
+    """Return the sort key of a row; lower is better.
 
-    Of codes that are enough and cost little the one of fewest bits is first, then the cheapest, to a doubling. The
-    others follow by loss + worth log2(price / floor), to half a decibel, and then by the price. Images are not rounded:
-    which of them are equal is a matter of pairs. Nor are largest angles, which no choice of normals moves.
+    Among encodings that are accurate enough and cheap, the one with the fewest bits is first, then the cheapest, to
+    a doubling. The others follow by loss + worth log2(price / floor), to half a decibel, and then by cost. Image
+    scores are not rounded, because equality of images is decided by pairs. Largest angles are not rounded either,
+    because no choice of normals changes them.
     """
     ties = (price(row), _bits(row), row["slots"] or 0.0)
     if row["aim"] == "cost":
@@ -183,14 +184,15 @@ def order(row: Row) -> tuple[float, ...]:
 
 
 def score(row: Row) -> float:
-    """Return what a code loses and what its price is worth, in decibels; less is better."""
+    """Return the loss of an encoding plus its weighted cost, in decibels; lower is better."""
     return loss_db(row) + row["worth"] * doublings(row)
 
 
 def clear_gap_db(one: Row, other: Row) -> float:
-    """Return the decibels that two codes must differ by before one of them is better.
+    """Return the smallest difference in decibels at which one of two encodings is better.
 
-    Images of one code differ by how its axes lie in the scene: a gap counts above twice its standard error alone.
+    Images of one encoding depend on how its axes are oriented in the scene: a gap counts only above twice its
+    standard error.
     """
     if one["aim"] != "image":
         return LEAST_DB
@@ -204,17 +206,17 @@ def is_clearly_better(one: Row, other: Row) -> bool:
 
 
 def to_a_step(figure: float) -> float:
-    """A score to the half decibel: nobody chooses by less."""
+    """Round a score to half a decibel, because nobody chooses by less."""
     return round(figure / STEP) * STEP if math.isfinite(figure) else figure
 
 
 def _to_a_tenth(loss: float) -> float:
-    """A loss in tenths of a decibel, so that of equals the storage that comes first stays first."""
+    """Round a loss to a tenth of a decibel, so that the storage that comes first among equals stays first."""
     return round(loss, 1) if math.isfinite(loss) else loss
 
 
 def figures(row: Row) -> tuple[float, float, float]:
-    """What the front is made of: loss, price and bits, less is better."""
+    """Return the figures of the Pareto front: loss, cost and bits; lower is better."""
     return _to_a_tenth(loss_db(row)), price(row), _bits(row)
 
 
@@ -267,7 +269,7 @@ def edges_decide(needs: str | None) -> bool:
 
 
 def lost(row: Row) -> str:
-    """What a code loses of the normals because its encoding is not made for them; empty where it loses none."""
+    """Return which normals an encoding loses because they are outside its domain; empty if it loses none."""
     share = row["lost_percent"]
     return f"loss of normals that {BEYOND[row['domain']]}: {shown_share(share)} of these" if share else ""
 
@@ -286,7 +288,7 @@ def groups(rows: Sequence[Row]) -> dict[tuple[str, str, str], list[Row]]:
 
 
 def asked_of(row: Row) -> str:
-    """What was asked for, in words; rounding to the nearest is not said."""
+    """Return what was requested, in words; rounding to nearest is not mentioned."""
     rounding = row.get("rounding") or "nearest"
     return row["asked"] if rounding == "nearest" else f"{row['asked']} rounded by {rounding}"
 
@@ -339,8 +341,8 @@ def _place_text(row: Row, places: Sequence[str]) -> str | None:
 
 
 def _rows_with_holes(rows: Sequence[Row]) -> list[Row]:
-    """The rows with the size of their hole, left out for it. The least error is that of all codes of the storage that
-    could be asked for, whatever they cost and survive."""
+    """Return the rows with the size of their hole, and exclude those that have one. A hole is relative to the
+    smallest error of all encodings that could be requested in the storage, whatever they cost and survive."""
     least: dict[str, float] = {}
     for row in rows:
         if not why_unfit(row) and (angle := largest(row)) is not None:
@@ -354,7 +356,7 @@ def _rows_with_holes(rows: Sequence[Row]) -> list[Row]:
 
 
 def _hole_text(row: Row, least: float) -> str:
-    """How large a code's hole is, and where; empty where it has none."""
+    """Return how large an encoding's hole is, and where; empty if it has none."""
     angle = largest(row)
     if why_unfit(row) or row["accept_holes"] or angle is None or angle <= min(HOLE * least, LOST_DEG):
         return ""
@@ -363,7 +365,7 @@ def _hole_text(row: Row, least: float) -> str:
 
 
 def _unpriced(rows: Sequence[Row]) -> list[Row]:
-    """The rows, those without a price left out where others have one."""
+    """Return the rows; rows of unknown cost are excluded if others have a known cost."""
     is_priced = any(row["slots"] is not None for row in rows if not row["left_out"])
     return [row | {"left_out": LOOPS_SAID} if is_priced and _lacks_price(row) else row for row in rows]
 
@@ -373,7 +375,7 @@ def _lacks_price(row: Row) -> bool:
 
 
 def _places(fit: Sequence[Row]) -> list[list[str]]:
-    """What each of the codes that qualify, sorted by their order, is on the ladder."""
+    """Return the places of each qualifying encoding among the alternatives; the encodings are given in their order."""
     places: list[list[str]] = [[] for _ in fit]
     if not fit:
         return places
@@ -397,7 +399,7 @@ def _places(fit: Sequence[Row]) -> list[list[str]]:
 
 
 def is_same_price(one: Row, other: Row) -> bool:
-    """Whether two prices are less than a tenth of a doubling apart."""
+    """Whether two costs are less than a tenth of a doubling apart."""
     return abs(math.log2(price(one) / price(other))) < SAME_PRICE
 
 
@@ -406,7 +408,7 @@ def _is_cheaper(row: Row, best: Row) -> bool:
 
 
 def _is_smaller(row: Row, best: Row) -> bool:
-    """Whether a code takes fewer bits, for no higher price."""
+    """Whether an encoding takes fewer bits at no higher cost."""
     return _bits(row) < _bits(best) and (price(row) <= price(best) or is_same_price(row, best))
 
 
@@ -415,13 +417,13 @@ def _bits(row: Row) -> float:
 
 
 def _first_of_each_size(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
-    """Of rungs in their order the first of each number of bits, the most bits first."""
+    """Return the first alternative of each number of bits, in their order, the most bits first."""
     first = {_bits(fit[i]): i for i in reversed(chosen)}
     return [first[size] for size in sorted(first, reverse=True)]
 
 
 def _rungs_apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
-    """Of rungs, the least exact first, those that gain enough on the one before."""
+    """Return the alternatives, given from the least accurate, that gain enough over the one before."""
     kept: list[int] = []
     for index in chosen:
         if not kept or is_clearly_better(fit[index], fit[kept[-1]]):

@@ -21,7 +21,8 @@ LOWEST_SHARE, MOST_ANGLES = 1.0, 96
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """For each question of which two codes have a price, what they cost, and how their angles are spread."""
+    """Yield the charts of each question with at least two encodings of known cost: cost against error, and the
+    distribution of angles."""
     for index, group in enumerate(groups(rows).values()):
         able = [row for row in group if _has_place(row)]
         if len(able) > 1:
@@ -32,7 +33,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def chart_name(at: int) -> str:
-    """The name of the chart of a question, by its place among those of the rows."""
+    """Return the name of a question's chart, from the question's index among those of the rows."""
     return f"choose-{at}"
 
 
@@ -88,7 +89,7 @@ Bins = Sequence[tuple[float, float, int]]
 
 
 def _spread(name: str, counted: Sequence[tuple[Row, Bins]]) -> Chart:
-    """The share of normals that are off by less than an angle: a line for each code, and an area that all lie in."""
+    """Return the chart of the share of normals below each angle: a line for each codec, and an area around all."""
     shares = {CodecKey.of(row).label: _shares_below(angle_bins) for row, angle_bins in counted}
     angles = _angles(shares.values())
     lines = {codec: [_share_at(angle, *curve) for angle in angles] for codec, curve in shares.items()}
@@ -119,13 +120,13 @@ def _spread(name: str, counted: Sequence[tuple[Row, Bins]]) -> Chart:
 
 
 def _shares_below(found: Bins) -> tuple[list[float], list[float]]:
-    """The upper edges of a histogram's bins, and how many percent of all angles lie below each."""
+    """Return the upper edges of a histogram's bins, and the percentage of all angles below each."""
     total = sum(count for *_, count in found)
     return [max(high, LEAST_DEG) for _, high, _ in found], [100 * n / total for n in accumulate(c for *_, c in found)]
 
 
 def _share_at(angle: float, edges: Sequence[float], below: Sequence[float]) -> float:
-    """How many percent lie below an angle that is an edge of bins; rows round edges."""
+    """Return the percentage of angles below a bin's edge, with a tolerance because rows round edges."""
     index = bisect_right(edges, angle * 1.001)
     return round(below[index - 1], 1) if index else 0.0
 

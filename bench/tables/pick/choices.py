@@ -1,6 +1,6 @@
-"""What the page's script chooses from: for each question the codes, judged by all that no reader's constraint changes.
+"""Choices for the page's script: each question's codecs, judged by everything that a reader cannot change.
 
-The script has the rule of `answer.py` alone, with a reader's limits in place of those that were asked for.
+The script contains only the rule of `answer.py`, with a reader's limits in place of the requested ones.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def _turns(row: Row) -> list[list[float]]:
 
 
 def _read(text: str | None) -> Any:
-    """What a column for programs holds; None where it was not measured."""
+    """Return the content of a column for programs; None if it was not measured."""
     return json.loads(text) if text else None
 
 

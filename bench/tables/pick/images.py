@@ -152,11 +152,11 @@ class Images:
         return f"In {maker.name} {within}"
 
     def shown(self, case: PickCase, maker: SceneMaker, pole: str) -> dict[float | None, tuple[np.ndarray, np.ndarray]]:
-        """Return at each power (None where there is none) the displayed image of the first yaw, and that of exact
+        """Return for each power (None without powers) the displayed image of the first yaw, and the one of exact
         normals: (height, width, 3), 0 to 1.
 
         Raises:
-            LayoutError, or one of shots.UNMEASURABLE: there is no room for the code.
+            LayoutError, or one of shots.UNMEASURABLE: there is no room for the codec.
         """
         (turn,) = _turns(pole, 0, 1, case.setting.seed)
         trip = self._trip(case.codec)
@@ -179,7 +179,7 @@ def _poles(case: PickCase) -> Sequence[str]:
 
 
 def _turns(pole: str, first: int, count: int, seed: int) -> Sequence[Turn]:
-    """From the world's axes to a code's: in many orientations, or in none where it is in view space."""
+    """Return the rotations from the world's axes to an encoding's: many orientations, or only None in view space."""
     if pole == turns.VIEW_SPACE:
         return [None]
     if pole == TURNED:

@@ -1,4 +1,4 @@
-"""Where figures of codes are kept."""
+"""Cached figures of codecs."""
 
 from __future__ import annotations
 

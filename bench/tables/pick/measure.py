@@ -1,4 +1,4 @@
-"""What an answer needs of each code: angles, images and instructions. What was measured before is not measured anew."""
+"""Measurement of each codec for an answer: angles, images and instructions. Earlier results are not measured again."""
 
 from __future__ import annotations
 
@@ -63,15 +63,15 @@ QUALITY = ("angle_mean_deg", "angle_max_deg", "angle_counts", "worst_normal", "i
 
 @dataclass(frozen=True)
 class PickCase:
-    """One code and what is asked of it.
+    """One codec and the question about it.
 
     Attributes:
-        codec: the code.
-        normal_set: what its angles are over.
-        makers, setting, powers: what is rendered, and with which specular powers.
-        said: what the row says of the question.
-        pipeline: what renders, with the effects that were asked for.
-        is_surveyed: whether other constraints than those asked for are measured too.
+        codec: the codec.
+        normal_set: the normals that its angles are measured over.
+        makers, setting, powers: the scenes to render, and the specular powers.
+        said: the columns of the row about the question.
+        pipeline: the renderer, with the requested effects.
+        is_surveyed: whether constraints other than the requested ones are measured too.
     """
 
     codec: Codec
@@ -85,7 +85,7 @@ class PickCase:
 
     @property
     def name(self) -> str:
-        """What it is called among the cases of a question, which all round alike."""
+        """Name of the case among those of a question, which all have the same rounding."""
         return f"{self.codec.encoding.name}/{self.codec.storage.name}"
 
     @property
@@ -101,14 +101,15 @@ class PickCase:
 def rows(
     asked: Sequence[Sequence[PickCase]], device: Device | None, images: Path | None, tick: Callable[[str], None]
 ) -> Iterator[list[Row]]:
-    """The rows of each question: the codes of one storage on one set of normals and in its scenes, in their order.
+    """Yield the rows of each question: the codecs of one storage on one set of normals and its scenes, in their order.
 
-    Images and suprema take seconds each. Images are of codes that have a place in the answer; of all that qualify
-    where the image decides. Suprema are of codes that have a place; of all where the largest angle decides.
+    Images and suprema take seconds each. Images are drawn for codecs that have a place in the answer, or for all
+    that qualify if the image decides. Suprema are computed for codecs that have a place, or for all that qualify if
+    the largest angle decides.
 
     Args:
-        device: draws; without one there are no images.
-        images: a folder for the images of codes that an answer names, if they are wanted.
+        device: draws; without it there are no images.
+        images: a folder for the images of codecs that an answer names, if they are wanted.
     """
     if not asked:
         return
@@ -151,7 +152,7 @@ class Question:
         self._angle_columns = pool.submit(_angle_columns, self._by_jax)
 
     def _most_price(self, case: PickCase) -> float:
-        """The price up to which a code is compared."""
+        """Return the highest cost at which a codec is still compared."""
         cheap = AFFORDABLE * floor(self._rows[case.name])
         return cheap if case.is_beside else 2 * cheap if case.said["packed"] else math.inf
 
@@ -175,8 +176,8 @@ class Question:
         self._find_suprema(self._qualified_rows("angle") if self._aim == "worst" else self._placed_rows())
 
     def _survey(self, others: Costs) -> None:
-        """What a reader of the page may ask of the codes that could be the answer, and of that of another storage that
-        it names."""
+        """Measure other constraints that a reader of the page may set, for all possible answers and for the codec
+        of another storage that the answer names."""
         named = {_case_name(row) for row in self._placed_rows()}
         for name, row in self._rows.items():
             if why_unfit(row | {"accept_lengths": True}):
@@ -186,8 +187,8 @@ class Question:
                 row["by_use"] = json.dumps(_by_use(self._cases[name]))
 
     def _judge_others(self) -> None:
-        """What mixing does to the code of another storage that the answer would name; to the next one where it does not
-        survive."""
+        """Measure how mixing affects the codec of another storage that the answer would name; if it does not
+        survive, measure the next one."""
         judged: set[str] = set()
         while waits := [
             row for row in self._placed_rows() if row["beside"] and row["mixing"] and _case_name(row) not in judged
@@ -198,7 +199,7 @@ class Question:
 
     @property
     def _own(self) -> list[PickCase]:
-        """The cases that progress counts: those of the storage that was asked for."""
+        """Cases that count as progress: those of the requested storage."""
         return [case for name, case in self._cases.items() if name in self._rows and not case.is_beside]
 
     def draw(self, images: Images | None, tick: Callable[[str], None]) -> None:
@@ -224,7 +225,7 @@ class Question:
         self._measure_axes([self._cases[_case_name(row)] for row in placed])
 
     def _draw_near_the_best(self, images: Images) -> None:
-        """All that qualify by a few orientations, and those near the best by all."""
+        """Draw all codecs that qualify in a few orientations, and those near the best in all orientations."""
         names = [_case_name(row) for row in self._qualified_rows("angle")]
         for name in names:
             self._rows[name] |= images.first(self._cases[name])
@@ -246,7 +247,7 @@ class Question:
         return answered(list(self._rows.values()))
 
     def _placed_rows(self) -> list[Row]:
-        """What has a place in the answer, which is by the angles where there are no images yet."""
+        """Return the rows with a place in the answer; rank by angles until images exist."""
         rows = list(self._rows.values())
         has_images = any(row.get("image_errors") for row in rows)
         aim = "angle" if self._aim == "image" and not has_images else self._aim
@@ -302,7 +303,7 @@ def _case_name(row: Row) -> str:
 
 
 def _by_use(case: PickCase) -> Row:
-    """What each use does to a code: why it cannot be used so, and the sum, the number and the largest of its errors."""
+    """Return for each use why a codec cannot be used that way, and the sum, number and maximum of its errors."""
     domain, at_edges = _mixed_domain(case), edges_decide(case.said["needs"])
     key = figures_key("each use", case.codec, domain, at_edges, _normals_key(case))
 
@@ -326,7 +327,7 @@ def _by_use(case: PickCase) -> Row:
 
 
 def _mixing_columns(case: PickCase) -> Row:
-    """What the mixing that is asked for does to a code: why it does not survive, if it does not, and its errors."""
+    """Return the effect of the requested mixing on a codec: why it does not survive, if it does not, and its errors."""
     uses, domain = case.said["mixing"], _mixed_domain(case)
     key = figures_key("mixing", case.codec, uses, domain, _normals_key(case))
 
@@ -386,12 +387,12 @@ def _angle_columns(chosen: Sequence[PickCase]) -> list[Row]:
 
 
 def length_shares(codecs: Sequence[Codec]) -> dict[str, float | None]:
-    """By codec the share of the error of lengths, over a few normals of the sphere."""
+    """Return by codec the ratio of its length error to its direction error, over a few normals of the sphere."""
     return {name: row["length_share"] for name, row in _angles_of(codecs, NORMAL_SETS["sphere"](FEW, 0))}
 
 
 def mean_angles(codecs: Sequence[Codec], normals: NormalSet) -> dict[str, float]:
-    """By codec the mean angle in degrees over normals; those without figures are left out."""
+    """Return by codec the mean angle in degrees over normals; codecs without figures are left out."""
     return {name: row["angle_mean_deg"] for name, row in _angles_of(codecs, normals) if not row["skipped"]}
 
 
@@ -401,9 +402,9 @@ def _angles_of(codecs: Sequence[Codec], normals: NormalSet) -> Iterator[tuple[st
 
 
 def _length_share(row: Row) -> float | None:
-    """The root mean squared error of the lengths of decodes over that of the directions, in radians.
+    """Return the root mean squared error of the decoded lengths divided by that of the directions in radians.
 
-    |n - n'|^2 = (1 - |n'|)^2 + 2 |n'| (1 - cos theta), and the mean of the last term is close to that of theta^2.
+    |n - n'|^2 = (1 - |n'|)^2 + 2 |n'| (1 - cos theta), and the last term's mean is close to that of theta^2.
     """
     if row["mse"] is None or not row["angle_rms_deg"]:
         return None
@@ -427,7 +428,7 @@ def _supremum_deg(case: PickCase) -> float | None:
 
 
 def _normals_key(case: PickCase) -> list[Any] | None:
-    """What is kept of a set of normals in a key; None of one that may be another next time."""
+    """Return the part of a key that identifies a set of normals; None for a set that may change between runs."""
     chosen = case.normal_set
     return [chosen.name, chosen.count, chosen.seed] if chosen.name in NORMAL_SETS else None
 

@@ -66,7 +66,7 @@ def _write(path: Path, image: np.ndarray) -> None:
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """What lies in a folder of the answers: at each power, the highest first, the codes by their places."""
+    """Yield the subjects in a folder of answers: for each power, the highest first, the codecs by their places."""
     there = files_of(folder)
     storages = list(dict.fromkeys(row.get("storage") for row in rows))
     kept = [row for row in rows if set(places_of(row)) & set(PLACES)]

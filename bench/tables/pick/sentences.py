@@ -80,13 +80,13 @@ OF_SPACE = {
 
 
 def sentences(group: Sequence[Row]) -> list[str]:
-    """What the rows of one question say, as `answered` gives them: the answer, then paragraphs of a few sentences, and
-    last what does not qualify."""
+    """Return the sentences on the rows of one question, as `answered` returns them: the answer, then paragraphs of
+    a few sentences, and last the codecs that do not qualify."""
     return [*told(group), *left_out(group)]
 
 
 def told(group: Sequence[Row]) -> list[str]:
-    """The same without what does not qualify."""
+    """Return the same sentences without the codecs that do not qualify."""
     best = next((row for row in group if BEST in places_of(row)), None)
     if best is None:
         return [f"{question(group[0])}: no encoding qualifies{_constraints_text(group[0])}.", *_instead(group)]
@@ -102,13 +102,13 @@ def told(group: Sequence[Row]) -> list[str]:
 
 
 def _first_sentences(group: Sequence[Row], best: Row) -> str:
-    """What to take, what it does not hold, and what is much better in another storage."""
+    """Return which encoding to use, what it cannot represent, and what is much better in another storage."""
     others = [*not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
     return " ".join([f"{question(best)}: take {called(best)}.", *others])
 
 
 def in_short(group: Sequence[Row]) -> list[str]:
-    """What to take, what it loses and what it costs; the alternatives are a table's."""
+    """Return which encoding to use, with its errors and its cost; a table lists the alternatives."""
     best = next((row for row in group if BEST in places_of(row)), None)
     if best is None:
         return [*told(group), *left_out(group)]
@@ -129,7 +129,7 @@ def in_short(group: Sequence[Row]) -> list[str]:
 
 
 def conditions(group: Sequence[Row]) -> Iterator[str]:
-    """What was left out, and how images were made, a line each."""
+    """Yield a line on the encodings that were left out, and a line on how images were made."""
     if not any(BEST in places_of(row) for row in group):
         return
     count = sum(bool(row["left_out"]) and not row["against"] for row in group)
@@ -141,13 +141,13 @@ def conditions(group: Sequence[Row]) -> Iterator[str]:
 
 
 def _of_maps(best: Row) -> Iterator[str]:
-    """That texture maps, which are filtered, are another question."""
+    """Yield a note that texture maps, which are filtered, are a separate question."""
     if best["needs"] == "hemisphere" and "filter" in (best.get("mixing") or "").split(","):
         yield "This is of all normals with z >= 0. Those of a texture map lie near z: ask normalbench maps."
 
 
 def _space_sentences(best: Row) -> str:
-    """What the space of a code means; empty where none was asked for."""
+    """Return the meaning of an encoding's space; empty if none was requested."""
     if best["needs"] not in OF_SPACE:
         return ""
     angles = best.get("image_view_angles")
@@ -155,12 +155,12 @@ def _space_sentences(best: Row) -> str:
 
 
 def question(row: Row) -> str:
-    """What was asked for, and what was measured on."""
+    """Return the question, and the normals that were measured."""
     return f"{asked_of(row)}, on {row['normals']}"
 
 
 def not_held(best: Row) -> Iterator[str]:
-    """What images have that the answer does not hold, where that is much."""
+    """Yield the share of visible normals that the answer cannot represent, if it is large."""
     lost = best.get("image_lost_percent") or 0.0
     if lost >= MUCH_LOST:
         yield f"It cannot represent {lost:.2g}% of the visible normals in {best['image_lost_scene']}."
@@ -175,7 +175,7 @@ def _much_better(group: Sequence[Row], best: Row) -> list[Row]:
 
 
 def _instead(group: Sequence[Row]) -> Iterator[str]:
-    """What comes nearest where no encoding qualifies."""
+    """Yield the nearest alternatives if no encoding qualifies."""
     if not group[0]["needs"] and all(row["lost_percent"] for row in group if not row["beside"]):
         yield "If normals have z >= 0 or face the viewer, name their space: --domain tangent, terrain, map or view."
     if group[0]["mixing"]:
@@ -216,7 +216,7 @@ def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
 
 
 def _hangs_on(group: Sequence[Row], best: Row) -> Iterator[str]:
-    """Which answer a constant near the one that was supposed would give, where that is another one."""
+    """Yield the answers that constants near the assumed ones would give, if they differ."""
     worth, enough = best["worth"], best["enough"]
     supposed = [
         ({"worth": worth + change}, f"at {worth + change:g} dB per doubling") for change in (-1, 1) if worth > 1
@@ -245,7 +245,7 @@ def _constraints_text(row: Row) -> str:
 
 
 def constraints(row: Row) -> list[str]:
-    """What a code must keep to, in words."""
+    """Return the constraints on an encoding, in words."""
     limits = [f"at most {row['most_instructions']} issue slots"] if row["most_instructions"] is not None else []
     limits += [f"for {row['needs']}"] if row["needs"] else []
     return limits + ([f"that survives {row['mixing'].replace(',', ', ')}"] if row["mixing"] else [])
@@ -274,7 +274,7 @@ def _largest_text(row: Row) -> str:
 
 
 def _moved_deg(row: Row) -> list[float]:
-    """How far a mirror's reflection moves, in the mean and at most: by twice the angle that its normal is turned."""
+    """Return the mean and largest movement of a mirror's reflection: twice the angle by which its normal is turned."""
     return [min(2 * value, 180.0) for value in (mean(row), largest_mixed(row)) if value is not None]
 
 
@@ -337,7 +337,7 @@ def _bits_text(row: Row) -> str:
 
 
 def _images_text(row: Row) -> str:
-    """The worst of a row's images; empty where there is none."""
+    """Return the sentence on the worst of a row's images; empty if there are none."""
     by_scene = images(row)
     if not by_scene:
         return ""
@@ -360,7 +360,7 @@ def _spread_text(row: Row) -> str:
 
 
 def _pole_sentence(row: Row, names: str | None = None) -> str:
-    """Say how an encoding's z axis should lie, if that is worth more than its error; `names` says how to write that."""
+    """Return how to point an encoding's z axis, if that matters more than chance; `names` is how to write it."""
     pole, cost = row.get("image_pole"), row.get("image_wrong_pole_db") or 0.0
     if not pole or cost < max(STEP, ERRORS * (row.get("image_se_db") or 0.0)):
         return ""
@@ -372,7 +372,7 @@ def _pole_sentence(row: Row, names: str | None = None) -> str:
 
 
 def _mixing_text(row: Row) -> str:
-    """What mixing does to a code that survives it inside a surface; empty where it was not asked for."""
+    """Return how mixing affects a codec that survives it inside a surface; empty if mixing was not requested."""
     if not row.get("mixing"):
         return ""
     upsampled = "Upsampling decodes each texel before it weighs it, which works with every encoding. "
@@ -391,7 +391,7 @@ def _reservation_sentence(row: Row) -> str:
 
 
 def _gain_text(row: Row, best: Row) -> str:
-    """How much better or worse a code is than the answer."""
+    """Return by how much a codec is better or worse than the answer."""
     gain = loss_db(best) - loss_db(row)
     if math.isnan(gain) or abs(gain) < 0.05:
         return "as accurate"
@@ -399,7 +399,7 @@ def _gain_text(row: Row, best: Row) -> str:
 
 
 def _rung_text(row: Row, best: Row) -> str:
-    """A rung of the ladder: what it gains, and for what price."""
+    """Return the text of an alternative: its gain and its cost."""
     text = f"{called(row)}, {_gain_text(row, best)} ({_errors_text(row)})"
     return f"{text}, {_price_text(row, best)}{_bits_clause(row, best)}."
 
@@ -440,7 +440,7 @@ def _elsewhere_text(row: Row, best: Row) -> str:
 
 
 def around_gain(row: Row, mean_text: str) -> tuple[str, str]:
-    """What is said of a code of another storage, before its gain and behind it."""
+    """Return the text on a codec of another storage, before and after its gain."""
     free = f"leaves {row['free_bits']} bits free" if row["free_bits"] else "uses all bits"
     begin = f"In {row['storage']}, also {row['bytes']} bytes, {row['encoding']} is "
     return begin, f" dB better (mean {mean_text}) and {free}."
@@ -457,7 +457,7 @@ def _rival_sentence(row: Row, best: Row) -> str:
 
 
 def left_out(group: Sequence[Row]) -> Iterator[str]:
-    """Which codes do not qualify, and why."""
+    """Yield the codecs that do not qualify, and why."""
     reasons: dict[str, list[Row]] = {}
     for row in group:
         if row["left_out"] and not row["against"]:
@@ -467,7 +467,7 @@ def left_out(group: Sequence[Row]) -> Iterator[str]:
 
 
 def _with_reason(rows: Sequence[Row], why: str) -> str:
-    """The codes that are left out for a reason; where its details differ, those of the first."""
+    """Return the codecs that are left out for a reason; if its details differ, those of the first codec."""
     # The example is the one that people would ask about.
     rows = sorted(rows, key=lambda row: (bool(row.get("hole")), loss_db(row)))
     names = [f"{called(row)} {row['hole']}" if row.get("hole") else called(row) for row in rows]

@@ -1,4 +1,4 @@
-"""The pick table: which code to take, at what price. Measures what an answer needs, and says the answer."""
+"""The pick table: which encoding to use, and its cost. Measures what an answer needs, and writes the answer."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ TEXEL_DEG = 360 / 1024
 
 @dataclass(frozen=True, kw_only=True)
 class PickOptions(Reading, SourceOptions):
-    """What `pick` chooses from, and what it asks of the code. Names are comma-separated."""
+    """Options of `pick`: the candidates and the constraints. Names are comma-separated."""
 
     storage: StorageNames = ("rg8", "rgb10a2")
     bytes: Annotated[
@@ -118,7 +118,7 @@ class PickOptions(Reading, SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class PickOutputs:
-    """What `pick` writes beside its rows."""
+    """Outputs of `pick` other than its rows."""
 
     images: Images = None
     live: Live = None

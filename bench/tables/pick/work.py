@@ -1,4 +1,4 @@
-"""How the pick table is measured and answered."""
+"""Measurement of the pick table, and its answers."""
 
 from __future__ import annotations
 
@@ -64,10 +64,10 @@ class PickStep:
 
 
 def questions(options: PickOptions) -> list[list[measure.PickCase]]:
-    """For each storage, or number of bytes, and set of normals a case for each code that fits.
+    """Return for each storage, or number of bytes, and set of normals a case for each codec that fits.
 
     Raises:
-        UsageError: unknown names, counts out of range, or no code that fits.
+        UsageError: unknown names, counts out of range, or no codec that fits.
     """
     count = checked_count(options.count)
     check_seed(options.seed)
@@ -158,15 +158,15 @@ def _asked(options: PickOptions) -> dict[str, list[Storage]]:
 
 
 def _packings(storage: Storage) -> list[Storage]:
-    """The storages that lie packed in a texel of this one."""
+    """Return the storages that are packed in a texel of this one."""
     return [other for other in STORAGES.values() if other.is_packed and other.target == storage and other != storage]
 
 
 def _compared(
     name: str, storages: Sequence[Storage], rounding: str, fit: Sequence[Codec], encodings: Sequence[Encoding]
 ) -> Iterator[tuple[Codec, Row]]:
-    """The codecs of a question and what their rows say: those asked for, then those of other storages of as many bytes
-    where one storage was asked for."""
+    """Yield the codecs of a question and their columns: the requested ones, then, if one storage was requested,
+    those of other storages with the same number of bytes."""
     size, is_one = storages[0].texel_bytes, storages[0].name == name
     about: Row = {"asked": name, "bytes": size, "rounding": rounding, "beside": False, "packed": False}
     for codec in fit:
@@ -189,7 +189,7 @@ def _is_held(codec: Codec, storages: Sequence[Storage], rounding: str) -> bool:
 
 
 def _pipeline(effects: Sequence[ChosenEffect], makers: Sequence[SceneMaker], setting: Setting) -> Pipeline:
-    """What renders the images. Raises UsageError for effects that do not go together or have nothing to do."""
+    """Return the pipeline that renders the images. Raises UsageError for effects that clash or have nothing to do."""
     complaints: list[str] = []
     # Pixels can be sampled of deferred shading; some effects need what is special to the hybrid pipeline.
     pipeline = pipeline_with(PIPELINES["hybrid" if effects else "deferred"], effects, complaints)
@@ -200,7 +200,7 @@ def _pipeline(effects: Sequence[ChosenEffect], makers: Sequence[SceneMaker], set
 
 
 def _question(options: PickOptions) -> Row:
-    """What every row says of the question. Raises UsageError for what cannot be asked."""
+    """Return the columns on the question, which all rows share. Raises UsageError for an invalid question."""
     if options.most_instructions is not None:
         in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
     in_range("--readers", options.readers, 0, MOST_READERS)
@@ -277,7 +277,7 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
 
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """For each question the answer in sentences, and the codes that no other beats."""
+    """Yield for each question the answer in sentences, and the codecs that no other codec beats."""
     for (asked, normals, scene), group in groups(rows).items():
         front = [_short(row) for row in group if row["front"] or row["place"]]
         title = f"{asked}, on {normals}: the codes that no other one beats in error, price and bits"
@@ -288,7 +288,7 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """For each question the answer in a dozen lines."""
+    """Yield for each question the answer in a dozen lines."""
     for group in groups(rows).values():
         # The first sentence has what lies in another storage.
         placed = [_alternative(row) for row in group if row["place"] and row["place"] != ELSEWHERE]

@@ -1,1 +1,1 @@
-"""What codecs lose of normals."""
+"""Accuracy of normals in each codec."""

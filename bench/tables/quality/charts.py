@@ -31,10 +31,10 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
-    """How often which angle: a histogram for each codec, the best mean on top; mean, 99 % and largest angle marked.
+    """Return a histogram of angles for each codec, the best mean on top; mean, 99th percentile and largest are marked.
 
     Args:
-        at: its place among the charts of the table.
+        at: its index among the charts of the table.
         rows: of the quality table, one set, in that order: encoding, storage, bits, angle_counts and angles.
     """
     lines = lines_of(rows)
@@ -80,7 +80,7 @@ def _point_row(row: Row, line: str) -> dict[str, Any]:
 
 
 def steps(found: Sequence[tuple[float, float, int]]) -> tuple[list[float], list[float]]:
-    """A histogram's outline: edges from LEAST_DEG on, and between them how many normals lie in an octave."""
+    """Return a histogram's outline: edges from LEAST_DEG up, and between them the number of normals per octave."""
     below = sum(count for low, _, count in found if low < LEAST_DEG)
     edges, heights = [LEAST_DEG, LEAST_DEG * 1.125], [below / math.log2(1.125)]
     for low, high, count in found:
@@ -102,7 +102,7 @@ def _outline_points(row: Row, foot: float) -> list[Row]:
 
 
 def _finding_sentence(rows: Sequence[Row]) -> str:
-    """Which codec of each number of bits has the smallest mean angle, where several have as many."""
+    """Return which codec has the smallest mean angle at each bit count that several codecs share."""
     alike: dict[int, list[Row]] = {}
     for row in rows:
         alike.setdefault(row["bits"], []).append(row)

@@ -1,4 +1,4 @@
-"""What the page shows of quality beside its rows: errors over the sphere."""
+"""Data that the page shows in addition to the quality rows: errors over the sphere."""
 
 from __future__ import annotations
 

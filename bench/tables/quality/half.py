@@ -1,4 +1,4 @@
-"""What half arithmetic costs a code: rows of it beside the same rows in float32."""
+"""The accuracy that half arithmetic costs: its rows next to the same rows in float32."""
 
 from __future__ import annotations
 

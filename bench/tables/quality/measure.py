@@ -52,7 +52,7 @@ Tick = Callable[[], None]
 
 @dataclass(frozen=True)
 class QualityCase:
-    """One row to measure; `worst_case` and `codes` ask for figures that take seconds each."""
+    """One row to measure; `worst_case` and `codes` request figures that take seconds each."""
 
     codec: Codec
     normal_set: NormalSet
@@ -65,13 +65,13 @@ class QualityCase:
         return f"{self.codec.name} {self.normal_set.name} {self.backend}"
 
     def parts(self) -> list[QualityCase]:
-        """The same of each part of the set; none where it is measured at once."""
+        """Cases for the parts of the set; empty if the set is measured at once."""
         return [replace(self, normal_set=part) for part in self.normal_set.parts]
 
     @property
     def domain(self) -> str | None:
-        """What limits and suprema are over: "sphere", or "hemisphere" where the set or the encoding is for z >= 0; None
-        of a set that is not uniform."""
+        """Domain of limits and suprema: "sphere", or "hemisphere" if the set or the encoding is for z >= 0; None
+        for a set that is not uniform."""
         if self.normal_set.area is None:
             return None
         is_whole = self.normal_set.area == AREAS["sphere"] and self.codec.encoding.domain == "sphere"
@@ -80,7 +80,7 @@ class QualityCase:
 
 @cache
 def meter_of(codec: Codec) -> Measures:
-    """Return what measures a codec: compiled C, or XLA's program where there is no C compiler or no C for the codec."""
+    """Return the meter of a codec: compiled C, or XLA's program if there is no C compiler or no C for the codec."""
     # Noise is of pixels, and what the C compiler is given is of each normal by itself.
     if not codec.is_dithered:
         like, scales = shared(codec.storage, codec.encoding.components)
@@ -104,7 +104,7 @@ def meter_by_xla(codec: Codec) -> Meter:
 
 
 def _noise_of(codec: Codec, width: int, count: int) -> tuple[np.ndarray, ...]:
-    """What is added to three numbers of the codes of so many pixels, as `laid_out` has it: float32 planes."""
+    """Return the noise for three numbers of the codes of `count` pixels, arranged by `laid_out`: float32 planes."""
     return tuple(np.ascontiguousarray(laid_out(codec.dither(0).added, width, count).T[:3]))
 
 
@@ -168,7 +168,7 @@ class Decoding:
     how: Mapping[str, str]
 
     def total(self, tick: Tick = idle) -> ErrorTotal:
-        """What its chunks add up to."""
+        """Return the total over all chunks."""
         return measure_together([self.meter], self.loads, lambda _: tick())[0]
 
 
@@ -255,9 +255,9 @@ def cases(
 
 
 def measure(case: QualityCase, tick: Tick = idle) -> Row:
-    """One row of the quality table; `tick` is called as each chunk of the set is done.
+    """Return one row of the quality table; `tick` is called after each chunk of the set.
 
-    A row that the device cannot give has its reason in `skipped` and no figures.
+    If the device cannot measure a row, the row has the reason in `skipped` and no figures.
     """
     try:
         with BACKENDS[case.backend](case) as decoding:
@@ -374,7 +374,7 @@ def _is_shared(case: QualityCase) -> bool:
 
 
 def tell_by_xla(chosen: Iterable[QualityCase]) -> None:
-    """Say which encodings' rows by JAX are computed by XLA, which rounds otherwise than compiled C."""
+    """Say which encodings' rows by JAX are computed by XLA, which rounds differently from compiled C."""
     shared = [case.codec for case in chosen if _is_shared(case) and not case.codec.is_dithered]
     if shared and not compiler():
         tell("no C compiler found (cc): XLA computes the rows, which is slower, and the last digits may differ")
@@ -415,7 +415,7 @@ def image_of(normals: NormalSet) -> tuple[np.ndarray, np.ndarray]:
 
 
 def image_round_trip(case: QualityCase) -> RoundTrip:
-    """What a codec makes of a set that is an image. Raises one of UNMEASURABLE by the GLSL back end."""
+    """Return a codec's round trip of a set that is an image. Raises one of UNMEASURABLE with the GLSL backend."""
     height, width = case.normal_set.shape or (0, 0)
     n, view, covered = planes_of(case.normal_set)
 

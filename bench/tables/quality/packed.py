@@ -1,4 +1,4 @@
-"""What the catalogue does with as many bits as a code uses that packs itself."""
+"""The most accurate codecs of the catalogue at the bit counts of encodings that pack themselves."""
 
 from __future__ import annotations
 

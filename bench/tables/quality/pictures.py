@@ -31,7 +31,7 @@ MOST_BYTES = MAX_PIXELS * 13 + 2**16
 
 
 def stem(normals: str, key: CodecKey) -> str:
-    """What the files of a codec on a set are called, without what they show. The name of a chain has a slash."""
+    """Return a codec's file name for a set, without the content's suffix. The name of a chain has a slash."""
     parts = [normals, key.encoding, key.storage, *([] if key.rounding == "nearest" else [key.rounding])]
     return "-".join(parts).replace("/", "_in_")
 
@@ -61,7 +61,7 @@ def _write_codecs(chosen: Iterable[measure.QualityCase], folder: Path) -> None:
 
 
 def _round_trip(case: measure.QualityCase) -> measure.RoundTrip | None:
-    """By the case's back end, or by JAX; None where neither can."""
+    """Return the round trip by the case's backend, or by JAX; None if neither can compute it."""
     for backend in dict.fromkeys((case.backend, "jax")):
         with suppress(*measure.UNMEASURABLE):
             return measure.image_round_trip(replace(case, backend=backend))
@@ -106,7 +106,7 @@ def write_scenes(chosen: Sequence[measure.QualityCase], folder: Path) -> None:
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """What lies in a folder of the codecs of rows. A name is looked up, so that none leads out of the folder."""
+    """Yield a folder's subjects for the codecs of rows. Names are looked up, so that none leads out of the folder."""
     there = files_of(folder)
     for normals in dict.fromkeys(str(row.get("normals")) for row in rows):
         original = there.get(f"{normals}-normals.png")
@@ -118,7 +118,7 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
 
 
 def _pictured(there: dict[str, Path], name: str, key: CodecKey, rank: int) -> Pictured | None:
-    """What the page shows of a codec; None where a file of it is missing."""
+    """Return a codec's images for the page; None if one of its files is missing."""
     arrays, decoded = there.get(f"{name}.npz"), there.get(f"{name}-decoded.png")
     return Pictured(key, key.label, key.label, partial(_pixels, arrays, decoded), rank) if arrays and decoded else None
 

@@ -1,8 +1,8 @@
-"""How far off a codec is in each direction: an equal-area map of the sphere, kept as a small array.
+"""Error of a codec in each direction: an equal-area map of the sphere, kept as a small array.
 
-The projection is Lambert's azimuthal equal-area one of either half, for normals in view space: z >= 0, what faces the
-viewer, in the first disc and z <= 0 in the second, x to the right and y up in both. A disc of radius 1 holds a
-hemisphere; at a distance r from its middle |z| = 1 - r^2, so that every cell stands for the same solid angle.
+Each half uses Lambert's azimuthal equal-area projection, for normals in view space: z >= 0, which faces the viewer,
+in the first disc and z <= 0 in the second, x to the right and y up in both. A disc of radius 1 holds a hemisphere;
+at a distance r from its centre |z| = 1 - r^2, so every cell represents the same solid angle.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ WHOLE_SPHERE = "sphere"
 
 class SphereMap(NamedTuple):
     """Angles between input and decode in degrees, float32 of shape (halves, cells, cells), row 0 on top, the half that
-    faces the viewer first; NaN where a cell lies outside its disc, or a half outside what the code can hold.
+    faces the viewer first; NaN where a cell is outside its disc, or a half cannot be represented.
 
     Attributes:
         mean_deg, max_deg: over the directions of each cell.
-        directions: how many there are in a whole cell.
+        directions: number of directions in a whole cell.
     """
 
     mean_deg: np.ndarray
@@ -48,7 +48,8 @@ class SphereMap(NamedTuple):
 
 @cache
 def _grid() -> tuple[np.ndarray, np.ndarray]:
-    """The directions of both discs, float32 of shape (halves, pixels, pixels, 3), and which lie on the sphere."""
+    """Return the directions of both discs, float32 of shape (halves, pixels, pixels, 3), and a mask of the
+    directions on the sphere."""
     pixels = CELLS * FINE
     across = (np.arange(pixels) + 0.5) / pixels * 2 - 1
     u, v = np.meshgrid(across, -across)
@@ -103,7 +104,7 @@ def _angles_by_glsl(codec: Codec, n: Vec3) -> np.ndarray:
 
 
 def file_name(encoding: str, storage: str, rounding: str) -> str:
-    """What a codec's map is called."""
+    """Return the file name of a codec's map."""
     name = "-".join([encoding, storage, *([] if rounding == "nearest" else [rounding])])
     return name.replace("/", "_in_") + ".npz"
 
@@ -121,7 +122,7 @@ def write_maps(codecs: Iterable[Codec], folder: Path) -> None:
 
 
 def read_map(path: Path) -> SphereMap | None:
-    """A map as it was written; None where there is none or it is damaged."""
+    """Read a map as it was written; return None if it is missing or damaged."""
     try:
         mean, largest, directions = read_npz(path, SphereMap._fields)
     except (OSError, DamagedError):

@@ -32,7 +32,7 @@ KEY, HOW, RAW = Role.KEY, Role.HOW, Role.RAW
 
 @dataclass(frozen=True, kw_only=True)
 class QualityOptions(Reading, SourceOptions):
-    """What `quality` measures. Names are comma-separated."""
+    """Options of `quality`. Names are comma-separated."""
 
     encoding: Encodings = ("all",)
     storage: StorageNames = ("rgba8",)
@@ -61,7 +61,7 @@ class QualityOptions(Reading, SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class QualityOutputs:
-    """What `quality` writes beside its rows."""
+    """Outputs of `quality` other than its rows."""
 
     images: Images = None
     maps: Annotated[

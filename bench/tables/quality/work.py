@@ -1,4 +1,4 @@
-"""How the quality table is measured and shown."""
+"""Measurement and display of the quality table."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ OF_SPHERE, OF_HALF = ("sphere", "axes"), ("hemisphere",)
 
 
 def cases(options: QualityOptions) -> list[measure.QualityCase]:
-    """One case for each row. Codecs that do not fit are named on standard error.
+    """Return a case for each row. Codecs that do not fit are named on standard error.
 
     Raises:
         UsageError: unknown names, or nothing that fits.
-        MissingError: only GLSL is asked for and there is no GL device.
+        MissingError: only GLSL is requested and there is no GL device.
     """
     count = checked_count(options.count)
     check_seed(options.seed)
@@ -217,8 +217,8 @@ def _sheet_of(row: Row, measured: Sequence[Row]) -> tuple[str, str]:
 
 
 def beside(rows: Iterable[Row]) -> list[Row]:
-    """One line for each encoding: the article's figure where it has one, and a column for each back end, or one column
-    where all agree in every digit shown. The article's PSNR is left out where it is infinite for some."""
+    """Return one line for each encoding: the article's figure if it has one, and a column for each backend, or one
+    column if all agree in every digit shown. The article's PSNR is left out if it is infinite for some encodings."""
     lines: dict[str, Row] = {}
     for row in rows:
         name = row["encoding"] + ("" if row["rounding"] == "nearest" else f" {row['rounding']}")
@@ -245,7 +245,7 @@ def _is_beyond(column: str, lines: Iterable[Row]) -> bool:
 
 
 def _merge(column: str, lines: Sequence[Row]) -> None:
-    """One column of all back ends where there are several and they agree in every digit shown."""
+    """Merge the columns of all backends into one if there are several and they agree in every digit shown."""
     names = list(dict.fromkeys(name for line in lines for name in line if name.startswith(f"{column}_")))
     known = all(line.get(name) is not None for line in lines for name in names)
     if len(names) > 1 and known and all(len({text_of(line[name]) for name in names}) == 1 for line in lines):

@@ -1,1 +1,1 @@
-"""What codecs, layouts and light buffers do to the final image."""
+"""Effect of codecs, layouts and light buffers on the final image."""

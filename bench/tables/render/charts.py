@@ -57,7 +57,7 @@ FIELDS = ((IMAGE, "image"), (NORMALS, "normals"))
 
 
 def _finding_sentence(lines: Sequence[Row]) -> str:
-    """Which codec has the best image, and whether it is the one with the best normals."""
+    """Return which codec has the best image, and whether it also has the best normals."""
     best, normals = lines[0], max(lines, key=lambda line: line["normals"])
     sentence = f"{best['line']} has the best image, {best['image']:.1f} dB"
     if best["normals"] == normals["normals"]:

@@ -40,16 +40,16 @@ class RenderCase:
     """One row to measure.
 
     Attributes:
-        pipeline, plan: what renders, and with what.
-        maker, setting: the scene and what it is made with.
-        frames: moments that figures are averaged over.
-        asked: samples a pixel as asked for; `plan.samples` is what the device gives.
+        pipeline, plan: the renderer, and the plan that it follows.
+        maker, setting: the scene and its settings.
+        frames: number of moments that figures are averaged over.
+        asked: requested samples per pixel; `plan.samples` is what the device gives.
         power: specular power of all materials; None for each material's own.
-        exposure: in stops; None to measure it of the reference.
+        exposure: in stops; None to measure it from the reference.
         tone_mapping: one of TONE_MAPPINGS.
-        effects: which effects the pipeline has.
-        environment: what metal/rough materials reflect, as a row says it; None for other materials.
-        environment_key: tells environments of one name apart.
+        effects: the effects of the pipeline.
+        environment: what metallic-roughness materials reflect, as named in a row; None for other materials.
+        environment_key: distinguishes environments of the same name.
     """
 
     pipeline: Pipeline
@@ -77,19 +77,19 @@ class RenderCase:
         return " ".join(parts if self.pipeline.has_gbuffer else parts[:2])
 
     def moments(self) -> Iterator[Setting]:
-        """What the scene is made with at each moment."""
+        """Yield the scene's setting at each moment."""
         for frame in range(self.frames):
             yield replace(self.setting, time=frame / self.frames)
 
     @property
     def coverage(self) -> RenderCase:
-        """The same scene in a G-buffer in fp32 with one sample a pixel, which says what is covered."""
+        """The same scene in an fp32 G-buffer with one sample per pixel, which shows the covered pixels."""
         plan = replace(self.reference.plan, samples=1, light_targets=2)
         return replace(self.reference, pipeline=PIPELINES["hybrid"], plan=plan, asked=1, effects=None)
 
     @property
     def reference(self) -> RenderCase:
-        """The same pipeline with everything in fp32, two light targets where it may have them, and full size."""
+        """The same pipeline with everything in fp32, two light targets if it supports them, and full size."""
         targets = max(self.pipeline.light_targets, default=1)
         exact = replace(
             self.plan,
@@ -106,8 +106,8 @@ class Drawn(Frame):
     """One frame.
 
     Attributes:
-        normals, kinds: what the G-buffer says, (height, width, 3) and (height, width); None where there is no G-buffer
-            or it has several samples a pixel. The kind of what is not covered is -1.
+        normals, kinds: content of the G-buffer, (height, width, 3) and (height, width); None if there is no
+            G-buffer or it has several samples per pixel. The kind of uncovered pixels is -1.
     """
 
     normals: np.ndarray | None
@@ -145,10 +145,10 @@ class RenderBench(Bench[RenderCase, Drawn]):
         return Display(exposure, case.tone_mapping)
 
     def _covered_masks(self, case: RenderCase, exact: list[Drawn]) -> list[np.ndarray]:
-        """Where there is opaque surface in each frame of a reference, bool of shape (height, width).
+        """Return where opaque surfaces are in each frame of a reference, bool of shape (height, width).
 
         Raises:
-            UsageError: nowhere; figures of no pixels would say that every code is exact.
+            UsageError: there are none; figures over no pixels would make every codec look exact.
         """
         coverage = case.coverage if exact[0].kinds is None else case.reference
         if coverage not in self._masks:
@@ -190,7 +190,7 @@ def _drawn_images(made: Rendering, pipeline: Pipeline, repeats: int) -> Drawn:
 
 
 def _reference_columns(reference: list[Drawn], covered: list[np.ndarray]) -> Row:
-    """What a row says of what the reference shows."""
+    """Return the columns that describe the reference."""
     surface = np.concatenate([frame.linear[where] for frame, where in zip(reference, covered, strict=True)])
     display = reference[0].display
     return {
@@ -210,7 +210,7 @@ def _psnr_of_covered(pairs: list[tuple[Drawn, Drawn]], covered: list[np.ndarray]
 
 
 def _farthest(one: Drawn, other: Drawn) -> Worst | None:
-    """Of two frames, the normal that the one has and that is farthest off in the other."""
+    """Return the normal of the first frame that differs most from the second; None if they cannot be compared."""
     if one.normals is None or other.normals is None or other.kinds is None or one.normals.shape != other.normals.shape:
         return None
     covered = other.kinds >= 0
@@ -252,7 +252,7 @@ def _case_columns(case: RenderCase) -> Row:
 
 
 def _unread(case: RenderCase) -> list[str]:
-    """What a layout keeps and no pass reads, by the names of its quantities."""
+    """Return the names of the quantities that a layout keeps but no pass reads."""
     if not case.pipeline.has_gbuffer:
         return []
     kept = [quantity_of(word.component) for word in case.plan.layout.words]
@@ -264,13 +264,13 @@ def _unread(case: RenderCase) -> list[str]:
 
 
 def _is_exact_but_for_normals(case: RenderCase) -> bool:
-    """Whether a code lies in the exact layout, whose bytes nobody asked about."""
+    """Whether a codec is stored in the exact layout, so that the layout's bytes do not matter."""
     layout, exact = case.plan.layout, LAYOUTS["fp32"]
     return case.pipeline.has_gbuffer and layout.name == exact.name and layout != exact
 
 
 def shown_scene(row: Row) -> str:
-    """What a row was rendered of, as a sentence names it."""
+    """Return the scene of a row, with its power if there is one, as named in sentences."""
     return str(row["scene"]) + ("" if row["power"] is None else f" at power {row['power']:g}")
 
 

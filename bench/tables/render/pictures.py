@@ -26,7 +26,7 @@ REFERENCE = "reference"
 
 
 def scene_stem(row: Row, content: Sequence[str] = ()) -> str:
-    """What the files of a row's reference are called, without what they show."""
+    """Return the file name of a row's reference, without the content's suffix."""
     power = [] if row["power"] is None else [f"power{row['power']:g}"]
     effects = [name_of_file(row["effects"])] if row.get("effects") else []
     shadow = [] if row["shadow"] else ["unshadowed"]
@@ -34,7 +34,7 @@ def scene_stem(row: Row, content: Sequence[str] = ()) -> str:
 
 
 def _surfaces(row: Row) -> Iterator[str]:
-    """What metal/rough surfaces reflect and how they are smoothed, where it is not as usual."""
+    """Yield the environment and smoothing of metallic-roughness surfaces that are not the defaults."""
     if (around := row.get("environment")) and not around.startswith(f"{AROUND} "):
         yield name_of_file(around)
     if row.get("specular_antialiasing") is False:
@@ -44,7 +44,7 @@ def _surfaces(row: Row) -> Iterator[str]:
 
 
 def stem(row: Row) -> str:
-    """What the files of a row are called, without what they show."""
+    """Return a row's file name, without the content's suffix."""
     if row["layout"] is None:
         return scene_stem(row)
     rounding = [] if row["rounding"] == "nearest" else [row["rounding"]]
@@ -69,7 +69,7 @@ def _named_pictures(drawn: Drawn, reference: Drawn) -> dict[str, np.ndarray]:
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """What lies in a folder of rows. A name is looked up, so that none leads out of the folder."""
+    """Yield the subjects in a folder for rows. Names are looked up, so that none leads out of the folder."""
     there = files_of(folder)
     groups: dict[str, list[Row]] = {}
     for row in rows:
@@ -104,7 +104,7 @@ def _label(row: Row, part: Sequence[Row]) -> str:
 
 
 def in_order(rows: Sequence[Row]) -> list[tuple[Row, int]]:
-    """Rows of one scene, the best of the fewest bits first, each with its place among those of as many bits."""
+    """Return the rows of one scene, the best of the fewest bits first, each with its rank among those of equal bits."""
 
     def bits_and_figure(row: Row) -> tuple[int, float]:
         return row.get("normal_bits") or 0, -row[LEADING] if is_number(row.get(LEADING)) else 0.0

@@ -41,7 +41,7 @@ USUAL = (
 
 @dataclass(frozen=True, kw_only=True)
 class RenderOptions(SourceOptions):
-    """What `render` measures. Names are comma-separated."""
+    """Options of `render`. Names are comma-separated."""
 
     pipeline: Pipelines = ("hybrid",)
     layout: Layouts = None
@@ -105,7 +105,7 @@ class RenderOptions(SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class RenderOutputs:
-    """What `render` writes beside its rows."""
+    """Outputs of `render` other than its rows."""
 
     images: Images = None
 

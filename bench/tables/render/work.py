@@ -1,4 +1,4 @@
-"""How the render table is measured and shown."""
+"""Measurement and display of the render table."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def layouts(options: RenderOptions) -> list[Layout]:
 
 
 def cases(options: RenderOptions, device: Device) -> list[RenderCase]:
-    """One case for each row; combinations that cannot be are named on standard error.
+    """Return a case for each row; impossible combinations are named on standard error.
 
     Raises:
         UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
@@ -118,7 +118,7 @@ def _as_engines_keep(plan: Plan) -> Plan:
 
 
 def _around(scene: Scene) -> str | None:
-    """What a row says of what metal/rough materials reflect; None where the scene has others."""
+    """Return a row's text on what metallic-roughness materials reflect; None if the scene has other materials."""
     if not scene.is_metal_rough:
         return None
     if (around := scene.environment) is None:
@@ -128,7 +128,7 @@ def _around(scene: Scene) -> str | None:
 
 
 def _key_around(scene: Scene) -> str:
-    """What tells one environment from another of the same name."""
+    """Return a key that distinguishes environments of the same name."""
     return key_of(scene.environment.radiance) if scene.environment else ""
 
 

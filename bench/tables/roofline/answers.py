@@ -1,4 +1,4 @@
-"""Which codes are the fastest on each GPU, in sentences."""
+"""The fastest encodings on each GPU, in sentences."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Place = tuple[str, int]
 
 
 def answers(rows: Sequence[Row]) -> tuple[str, ...]:
-    """A sentence for each GPU, or for several that have the same answer; above several, what they say.
+    """Return a sentence for each GPU, or for several with the same answer; several sentences have a heading.
 
     Args:
         rows: those of the table, ranked.

@@ -20,8 +20,8 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def points(rows: Sequence[Row]) -> list[Row]:
-    """What charts draw of rows: instructions, and bytes written and read, of a pixel and frame, of the fewest reads and
-    the first size."""
+    """Return the points of charts: instructions, and bytes written and read, per pixel and frame, for the fewest
+    reads and the first size."""
     reads, size = min(row["reads"] for row in rows), rows[0]["size"]
     names = ("gpu", "encoding", "storage", "size", "reads", "ridge", "in_cache")
     codec_points = {
@@ -97,7 +97,7 @@ def roofline_chart(rows: Sequence[Row]) -> Chart:
 
 
 def _finding_sentence(found: Sequence[Row]) -> str:
-    """For how many codes bytes take longer than instructions."""
+    """Return a sentence on how often bytes take longer than instructions."""
     bound = [point for point in found if point["y"] * point["ridge"] > point["x"]]
     gpus, codecs = (len(distinct(found, name)) for name in ("gpu", "codec"))
     shown = f"{codecs} codes on {gpus} {'GPU' if gpus == 1 else 'GPUs'}"

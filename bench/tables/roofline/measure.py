@@ -1,4 +1,4 @@
-"""What a code's bytes and instructions take of a frame, by the roofline model.
+"""Time that a codec's bytes and instructions take in a frame, by the roofline model.
 
 Williams, Waterman, Patterson (2009), Roofline: An Insightful Visual Performance Model for Multicore Architectures.
 """
@@ -28,13 +28,13 @@ TIE = 1e-9
 
 @dataclass(frozen=True)
 class Frame:
-    """What is done with a G-buffer in a frame.
+    """Use of a G-buffer in a frame.
 
     Attributes:
         size: width and height in pixels.
-        reads: passes that read and decode each pixel's normal.
+        reads: number of passes that read and decode each pixel's normal.
         overdraw: how often each pixel's normal is encoded and written.
-        cache_share: the share of the last-level cache that normals may have.
+        cache_share: the share of the last-level cache that is available to normals.
     """
 
     size: tuple[int, int]
@@ -49,14 +49,14 @@ class Frame:
 
 @dataclass(frozen=True)
 class Work:
-    """What a code takes of a pixel: bytes, and instructions to encode and to decode."""
+    """Work of a codec per pixel: bytes, and instructions to encode and to decode."""
 
     bytes: float
     encode: float
     decode: float
 
     def instructions(self, frame: Frame) -> float:
-        """Of a pixel in a frame."""
+        """Return the instructions per pixel in a frame."""
         return frame.overdraw * self.encode + frame.reads * self.decode
 
     def traffic(self, frame: Frame) -> float:
@@ -102,13 +102,13 @@ class RooflineCase:
                 yield row | ({"skipped": work} if isinstance(work, str) else _figures(work, frame, self.rates))
 
     def work(self, codec: Codec) -> Work | None:
-        """What a code takes; None where it is not known."""
+        """Return the work of a codec; None if it is not known."""
         work = self._works[codec]
         return None if isinstance(work, str) else work
 
     @cached_property
     def _works(self) -> dict[Codec, Work | str]:
-        """What each code takes, or why it is not known."""
+        """The work of each codec, or why it is not known."""
         costs = Costs(self._counts)
         lost = next((row["skipped"] for row in self._counts if row["skipped"] and not row["encoding"]), None)
         works: dict[Codec, Work | str] = {}
@@ -129,7 +129,7 @@ class RooflineCase:
 
     @cached_property
     def _counts(self) -> list[Row]:
-        """The rows of cost that the codes' are made of."""
+        """The cost rows from which the codecs' costs are computed."""
         packings = dict.fromkeys(packing_of(codec) for codec in self.codecs)
         encodings = dict.fromkeys(codec.encoding for codec in self.codecs)
         chosen = cost.cases(encodings, [*packings, *SIGN], cost.OPERATIONS)
@@ -175,9 +175,9 @@ MOST_READS = 64
 
 
 def from_reads(one: Work, other: Work, rates: Rates, frame: Frame) -> str:
-    """From how many reads on one code is faster than another: "always", "never", "from 3", "up to 2", "equal".
+    """Return from how many reads one codec is faster than another: "always", "never", "from 3", "up to 2", "equal".
 
-    Each time is the larger of two lines in the number of reads, so one may also be faster between two numbers.
+    Each time is the larger of two linear functions of the reads, so a codec may also be faster between two numbers.
     """
     wins, loses = [], []
     for reads in range(1, MOST_READS + 1):

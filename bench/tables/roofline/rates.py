@@ -16,16 +16,16 @@ from ...ground.spelling import spelled
 
 @dataclass(frozen=True)
 class Rates:
-    """What a GPU does in a second.
+    """Throughput of a GPU.
 
     Attributes:
-        title: what people call it.
-        family: whose compiler counts for it.
-        lanes: how many lanes' instructions it issues a clock.
-        clock: in GHz, the boost clock.
-        memory: GB/s of its memory.
-        cache: MB of its last-level cache; 0 where its bandwidth is not published.
-        cached: GB/s of what that cache holds.
+        title: its common name.
+        family: the GPU family whose compiler counts for it.
+        lanes: number of lanes whose instructions it issues per clock.
+        clock: boost clock in GHz.
+        memory: bandwidth of its memory in GB/s.
+        cache: MB of its last-level cache; 0 if the cache's bandwidth is not published.
+        cached: bandwidth of that cache in GB/s.
     """
 
     title: str

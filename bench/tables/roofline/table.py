@@ -18,7 +18,7 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class RooflineOptions(SourceOptions):
-    """What `roofline` computes. Names are comma-separated."""
+    """Options of `roofline`. Names are comma-separated."""
 
     encoding: Encodings = ("xyz", "spheremap", "octahedral", "octahedral_precise")
     storage: StorageNames = ("rg8", "rgb10a2", "rgba16f")
@@ -52,7 +52,7 @@ class RooflineOptions(SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class RooflineOutputs:
-    """What `roofline` writes beside its rows."""
+    """Outputs of `roofline` other than its rows."""
 
     plot: Plot = None
 

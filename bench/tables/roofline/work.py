@@ -1,4 +1,4 @@
-"""How the roofline table is computed and shown."""
+"""Computation and display of the roofline table."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MOST_PAIRS = 6
 
 
 def cases(options: RooflineOptions) -> list[RooflineCase]:
-    """One for each GPU. Raises UsageError for what is unknown or out of range."""
+    """Return a case for each GPU. Raises UsageError for a name that is unknown or a value out of range."""
     if not 0.01 <= options.overdraw <= 1000:
         raise UsageError(f"--overdraw {options.overdraw}: from 0.01 to 1000")
     if not 0 <= options.cache_share <= 1:
@@ -76,8 +76,8 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _duels(case: RooflineCase) -> Iterator[str]:
-    """Of each pair of codes of different size, from how many reads on the smaller is faster, at which sizes. Where
-    there are many pairs, those alone in which it is not always so."""
+    """Yield for each pair of codecs of different size from how many reads the smaller is faster, and at which
+    sizes. If there are many pairs, only those in which it is not always faster."""
     works = {f"{codec.encoding.name} {codec.storage.name}": case.work(codec) for codec in case.codecs}
     known = sorted(((name, work) for name, work in works.items() if work), key=lambda one: one[1].bytes)
     pairs = [pair for pair in combinations(known, 2) if pair[0][1].bytes < pair[1][1].bytes]

@@ -1,1 +1,1 @@
-"""From which roughness a normal code carries reflections."""
+"""The lowest roughness at which an encoding's reflections are acceptable."""

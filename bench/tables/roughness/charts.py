@@ -17,7 +17,7 @@ MOST_WITH_POINTS = 40
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """One chart, where there are pictures with FLIP."""
+    """Yield one chart, if there are images with FLIP."""
     usable = [r for r in having(rows, "flip_p99", "roughness") if r.get("threshold") is None or r.get("decides")]
     if usable:
         yield roughness_chart(usable, sorted({row["threshold"] for row in rows if row.get("threshold") is not None}))

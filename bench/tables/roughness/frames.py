@@ -1,4 +1,4 @@
-"""What an object shows by a layout: one frame, or the mean of several, each seen from its own place within a pixel."""
+"""Images of an object through a layout: one frame, or the mean of several, each from its own place within a pixel."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ NONE, STILL, MOVING = DITHERS = ("none", "still", "moving")
 
 @dataclass(frozen=True)
 class Accumulation:
-    """How often an object is drawn for a picture, and what noise is added to the code of its normals.
+    """Number of frames drawn for an image, and the noise added to the code of its normals.
 
     Attributes:
         dither: one of DITHERS.
-        frames: how many are drawn; the picture is their mean.
+        frames: number of frames; the image is their mean.
     """
 
     dither: str = NONE
@@ -41,11 +41,11 @@ class Accumulation:
 
 
 class Frames:
-    """Frames of an object by one layout, drawn once and kept open with the stack.
+    """Frames of an object through one layout, drawn once and released with the stack.
 
     Attributes:
         made: one for each frame.
-        covered: where at least one of them has the object, (height, width).
+        covered: where at least one frame shows the object, (height, width).
 
     Raises:
         ShaderError, FormatError, LayoutError: they cannot be drawn.
@@ -88,7 +88,7 @@ class Frames:
 
 
 def layout_of(codec: Codec) -> Layout:
-    """All else in floats; the normal in world space, as engines keep it, where the code is made for that."""
+    """Return a layout with the rest in floats; the normal is in world space, as in engines, if encoded for that."""
     return replace(LAYOUTS["fp32"], space=engines_space(codec.encoding)).with_codec(codec)
 
 
@@ -102,9 +102,9 @@ def draw_again(made: Rendering, roughness: float) -> None:
 
 
 def views(view: View, size: tuple[int, int], frames: int) -> Sequence[View]:
-    """From where each frame is seen: through the middle of pixels, or of several through points spread over them.
+    """Return the view of each frame: through the middle of pixels, or for several through points spread over them.
 
-    The points are those of J. Halton, On the efficiency of certain quasi-random sequences, 1960, in the bases 2 and 3.
+    The points are those of J. Halton, On the efficiency of certain quasi-random sequences, 1960, in bases 2 and 3.
     """
     if frames == 1:
         return [view]

@@ -1,4 +1,4 @@
-"""How a code's reflections are measured over roughness, and from which roughness on it carries them."""
+"""Measurement of an encoding's reflections over roughness, and of the lowest roughness that is acceptable."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class RoughnessCase:
 
     @property
     def light(self) -> str:
-        """What it lies in."""
+        """Name of its environment, or of the sun."""
         return self.environment.name if self.environment else SUN
 
     @property
@@ -60,7 +60,7 @@ class RoughnessCase:
 
 
 class Pictures:
-    """What a case shows by exact normals and by those of codes, as displayed; each exact picture is drawn once."""
+    """Displayed images of a case by exact normals and by those of codecs; each exact image is drawn once."""
 
     def __init__(self, device: Device, stack: ExitStack, case: RoughnessCase):
         self._device, self._stack, self._case = device, stack, case
@@ -90,7 +90,7 @@ class Pictures:
         return self._right[frames, roughness]
 
     def figures(self, made: Frames, roughness: float, with_flip: bool) -> Row:
-        """What a row says of one picture."""
+        """Return the columns of one image."""
         image, exact = self.image(made, roughness), self.right(len(made.made), roughness)
         pixels, right = (picture[made.covered].astype(np.float64) for picture in (image, exact.reference))
         bytes_off = np.abs(np.round(255 * pixels) - np.round(255 * right)).max(axis=-1)
@@ -103,7 +103,7 @@ class Pictures:
 
 
 def measure(device: Device, case: RoughnessCase) -> list[Row]:
-    """Of each code a row for each threshold, then one for each roughness."""
+    """Return for each codec a row for each threshold, then a row for each roughness."""
     with ExitStack() as stack:
         pictures = Pictures(device, stack, case)
         about: Row = {"object": case.object, "environment": case.light, "tone_mapping": TONE_MAPPING}
@@ -142,9 +142,10 @@ def size_of(environment: Environment) -> str:
 
 
 def _crossing(with_flip: Callable[[float], Row], rows: Sequence[Row], threshold: float) -> Row:
-    """The picture at the least roughness from which on a code keeps a threshold; at 1, without one, where none does.
+    """Return the row of the lowest roughness from which a codec stays within a threshold; if none does, that of 1,
+    without a roughness.
 
-    Between two roughnesses with FLIP it is taken to cross once.
+    Between two roughnesses with FLIP, a single crossing is assumed.
     """
     known = [(row["roughness"], row["flip_p99"] <= threshold) for row in rows if "flip_p99" in row]
     low = max((roughness for roughness, is_kept in known if not is_kept), default=-STEP)
@@ -159,7 +160,7 @@ def _crossing(with_flip: Callable[[float], Row], rows: Sequence[Row], threshold:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Rows that answer first, the worst of each code's marked as the one that decides; then pictures, by roughness."""
+    """Return the rows that answer first, each codec's worst marked as decisive; then images, by roughness."""
     rows = [{**row, "decides": None} for row in rows]
     crossings = sorted((row for row in rows if row["threshold"] is not None), key=_place)
     for row in crossings:
@@ -177,10 +178,10 @@ def _code(row: Row) -> tuple[Any, ...]:
 
 
 def _least(row: Row) -> float:
-    """The least roughness that is kept; beyond 1 where none is."""
+    """Return the lowest roughness that keeps the threshold; more than 1 if none does."""
     return 1 + STEP if row["roughness"] is None else row["roughness"]
 
 
 def answers(rows: Sequence[Row]) -> Iterator[Row]:
-    """Of finished rows those that say from which roughness on each code carries all."""
+    """Yield the finished rows that decide from which roughness each codec is acceptable everywhere."""
     yield from (row for row in rows if row.get("decides"))

@@ -1,4 +1,4 @@
-"""What is looked at: an object that fills the picture, turned to where its environment is busiest."""
+"""Test objects: each fills the image, turned to the busiest part of its environment."""
 
 from __future__ import annotations
 
@@ -28,11 +28,12 @@ HIGHEST = 60.0
 
 @dataclass(frozen=True)
 class Kind:
-    """What is looked at.
+    """A test object.
 
     Attributes:
         mesh: makes its surface.
-        is_metal: of a metal that reflects all of its environment; else white and dull, in the light of a sun alone.
+        is_metal: whether it is a metal that reflects its whole environment; otherwise it is white and dull, lit
+            only by a sun.
     """
 
     mesh: Callable[[], Mesh]

@@ -17,7 +17,7 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class RoughnessOptions(SourceOptions):
-    """What `roughness` measures. Names and numbers are comma-separated."""
+    """Options of `roughness`. Names and numbers are comma-separated."""
 
     encoding: Encodings = ("octahedral",)
     storage: StorageNames = ("rg8", "rgb10a2", "rgb8_12_12", "rg16")
@@ -44,7 +44,7 @@ class RoughnessOptions(SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class RoughnessOutputs:
-    """What `roughness` writes beside its rows."""
+    """Outputs of `roughness` other than its rows."""
 
     plot: Plot = None
 

@@ -1,4 +1,4 @@
-"""How the roughness table is measured and shown."""
+"""Measurement and display of the roughness table."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _seen(options: RoughnessOptions) -> tuple[Accumulation, ...]:
 
 
 def _environments(words: Names) -> tuple[Environment, ...]:
-    """Raises UsageError for an unknown one, and for two of one name."""
+    """Return environments by name. Raises UsageError for an unknown name, and for two of the same name."""
     environments = tuple(environment_named(str(word)) for word in words)
     names = [environment.name for environment in environments]
     if not environments:
@@ -98,7 +98,7 @@ def _from(row: Row) -> str:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """From which roughness on each code keeps each threshold."""
+    """Yield a table of the lowest roughness from which each codec keeps each threshold."""
     lines: dict[tuple[object, ...], Row] = {}
     for row in answers(rows):
         about = {name: row[name] for name in (*_said(rows), "bits")}

@@ -1,1 +1,1 @@
-"""How each pipeline's passes grow with the number of objects."""
+"""Growth of each pipeline's passes with the number of objects."""

@@ -32,10 +32,10 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def passes_chart(at: int, objects: object, rows: Sequence[Row]) -> Chart:
-    """What a frame's milliseconds go into: a bar for each pipeline, the medians of its passes one after the other.
+    """Return a chart of a frame's milliseconds: a bar for each pipeline, with the medians of its passes in sequence.
 
     Args:
-        at: its place among the charts of the table.
+        at: its index among the charts of the table.
         rows: of a sweep at one number of objects.
     """
     lines = [_line_name(row, rows, (*MORE, "shadow")) for row in rows]
@@ -69,7 +69,7 @@ def passes_chart(at: int, objects: object, rows: Sequence[Row]) -> Chart:
 
 
 def _pass_rows(row: Row, line: str) -> list[Row]:
-    """The passes of a frame, each from where the one before it ends."""
+    """Return the passes of a frame, each from the end of the one before it."""
     passes = passes_of(row)
     ends = [0.0, *accumulate(passes.values())]
     return [
@@ -90,7 +90,7 @@ def frame_total(row: Row) -> float:
 
 
 def frame_label(row: Row) -> str:
-    """What stands at the end of a frame's bar: its length, and whether it is too noisy to compare."""
+    """Return the label at the end of a frame's bar: its duration, and whether it is too noisy to compare."""
     total, spread = frame_total(row), row.get(f"{FRAME}{SPREAD}")
     is_noisy = is_number(spread) and spread > NOISY * row[FRAME]
     return (f"{total:.0f}" if total >= 100 else f"{total:.3g}") + ", too noisy to compare" * is_noisy

@@ -17,7 +17,7 @@ from .table import TABLE
 
 @dataclass(frozen=True)
 class Point:
-    """One row to measure: a pipeline over so many objects."""
+    """One row to measure: a pipeline over a number of objects."""
 
     pipeline: Pipeline
     plan: Plan
@@ -41,7 +41,7 @@ class Point:
 
 
 def measure(device: Device, point: Point) -> Row:
-    """One row: milliseconds and triangles of each pass."""
+    """Return one row: milliseconds and triangles of each pass."""
     row = TABLE.empty(STAGES) | point.key(device)
     scene = SCENES["objects"].make(point.setting)
     with rendering(device, point.pipeline, scene, point.plan) as rendered:

@@ -25,7 +25,7 @@ SIZE, SOFTWARE_SIZE = "640x480", "320x240"
 
 
 def points(options: SweepOptions, device: Device) -> list[Point]:
-    """One point for each row; what does not suit a pipeline is named on standard error.
+    """Return a point for each row; what does not suit a pipeline is named on standard error.
 
     Raises:
         UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.

@@ -29,7 +29,7 @@ KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 
 @dataclass(frozen=True, kw_only=True)
 class SweepOptions(SourceOptions):
-    """What `sweep` sweeps over. Names and counts are comma-separated; no layout: each pipeline's published one."""
+    """Options of `sweep`. Names and counts are comma-separated; each pipeline's published layout is the default."""
 
     pipeline: Pipelines = ("prepass", "hybrid", "deferred", "inferred", "forward")
     objects: Annotated[Names, Option("--objects", "Numbers of objects, comma-separated.")] = (
@@ -56,7 +56,7 @@ class SweepOptions(SourceOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class SweepOutputs:
-    """What `sweep` writes beside its rows."""
+    """Outputs of `sweep` other than its rows."""
 
     plot: Plot = None
 

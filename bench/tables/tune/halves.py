@@ -31,7 +31,7 @@ class Normals:
         return len(self.n)
 
     def some(self, most: int) -> Normals:
-        """At most so many of them, evenly spread over the set."""
+        """Return at most `most` of the normals, evenly spread over the set."""
         step = -(-len(self) // most)
         return Normals(self.n[::step], self.view[::step])
 
@@ -76,7 +76,7 @@ def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
 
 
 def _tile_numbers(chosen: NormalSet) -> np.ndarray:
-    """For each pixel the number of its square; each normal is one of its own where there are no pixels."""
+    """Return the number of each pixel's tile; without pixels, each normal is a tile of its own."""
     index = np.arange(chosen.count)
     if not chosen.shape or min(chosen.shape) < 4 * TILE:
         return index

@@ -17,7 +17,7 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class TuneOptions(Reading):
-    """What `tune` fits, and to what."""
+    """Options of `tune`: what to fit, and to which normals."""
 
     encoding: Annotated[str, Option("ENCODING", "An encoding; `normalbench list encodings` shows them.")] = ""
     normals: Annotated[Names, Option("--normals", "A normal set or a file of one.", files=True)] = ("playground",)
@@ -32,7 +32,7 @@ class TuneOptions(Reading):
 
 @dataclass(frozen=True, kw_only=True)
 class TuneOutputs:
-    """What `tune` writes beside its rows."""
+    """Outputs of `tune` other than its rows."""
 
     table: Annotated[Path | None, Option("--table", "Write a tuned look-up into this file, a NumPy array.")] = None
 

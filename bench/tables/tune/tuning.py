@@ -86,9 +86,9 @@ class Measure:
 
 
 def search(codec: Codec, normals: Normals, goal: str) -> Values:
-    """The values with the least measured error that searches from the published and from the best of random ones find.
+    """Return the values with the smallest measured error that searches from published and best random values find.
 
-    Where nothing is better than what was published it stays as it is.
+    If nothing is better than the published values, they are kept.
     """
     measure, scale = Measure(codec, normals, goal), Scale(codec.encoding)
     random = np.random.default_rng(0).uniform(0.0, 1.0, (RANDOM, len(scale.names)))
@@ -109,15 +109,15 @@ def _searched(measure: Measure, scale: Scale, values: Values) -> Values:
 
 
 def fitted(codec: Codec, normals: Normals, goal: str, names: list[str]) -> Values:
-    """The values of the parameters `names` with the least measured error."""
+    """Return the values of the parameters `names` with the smallest measured error."""
     chosen = tuple(p for p in codec.encoding.parameters if p.name in names)
     return search(replace(codec, encoding=replace(codec.encoding, parameters=chosen)), normals, goal) if chosen else {}
 
 
 def fitted_table(codec: Codec, normals: Normals, goal: str) -> np.ndarray:
-    """The look-up with the least squared error on normals.
+    """Return the lookup table with the smallest squared error on normals.
 
-    How much a texel's centre counts beside the few normals that it may have is decided between two halves of them.
+    How much a texel's centre counts against its normals, which may be few, is decided between two halves of them.
     """
     look_up, levels = codec.encoding.look_up, codec.storage.count(0)
     assert look_up

@@ -1,4 +1,4 @@
-"""How `tune` fits parameters to one half of a set and measures the other."""
+"""Fitting of parameters to one half of a set, and measurement of the other, by `tune`."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ NOTHING_DB = 0.005
 
 @dataclass(frozen=True)
 class Chosen:
-    """What is tuned: a codec, the names of its parameters that are, and whether its look-up is."""
+    """The target of tuning: a codec, the names of the parameters to tune, and whether to tune its lookup table."""
 
     codec: Codec
     names: list[str]
@@ -58,7 +58,7 @@ class Side:
 
 @dataclass(eq=False)
 class Tuning:
-    """What is to be tuned to what, and once it is: the codec before and after, and its look-up."""
+    """A tuning: its target and normals, and once it is done, the codec before and after, and the lookup table."""
 
     chosen: Chosen
     halves: Halves
@@ -82,7 +82,7 @@ class Tuning:
 
 
 def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
-    """One step. Raises UsageError for what cannot be tuned."""
+    """Return one step. Raises UsageError for a target that cannot be tuned."""
     encoding, table = options.encoding, outputs.table
     if MARK in encoding and encoding.partition(MARK)[0] in NAMES:
         raise UsageError(f"{encoding}: tune begins with what was published; name {encoding.partition(MARK)[0]}")
@@ -112,7 +112,7 @@ def _write(done: Measured, _: Tick) -> None:
 
 
 def chosen_of(name: str, options: TuneOptions) -> Chosen:
-    """What an encoding's name and `--parameter` ask for. Raises UsageError where there is nothing of it."""
+    """Return the target that an encoding's name and `--parameter` select. Raises UsageError if nothing can be tuned."""
     encoding = _one("encoding", encodings_named, (name,))
     storage = _one("storage", storages_named, options.storage)
     codec = Codec(encoding, storage)
@@ -135,7 +135,7 @@ def _has_table(codec: Codec) -> bool:
 
 
 def _one(what: str, named: Callable[[Names], list[Any]], words: Names) -> Any:
-    """Return the one that words name. Raises UsageError; what it lists of the known ones is what can be tuned."""
+    """Return the only item that words name. Raises UsageError, which lists the known names that can be tuned."""
     try:
         choices = named(words)
     except UsageError as error:

@@ -1,1 +1,1 @@
-"""How exact motion vectors are."""
+"""Accuracy of motion vectors."""

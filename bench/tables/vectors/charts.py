@@ -68,7 +68,7 @@ def _bits_text(bits: int) -> str:
 
 
 def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """The rows of each code by its name, by speed; without those of no error, which have no logarithm."""
+    """Return the rows of each codec by its name, by speed; without those of zero error, which have no logarithm."""
     several = len({row.get("range") for row in rows if row.get("range")}) > 1
     lines: dict[str, list[Row]] = {}
     for row in sorted(rows, key=lambda row: row["speed"]):
@@ -79,7 +79,7 @@ def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
 
 
 def _finding_sentence(rows: Sequence[Row]) -> str:
-    """Which code of each number of bits loses the least at the least speed."""
+    """Return which codec of each bit count has the smallest error at the lowest speed."""
     least = min(row["speed"] for row in rows)
     phrases = []
     for bits in sorted({row["bits"] for row in rows}):

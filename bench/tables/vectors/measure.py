@@ -116,8 +116,7 @@ def measure(case: MotionVectorCase) -> list[Row]:
 
 
 def _noisy_trip(stack: ExitStack, case: MotionVectorCase) -> Trip:
-    """Return a round trip of motions that adds noise of its own to each frame; the noise of all frames lies one below
-    the other."""
+    """Return a round trip of motions that adds its own noise to each frame; all frames' noise is stacked vertically."""
     noise = np.concatenate([case.codec.dither(frame).added[: POINTS // WIDTH] for frame in range(FRAMES)])
     return stack.enter_context(BACKENDS[case.backend](case.codec, case.largest, noise))[0]
 
@@ -152,10 +151,10 @@ def _length_px(motion: np.ndarray, size: tuple[int, int]) -> float:
 
 
 def _figures(case: MotionVectorCase, speed: float, trip: Trip, rest: np.ndarray) -> Row:
-    """What comes back of the motions of all points in all frames at a speed.
+    """Return the figures of the motions of all points in all frames at a speed.
 
-    The error of a motion v is |decode(v) - v| in pixels. A point that is moved by the stored vectors is off by the sum
-    of its frames' errors, which is its drift.
+    The error of a motion v is |decode(v) - v| in pixels. A point that is moved by the stored vectors is off by the
+    sum of its frames' errors, which is its drift.
     """
     total, largest, lost, clipped, square = 0.0, 0.0, 0, 0, 0.0
     for motions in case.paths.chunks(speed):
@@ -185,8 +184,8 @@ def _through(trip: Trip, motions: np.ndarray) -> np.ndarray:
 
 
 def _least_speed_px(trip: Trip, rest: np.ndarray, case: MotionVectorCase) -> float:
-    """The speed in pixels from which on motions along an axis do not come back as rest does, in the worst of the four
-    directions; 0 where every motion is told from it."""
+    """Return the lowest speed in pixels from which motions along an axis decode differently from rest, in the worst
+    of the four directions; 0 if every motion does."""
     low, high = np.full(len(DIRECTIONS), LEAST), np.full(len(DIRECTIONS), max(case.largest, 1.0))
     # Each pass divides the ratio of the two ends by many steps; two come to the digits that float32 has.
     for _ in range(2):
@@ -198,8 +197,8 @@ def _least_speed_px(trip: Trip, rest: np.ndarray, case: MotionVectorCase) -> flo
 
 
 def _around(tried: np.ndarray, told: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of ascending motions in each direction the last that is not told from rest, and the next; the first where all
-    are told from it."""
+    """Return, of ascending motions in each direction, the last that is not distinguished from rest, and the next;
+    the first if all are distinguished."""
     end, everything = tried.shape[1] - 1, told.all(axis=1)
     last = np.where(everything, 0, end - np.argmax(~told[:, ::-1], axis=1))
     after = np.where(everything, 0, np.minimum(last + 1, end))

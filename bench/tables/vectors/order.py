@@ -8,7 +8,7 @@ from ..table import Row
 
 
 def place(row: Row) -> tuple[int, ...]:
-    """Where a code stands in the catalogues; those of other versions last."""
+    """Return a codec's position in the catalogues; codecs of other versions come last."""
     lists = (list(MOTION_ENCODINGS), list(MOTION_STORAGES))
     names = (row["encoding"], row["storage"])
     return tuple(known.index(name) if name in known else len(known) for known, name in zip(lists, names, strict=True))

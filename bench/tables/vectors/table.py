@@ -16,7 +16,7 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class VectorsOptions(SourceOptions):
-    """What `vectors` measures. Names and numbers are comma-separated; no storage: where each code usually lies."""
+    """Options of `vectors`. Names and numbers are comma-separated; the default storage is each encoding's usual one."""
 
     encoding: Annotated[Names, Option("--encoding", f"Motion codes or files of yours, {NAMED}.", files=True)] = ("all",)
     storage: Annotated[Names | None, Option("--storage", f"Motion storages, {NAMED}. Default: each code's usual.")] = (

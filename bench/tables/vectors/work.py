@@ -1,4 +1,4 @@
-"""How the table of motion vectors is measured and shown."""
+"""Measurement and display of the table of motion vectors."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ UNNOTICED_PX = 0.01
 
 
 def cases(options: VectorsOptions) -> list[measure.MotionVectorCase]:
-    """One case for each code, range and back end; a code that needs no range has one.
+    """Return a case for each codec, range and backend; a codec that needs no range has one case.
 
     Raises:
         UsageError: unknown names, numbers beyond what is possible, or nothing that fits.
-        MissingError: only GLSL is asked for and there is no GL device.
+        MissingError: only GLSL is requested and there is no GL device.
     """
     check_seed(options.seed)
     in_range("--count", options.count, 1, MAX_POINTS)
@@ -70,7 +70,7 @@ def _key(case: measure.MotionVectorCase) -> Row:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Rows by bits, the code with the least error at the slowest speed first; each code's by speed."""
+    """Return rows by bits, the codec with the smallest error at the lowest speed first; each codec's rows by speed."""
     best: dict[tuple, float] = {}
     for row in sorted(rows, key=lambda row: row["speed"], reverse=True):
         error = row["error_mean_px"]
@@ -96,7 +96,7 @@ def _by_speed(rows: Sequence[Row], figure: str, names: Sequence[str]) -> list[Ro
 
 
 def _said(value: object) -> object:
-    """What was asked for as it was typed, where a figure would have its digits."""
+    """Return a requested value as it was typed, not with the digits of a figure."""
     return f"{value:g}" if isinstance(value, float) and value >= 1e-3 else value
 
 

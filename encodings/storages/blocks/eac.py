@@ -41,7 +41,7 @@ def eac_r11(blocks: np.ndarray, is_signed: bool = False) -> np.ndarray:
 
 
 def _indices(blocks: np.ndarray) -> np.ndarray:
-    """Each texel's modifier, row by row; they lie column by column from the highest bit of the third byte down."""
+    """Return each texel's modifier, row by row; blocks store them by column from the third byte's highest bit down."""
     bits = bits_of(np.ascontiguousarray(blocks[:, :1:-1]))[:, ::-1].reshape(-1, TEXELS, 3)
     by_columns = bits.astype(np.int32) @ np.array([4, 2, 1])
     return by_columns.reshape(-1, SIDE, SIDE).transpose(0, 2, 1).reshape(-1, TEXELS)

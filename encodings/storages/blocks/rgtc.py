@@ -1,8 +1,8 @@
 """BC4 and BC5 (RGTC): Khronos Data Format Specification, chapter on RGTC.
 
-A block of BC4 has two ends, and for each texel the number of one of eight values: the ends, and values between them.
-The specification gives these as real numbers, for example (6 RED0 + RED1) / 7, and rounds none of them. So they are
-exact here: they lie sevenths or fifths of the way between the ends, and are kept in 35ths of a step of 8 bits.
+A block of BC4 has two ends, and for each texel the index of one of eight values: the ends, and values between them.
+The specification gives these as real numbers, for example (6 RED0 + RED1) / 7, and rounds none of them. They are
+therefore exact here: they are sevenths or fifths of the way between the ends, in 35ths of a step of 8 bits.
 """
 
 from __future__ import annotations

@@ -62,8 +62,8 @@ def _bytes_defines(code: DepthEncoding) -> dict[str, object]:
 
 @dataclass(frozen=True)
 class Rebuilt:
-    """What came back: `positions` (height, width, 3), and the `numbers` and `depths` that they are made of, (height,
-    width), float32; `depths` under the sign that was kept."""
+    """Results of a round trip: `positions` (height, width, 3), and the `numbers` and `depths` that they are
+    computed from, (height, width), float32; `depths` have the stored sign."""
 
     positions: np.ndarray
     numbers: np.ndarray
@@ -125,7 +125,8 @@ def _camera_uniforms(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
 def _stored_texture(
     device: Device, stack: ExitStack, storage: DepthStorage, passed: VertexArray, given: Textures
 ) -> Texture:
-    """What a pass makes of textures, by its samplers, in a storage: a texture of that size, released with it."""
+    """Return the texture that a pass writes in a storage from textures, given by sampler; it has their size and is
+    released with the stack."""
     size = given["points"].size
     if storage.home != "attachment":
         target = device.owned(stack, device.target(size, storage.format))

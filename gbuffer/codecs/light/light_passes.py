@@ -40,7 +40,7 @@ def light_defines(codec: LightCodec) -> dict[str, object]:
 
 
 def _packing_defines(storage: Storage) -> dict[str, object]:
-    """How numbers lie across channels, where they do: from 0 on, as the encoding made them."""
+    """Return the macros of numbers packed across channels, if they are packed: from 0 up, as the encoding made them."""
     if not storage.is_packed:
         return {"LIGHT_PACKED": 0}
     laid = storage_defines(storage, ["nearest"] * storage.channels, True)
@@ -49,8 +49,8 @@ def _packing_defines(storage: Storage) -> dict[str, object]:
 
 @dataclass(frozen=True)
 class Sum:
-    """What a light buffer holds: `light`, and the `texels` it is the code of, as the encoding made them; float32 arrays
-    of shape (width, 4)."""
+    """Content of a light buffer: `light`, and the `texels` that encode it, as the encoding made them; float32
+    arrays of shape (width, 4)."""
 
     light: np.ndarray
     texels: np.ndarray

@@ -26,16 +26,16 @@ QUARTERS = (0.25, 0.75)
 
 @dataclass(frozen=True)
 class Meetings:
-    """What meets, for each pixel of a small image: a patch of SIDE x SIDE texels, and how its texels are mixed.
+    """Texels to mix for each pixel of a small image: a patch of SIDE x SIDE texels, and how they are mixed.
 
     Attributes:
         normals: unit normals of the patches side by side, float32 of shape (SIDE height, SIDE width, 4).
         decals: unit normals of a detail that is laid over each patch's first texel, (height, width, 4).
         views: one view-space position for all texels of a patch, (height, width, 4).
-        shares: how far right and up a filter reads between the patch's first four texels, 0 to 1, (height, width, 2).
-        quarters: the same of an upsampling, of QUARTERS, (height, width, 2).
-        counts: how many of the samples have the patch's first normal; the others have its second, (height, width).
-        alphas: of each row of pixels, (height,).
+        shares: how far right and up a filter reads between a patch's first four texels, 0 to 1, (height, width, 2).
+        quarters: the same for upsampling, from QUARTERS, (height, width, 2).
+        counts: number of samples with the patch's first normal; the others have its second, (height, width).
+        alphas: blend factor of each row of pixels, (height,).
     """
 
     normals: np.ndarray
@@ -64,7 +64,7 @@ class Meetings:
 
     @property
     def places(self) -> np.ndarray:
-        """Where a filter reads, in texture coordinates. Widths that are powers of two make them exact."""
+        """Positions that a filter reads, in texture coordinates. Widths that are powers of two make them exact."""
         width, height = self.size
         x, y = np.meshgrid(np.arange(width), np.arange(height))
         corners = np.stack([x, y], axis=-1) * SIDE + 0.5
@@ -142,7 +142,7 @@ class MixPasses:
             yield uploaded(self._device, stack, arrays)
 
     def _decoded_pass(self, shader: str, size: tuple[int, int], given: Textures, **uniforms: int) -> Decoded:
-        """What a pass decodes, and the numbers that it decodes it from."""
+        """Return the normals that a pass decodes, and the numbers that it decodes them from."""
         device, passed = self._device, self._pass_array(shader)
         set_uniforms(passed.program, {"level": 0, **uniforms})
         with ExitStack() as stack:
@@ -190,7 +190,7 @@ class MixPasses:
         return self._decoded_pass("mix_texel.frag", self._size, pixels, stride=1)
 
     def resolved_decoded(self) -> Decoded:
-        """The same samples, each decoded before the mean; no numbers."""
+        """Return the mean of the same samples, each decoded first; no numbers."""
         return self._decoded_pass("mix_resolve.frag", self._size, self._sampled())
 
     def blended(self, decals: np.ndarray) -> Decoded:

@@ -19,13 +19,13 @@ RESULTS = ("d", "t", "b")
 
 @dataclass(frozen=True)
 class Tried:
-    """What the functions made of some values, float32 arrays of shape (count, 4).
+    """Results of the functions for some values, float32 arrays of shape (count, 4).
 
     Attributes:
-        codes: what the encoder gives.
-        back: what each adapter of the decoder gives.
+        codes: results of the encoder.
+        back: results of each adapter of the decoder.
         encode_ended: bool of shape (count,), whether the device ended a loop of the encoder.
-        decode_ended: the same of the decoder, or of the encoder before it.
+        decode_ended: the same for the decoder, or for the encoder before it.
     """
 
     codes: np.ndarray

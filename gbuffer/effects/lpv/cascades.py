@@ -1,4 +1,4 @@
-"""Where the volumes lie in the world, and from where the lights look at them."""
+"""Positions of the volumes in the world, and the views of the lights on them."""
 
 from __future__ import annotations
 
@@ -38,20 +38,20 @@ class Cascade:
 
     @property
     def box(self) -> np.ndarray:
-        """Its low and its high corner in the world, (2, 3)."""
+        """Low and high corner of the volume in the world, (2, 3)."""
         low = np.array(self.origin, float)
         return np.stack([low, low + self.cells]) * self.cell
 
 
 @dataclass(frozen=True)
 class LightSight:
-    """From where a light sees the scene, in a square picture: a `Sight`.
+    """A light's view of the scene, in a square image: a `Sight`.
 
     Attributes:
         rows: world to view space, 16 numbers row by row.
-        half: half the picture's width and height: in metres for parallel rays, else at distance 1.
+        half: half the image's width and height: in metres for parallel rays, else at distance 1.
         near, far: distances along the line of sight.
-        is_parallel: whether its rays are.
+        is_parallel: whether its rays are parallel.
     """
 
     rows: tuple[float, ...]
@@ -99,7 +99,7 @@ def finest_cell(box: np.ndarray, extent: float, cells: int, cascades: int) -> fl
 
 
 def cascades_of(view: View, box: np.ndarray, cell: float, cells: int, cascades: int) -> tuple[Cascade, ...]:
-    """The cascades around a view, the finest first, each of twice the cells' side of the one before."""
+    """Return the cascades around a view, the finest first; the side of the cells doubles from each to the next."""
     return tuple(_placed_cascade(view, box, cell * 2**index, cells) for index in range(cascades))
 
 

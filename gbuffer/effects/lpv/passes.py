@@ -17,7 +17,7 @@ from .volumes import INDIRECT, Volumes
 
 
 class Lattice:
-    """Where the cascades of a frame lie: sizes as of the scene that it is made for, places as of the moment."""
+    """Positions of a frame's cascades: sizes from the scene that it was made for, positions at the current moment."""
 
     def __init__(self, canvas: Canvas, volumes: Volumes, extent: float):
         self._canvas, self._volumes, self.box = canvas, volumes, box_of(canvas.frame.scene)
@@ -30,7 +30,7 @@ class Lattice:
         return cascades_of(view, self.box, self.cell, self._volumes.cells, self._volumes.cascades)
 
     def place(self, *programs: Program) -> None:
-        """Tell programs where the cascades lie."""
+        """Tell programs where the cascades are."""
         first, *others = (cascade.origin for cascade in self.cascades)
         for program in programs:
             program["origins"] = [first, *others] if others else first
@@ -73,7 +73,7 @@ class Injection:
                 self._add_surfels(view, cascades)
 
     def _views(self) -> Iterator[tuple[int, Sight, range]]:
-        """Each light's number, from where it looks, and the cascades that it then lights."""
+        """Yield each light's index, its view, and the cascades that it lights from there."""
         number, all_of_them = self._volumes.texels, range(self._volumes.cascades)
         for index, light in enumerate(self._canvas.frame.scene_buffers.lights):
             if light.kind == "sun":

@@ -43,7 +43,7 @@ class Volumes:
 
     @property
     def corners(self) -> int:
-        """Of the cells along an axis: what blocks light is kept there."""
+        """Number of cell corners along an axis, where blockers of light are kept."""
         return self.cells + 1
 
     @property
@@ -53,7 +53,7 @@ class Volumes:
 
     @property
     def blockers(self) -> Resource:
-        """What blocks light at the cells' corners, slices side by side."""
+        """Blockers of light at the cells' corners, slices side by side."""
         return self._flat_resource("lpv_blockers", self.corners)
 
     @property
@@ -73,7 +73,7 @@ class Volumes:
 
     @property
     def reflective_depth(self) -> Resource:
-        """What a reflective shadow map is drawn against."""
+        """Depth and stencil that a reflective shadow map is drawn against."""
         return self._map_resource("lpv_depth", DEPTH_STENCIL)
 
     def defines(self, cell: float) -> dict[str, object]:

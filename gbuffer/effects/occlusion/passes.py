@@ -1,7 +1,7 @@
-"""The passes of a method of ambient occlusion: depths for its taps, the method, and at half size the upsampling.
+"""The passes of an ambient occlusion method: depths for its taps, the method, and at half size the upsampling.
 
-All methods write the one resource VISIBILITY, and their passes have the same names, so that a pipeline takes one method
-and its times can be compared with another's.
+All methods write the same resource, VISIBILITY, and their passes have the same names, so that a pipeline takes one
+method and its times can be compared with another's.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Screen-space reflections: mirrored rays that meet what the screen shows, glossy by roughness.
+"""Screen-space reflections: mirrored rays that hit what the screen shows, glossy by roughness.
 
-A ray marches over the depths of the screen (McGuire and Mara, Efficient GPU Screen-Space Ray Tracing, 2014), and the
-step in which it goes behind a surface is halved. What it brings takes the place of what the surface mirrors of the
-environment. What lies outside the picture or behind something is not there for it.
+A ray marches over the depths of the screen (McGuire and Mara, Efficient GPU Screen-Space Ray Tracing, 2014), and
+the step in which it passes behind a surface is halved. The light that it finds replaces the surface's reflection of
+the environment. A ray cannot hit anything outside the image or hidden by something else.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ AFTER = ("screen",)
 
 
 def passes(steps: int, rays: int, thickness: float, around: bool, seed: int) -> tuple[Pass, ...]:
-    """All of them, in order; the arguments are the effect's settings."""
+    """Return all passes, in order; the arguments are the effect's settings."""
     macros = {"STEPS": steps, "RAYS": rays, "THICKNESS": thickness, "AROUND": int(around), "SEED": seed}
     return (
         Pass("ssr_near", (*SURFACE, DEPTH), (NEAR,), _near, AFTER),

@@ -48,11 +48,11 @@ CONSTANTS: Mapping[str, float] = {
 
 @dataclass(frozen=True)
 class Scatter:
-    """What all passes are told.
+    """Settings that all passes share.
 
     Attributes:
-        width: metres.
-        follow: the share of light that a step of one width in depth keeps out.
+        width: in metres.
+        follow: the share of light that a depth step of one width keeps out.
         samples: taps of a blur.
     """
 
@@ -67,7 +67,7 @@ class Scatter:
 
 
 def sun_entry() -> Pass:
-    """What the sun reaches first; nothing where the frame has no shadows."""
+    """Return the pass that draws what the sun reaches first; it is skipped if there are no shadows."""
     return Pass("sun_entry", (), (SUN_ENTRY,), _sun_entry, after=("lights",))
 
 
@@ -125,10 +125,10 @@ def _skin_light(numbers: Mapping[str, Any], canvas: Canvas) -> Run:
 
 
 class Blur:
-    """One shader over the pixels that are marked.
+    """One shader over the marked pixels.
 
     Attributes:
-        queries: where set, a query around each draw.
+        queries: if set, each draw adds a query to it.
     """
 
     def __init__(self, shader: str, into: Resource, numbers: Mapping[str, Any], canvas: Canvas):
@@ -155,7 +155,7 @@ def separable(scatter: Scatter) -> tuple[Pass, ...]:
 
 
 def gaussians(scatter: Scatter, pairs: int) -> tuple[Pass, ...]:
-    """Rows and columns for each Gaussian, each from the one before, and their sum in the last pass."""
+    """Return rows and columns of each Gaussian as passes, each from the one before, with the sum in the last pass."""
     sum_of, levels, passes = GAUSSIANS[pairs], SKIN_GAUSSIANS[: pairs - 1], []
     begun = (SKIN_LIGHT, *levels)
     for number, (variance, light) in enumerate(zip(sum_of.increments.tolist(), begun, strict=True), 1):
@@ -169,7 +169,7 @@ def gaussians(scatter: Scatter, pairs: int) -> tuple[Pass, ...]:
 
 
 def burley(scatter: Scatter, seed: int) -> tuple[Pass, ...]:
-    """One pass: a disc of taps."""
+    """Return a single pass: a disc of taps."""
     distances = burley_distances()
     numbers = {
         "RADII": listed(burley_radii(scatter.samples)),

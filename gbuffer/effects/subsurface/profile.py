@@ -1,4 +1,4 @@
-"""How far light goes through skin, and the taps that each method makes of it. Lengths are millimetres of skin.
+"""Distances that light travels through skin, and the taps of each method for them. Lengths are millimetres of skin.
 
 d'Eon and Luebke, Advanced Techniques for Realistic Real-Time Skin Rendering, GPU Gems 3, 2007, chapter 14;
 Jimenez and Gutierrez, SeparableSSS, 2012; Christensen and Burley, Approximate Reflectance Profiles for Efficient
@@ -65,8 +65,8 @@ class Gaussians:
     """A sum of Gaussians, each blurred from the one before.
 
     Attributes:
-        variances: in square millimetres, growing.
-        weights: (1 + Gaussians, 3), those of unblurred light first.
+        variances: in square millimetres, in ascending order.
+        weights: (1 + Gaussians, 3), first those of unblurred light.
     """
 
     variances: tuple[float, ...]

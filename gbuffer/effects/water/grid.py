@@ -52,13 +52,13 @@ class Grid:
         return max(outer - FIRST_GAP * self.rings, 0.0) / self.rings**4
 
     def radii(self, outer: float) -> np.ndarray:
-        """Of the rings, (rings,), in metres."""
+        """Return the radii of the rings, (rings,), in metres."""
         i = np.arange(1, self.rings + 1)
         return FIRST_GAP * i + self.curve(outer) * i.astype(float) ** 4
 
 
 def centre_under(view: View) -> tuple[float, float]:
-    """Where the grid's centre lies in the world, x and z: under the eye, at whole steps."""
+    """Return the position of the grid's centre in the world, x and z: under the eye, in whole steps."""
     return round(view.eye[0] / STEP) * STEP, round(view.eye[2] / STEP) * STEP
 
 

@@ -11,11 +11,11 @@ from ...scenes.scene import View
 
 @dataclass(frozen=True)
 class MirrorSight:
-    """What a view sees in still water: a `Sight`. The picture has left and right exchanged, as a turned camera's has.
+    """A view's reflection in still water: a `Sight`. Its image has left and right exchanged, like a turned camera's.
 
     Attributes:
         view: the mirrored camera.
-        level: of the water; what lies below it is cut off.
+        level: height of the water; everything below it is clipped.
     """
 
     view: View

@@ -1,4 +1,4 @@
-"""The passes of water: wave maps, caustics, the mirror image, what lies behind, the surface, and it over the image."""
+"""The passes of water: wave maps, caustics, mirror image, depth behind the water, surface, and overlay on the image."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ AFTER = ("screen", "material", "forward", "lights")
 
 @dataclass(frozen=True)
 class Look:
-    """What the passes share of the settings.
+    """Settings that the passes share.
 
     Attributes:
-        maps: of the waves.
-        seed: of their random numbers.
-        strength: times their slope.
-        grid: what is drawn.
+        maps: the wave maps.
+        seed: of the waves' random numbers.
+        strength: factor on the waves' slope.
+        grid: the grid that is drawn.
         defines: macros.
     """
 
@@ -67,7 +67,7 @@ def tell(program: Program, **values: object) -> None:
 
 
 def passes(look: Look) -> tuple[Pass, ...]:
-    """All of them, in order."""
+    """Return all passes, in order."""
     maps = look.maps
     sheets = (maps.heights, maps.bends)
     reads = (*sheets, maps.caustics, MIRROR, MIRROR_DEPTH, BEHIND, FINAL, DEPTH, SHADOW_MAP)
@@ -131,7 +131,7 @@ def _mirror_sight(canvas: Canvas) -> MirrorSight:
 
 
 def _mirror(canvas: Canvas) -> Run:
-    """All opaque surfaces above the water under all lights, seen from below."""
+    """Return a function that draws all opaque surfaces above the water under all lights, seen from below."""
     target = canvas.target(MIRROR, depth=MIRROR_DEPTH)
     surfaces = ForwardSurfaces(canvas, bool(canvas.frame.scene_buffers.first_lamp))
 
@@ -186,7 +186,7 @@ class Surface:
 
 
 def sun_drift(direction: tuple[float, float, float]) -> tuple[float, float, float]:
-    """How far refracted sunlight goes aside in the world, for each metre of depth under still water."""
+    """Return how far refracted sunlight moves sideways in the world, per metre of depth under still water."""
     # Snell: the part along the surface shrinks by the index.
     x, z = direction[0] / CONSTANTS["INDEX"], direction[2] / CONSTANTS["INDEX"]
     down = float(np.sqrt(1 - x * x - z * z))

@@ -1,4 +1,4 @@
-"""What the passes of water hand on, whose sizes the settings decide, and the numbers that shaders are given."""
+"""Resources that the passes of water share, in sizes that the settings decide, and the constants of their shaders."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ CELLS, MARGIN = 96, 12
 
 @dataclass(frozen=True)
 class Maps:
-    """The wave maps and what is made of them: volumes of texels x texels, one slice for each level."""
+    """The wave maps and the maps made from them: volumes of texels x texels, one slice for each level."""
 
     octaves: int
     texels: int

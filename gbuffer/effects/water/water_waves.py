@@ -1,7 +1,7 @@
-"""The waves of a sheet of water: a sum of cosines that repeats in space and in time, beside water_waves.frag.
+"""The waves of a sheet of water: a sum of cosines that repeats in space and in time; see water_waves.frag.
 
 Tessendorf, Simulating Ocean Water, 2001: deep water's dispersion w^2 = g k, frequencies rounded so that all waves
-repeat together. The spectrum was not measured anywhere: every octave has nearly the same slope.
+repeat together. The spectrum is not a measured one: every octave has nearly the same slope.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Waves:
 
     @property
     def table(self) -> np.ndarray:
-        """What the shader is given, (waves, 4), float32: n, a, phase from 0 to 1."""
+        """Input of the shader, (waves, 4), float32: n, a, phase from 0 to 1."""
         return np.column_stack([self.numbers, self.heights, self.phases % 1.0]).astype(np.float32)
 
 

@@ -35,7 +35,7 @@ HAZE, ZENITH = np.array([0.62, 0.68, 0.74]), np.array([0.1, 0.24, 0.52])
 
 
 def height(x: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Of the ground, in metres above the still water; it slopes into the lake at any side."""
+    """Return the ground's height, in metres above the still water; the ground slopes into the lake on every side."""
     out = np.hypot(x, 1.15 * z) / (SHORE + 2.2 * np.sin(2 * np.arctan2(z, x) + 0.6))
     bowl = -DEEP + (DEEP + 0.6) * out**2 / (0.55 + 0.45 * out**2)
     hills = 3.0 * np.clip(out - 1.2, 0, 2) ** 1.5 * (1.2 + np.sin(0.21 * x + 0.8) * np.cos(0.17 * z))

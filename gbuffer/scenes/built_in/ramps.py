@@ -54,7 +54,7 @@ def _place(number: int) -> tuple[float, float, float]:
 
 
 def _materials() -> tuple[MetalRough, ...]:
-    """Of the panels, from the upper left."""
+    """Return the materials of the panels, from the upper left."""
     along, up = _ramp(0.0, 1.0), _ramp(0.0, 1.0).T
     copper, steel = (0.95, 0.64, 0.54), (0.78, 0.78, 0.8)
     return (
@@ -74,7 +74,7 @@ def _materials() -> tuple[MetalRough, ...]:
 
 
 def _ramp(low: float, high: float) -> np.ndarray:
-    """From one number to another along u, (SIZE, SIZE)."""
+    """Return numbers that go from `low` to `high` along u, (SIZE, SIZE)."""
     return np.tile(np.linspace(low, high, SIZE), (SIZE, 1))
 
 
@@ -92,7 +92,7 @@ def _rough_metal(roughness: np.ndarray, metalness: np.ndarray | None = None) -> 
 
 @cache
 def _hues() -> np.ndarray:
-    """All hues along u, from black to white along v; uint16 of shape (SIZE, SIZE, 4)."""
+    """Return all hues along u, from black to white along v; uint16 of shape (SIZE, SIZE, 4)."""
     hue, value = _ramp(0.0, 6.0), _ramp(0.0, 1.0).T
     pure = np.stack([np.clip(np.abs((hue - phase) % 6 - 3) - 1, 0, 1) for phase in (0.0, 2.0, 4.0)], axis=-1)
     # Dark to the hue, and on to white.

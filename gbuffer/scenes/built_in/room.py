@@ -31,7 +31,7 @@ MATERIALS = (
 
 
 def _wall(axis: int, side: float) -> Mesh:
-    """One face of the room, its normal pointing in."""
+    """Return one face of the room, its normal pointing inward."""
     turned = {
         0: np.array([(0, 1.0, 0), (-side, 0, 0), (0, 0, 1.0)]),
         1: np.diag([1.0, -side, 1.0]),

@@ -77,14 +77,14 @@ def _surroundings() -> Environment:
 
 
 def _materials() -> tuple[MetalRough, ...]:
-    """Of the spheres, the panels, then of the room: mirror, floor, wall, lamp."""
+    """Return the materials of the spheres, of the panels, then of the room: mirror, floor, wall, lamp."""
     spheres = [MetalRough(kind.base, kind.metalness, roughness) for kind in (PLASTIC, METAL) for roughness in ROUGHNESS]
     floor = replace(FLOOR, normal_map=Map(tiles(), wrap=("repeat", "repeat")))
     return (*spheres, GLOSSY_PAINT, BRUSHED, MIRROR, floor, WALL, LAMP)
 
 
 def _panels(first: int) -> tuple[ScenePart, ...]:
-    """Two panels that face the camera, the one slowly bent and the other hardly."""
+    """Return two panels that face the camera, one gently curved and the other almost flat."""
     places = ((-2.1, 2.75, -0.9), (0.6, 2.75, -0.9))
     return tuple(
         ScenePart(panel(2.4, 1.5, *turns), placed(place), np.array([first + number]), two_sided=True)

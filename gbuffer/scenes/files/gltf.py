@@ -65,10 +65,10 @@ def read_gltf(path: Path) -> MeshFile:
 
 
 def gltf_meshes(path: Path) -> list[Stored]:
-    """What the meshes of the default scene say, each mesh once and in its own space, points and lines among them.
+    """Return the meshes of the default scene as stored, each mesh once and in its own space, with points and lines.
 
     Raises:
-        SceneFileError: see `read_gltf`; a file may have no triangles.
+        SceneFileError: see `read_gltf`; but a file may have no triangles.
     """
     gltf = Gltf(path)
     # A mesh in several places is read once.
@@ -91,7 +91,7 @@ def _children(gltf: Gltf, index: int) -> list[int]:
 
 
 def _checked_tree(gltf: Gltf) -> list[int]:
-    """The nodes that are no one's children. Raises SceneFileError where nodes are no trees."""
+    """Return the nodes that have no parent. Raises SceneFileError if the nodes do not form trees."""
     count = len(gltf.list_of(gltf.json, "nodes", "the file"))
     parents: dict[int, int] = {}
     for index in range(count):
@@ -112,7 +112,7 @@ def _checked_tree(gltf: Gltf) -> list[int]:
 
 
 def _placed_nodes(gltf: Gltf) -> Iterator[tuple[Object, np.ndarray]]:
-    """Each node of the default scene with its matrix to world space."""
+    """Yield each node of the default scene with its matrix to world space."""
     tops = _checked_tree(gltf)
     if gltf.list_of(gltf.json, "scenes", "the file"):
         scene = gltf.entry("scenes", gltf.json.get("scene", 0), "the file's scene")
@@ -162,7 +162,7 @@ def _local_matrix(gltf: Gltf, node: Object, place: str) -> np.ndarray:
 
 
 def _check_sizes(gltf: Gltf, nodes: list[tuple[Object, np.ndarray]]) -> None:
-    """Raises SceneFileError where all meshes in all their places are more than is read; from headers alone."""
+    """Raise SceneFileError if the meshes in all their places are too large to be read; uses only headers."""
     sizes: dict[int, tuple[int, int]] = {}
     vertices = triangles = 0
     for node, _ in nodes:
@@ -224,14 +224,14 @@ def _primitive(gltf: Gltf, primitive: Object, mode: int, material: MetalRough, w
 
 
 def _lacking_uv(material: MetalRough, *sets: np.ndarray | None) -> list[str]:
-    """What is said of the sets of uv that a material's maps lie by and a mesh has not."""
+    """Return notes on the uv sets that a material's maps use and a mesh lacks."""
     lacking = {m.uv_set for m in material.maps if m is not None and sets[m.uv_set] is None}
     remarks = ("their textures are looked up at one point", "TEXCOORD_0 stands in")
     return [f"there are meshes without TEXCOORD_{uv_set}: {remarks[uv_set]}" for uv_set in sorted(lacking)]
 
 
 def _stored(gltf: Gltf, primitive: Object, mode: int, where: str) -> Stored:
-    """What a primitive says; its points, where it has no triangles."""
+    """Return a primitive as stored; its points, if it has no triangles."""
     corners, arrays = _stored_numbers(gltf, primitive, mode, where)
     normals, uv, second = (arrays.get(name) for name in ("NORMAL", "TEXCOORD_0", "TEXCOORD_1"))
     # Tangents without normals say nothing (glTF 2.0, 3.7.2.1).
@@ -241,8 +241,8 @@ def _stored(gltf: Gltf, primitive: Object, mode: int, where: str) -> Stored:
 
 
 def _roundings(gltf: Gltf, index: object, where: str) -> tuple[Rounding, ...]:
-    """What an accessor's normals were rounded to: their own whole numbers, and the map that EXT_meshopt_compression
-    packed them by."""
+    """Return how an accessor's normals were rounded: by their own integers, and by the octahedral map with which
+    EXT_meshopt_compression packed them."""
     accessor = gltf.entry("accessors", index, where)
     kind = np.dtype(COMPONENTS[accessor["componentType"]])
     bits = gltf.octahedral_bits.get(accessor.get("bufferView"))

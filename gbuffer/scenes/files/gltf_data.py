@@ -1,7 +1,7 @@
-"""What lies in a glTF 2.0 file: its JSON, checked as it is asked for, and the numbers of its accessors.
+"""The contents of a glTF 2.0 file: its JSON, checked as it is used, and the numbers of its accessors.
 
-Nothing in a file is believed: every index, length and type is checked before it is used, and nothing is allocated for a
-count that is too large.
+Nothing in a file is trusted: every index, length and type is checked before it is used, and nothing is allocated
+for a count that is too large.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ class Gltf:
     """A glTF or GLB file.
 
     Attributes:
-        path: where it lies; what it names lies beside it.
+        path: the file's path; the files that it names are next to it.
         json: its document.
-        octahedral_bits: by the index of a buffer view that was unpacked, the bits of the octahedral map that it is
-            packed by.
+        octahedral_bits: bits of the octahedral map that packs a buffer view, by the view's index; filled in as
+            views are unpacked.
     """
 
     def __init__(self, path: Path):
@@ -114,7 +114,7 @@ class Gltf:
         return entries
 
     def entry(self, kind: str, index: object, place: str) -> Object:
-        """An object of one of the document's lists. Raises SceneFileError where there is none of that index."""
+        """Return an object of one of the document's lists. Raises SceneFileError if there is none at that index."""
         known = self.list_of(self.json, kind, "the file")
         if type(index) is not int or not 0 <= index < len(known):
             raise self.error(place, f"names {kind}[{_shown_text(index)}], of which there are {len(known)}")
@@ -172,7 +172,7 @@ class Gltf:
         return self._accessor(index, 1, place)[:, 0].astype(np.int64)
 
     def count(self, index: object, place: str) -> int:
-        """How many numbers an accessor has, from its header alone."""
+        """Return an accessor's count of elements, from its header alone."""
         return self.whole(self.entry("accessors", index, place), "count", place)
 
     def _accessor(self, index: object, width: int, place: str) -> np.ndarray:
@@ -209,7 +209,7 @@ class Gltf:
         return found
 
     def _view_elements(self, index: object, start: int, kind: str, count: int, width: int, place: str) -> np.ndarray:
-        """Elements of a buffer view, (count, width), as they lie there."""
+        """Return elements of a buffer view, (count, width), as they are stored."""
         view = self.entry("bufferViews", index, place)
         where = f"{place}, bufferViews[{index}]"
         data = self.view_bytes(index, place)
@@ -223,10 +223,10 @@ class Gltf:
         return np.ndarray((count, width), kind, data, start, (stride, size))
 
     def view_bytes(self, index: object, place: str) -> bytes | memoryview:
-        """What a buffer view holds, unpacked where EXT_meshopt_compression packs it.
+        """Return the bytes of a buffer view, unpacked if EXT_meshopt_compression packs it.
 
         Raises:
-            SceneFileError: it leaves its buffer or cannot be unpacked.
+            SceneFileError: the view exceeds its buffer or cannot be unpacked.
         """
         view = self.entry("bufferViews", index, place)
         assert isinstance(index, int)
@@ -242,7 +242,7 @@ class Gltf:
         return self._unpacked[index]
 
     def _is_packed(self, view: Object, where: str) -> bool:
-        """Whether a view has to be unpacked: there is no plain copy of it."""
+        """Return whether a view has to be unpacked, because there is no plain copy of it."""
         buffer = self.entry("buffers", view.get("buffer"), where)
         return self.requires(MESHOPT) or ("uri" not in buffer and view.get("buffer") != 0)
 
@@ -272,7 +272,7 @@ class Gltf:
 
     @cached_property
     def notes(self) -> list[str]:
-        """What the file has that is not drawn."""
+        """Notes on features of the file that are not drawn."""
         notes = []
         meshes = _dicts(self.json.get("meshes"))
         primitives = [primitive for mesh in meshes for primitive in _dicts(mesh.get("primitives"))]

@@ -47,7 +47,7 @@ def lights_of(
 
 
 def _corners(piece: Piece) -> np.ndarray:
-    """Of a box around a piece in world space, (8, 3)."""
+    """Return the corners of a box around a piece in world space, (8, 3)."""
     used = piece.mesh.positions[np.unique(piece.mesh.triangles)]
     ends = np.stack([used.min(axis=0), used.max(axis=0)])
     corners = np.stack(np.meshgrid(*ends.T, indexing="ij"), axis=-1).reshape(8, 3)

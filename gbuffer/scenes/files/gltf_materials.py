@@ -42,7 +42,7 @@ class Materials:
         self._texels_in_all = 0
 
     def all(self) -> Iterator[tuple[MetalRough, bool]]:
-        """Each material, and whether its back is drawn. Raises SceneFileError."""
+        """Yield each material, and whether its back is drawn. Raises SceneFileError."""
         for index in range(len(self._gltf.list_of(self._gltf.json, "materials", "the file"))):
             data = self._gltf.entry("materials", index, f"materials[{index}]")
             yield self._material(data, f"materials[{index}]"), data.get("doubleSided") is True
@@ -106,7 +106,7 @@ class Materials:
     # Pictures.
 
     def _map(self, holder: Object, key: str, place: str, kind: str) -> Map | None:
-        """A map of `kind`: "colour", "opaque" for a colour without alpha, or "numbers"; None where there is none."""
+        """Return a map of `kind`: "colour", "opaque" for a colour without alpha, or "numbers"; None if missing."""
         gltf, place = self._gltf, f"{place}.{key}"
         if key not in holder:
             return None
@@ -125,7 +125,7 @@ class Materials:
         return Map(pixels, is_srgb, self._wrap(texture, place), uv_set, self._placed(moved, place))
 
     def _image(self, texture: Object) -> object:
-        """Which image a texture shows, None where it has none that is read."""
+        """Return the index of a texture's image; None if it has none that can be read."""
         extensions = texture.get("extensions")
         extensions = extensions if isinstance(extensions, dict) else {}
         webp = extensions.get(WEBP)
@@ -208,7 +208,7 @@ def _as_kind(found: np.ndarray, kind: str) -> np.ndarray:
 
 
 def _linear_of_deep() -> np.ndarray:
-    """What each of the 65536 codes of 16 bits on the sRGB curve is in linear light."""
+    """Return the linear light of each of the 65536 values of 16 bits on the sRGB curve."""
     from ....encodings.storages.rounding import from_srgb  # JAX, which few files need here
 
     return np.asarray(from_srgb(np.arange(65536) / 65535), np.float64)

@@ -1,6 +1,8 @@
-"""What two extensions of glTF pack: primitives by KHR_draco_mesh_compression, buffer views by EXT_meshopt_compression.
+"""Data packed by two extensions of glTF: primitives by KHR_draco_mesh_compression, buffer views by
+EXT_meshopt_compression.
 
-Each is unpacked by its own package, which is imported when a file needs it. What it makes is bounded before it starts.
+Each extension is unpacked by its own package, which is imported when a file needs it. The size of the result is
+bounded before unpacking starts.
 """
 
 from __future__ import annotations
@@ -105,7 +107,7 @@ def draco_primitive(gltf: Gltf, primitive: Object, place: str) -> tuple[np.ndarr
 
 
 def _check_draco_size(gltf: Gltf, data: bytes, place: str) -> None:
-    """Raises SceneFileError where the header says more than is read."""
+    """Raise SceneFileError if the header is not valid, or states more than is read."""
     try:
         magic, major, minor, kind, method, flags = DRACO_HEAD.unpack_from(data)
         if magic != b"DRACO" or (major, minor) != DRACO_VERSION or kind != DRACO_MESH:
@@ -126,7 +128,7 @@ def _check_draco_size(gltf: Gltf, data: bytes, place: str) -> None:
 
 
 def _varint(data: bytes, at: int) -> tuple[int, int]:
-    """A number of seven bits a byte, the least first, and where it ends."""
+    """Return a number stored as seven bits per byte, the lowest first, and the offset after it."""
     value = shift = 0
     while True:
         value |= (data[at] & 127) << shift

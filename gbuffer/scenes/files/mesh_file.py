@@ -1,4 +1,4 @@
-"""What the readers of mesh files give: meshes, where they stand, what they are made of, a camera."""
+"""Contents of mesh files as read: meshes, their places, their materials and a camera."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ NOTHING = 1e-12
 
 @dataclass(frozen=True)
 class Rounding:
-    """How coarsely normals are stored.
+    """The coarseness of stored normals.
 
     Attributes:
-        most: steps from 0 to 1 of a number: 127 of 8 bits with a sign, 127.5 of 8 bits that stand for [-1, 1].
-        is_octahedral: whether these are the numbers of an octahedral map, and not x, y and z.
+        most: steps of a number from 0 to 1: 127 for signed 8 bits, 127.5 for 8 bits that stand for [-1, 1].
+        is_octahedral: whether the numbers are those of an octahedral map, and not x, y and z.
     """
 
     most: float
@@ -33,15 +33,15 @@ class Rounding:
 
 @dataclass(frozen=True, eq=False)
 class Stored:
-    """What a file says of one mesh, unchecked.
+    """A mesh as a file stores it, unchecked.
 
     Attributes:
-        place: where in the file it is said.
+        place: its place in the file.
         positions: (vertices, 3).
-        corners: vertex indices: of triangles, (triangles, 3), or of points, (points, 1).
-        normals: (vertices, 3), of any length; None where there are none.
-        uv, tangents, second_uv: as `Mesh` has them, tangents as `authored`, of any length.
-        roundings: what the normals were rounded to, as far as the file says.
+        corners: vertex indices: (triangles, 3) for triangles, (points, 1) for points.
+        normals: (vertices, 3), of any length; None if there are none.
+        uv, tangents, second_uv: as in `Mesh`, tangents as `authored`, of any length.
+        roundings: how the normals were rounded, as far as the file tells.
     """
 
     place: str
@@ -60,7 +60,7 @@ class Piece:
 
     Attributes:
         mesh: in its own space; pieces of one mesh share it.
-        model: (4, 4), column vectors' matrix to world space, of any scale and side.
+        model: (4, 4), matrix to world space for column vectors, of any scale and handedness.
         material: index into the file's materials.
     """
 
@@ -83,15 +83,15 @@ class Piece:
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A file of meshes.
+    """The contents of a mesh file.
 
     Attributes:
-        path: where it was read from.
+        path: the file's path.
         pieces: at least one.
-        materials, two_sided: what pieces are made of, and whether the back of each material is drawn.
-        view: the file's own camera, None where it has none.
-        notes: what was not taken from the file or made up for it, each in a few words.
-        lights: the file's own, a sun first; none where it has none.
+        materials, two_sided: the pieces' materials, and whether the back of each material is drawn.
+        view: the file's own camera; None if it has none.
+        notes: what was not taken from the file or was made up for it, each in a few words.
+        lights: the file's own, a sun first; empty if it has none.
     """
 
     path: Path
@@ -119,7 +119,7 @@ class MeshFile:
 
     @cached_property
     def radius(self) -> float:
-        """Of a ball around the middle of the bounds that holds everything."""
+        """Radius of the ball around the middle of the bounds that contains everything that is drawn."""
         low, high = self.bounds
         return float(np.linalg.norm(self.drawn - (low + high) / 2, axis=1).max())
 
@@ -135,13 +135,13 @@ def of_one_mesh(path: Path, mesh: Mesh, notes: Iterable[str]) -> MeshFile:
 
 
 def mesh_of(path: Path, stored: Stored) -> tuple[Mesh, list[str]]:
-    """A mesh of what a file holds, and what had to be made up.
+    """Return the mesh that a file holds, and notes on what had to be made up.
 
-    Normals are brought to unit length; where there are none, or one is of no length, smooth ones stand in. Triangles
+    Normals are scaled to unit length; smooth normals replace those that are missing or have no length. Triangles
     without an area are left out.
 
     Raises:
-        SceneFileError: an index out of range, a number that is none, or no triangle left.
+        SceneFileError: an index is out of range, a number is not valid, or no triangle is left.
     """
     place, normals, tangents = stored.place, stored.normals, stored.tangents
     positions = checked_numbers(path, np.asarray(stored.positions, np.float64), f"{place}: the position")

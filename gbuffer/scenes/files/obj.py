@@ -36,14 +36,14 @@ Corner = tuple[int, int, int]
 
 @dataclass
 class _Obj:
-    """An OBJ file as its lines say it.
+    """The contents of an OBJ file, line by line.
 
     Attributes:
         data: rows of numbers by kind.
-        vertices: corners that differ.
-        known: their places in `vertices`, by how they are written.
-        corners: of triangles, three in turn, places in `vertices`; by material.
-        libraries, material, triangles: files of materials, the one in use, and how many triangles there are so far.
+        vertices: distinct corners.
+        known: their indices in `vertices`, by their text in the file.
+        corners: indices into `vertices`, three in turn for each triangle; by material.
+        libraries, material, triangles: material files, the current material, and the number of triangles so far.
     """
 
     data: dict[str, list[tuple[float, ...]]] = field(default_factory=lambda: {kind: [] for kind in VERTEX_DATA})
@@ -75,7 +75,7 @@ def read_obj(path: Path) -> MeshFile:
 
 
 def obj_meshes(path: Path) -> list[Stored]:
-    """What an OBJ file says of its meshes, one for each material. Raises SceneFileError."""
+    """Return the meshes of an OBJ file as stored, one for each material. Raises SceneFileError."""
     return list(_stored(path, _obj_of(path)))
 
 
@@ -109,7 +109,7 @@ def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
 
 
 def _take(obj: _Obj, words: list[str]) -> None:
-    """One line. Raises ValueError or IndexError where it is none."""
+    """Process one line. Raises ValueError or IndexError if it is not valid."""
     kind, rest = words[0], words[1:]
     if kind in VERTEX_DATA:
         size = VERTEX_DATA[kind]
@@ -177,7 +177,7 @@ def _table(rows: list[tuple[float, ...]], width: int) -> np.ndarray:
 
 
 def _materials(path: Path, libraries: list[str], notes: list[str]) -> dict[str, Material]:
-    """The materials of MTL files beside the OBJ; a missing one is noted."""
+    """Return the materials of the MTL files next to the OBJ file; a missing MTL file is noted."""
     materials: dict[str, Material] = {}
     for name in dict.fromkeys(libraries):
         try:

@@ -30,7 +30,7 @@ MAX_TOKEN = 64
 
 @dataclass(frozen=True)
 class Property:
-    """One property of an element: its type, and its count's type where it is a list."""
+    """A property of an element: its type, and the type of its count if it is a list."""
 
     name: str
     type: str
@@ -51,17 +51,17 @@ Table = dict[str, np.ndarray | list[np.ndarray]]
 
 
 def read_ply(path: Path) -> MeshFile:
-    """The mesh of a PLY file, in one grey material seen from both sides.
+    """Read the mesh of a PLY file, in one grey material visible from both sides.
 
     Raises:
-        SceneFileError: it is no PLY file, damaged, too large, or has no faces.
+        SceneFileError: the file is not a PLY file, is damaged or too large, or has no faces.
     """
     mesh, notes = mesh_of(path, _mesh(path, *_tables(path)))
     return of_one_mesh(path, mesh, notes)
 
 
 def ply_meshes(path: Path) -> list[Stored]:
-    """What a PLY file says of its mesh, or of its points. Raises SceneFileError."""
+    """Return the mesh of a PLY file, or its points, as stored. Raises SceneFileError."""
     return [read_cloud(path) if is_cloud(path) else _mesh(path, *_tables(path))]
 
 
@@ -99,7 +99,7 @@ def _normals(vertex: Table, types: dict[str, str]) -> tuple[np.ndarray | None, t
 
 
 def _tables(path: Path) -> tuple[dict[str, Table], dict[str, dict[str, str]]]:
-    """By element its columns, and their types as the header has them."""
+    """Return the columns of each element, and their types according to the header."""
     data = file_bytes(path)
     order, elements, start = _header(path, data)
     tables: dict[str, Table] = {}
@@ -146,7 +146,7 @@ def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
 
 
 def _check_count(path: Path, element: Element, left: int, least: int) -> None:
-    """Raises SceneFileError where a table is larger than what is left of the file, or than is read."""
+    """Raise SceneFileError if a table is not valid, or is larger than the rest of the file or than is read."""
     names = [p.name for p in element.properties]
     if not names or len(set(names)) < len(names):
         raise SceneFileError(f"{path}: element {element.name}: no properties, or two of one name; export it again")
@@ -198,7 +198,7 @@ def _values(data: bytes, at: int, p: Property, order: str) -> tuple[np.ndarray, 
 
 
 def _first_lengths(data: bytes, at: int, element: Element, order: str) -> dict[str, int]:
-    """How long the lists of the first row are; empty where it is damaged."""
+    """Return the lengths of the lists in the first row; empty if the row is damaged."""
     lengths: dict[str, int] = {}
     try:
         for p in element.properties:

@@ -54,7 +54,7 @@ def read_mesh_file(path: Path) -> MeshFile:
 
 
 def file_view(file: MeshFile) -> View:
-    """The file's camera, or one from aside that has everything in a picture at least as wide as high."""
+    """Return the file's camera, or one from the side that shows everything if the image is at least as wide as high."""
     if file.view:
         return file.view
     low, high = file.bounds
@@ -138,21 +138,21 @@ def _made_up_lights(file: MeshFile, setting: Setting) -> tuple[Light, ...]:
 
 @dataclass(frozen=True)
 class SeenMesh(Rendered):
-    """What a camera sees of a file.
+    """A file as a camera sees it.
 
     Attributes:
-        map_error_deg: by how many degrees the normals of maps of 8 bits are off, in the mean over all normals that are
-            seen; None where no map has 8.
+        map_error_deg: mean error of the normals of 8-bit maps in degrees, over all visible normals; None if no map
+            has 8 bits.
     """
 
     map_error_deg: float | None
 
 
 def seen(file: MeshFile, size: tuple[int, int]) -> SeenMesh:
-    """View-space normals, positions and coverage as the camera sees them, drawn without a GL driver.
+    """Return view-space normals, positions and coverage as the camera sees them, drawn without an OpenGL driver.
 
-    The normal of a pixel is that of its material's normal map, where it has one. What a material cuts out is a hole.
-    The back of a surface is drawn where the file's material says so, as renderers do.
+    A pixel's normal comes from its material's normal map, if it has one. Points that a material cuts out are holes.
+    The back of a surface is drawn if the file's material says so, as renderers do.
     """
     view = file_view(file)
     matrix = view.matrix()

@@ -31,10 +31,10 @@ class MissingPackageError(SceneFileError):
 
 
 def file_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
-    """What a file of at most so many bytes holds.
+    """Return the contents of a file of at most `most` bytes.
 
     Raises:
-        SceneFileError: it is no plain file (a pipe would never end), too large, or cannot be read.
+        SceneFileError: the file is not a plain file (a pipe would never end), is too large, or cannot be read.
     """
     try:
         if not path.is_file():
@@ -81,10 +81,10 @@ def checked_address(path: Path, address: object, place: str) -> Path | None:
 
 
 def resource(path: Path, address: object, place: str) -> bytes:
-    """What an address in the file `path` stands for: base64 after data:, or a file in its folder.
+    """Return the data at an address in the file `path`: base64 after data:, or a file in its folder.
 
     Raises:
-        SceneFileError: see `checked_address` and `file_bytes`; or the base64 is none.
+        SceneFileError: see `checked_address` and `file_bytes`; or the base64 is not valid.
     """
     named = checked_address(path, address, place)
     if named is not None:
@@ -123,7 +123,7 @@ def checked_numbers(path: Path, numbers: np.ndarray, place: str) -> np.ndarray:
 
 
 def checked_size(path: Path, vertices: int, triangles: int, place: str) -> None:
-    """Raises SceneFileError where there is more than is read at once; asked before anything is allocated."""
+    """Raise SceneFileError if there is more than is read at once; called before anything is allocated."""
     for count, most, what in ((vertices, MAX_VERTICES, "vertices"), (triangles, MAX_TRIANGLES, "triangles")):
         if count > most:
             raise SceneFileError(f"{path}: {place}: {count} {what}; the most is {most} (2^22): export fewer objects")

@@ -40,13 +40,13 @@ def sides(data: bytes) -> tuple[int, int]:
 
 
 def texels(data: bytes) -> np.ndarray:
-    """A picture's texels, (height, width, 4), uint8, or uint16 for a PNG file of 16 bits; row 0 is the top.
+    """Return an image's texels, (height, width, 4), uint8, or uint16 for a PNG file of 16 bits; row 0 is the top.
 
-    Grey stands in all three colours. Alpha that the picture does not have is the largest integer. No colour is
-    converted: colour profiles and gamma are passed over.
+    Grey fills all three colours. An alpha that the image lacks is the largest integer. No colour is converted:
+    colour profiles and gamma are ignored.
 
     Raises:
-        PictureError: it is of no format in FORMATS, too large, cut off or damaged.
+        PictureError: the data is not in one of FORMATS, is too large, truncated or damaged.
     """
     data = _bare(data)
     with _opened(data) as picture:
@@ -93,9 +93,9 @@ def _deep_texels(data: bytes) -> np.ndarray:
 
 
 def _bare(data: bytes) -> bytes:
-    """A PNG file with nothing but what its texels are made of, others as they are.
+    """Return a PNG file with only the chunks that its texels need; other files are unchanged.
 
-    Damaged profiles and texts are no reason to refuse a picture, and libpng prints warnings of them.
+    Damaged profiles and texts are no reason to refuse an image, and libpng prints warnings about them.
     """
     if not data.startswith(PNG):
         return data

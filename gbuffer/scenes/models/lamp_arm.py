@@ -1,10 +1,10 @@
-"""A mechanical lamp arm as four copies stand in the article's scene; the original's mesh may not be redistributed.
+"""A mechanical lamp arm, like the four in the article's scene; the original's mesh may not be redistributed.
 
-It lies in the plane y = 0: a bracket, a thick ring, a tapering tube to a fork joint, a second tube to a head of flat
+It is in the plane y = 0: a bracket, a thick ring, a tapering tube to a fork joint, a second tube to a head of flat
 facets, and bent cables along both tubes. Round parts are cut coarsely and have smooth normals, so that interpolated
-normals face away from the eye at silhouettes. The measures make the statistics of the original's four arms: how many
-pixels they cover, how many of their normals have z < 0 or face away, and the histograms of z and of n . v
-(tests/gbuffer/test_lamp_arm.py).
+normals face away from the eye at silhouettes. The dimensions reproduce the statistics of the original's four arms:
+the number of pixels that they cover, how many of their normals have z < 0 or face away, and the histograms of z and
+of n . v (tests/gbuffer/test_lamp_arm.py).
 """
 
 from __future__ import annotations
@@ -124,10 +124,10 @@ def disc(radius: float, half: float, slices: int, hole: float = 0.0, bulge: floa
 
 
 def plate(start: np.ndarray, end: np.ndarray, first: float, last: float, half: float) -> Mesh:
-    """Two circles in the plane and what lies between them, as a plate from y = -half to half.
+    """Return a plate from y = -half to half: two circles in the plane and the area between them.
 
     Args:
-        start, end: the circles' middles; `first` and `last` are their radii.
+        start, end: the circles' centres; `first` and `last` are their radii.
     """
     along = _way(start, end)
     turn = np.arctan2(along[1], along[0]) + np.linspace(np.pi / 2, 3 * np.pi / 2, ROUNDING + 1)

@@ -110,7 +110,7 @@ def teapot(steps: int) -> Mesh:
 
 
 def _outward(mesh: Mesh, index: int) -> Mesh:
-    """All normals of a patch point to one side; which one is out is decided at the patch's middle."""
+    """Return a patch with outward normals. All point to one side; the patch's middle decides which side is out."""
     middle = mesh.positions.mean(axis=0)
     turned = index < 4 * len(PROFILES)
     inside = np.array([0.0, 0.0, HEIGHT / 2]) if turned else middle * (1.0, 0.0, 1.0)

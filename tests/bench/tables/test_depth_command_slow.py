@@ -110,7 +110,7 @@ def test_without_a_gl_driver_the_jax_rows_are_there(run, tmp_path, monkeypatch):
         monkeypatch.setattr(module, "device", no_device)
     status, out, err = run(*QUICK[:-2], "--format", "json", "--plot", str(tmp_path / "plot.png"))
     rows = json.loads(out)
-    assert status == 0 and err.count("\n") == 1 and "install a GL driver" in err
+    assert status == 0 and err.count("\n") == 2 and "install a GL driver" in err
     assert {row["backend"] for row in rows if row["error_max"] is None} == {"glsl"}
     assert {row["backend"] for row in rows if row["error_max"] is not None} == {"jax"}
     assert (tmp_path / "plot.png").stat().st_size > 10_000

@@ -1,4 +1,4 @@
-"""What Linux, macOS and Windows have each in their own way, behind one interface.
+"""Features that Linux, macOS and Windows each have in their own way, behind one interface.
 
-No other module of `bench` names any of it.
+No other module of `bench` names any of them.
 """

@@ -1,4 +1,4 @@
-"""Whose a file is, how it takes the place of another one, where caches lie, and functions of the C library."""
+"""Owners of files, how a file replaces another one, cache folders, and functions of the C library."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ if sys.platform == "win32":
         return True
 
     def is_closed(_: os.stat_result) -> bool:
-        """Whether a file or folder is this user's, and nobody else may write it; see `is_own`."""
+        """Whether a file or folder is this user's, and nobody else may write to it; see `is_own`."""
         return True
 
     def is_guarded(_: Path) -> bool:
@@ -81,16 +81,17 @@ else:
         return found.st_uid == os.geteuid()
 
     def is_closed(found: os.stat_result) -> bool:
-        """Whether a file or folder is this user's, and nobody else may write it."""
+        """Whether a file or folder is this user's, and nobody else may write to it."""
         return is_own(found) and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
     def is_guarded(path: Path) -> bool:
-        """Whether nobody but this user and root can put another file at a path that has no links: all that there is of
-        it is owned by either, and others may write into none of its folders, unless that is sticky, as /tmp is. Raises
-        OSError.
+        """Whether nobody but this user and root can put another file at a path without links: every existing part of it
+        belongs to either, and others may not write to any of its folders, unless the folder is sticky, as /tmp is.
+        Raises OSError.
 
-        That a group may write counts, but for this user's own group with nobody else in it, which some systems give
-        each user together with folders that it may write. Lists of access by which the user let others in do not.
+        Write permission of a group counts, except for this user's own group without other members, which some
+        systems give each user together with folders that it may write to. Access lists by which the user let others
+        in do not count.
         """
         return all(_is_kept_by_its_owner(place.lstat()) for place in (path, *path.parents) if os.path.lexists(place))
 
@@ -104,8 +105,8 @@ else:
 
     @functools.cache
     def _is_of_this_user_alone(group: int) -> bool:
-        """Whether a group has this user's name, is the first one of this user and of nobody else, and lists no other
-        member."""
+        """Whether a group has this user's name, is the primary group of this user and of nobody else, and lists no
+        other member."""
         try:
             person, group_entry = pwd.getpwuid(os.geteuid()), grp.getgrgid(group)
         except KeyError:

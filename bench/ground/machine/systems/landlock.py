@@ -4,14 +4,16 @@
 
 walls itself in and becomes the command: see `command`. https://docs.kernel.org/userspace-api/landlock.html
 
-Denied, but for what is named: to read files and list folders, to write, make, remove, rename and truncate files, and to
-execute; further all TCP (from ABI 4 on), what is special to devices (ABI 5), signals to processes and abstract sockets
-outside (ABI 6), and to trace processes outside. Even in a folder to write nothing moves to another folder, and nothing
-but files and folders is made: no link, pipe, socket or device waits there for whoever reads it.
+Denied, except for the named paths: reading files and listing folders; writing, making, removing, renaming and
+truncating files; and executing. Also denied: all TCP (from ABI 4 on), operations special to devices (ABI 5),
+signals to processes and abstract sockets outside (ABI 6), and tracing processes outside. Even in a writable folder,
+nothing can be moved to another folder and only files and folders can be made: no link, pipe, socket or device waits
+there for whoever reads it.
 
-Not denied: to learn that a path exists, its status and what a link holds; to change the mode, owner, times and
-attributes of the user's files; UDP; sockets in folders, such as those of a desktop; what open descriptors lead to.
-EXECUTE is of `execve` alone: the loader and `memfd_create` run other bytes as well, behind the same wall.
+Not denied: learning that a path exists, its status and the target of a link; changing the mode, owner, times and
+attributes of the user's files; UDP; sockets in folders, such as those of a desktop; anything that open descriptors
+lead to. EXECUTE applies to `execve` alone: the loader and `memfd_create` run other bytes as well, behind the same
+wall.
 """
 
 from __future__ import annotations
@@ -40,7 +42,7 @@ TCP, OUTSIDE, NO_NEW_PRIVILEGES = 0b11, 0b11, 38
 
 
 def abi() -> int:
-    """The version of Landlock here; 0 where there is none, or what runs this process refuses it."""
+    """Return the version of Landlock here; 0 if there is no Landlock, or the environment of this process refuses it."""
     return max(0, _called(CREATE_RULESET, None, 0, VERSION)) if sys.platform == "linux" else 0
 
 
@@ -79,7 +81,7 @@ def restrict(reads: list[str], writes: list[str], executes: list[str]) -> None:
 
 
 def forget_variables() -> None:
-    """Leave this process, and what it starts, no variables but VARIABLES and those of Python: others may be secrets."""
+    """Remove all variables except VARIABLES and Python's, for this process and what it starts: they may be secrets."""
     for name in [*os.environ]:
         if name not in VARIABLES and not name.startswith("PYTHON"):
             del os.environ[name]

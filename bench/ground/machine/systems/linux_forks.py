@@ -103,7 +103,7 @@ class _Forking:
     started_with: Any = None
 
     def start(self) -> socket.socket:
-        """A new process, in place of the one that there was."""
+        """Start a new process in place of the previous one, and return the socket for requests."""
         self.end()
         self.link, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
@@ -119,7 +119,7 @@ class _Forking:
         return self.link
 
     def end(self) -> None:
-        """End it: it ends where nobody can ask any more."""
+        """End the process: it ends once nobody can send it a request."""
         if self.link and self.process:
             self.link.close()
             self.process.wait()
@@ -135,10 +135,11 @@ def _read_at_the_start() -> dict[str, str]:
 
 
 def _asked(request: bytes, files: tuple[IO[bytes], IO[bytes]]) -> socket.socket:
-    """Where a process's number has come, and its status will; the process that forks may have ended: it is asked twice.
+    """Return the socket through which a process's number has come and its status will come. The process that forks may
+    have ended, so it is asked twice.
 
     Raises:
-        OSError: it does not stay.
+        OSError: the process that forks does not keep running.
     """
     for _ in range(2):
         answer, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -156,7 +157,7 @@ def _asked(request: bytes, files: tuple[IO[bytes], IO[bytes]]) -> socket.socket:
 
 
 def _serve(link: socket.socket) -> None:
-    """Fork for each request, until there is nobody to ask or nobody has asked for long."""
+    """Fork for each request, until the other end is closed or no request has come for a long time."""
     # Who waits for the process that was asked for is itself waited for by nobody.
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     link.settimeout(IDLE_S)

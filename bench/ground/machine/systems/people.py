@@ -1,4 +1,4 @@
-"""How people install what is missing and write a command, and what wgpu reaches a GPU by, on each system."""
+"""Installation advice, command lines, and the API by which wgpu reaches a GPU, for each system."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ else:
 
 
 def how_to_install(packages: str, counts: bool = False) -> str:
-    """What installs Debian's packages here; the first is what is missing, and others are what it needs.
+    """Return how to install Debian's packages here; the first is the missing one, and the others are what it needs.
 
     Args:
-        counts: whether instructions are to be counted by it, which Linux alone does.
+        counts: whether it is needed to count instructions, which only Linux can do.
     """
     way = ELSEWHERE if counts else _WAYS.get(packages.split()[0], ELSEWHERE)
     return way or f"Debian: apt-get install {packages}"

@@ -60,7 +60,7 @@ if sys.platform == "win32":
         os._exit(1)
 
     def signal_name(status: int) -> str:
-        """What the system ended a process by; empty where it ended by itself."""
+        """Return what the system ended a process by; empty if the process ended by itself."""
         status &= 0xFFFFFFFF
         return _ENDINGS.get(status, f"0x{status:08X}" if status >= 0xC0000000 else "")
 
@@ -86,7 +86,7 @@ if sys.platform == "win32":
         return windows.is_running(process)
 
     def most_addresses() -> int | None:
-        """The bytes that this process may have addresses for: there is no such limit."""
+        """Return None: this system does not limit the bytes that this process may have addresses for."""
         return None
 
     def on_fork(call: Callable[[], None]) -> None:

@@ -1,4 +1,4 @@
-"""What Linux says in files of this machine, and of this process; nothing where they are not there."""
+"""Facts that Linux gives in files about this machine and this process; empty if the files are missing."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ LOADED = Path("/proc/self/maps")
 
 
 def processor_lines() -> list[str]:
-    """What is said of each core, as `name : value`."""
+    """Return the lines on each core, as `name : value`."""
     return _lines(PROCESSOR)
 
 
 def processor_kind() -> list[str]:
-    """What tells a kind of processor from others that need other programs."""
+    """Return facts that tell a kind of processor from others that need other programs."""
     facts = {line for line in processor_lines() if line.startswith(("model name", "flags", "Features"))}
     return [platform.machine(), platform.processor(), *sorted(facts)]
 

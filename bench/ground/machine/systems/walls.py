@@ -1,4 +1,4 @@
-"""What programs need behind a wall of Landlock: a compiler, another tool, this Python, and a program that was made."""
+"""The walls of Landlock that programs need: a compiler, another tool, this Python, and a compiled program."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SECONDS = 60
 
 @dataclass(frozen=True)
 class Wall:
-    """What a process may use: see `landlock.restrict`. Walls are put together with `|`."""
+    """The files that a process may use: see `landlock.restrict`. Walls are combined with `|`."""
 
     reads: tuple[str, ...] = ()
     writes: tuple[str, ...] = ()
@@ -51,13 +51,13 @@ class Wall:
 
 
 def require() -> None:
-    """Raises MissingError where there are no walls."""
+    """Raise MissingError if this system has no walls."""
     if not landlock.is_available():
         raise MissingError(NONE)
 
 
 def of_program(path: Path | str) -> Wall:
-    """For a program and the system's libraries. It may start itself again."""
+    """Return the wall of a program, with the system's libraries. The program may start itself again."""
     loader = _loader(path)
     return Wall(LIBRARIES, WRITTEN, (str(path), *filter(None, [loader])))
 
@@ -72,7 +72,7 @@ def of_tool(path: Path | str) -> Wall:
 
 @cache
 def of_c_compiler(tool: str) -> Wall:
-    """For a C or C++ compiler, which compiles and links: its parts, headers and libraries, as it names them itself."""
+    """Return the wall of a C or C++ compiler, which compiles and links: the parts, headers and libraries it names."""
     parts = [shutil.which(_said(tool, f"-print-prog-name={name}")) for name in PARTS]
     lines = [line.partition(":") for line in _said(tool, "-print-search-dirs").splitlines()]
     places = [place for name, _, text in lines if name != "programs" for place in text.strip(" =").split(os.pathsep)]
@@ -83,7 +83,7 @@ def of_c_compiler(tool: str) -> Wall:
 
 
 def of_python() -> Wall:
-    """For this Python: its own folders, what it imports from, and this program's."""
+    """Return the wall of this Python: its own folders, those that it imports from, and this program's."""
     package = Path(__file__).parents[4]
     folders = (sys.prefix, sys.base_prefix, *filter(os.path.isabs, sys.path), *Path(sys.executable).parents[:1])
     return of_program(sys.executable) | Wall(_spared((package, *map(Path, folders))))

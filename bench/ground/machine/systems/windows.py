@@ -116,7 +116,7 @@ def _job_of(process: int, limits: _Extended) -> int:
 
 
 def _checked(result: int) -> int:
-    """What a call gave. Raises OSError where it gave nothing."""
+    """Return the result of a call. Raises OSError if the result is 0."""
     if not result:
         raise ctypes.WinError(ctypes.get_last_error())
     return result

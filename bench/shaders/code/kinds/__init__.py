@@ -1,1 +1,1 @@
-"""What codes of each kind are: what their functions take and give, and what the catalogue makes of values."""
+"""The kinds of codecs: the inputs and outputs of their functions, and the catalogue's results for values."""

@@ -1,4 +1,4 @@
-"""What `code` knows of a kind of codes: their functions, their numbers, and what the catalogue makes of some values."""
+"""A kind of codec, as `code` handles it: its functions, its numbers, and the catalogue's results for some values."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ COUNT = 2**16
 
 @dataclass(frozen=True)
 class Numbers:
-    """The numbers of a code, and how they are kept.
+    """The numbers of a code, and how they are stored.
 
     Attributes:
-        storage: what keeps them, the first number in the first channel.
-        roundings: how each number that is kept is rounded, one of `storage.ROUNDINGS`.
-        is_biased: whether a number c is kept as c/2 + 1/2.
-        size: how many numbers the code's vector has; those that are not kept come back as 0.
-        sign_bits: 1 where the last of them is a sign that is kept elsewhere, else 0.
-        is_precise: whether the encoder takes the one of the codes around that decodes nearest.
-        settle: the function (value, the code as it comes back) -> the code to keep, where some numbers depend on how
-            others are rounded; empty where none do.
-        skipped: how many bits are left out before numbers that lie across channels.
-        share: "unsigned" or "signed" of an integer as `storage.fixed_code` makes it, in sign and magnitude; else empty.
+        storage: holds them, the first number in the first channel.
+        roundings: the rounding of each number that is stored, one of `storage.ROUNDINGS`.
+        is_biased: whether a number c is stored as c/2 + 1/2.
+        size: the number of components of the code's vector; those that are not stored come back as 0.
+        sign_bits: 1 if the last component is a sign that is stored elsewhere, else 0.
+        is_precise: whether the encoder takes the neighbouring code that decodes nearest.
+        settle: the function (value, the code as it comes back) -> the code to store, if some numbers depend on how
+            others are rounded; else empty.
+        skipped: the number of bits that are left out before numbers laid across channels.
+        share: "unsigned" or "signed" for an integer from `storage.fixed_code`, in sign and magnitude; else empty.
     """
 
     storage: Storage
@@ -49,38 +49,38 @@ class Numbers:
 
     @property
     def count(self) -> int:
-        """How many numbers are kept."""
+        """The number of components that are stored."""
         return len(self.roundings)
 
 
 @dataclass(frozen=True)
 class CodeKind:
-    """What `code` knows of a kind. Values are rows of numbers, as `run.interface` has them: n and view.
+    """A kind of codec, as `code` handles it. Values are rows of numbers, as `run.interface` has them: n and view.
 
     Attributes:
-        kind: of the catalogue.
-        plural: what is encoded, in words.
-        given: where in these rows lies what an encoder is given: n.xyz.
-        named: (codec) -> its encoding as people name it.
-        fields: what these are called in the structure that an encoder is given and a decoder gives; none of others.
-        settings: by its parameter, where what both functions are given besides lies: view.xyz.
-        result: how many numbers a decoder gives; of a structure those of n first.
+        kind: the catalogue's kind.
+        plural: the name of the encoded values, in the plural.
+        given: (codec) -> the places of an encoder's input in these rows: n.xyz.
+        named: (codec) -> the usual name of its encoding.
+        fields: the names of these places in the structure that an encoder takes and a decoder returns; else empty.
+        settings: by parameter, the place of the further inputs of both functions: view.xyz.
+        result: (codec) -> the number of values that a decoder returns; in a structure, those of n first.
         defines: (codec) -> the macros of its GLSL: CODE, ENCODE and DECODE, and constants.
         numbers: (codec) -> its numbers.
         bound: (codec) -> the settings that are constants of the codec.
         values: (codec) -> n and view, float32 of shape (COUNT, 3 or 4).
-        stored: (codec, n, view) -> the code as it comes back from the storage, as planes; of JAX.
-        decoded: (codec, code, view) -> what it is decoded to, as planes; of JAX.
-        by_device: (codec, n, view) -> codes as they come back and what they are decoded to, by OpenGL, of codes that
-            are there in GLSL alone; (count, size) and (count, result).
-        has_twin: (codec) -> whether it is there in JAX.
+        stored: (codec, n, view) -> the code as it comes back from the storage, as planes; in JAX.
+        decoded: (codec, code, view) -> the decoded value, as planes; in JAX.
+        by_device: (codec, n, view) -> codes as they come back, and their decoded values, by OpenGL, for encodings
+            that exist only in GLSL; (count, size) and (count, result).
+        has_twin: (codec) -> whether it exists in JAX.
         is_ours: (codec) -> whether it is the catalogue's.
-        errors: (what was given, what came back) -> how far off it is, float64 of shape (count,).
-        unit: what the errors are counted in.
-        units: (what was given) -> what differences of what is decoded are counted in, (count, 1).
+        errors: (input, result) -> the error, float64 of shape (count,).
+        unit: the unit of the errors.
+        units: (input) -> the unit of differences between decoded values, (count, 1).
         searches: (codec) -> whether the encoder takes the best of several codes.
         held: (codec) -> the values that its functions take, in words.
-        called: what names begin with where nobody says otherwise, if that is not the kind's word.
+        called: the default beginning of names, if that is not the kind's word.
     """
 
     kind: Kind
@@ -108,5 +108,5 @@ class CodeKind:
 
     @property
     def prefix(self) -> str:
-        """What names begin with where nobody says otherwise."""
+        """The default beginning of names."""
         return self.called or self.kind.word

@@ -31,7 +31,7 @@ def _far(codec: DepthCodec) -> float:
 
 
 def _bound(codec: DepthCodec) -> dict[str, float]:
-    """Where floats hold the depth in the scene's own units, the far plane is at 1."""
+    """Return a far plane at 1 if floats hold the depth in the scene's own units; else nothing."""
     return {"far": 1.0} if codec.encoding.own_units and codec.storage.is_open else {}
 
 

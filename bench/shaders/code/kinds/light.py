@@ -63,7 +63,7 @@ def _limit(codec: LightCodec) -> float:
 
 
 def _brightest(given: np.ndarray) -> np.ndarray:
-    """The brightest channel of lights, (count, 1); at least what a dark one is compared with."""
+    """Return the brightest channel of lights, (count, 1), raised to the value that dark lights are compared with."""
     return np.maximum(given.max(axis=1, keepdims=True), 2.0**-8)
 
 

@@ -33,7 +33,7 @@ HOLDS: Mapping[str, str] = MappingProxyType(
 
 @cache
 def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
-    """2^16 unit normals of a domain and views: axes and what lies beside them, diagonals, then random directions."""
+    """Return 2^16 unit normals of a domain, and views: axes and their neighbours, diagonals, then random directions."""
     generator = np.random.default_rng(0)
     random = generator.normal(size=(COUNT, 3))
     n = np.concatenate([directions(), random / np.linalg.norm(random, axis=1, keepdims=True)])[:COUNT]

@@ -35,11 +35,11 @@ def defines(encoding: Any, word: str, code: str) -> dict[str, object]:
 
 
 def by_device(size: int, result: int, store: Callable[[Any, np.ndarray], np.ndarray]) -> Any:
-    """What `CodeKind.by_device` is: a code is computed by OpenGL, stored by JAX, and decoded by OpenGL.
+    """Return a function for `CodeKind.by_device`: OpenGL computes a code, JAX stores it, and OpenGL decodes it.
 
     Args:
-        size: how many numbers the code has.
-        result: how many a decoder gives.
+        size: the number of components of the code.
+        result: the number of values that a decoder returns.
         store: (codec, codes of shape (count, size)) -> the codes as they come back.
     """
 

@@ -1,4 +1,4 @@
-"""What runs a codec's source code: a module for each language, imported when it is asked for."""
+"""Runners of a codec's functions: a module for each language, imported when it is needed."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ def _scalars(path: str, size: int) -> list[str]:
 
 
 def _listed(places: Sequence[str], prefix: str) -> str:
-    """What is given, of structures: n.xy is a structure of n.x and n.y."""
+    """Return the text of inputs as structures: n.xy is a structure of n.x and n.y."""
     return ", ".join(_given(place, prefix) for place in places)
 
 
@@ -96,10 +96,10 @@ def macros(values: Mapping[str, object]) -> list[str]:
 
 
 def compilers_wall(tool: str, place: Path) -> Wall:
-    """Return what a compiler may use of somebody's text: its own parts, and a folder.
+    """Return the wall for a compiler of somebody's text: it may use its own parts, and a folder.
 
     Raises:
-        MissingError: there is no wall, or no program is made and run behind it.
+        MissingError: there is no wall, or no program can be compiled and run behind it.
     """
     walls.require()
     path = str(tools.path_of(tool))
@@ -109,7 +109,7 @@ def compilers_wall(tool: str, place: Path) -> Wall:
 
 
 def programs_wall(program: Path) -> Wall:
-    """Return what a program of somebody's text may use: the system's libraries, and the folder that it lies in."""
+    """Return the wall for a program of somebody's text: it may use the system's libraries, and its own folder."""
     return walls.of_program(program) | Wall(writes=(str(program.parent),))
 
 
@@ -130,11 +130,11 @@ def _failure_behind_wall(tool: str, path: str) -> str:
 def compiled(
     tool: str, words: Sequence[str], place: Path, files: Mapping[str, Text], path: Path, wall: Wall | None = None
 ) -> Path:
-    """Return the program that a compiler makes of texts, the first of which is that of a path.
+    """Compile texts, the first of which is that of `path`, and return the path of the program.
 
     Raises:
-        MissingError: there is no such compiler.
-        ShaderError: it refuses the texts.
+        MissingError: the compiler is not installed.
+        ShaderError: the compiler refuses the texts.
     """
     compile_with(tool, [*words, "-o", PROGRAM], place, files, lambda said: re.sub(r"^0(?=:)", str(path), said), wall)
     return place / PROGRAM

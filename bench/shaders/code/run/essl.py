@@ -1,4 +1,4 @@
-"""GLSL of OpenGL ES: compiled and run by the GL driver, where that takes it besides its own."""
+"""GLSL of OpenGL ES: compiled and run by the OpenGL driver, if that supports it besides its own GLSL."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a codec's source code has in every language: six functions, and what they give of normals and texels."""
+"""The interface of a codec's functions in every language: six functions, and their results for normals and texels."""
 
 from __future__ import annotations
 
@@ -26,17 +26,19 @@ class Interface:
     """The six functions of a file: P_encode, P_pack, P_unpack, P_decode, P_to_target and P_from_target.
 
     Attributes:
-        prefix: P, what their names begin with.
-        size: how many numbers a code has, 1 to 4, a sign bit's among them.
-        sign_bits: 1 where the last number of a code is a sign that is kept elsewhere, else 0.
-        words: how many 32-bit integers a texel has: 1, 2 or 4.
-        settings: where in the rows `n` and `view` what both `P_encode` and `P_decode` are given besides lies: view.xyz.
-        tables: the look-up tables by name, float32 of shape (height, width, channels).
-        is_ours: whether nobody else's code is in the file.
-        value: where what `P_encode` is given lies.
-        result: how many numbers `P_decode` gives.
-        structure: the type of what `P_encode` is given and `P_decode` gives, if that is a structure; else empty.
-        fields: of the structure, one for each of `value`; what is decoded lies as what is given, in two rows.
+        prefix: P, the beginning of their names.
+        size: the number of components of a code, 1 to 4, including that of a sign bit.
+        sign_bits: 1 if the last component of a code is a sign that is stored elsewhere, else 0.
+        words: the number of 32-bit integers in a texel: 1, 2 or 4.
+        settings: the places, in the rows `n` and `view`, of further inputs of both `P_encode` and `P_decode`:
+            view.xyz.
+        tables: the lookup tables by name, float32 of shape (height, width, channels).
+        is_ours: whether the file has no text from users.
+        value: the places of the input of `P_encode`.
+        result: the number of values that `P_decode` returns.
+        structure: the type of the input of `P_encode` and the result of `P_decode`, if that is a structure; else
+            empty.
+        fields: of the structure, one for each of `value`; decoded values are laid out like the input, in two rows.
     """
 
     prefix: str
@@ -64,12 +66,12 @@ class Interface:
     def defines_with(
         self, listed: Callable[[Sequence[str]], str], made: str = "{}({})", parts: Parts = lambda path, _: [path]
     ) -> dict[str, object]:
-        """The same, where things are written otherwise.
+        """Return the same macros for a language that writes things differently.
 
         Args:
-            listed: what is given, in place of n.xyz, view.x.
-            made: a structure of its name and its fields.
-            parts: (path, size) -> what some numbers of what is decoded are, one after the other.
+            listed: (places) -> the inputs as text, in place of n.xyz, view.x.
+            made: the text of a structure, from its name and its fields.
+            parts: (path, size) -> the parts of a decoded value, one after the other.
         """
         value = [made.format(self.structure, listed(self.value))] if self.structure else [listed(self.value)]
         named = {name.upper(): f"{self.prefix}_{name}" for name in PUBLIC}
@@ -85,7 +87,7 @@ class Interface:
         return {f"RUN_{name}": value for name, value in {**named, **facts, **given, **rows, **structure}.items()}
 
     def _decoded_rows(self) -> list[list[tuple[str, int]]]:
-        """Of what is decoded, by its two rows, each part and how many numbers it has."""
+        """Return the parts of a decoded value and the size of each, for each of its two rows."""
         if not self.structure:
             return [[("decoded", self.result)], []]
         rows: dict[str, list[tuple[str, int]]] = {"n": [], "view": []}
@@ -96,15 +98,15 @@ class Interface:
 
 
 class Ran(NamedTuple):
-    """What the six functions gave.
+    """The results of the six functions.
 
     Attributes:
         codes: float32 of shape (count, size).
         words: uint32 of shape (count, words).
-        unpacked: of those words; float32 of shape (count, size).
-        decoded: of those codes; float32 of shape (count, result).
-        targets: of the codes; float32 of shape (count, 4).
-        from_targets: of the texels that were given; float32 of shape (count, size).
+        unpacked: from those words; float32 of shape (count, size).
+        decoded: from those codes; float32 of shape (count, result).
+        targets: from the codes; float32 of shape (count, 4).
+        from_targets: from the texels of the input; float32 of shape (count, size).
     """
 
     codes: np.ndarray
@@ -121,31 +123,31 @@ Run = Callable[[np.ndarray, np.ndarray, np.ndarray], Ran]
 
 @dataclass(frozen=True)
 class Runner:
-    """What runs files of one language.
+    """A runner of files in one language.
 
     Attributes:
-        prepared: (path, interface) -> a context manager that gives a `Run`; the file is compiled once.
-        how: one line that says compiler, version and device.
+        prepared: (path, interface) -> a context manager that yields a `Run`; the file is compiled once.
+        how: returns one line with compiler, version and device.
 
-    Both raise MissingError where a tool is missing, with what to install.
+    Both raise MissingError if a tool is missing, with what to install.
     """
 
     prepared: Callable[[Path, Interface], AbstractContextManager[Run]]
     how: Callable[[], str]
 
     def run(self, path: Path, interface: Interface, n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
-        """What the functions of a file give.
+        """Run the functions of a file and return their results.
 
         Args:
-            path: the file; its tables lie next to it where the language needs that.
-            n, view: what functions are given, as unit normals and view-space positions; float32 of shape (count, 3 or
-                4), of `view` the first three are used.
-            texels: what `P_from_target` is given, float32 of shape (count, 4). A sign is the code's own.
+            path: the file; its tables are next to it if the language needs that.
+            n, view: the inputs of the functions, as unit normals and view-space positions; float32 of shape (count,
+                3 or 4), of `view` the first three columns are used.
+            texels: the input of `P_from_target`, float32 of shape (count, 4). A sign is the code's own.
 
         Raises:
             MissingError: a tool is missing; what to install.
             ShaderError: the file does not compile, or it does not run; one line.
-            NoDeviceError: there is no GL device, for the languages that need one.
+            NoDeviceError: there is no OpenGL device, for the languages that need one.
         """
         with self.prepared(Path(path), interface) as run:
             parts = [run(n[block], view[block], texels[block]) for block in blocks(len(n))]
@@ -158,10 +160,10 @@ def blocks(count: int) -> Iterator[slice]:
 
 
 def rows_of(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> np.ndarray:
-    """What a shader is given: three rows of four numbers for each normal, float32 of shape (GIVEN count, 4).
+    """Return a shader's input: three rows of four numbers for each normal, float32 of shape (GIVEN count, 4).
 
-    The fourth number of a view is 0. By its bits the words change before they are unpacked, so that no compiler can
-    see that it unpacks what it has packed: Mesa makes a of (a + b) - b.
+    The fourth number of a view is 0. Its bits change the words before they are unpacked, so that no compiler can
+    see that it unpacks what it has packed: Mesa simplifies (a + b) - b to a.
     """
     given = np.zeros((len(n), GIVEN, 4), np.float32)
     given[:, 0, : n.shape[1]], given[:, 1, :3], given[:, 2] = n, view[:, :3], texels
@@ -169,7 +171,7 @@ def rows_of(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> np.ndarray:
 
 
 def ran_of(made: np.ndarray, words: np.ndarray, interface: Interface) -> Ran:
-    """What a shader made, six rows of four numbers for each normal and four words, without what is not used."""
+    """Return a shader's output, six rows of four numbers for each normal and four words, without the unused parts."""
     rows, size = made.reshape(-1, MADE, 4), interface.size
     words = np.ascontiguousarray(words.reshape(-1, 4)[:, : interface.words])
     code, unpacked, first, target, back, second = np.ascontiguousarray(rows.transpose(1, 0, 2))

@@ -1,8 +1,8 @@
-"""A file of WGSL compiled by naga, in a process that it may end.
+"""A WGSL file compiled by naga, in a process that naga may crash.
 
     python -m normalbench.bench.shaders.code.run.naga FILE
 
-What naga refuses in words is no matter here: whoever compiles it next has the words.
+Error messages of naga are ignored here: the next compiler of the file reports them.
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ def _tables_by_sampler(compute: Any, tables: Mapping[str, np.ndarray]) -> dict[s
 
 
 def dispatched(gl: Device, compute: Any, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What a shader makes of rows, GIVEN for each normal: float32 of shape (MADE count, 4), uint32 of (count, 4)."""
+    """Run a shader on rows, GIVEN for each normal; return float32 of shape (MADE count, 4), uint32 of (count, 4)."""
     count = len(given) // GIVEN
     if not count:
         return np.zeros((0, 4), np.float32), np.zeros((0, 4), np.uint32)
@@ -67,11 +67,11 @@ def dispatched(gl: Device, compute: Any, given: np.ndarray) -> tuple[np.ndarray,
 
 
 def compiled(text: str, explain: Any) -> Any:
-    """A compute shader of GLSL. `explain` turns the driver's message into the user's.
+    """Compile a compute shader of GLSL. `explain` turns the driver's message into the user's.
 
     Raises:
         ShaderError: it does not compile.
-        NoDeviceError: there is no GL device.
+        NoDeviceError: there is no OpenGL device.
     """
     context = device().context
     try:
@@ -81,5 +81,5 @@ def compiled(text: str, explain: Any) -> Any:
 
 
 def _without_head(log: str) -> str:
-    """A driver's log without moderngl's own first lines, one of which says that there is an error."""
+    """Return a driver's log without moderngl's own first lines, one of which says that there is an error."""
     return log.replace("GLSL Compiler failed", "").replace("compute_shader", "")

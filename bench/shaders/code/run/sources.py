@@ -47,11 +47,11 @@ def folder() -> Iterator[Path]:
 
 
 def run_apart(path: Path, command: Sequence[str], wall: Wall | None = None) -> None:
-    """Run what was made of a file, in a process of its own for a limited time, behind a wall if there is one.
+    """Run a program made from a file, in its own process for a limited time, behind a wall if there is one.
 
     Raises:
-        ShaderError: it does not end, or ends badly.
-        PermissionError: it may not be run.
+        ShaderError: it does not end, or fails.
+        PermissionError: it must not be run.
     """
     try:
         done = children.finished(wall.around(command) if wall else command, SECONDS)

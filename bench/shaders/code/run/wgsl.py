@@ -46,7 +46,7 @@ def device() -> Any:
 
 
 def device_name() -> str:
-    """What a row calls the device. Raises MissingError."""
+    """Return the device's name in rows. Raises MissingError."""
     return f"{device().adapter.info['device']}, {API}"
 
 

@@ -11,8 +11,8 @@ from .....gbuffer.layouts.words import Word
 
 @dataclass(frozen=True)
 class WordPart:
-    """The part of a word in a channel. `shift` is by how much the word's integer is shifted to the left there; less
-    than 0 to the right. Bits above the channel are cut where `is_cut`, and `is_masked` where others lie above it."""
+    """The part of a word in a channel. The word's integer is shifted left there by `shift`, to the right if it is
+    negative. Bits above the channel are cut off if `is_cut`; `is_masked` means that other bits are above the part."""
 
     word: Word
     shift: int
@@ -21,8 +21,8 @@ class WordPart:
 
 
 def parts_of(words: Sequence[Word], channel: int, storage: Storage) -> Iterator[WordPart]:
-    """The parts of words in a channel; bits count from the first channel's highest, and none lie in a channel of
-    another size than that."""
+    """Yield the parts of words in a channel. Bits count from the first channel's highest, and a channel of another
+    size than the first has no parts."""
     size = storage.bits[0]
     if storage.bits[channel] != size:
         return
@@ -34,7 +34,7 @@ def parts_of(words: Sequence[Word], channel: int, storage: Storage) -> Iterator[
 
 
 def packed_texts(parts: Sequence[tuple[WordPart, str]], size: int) -> list[str]:
-    """What a channel's integer is joined of, of the names of its words' integers."""
+    """Return the texts that form a channel's integer, from the names of its words' integers."""
     return [_put_text(part, name, size, len(parts) > 1) for part, name in parts]
 
 
@@ -46,7 +46,7 @@ def _put_text(part: WordPart, name: str, size: int, is_one_of_many: bool) -> str
 
 
 def taken_text(parts: Sequence[tuple[WordPart, str]], bits: int) -> str:
-    """A word's integer, of the texts of the channels that its parts lie in."""
+    """Return the text of a word's integer, from the texts of the channels that hold its parts."""
     return " | ".join(_take_text(part, name, bits, len(parts) > 1) for part, name in parts)
 
 

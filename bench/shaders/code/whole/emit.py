@@ -44,15 +44,15 @@ OF_DEPTH = ("encode_depth", "decode_depth")
 
 @dataclass(frozen=True, eq=False)
 class GBufferCode:
-    """The code of a layout in one language, without its head.
+    """The functions of a layout in one language, without the file's head.
 
     Attributes:
-        layout, language: what it is of; `language` is a key of LANGUAGES.
-        prefix: what its names begin with.
-        body: its text.
-        texts: its structures.
-        settings: what both functions take besides, of `view`, `near` and `far`.
-        tables: the look-up tables by name, float32 of shape (height, width, channels).
+        layout, language: their layout and language; `language` is a key of LANGUAGES.
+        prefix: the beginning of their names.
+        body: their text.
+        texts: their structures.
+        settings: further inputs of both functions, of `view`, `near` and `far`.
+        tables: the lookup tables by name, float32 of shape (height, width, channels).
     """
 
     layout: Layout
@@ -65,7 +65,7 @@ class GBufferCode:
 
     @property
     def name(self) -> str:
-        """Of the file."""
+        """The name of the file."""
         return self.layout.name + LANGUAGES[self.language].ending
 
     def text(self, head: Iterable[str]) -> str:
@@ -74,7 +74,7 @@ class GBufferCode:
         return commented(self.body, self.language, guard, head)
 
     def files(self, head: Iterable[str]) -> dict[str, bytes]:
-        """All its files, by name."""
+        """Return all files of the layout, by name."""
         beside = table_files(self.tables, self.language, identifier(self.layout.name), self.prefix)
         return {self.name: self.text(head).encode(), **beside}
 

@@ -74,7 +74,7 @@ def _store(at: int, leaf: Leaf) -> str:
 
 
 def _held(texts: Texts) -> list[Leaf]:
-    """The channels in which something lies: what is written to the others is a constant."""
+    """Return the channels that hold something; the values written to the others are constants."""
     places = [(i, channel) for i, target in enumerate(texts.targets) for channel in range(size_of(target.kind))]
     return [leaf for leaf, place in zip(target_leaves(texts), places, strict=True) if _holds(texts.contents, *place)]
 

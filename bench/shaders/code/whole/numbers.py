@@ -17,7 +17,7 @@ UNORM, SNORM, HALF, SMALL = range(4)
 
 
 def ways_of(layout: Layout) -> tuple[int, ...]:
-    """For each target 0 where its format rounds, else one more than how `storage.glsl` counts the way."""
+    """Return the rounding of each target: 0 if its format rounds, else one more than its number in `storage.glsl`."""
     homes = {word.target for word in layout.words if word.component.startswith("normal.")}
     way = 0 if layout.rounding == "nearest" else ROUNDINGS.index(layout.rounding) + 1
     plain = (target.storage.is_integer or target.storage.curved for target in layout.targets)
@@ -68,12 +68,12 @@ class Number:
 
     @property
     def is_carrier(self) -> bool:
-        """Whether it carries a number of the normal's code as its sign, other than by a signed depth."""
+        """Whether a number of the normal's code is stored as its sign; signed depths do not count."""
         return bool(self.word.sign) and not self.is_depth
 
     @property
     def _carries_in_half(self) -> bool:
-        """Whether a number under a sign lies in the format as half of 1 more."""
+        """Whether the format stores a signed number x as x/2 + 1/2."""
         return bool(self.word.bits) or storage_kind(self._storage) in (UNORM, SMALL)
 
     def carried_text(self, x: str, sign: str) -> str:
@@ -138,7 +138,7 @@ class Number:
         return self._unit_out.format(x=f"float({integer}) / {self._scale}.0")
 
     def channel_text(self, x: str, is_float: bool = False) -> str:
-        """What is written to a channel of its own: the format converts it, or it is rounded before."""
+        """Return the text written to a channel of its own: the format converts the number, or it is rounded before."""
         way = ways_of(self.layout)[self.word.target]
         return self._rounded_text(self._plain_text(x, is_float), way - 1) if way else self._plain_text(x, is_float)
 

@@ -38,20 +38,20 @@ ARGUMENTS = {
 
 
 def run(code: GBufferCode, rows: np.ndarray, settings: np.ndarray) -> np.ndarray:
-    """What a file's functions give.
+    """Run a file's functions and return their results.
 
     Args:
-        rows: uint32 of shape (count, numbers of a surface and of the targets), floats by their bits: what `pack` is
-            given, then what `unpack` is given.
-        settings: what both are given besides, as `surfaces.settings` has it.
+        rows: uint32 of shape (count, numbers of a surface and of the targets), floats by their bits: the input of
+            `pack`, then the input of `unpack`.
+        settings: further inputs of both, as from `surfaces.settings`.
 
     Returns:
-        uint32 of the shape of `rows`: what `pack` gives, then what `unpack` gives.
+        uint32 of the shape of `rows`: the results of `pack`, then those of `unpack`.
 
     Raises:
         MissingError: a tool is missing; what to install.
         ShaderError: it does not compile or run.
-        NoDeviceError: there is no GL device.
+        NoDeviceError: there is no OpenGL device.
     """
     given = np.concatenate([rows, *(settings[:, PLACES[name]] for name in code.settings)], axis=1)
     parts = [RUNS[code.language](code, given[start : start + BLOCK]) for start in range(0, len(rows), BLOCK)]
@@ -59,7 +59,7 @@ def run(code: GBufferCode, rows: np.ndarray, settings: np.ndarray) -> np.ndarray
 
 
 def _made(code: GBufferCode) -> int:
-    """How many numbers both functions give."""
+    """Return the number of values that both functions return."""
     return len(surface_leaves(code.texts)) + len(target_leaves(code.texts))
 
 
@@ -86,7 +86,7 @@ def _settings_text(code: GBufferCode) -> tuple[str, int]:
 
 
 def dispatched(compute: Any, rows: np.ndarray, width: int) -> np.ndarray:
-    """What a compute shader of OpenGL makes of rows: uint32 of shape (count, width)."""
+    """Run a compute shader of OpenGL on rows and return its output: uint32 of shape (count, width)."""
     gl, count = device(), len(rows)
     with ExitStack() as stack:
         given = gl.owned(stack, gl.context.buffer(np.ascontiguousarray(rows)))

@@ -1,4 +1,4 @@
-"""What of a surface a layout holds, as the fields of a structure."""
+"""The attributes of a surface that a layout holds, as the fields of a structure."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ class Field:
     """A field of the surface.
 
     Attributes:
-        name: in the structure.
+        name: its name in the structure.
         kind: its type in GLSL.
         components: the layout's components that its numbers are, in order.
-        words: where these lie, for an `other` one word; empty for the normal, whose code lies there.
-        kept: the curve or the code that its numbers are kept by, or None.
+        words: the words that hold these, one word for an `other`; empty for the normal, whose words hold its code.
+        kept: the curve or the encoding of its stored numbers, or None.
     """
 
     name: str
@@ -44,10 +44,11 @@ class Field:
 
 @dataclass(frozen=True)
 class Contents:
-    """What a layout holds.
+    """The contents of a layout.
 
     Raises:
-        UsageError: it holds what is not written, such as a normal that is rounded with noise; one line.
+        UsageError: it holds something that cannot be written, such as a normal that is rounded with noise; one
+            line.
     """
 
     layout: Layout
@@ -58,7 +59,7 @@ class Contents:
 
     @cached_property
     def words(self) -> tuple[Word, ...]:
-        """Every word, those of `other` among them, in the order of the targets."""
+        """All words, including those of `other`, in the order of the targets."""
         name, targets = self.layout.name, self.layout.targets
         return tuple(word for i, target in enumerate(targets) for word in all_placed(name, i, target))
 
@@ -78,7 +79,7 @@ class Contents:
             yield Field(self._name(first), kind, parts, words, words[0].kept)
 
     def _name(self, component: str) -> str:
-        """What a component is called: without a metallic the colour is that of the light which it scatters."""
+        """Return the name of a component; without metallic, the surface colour is that of the scattered light."""
         if component == "base_color" and "metallic" not in self.layout.components:
             return "diffuse_color"
         # Of metal/rough materials a roughness lies where others have a power.
@@ -102,7 +103,7 @@ def _components(quantity: str, numbers: str) -> tuple[str, ...]:
 
 
 def _unwritten(layout: Layout) -> str:
-    """What of a layout is not written, in words; empty where all is."""
+    """Return the part of a layout that cannot be written, in words; empty if all of it can."""
     encoding, components = layout.encoding, layout.components - {"power"}
     if layout.has_signed_depth and "depth" not in components:
         return f"a sign of {encoding.name} that no depth in a target carries"

@@ -19,7 +19,7 @@ PLACES = {"view": slice(0, 3), "near": slice(3, 4), "far": slice(4, 5)}
 
 
 def surfaces(contents: Contents, count: int, seed: int = 0) -> np.ndarray:
-    """Surfaces with every value that a field may have, its ends and what lies beyond them among these.
+    """Return surfaces with random values of every field, including its ends and values beyond them.
 
     Returns:
         uint32 of shape (count, numbers), in the order of the structure; floats by their bits.
@@ -30,7 +30,7 @@ def surfaces(contents: Contents, count: int, seed: int = 0) -> np.ndarray:
 
 
 def settings(count: int, seed: int = 0) -> np.ndarray:
-    """What each surface's functions may be given besides: where it lies in view space, and the planes of the depth.
+    """Return further inputs of each surface's functions: its position in view space, and the planes of the depth.
 
     Returns:
         uint32 of shape (count, 5), in the order of PLACES; floats by their bits.
@@ -65,7 +65,7 @@ def _numbers(contents: Contents, field: Field, random: np.random.Generator, view
 
 
 def _bits(contents: Contents, field: Field) -> int:
-    """How many bits a whole number has; in a float as many as it tells apart."""
+    """Return the number of bits of a whole number; in a float, the number of its mantissa bits."""
     (word,) = field.words
     storage = contents.layout.targets[word.target].storage
     if word.bits or storage.kind != "float":

@@ -39,7 +39,7 @@ class Texts:
 
     @property
     def context(self) -> dict[str, Any]:
-        """What the template is given."""
+        """The template's variables."""
         return {
             "fields": self.contents.fields,
             "targets": self.targets,
@@ -88,7 +88,7 @@ class Texts:
                 yield f"float {_local(component)} = {encoding.name}_encode_curve({part}, {limit});"
 
     def _depth_number(self, word: Word, names: dict[str, str]) -> Iterator[str]:
-        """Lines that make the number of a depth, which is under the sign that it carries."""
+        """Yield lines that compute the number of a depth, with the sign that is stored in it."""
         depth, names["depth"] = "s.depth", "depth_number"
         if self._layout.has_signed_depth:
             depth = "signed_depth"
@@ -165,7 +165,7 @@ class Texts:
             yield from self._field_lines(field, names)
 
     def _signed_lines(self, word: Word, names: dict[Word, str], signs: dict[str, str]) -> Iterator[str]:
-        """Lines that make what carries a sign, and a depth; the sign's text is added to `signs`."""
+        """Yield lines that compute a number with a sign, or a depth; the sign's text is added to `signs`."""
         name, number = f"signed_{_local(word.component)}", names[word]
         if word.component == "depth":
             decoded = f"DEPTH_DECODE({number}, near, {self._far(word)})"
@@ -256,7 +256,7 @@ class Texts:
 
 
 def _components_of(field: Field) -> tuple[str, ...]:
-    """The components that the codes of a field lie in."""
+    """Return the components that hold the codes of a field."""
     is_light = field.kept is not None and isinstance(field.kept.encoding, LightEncoding)
     return (*field.components, f"{field.name}.a") if is_light else field.components
 

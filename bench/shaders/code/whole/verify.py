@@ -38,15 +38,15 @@ CHANNELS, NORMAL = 4, 3
 
 @dataclass(frozen=True)
 class Agreement:
-    """How a file's results differ from the renderer's.
+    """The differences between a file's results and the renderer's.
 
     Attributes:
-        count: of surfaces.
-        differing: surfaces of which some bit of some target is another one.
-        steps: by how many steps a number differs at most there.
-        unpacked: numbers of surfaces that come back otherwise: whole ones that are others, and the rest by more than
-            DECODED of what they are, or of 1.
-        decoded: by how much a number that comes back differs at most, as a share of that.
+        count: the number of surfaces.
+        differing: surfaces with a different bit in some target.
+        steps: the largest difference of a number there, in steps.
+        unpacked: numbers of surfaces that come back different: whole numbers with another value, and other numbers
+            by more than DECODED of their value, or of 1.
+        decoded: the largest difference of a number that comes back, as a share of its value, or of 1.
     """
 
     count: int
@@ -73,12 +73,12 @@ class Agreement:
 
 
 def agreement(code: GBufferCode, count: int = COUNT, seed: int = 0) -> Agreement:
-    """How a file's functions compare with the renderer's, on random surfaces.
+    """Compare a file's functions with the renderer's, on random surfaces.
 
     Raises:
-        MissingError: what runs the language is not installed.
+        MissingError: the tool that runs the language is not installed.
         ShaderError: it does not compile or run.
-        NoDeviceError: there is no GL device.
+        NoDeviceError: there is no OpenGL device.
     """
     contents = code.texts.contents
     given, besides = surfaces(contents, count, seed), settings(count, seed)
@@ -89,11 +89,12 @@ def agreement(code: GBufferCode, count: int = COUNT, seed: int = 0) -> Agreement
 
 
 class Expected:
-    """What the renderer's GLSL makes of surfaces.
+    """The results of the renderer's GLSL for surfaces.
 
     Attributes:
-        stored: uint32 of shape (count, targets, 4): what targets hold, as texels of whole numbers or floats by bits.
-        surfaces: uint32 of shape (count, numbers), what comes back of that.
+        stored: uint32 of shape (count, targets, 4): the contents of targets, as texels of whole numbers or floats
+            by bits.
+        surfaces: uint32 of shape (count, numbers), the surfaces that are decoded from them.
     """
 
     def __init__(self, contents: Contents, given: np.ndarray, besides: np.ndarray):
@@ -117,7 +118,7 @@ class Expected:
             return np.concatenate([dispatched(self._program, part, rows.shape[1]) for part in parts])
 
     def _columns(self) -> dict[str, int]:
-        """Where each component's number lies in the rows of surfaces."""
+        """Return the column of each component's number in the rows of surfaces."""
         columns, column = {}, NORMAL
         for field in self.contents.fields[1:]:
             for component in field.components:
@@ -138,7 +139,7 @@ class Expected:
         return numbers.view(np.uint32)
 
     def _add_others(self) -> None:
-        """What the renderer does not keep, put where the layout has it."""
+        """Store the values that the renderer does not keep at their places in the layout."""
         columns = self._columns()
         for field in self.contents.fields:
             if field.words and field.words[0].component == OTHER:
@@ -162,7 +163,7 @@ class Expected:
         return expected
 
     def read(self, code: GBufferCode) -> np.ndarray:
-        """What targets read, in the order of the structure: uint32 of shape (count, numbers)."""
+        """Return the values read from targets, in the order of the structure: uint32 of shape (count, numbers)."""
         places = (leaf.path.removeprefix("target_").partition(".") for leaf in target_leaves(code.texts))
         return np.stack([self.stored[:, int(target), "xyzw".index(axis or "x")] for target, _, axis in places], axis=1)
 
@@ -176,7 +177,7 @@ def _reference_text(layout: Layout) -> str:
 
 
 def written_texels(code: GBufferCode, packed: np.ndarray) -> np.ndarray:
-    """What a file writes to targets, as the renderer has it: uint32 of shape (count, targets, 4)."""
+    """Return a file's output to targets, as the renderer lays it out: uint32 of shape (count, targets, 4)."""
     texels = np.zeros((len(packed), len(code.texts.targets), CHANNELS), np.uint32)
     for column, leaf in enumerate(target_leaves(code.texts)):
         target, _, axis = leaf.path.removeprefix("target_").partition(".")
@@ -198,7 +199,7 @@ def stored_texels(layout: Layout, texels: np.ndarray) -> np.ndarray:
 
 
 def _put(layout: Layout, word: Word, value: np.ndarray, is_float: bool, stored: np.ndarray) -> None:
-    """Put a whole number, or a float by its bits, where a word lies."""
+    """Store a whole number, or a float by its bits, at the place of a word."""
     storage = layout.targets[word.target].storage
     if not word.bits:
         texel = value.view(np.float32) if is_float else _unit(value, storage, word.first)

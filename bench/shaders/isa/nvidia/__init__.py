@@ -1,1 +1,1 @@
-"""What NVIDIA's compiler of CUDA makes of an encoding's GLSL, without a GPU and without a graphics driver."""
+"""Results of NVIDIA's CUDA compiler for an encoding's GLSL, without a GPU and without a graphics driver."""

@@ -69,7 +69,7 @@ def _compile_all(jobs: Sequence[dict[str, str]], architecture: str, say: Callabl
 
 
 def _listed(compiled: dict[str, Kernel], architecture: str, lister: Path) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Each kernel with its listing; one by one where they cannot be listed together."""
+    """Yield each kernel with its listing; kernels are listed one by one if they cannot be listed together."""
     if not compiled:
         return
     try:
@@ -86,7 +86,7 @@ def _listed(compiled: dict[str, Kernel], architecture: str, lister: Path) -> Ite
 
 
 def statistics(kernel: Kernel, assembly: str) -> dict[str, int]:
-    """A kernel's figures, under the names that the columns of `cost` are made of."""
+    """Return a kernel's figures, under the names from which the columns of `cost` are made."""
     count = len(sass.instructions(assembly))
     figures = {"Instructions": count, "Registers": kernel.registers, "Code size": count * sass.SIZE}
     figures |= {"Stall cycles": sass.stall_cycles(assembly)}

@@ -1,4 +1,4 @@
-"""What NVIDIA's compiler writes, an ELF file of 64 bits: a kernel's code, registers and stack."""
+"""The output of NVIDIA's compiler, a 64-bit ELF file: a kernel's machine code, registers and stack."""
 
 from __future__ import annotations
 

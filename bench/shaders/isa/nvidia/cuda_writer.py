@@ -86,7 +86,7 @@ class CudaWriter(Writer):
         return unrolls + super()._block(head, body, indent)
 
     def _choice_and_level(self, value: Choice) -> tuple[str, int]:
-        """Both values are computed and one is taken, which is what compilers of shaders make of `?:`."""
+        """Return the text and level of a choice: both values are computed and one is taken, as for `?:` in shaders."""
         return f"chosen({', '.join(map(self._text, (value.condition, value.chosen, value.other)))})", PRIMARY
 
 

@@ -55,7 +55,7 @@ def _parted(lines: Sequence[str], sizes: Sequence[int]) -> list[str]:
 
 
 def _relative_line(line: str, place: int, start: int) -> str:
-    """A line with its own place, and the one that it jumps to, from the kernel's start."""
+    """Return a line with its own place, and that of its jump target, counted from the kernel's start."""
     line = line.replace(f"/*{place:04x}*/", f"/*{place - start:04x}*/", 1)
     code, mark, words = line.partition(";")
     if jump := _JUMP.search(code + ";"):

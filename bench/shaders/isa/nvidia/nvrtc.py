@@ -31,7 +31,7 @@ class Nvrtc:
         self.version = f"{major.value}.{minor.value}"
 
     def check(self, architecture: str) -> None:
-        """Raises DriverError for an architecture that it does not compile for."""
+        """Raise DriverError for an architecture that NVRTC does not compile for."""
         count = ctypes.c_int()
         self._asked("nvrtcGetNumSupportedArchs", ctypes.byref(count))
         numbers = (ctypes.c_int * count.value)()
@@ -41,7 +41,7 @@ class Nvrtc:
             raise DriverError(f"NVRTC {self.version} does not compile for {architecture}; it knows {', '.join(known)}")
 
     def cubin(self, text: str, architecture: str) -> bytes:
-        """What it makes of a program for an architecture, as an ELF file. Raises DriverError."""
+        """Compile a program for an architecture, and return it as an ELF file. Raises DriverError."""
         program = ctypes.c_void_p()
         self._asked("nvrtcCreateProgram", ctypes.byref(program), text.encode(), b"kernel.cu", 0, None, None)
         try:

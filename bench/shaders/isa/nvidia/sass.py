@@ -1,10 +1,10 @@
-"""What a listing of NVIDIA's machine code (SASS) is made of, from Turing to Blackwell: which kind each instruction is,
-where it jumps, and for how long the compiler holds a warp back after it.
+"""The contents of a listing of NVIDIA's machine code (SASS), from Turing to Blackwell: the kind of each instruction,
+its jumps, and for how long the compiler holds a warp back after it.
 
 Names are those of the CUDA Binary Utilities' instruction set reference. An instruction has 128 bits, which nvdisasm
 prints as two words. The second word's upper part controls the scheduler: 4 bits of cycles to wait, a bit to yield,
-3 + 3 bits of barriers, 6 bits of barriers to wait for (Z. Jia et al., Dissecting the NVIDIA Volta GPU Architecture via
-Microbenchmarking, 2018).
+3 + 3 bits of barriers, 6 bits of barriers to wait for (Z. Jia et al., Dissecting the NVIDIA Volta GPU Architecture
+via Microbenchmarking, 2018).
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ _STALL = 41
 
 
 class Instruction(NamedTuple):
-    """One instruction: its place in bytes, whether a predicate decides on it, its name without modifiers, its operands,
-    and its second word, 0 where the listing has none."""
+    """One instruction: its place in bytes, whether it has a predicate, its name without modifiers, its operands, and
+    its second word, 0 if the listing has none."""
 
     place: int
     is_predicated: bool
@@ -61,7 +61,7 @@ class Instruction(NamedTuple):
 
 
 def every(assembly: str) -> list[Instruction]:
-    """All instructions of a listing, in order, padding included."""
+    """Return all instructions of a listing, in order, padding included."""
     listed: list[Instruction] = []
     for line in assembly.splitlines():
         if match := _INSTRUCTION.match(line):
@@ -72,7 +72,7 @@ def every(assembly: str) -> list[Instruction]:
 
 
 def instructions(assembly: str) -> list[Instruction]:
-    """All but the padding: the NOPs behind the jump to itself that every kernel ends with."""
+    """Return all instructions except the padding: the NOPs behind the jump to itself that ends every kernel."""
     listed = every(assembly)
     while listed and listed[-1].name == "NOP":
         listed.pop()
@@ -85,7 +85,7 @@ def names(assembly: str) -> list[str]:
 
 
 def kinds(assembly: str, total: int, _: str = "") -> dict[str, int] | None:
-    """How many instructions of each kind; None where the text does not list `total` instructions that are known."""
+    """Count the instructions of each kind; return None unless the text lists `total` known instructions."""
     listed = names(assembly)
     if len(listed) != total or not _KIND.keys() >= set(listed):
         return None
@@ -104,7 +104,7 @@ def packed(_: str) -> None:
 
 
 def rates(family: str) -> Mapping[str, int]:
-    """How many issue slots an instruction of each kind takes. A multiprocessor computes 16 special functions a cycle;
+    """Return the issue slots of an instruction of each kind. A multiprocessor computes 16 special functions per cycle;
     64 additions on Turing, and 128 after it (CUDA C++ Programming Guide, Arithmetic Instructions)."""
     return {**dict.fromkeys(KINDS, 1), "waiting": 0, "transcendental": 4 if family == "sm_75" else 8}
 
@@ -121,7 +121,7 @@ def loops(assembly: str) -> list[range]:
 
 
 def jumps(assembly: str) -> tuple[int, int]:
-    """(branches, loops): conditional jumps ahead, and jumps back; a kernel's last jump, to itself, is none."""
+    """Return (branches, loops): conditional jumps ahead, and jumps back, without a kernel's last jump, to itself."""
     ahead = back = 0
     for _, is_conditional, distance in _jumps(assembly):
         back += distance < 0
@@ -130,7 +130,7 @@ def jumps(assembly: str) -> tuple[int, int]:
 
 
 def _jumps(assembly: str) -> Iterator[tuple[Instruction, bool, int]]:
-    """Each jump, whether there is a condition, and how many bytes it goes ahead."""
+    """Yield each jump, whether it is conditional, and how many bytes it goes ahead."""
     for instruction in instructions(assembly):
         if instruction.name in ("BRA", "JMP") and (target := _TARGET.search(instruction.operands)):
             is_conditional = instruction.is_predicated or bool(_CONDITION.match(instruction.operands))

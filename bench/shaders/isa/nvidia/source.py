@@ -54,5 +54,5 @@ def functions_of(operation: Operation) -> str:
 
 
 def _own_files() -> list[Path]:
-    """What decides how GLSL is translated."""
+    """Return the files that decide how GLSL is translated."""
     return [*sorted(Path(tree.__file__).parent.glob("*.py")), FOLDER / "cuda_writer.py"]

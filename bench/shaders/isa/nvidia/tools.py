@@ -1,4 +1,4 @@
-"""Where NVIDIA's compiler of CUDA and its disassembler are on this machine: packages of pip, or an installed CUDA."""
+"""The places of NVIDIA's CUDA compiler and its disassembler on this machine: pip packages, or an installed CUDA."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def disassembler() -> Path | None:
 
 
 def _folders() -> Iterator[Path]:
-    """Where CUDA's parts may lie: pip's packages first, which are of the versions that normalbench asks for."""
+    """Yield the folders that may hold CUDA's parts: first pip's packages, in the versions that normalbench asks for."""
     package = find_spec("nvidia")
     for root in (package.submodule_search_locations or ()) if package else ():
         yield from sorted(path for path in Path(root).glob("*") if path.is_dir())
@@ -53,7 +53,7 @@ def _libraries(folder: Path) -> list[Path]:
 
 
 def missing() -> str:
-    """What this machine lacks, in one line; empty where it lacks nothing."""
+    """Return what this machine lacks, in one line; empty if nothing is missing."""
     return NO_COMPILER if not library() else NO_DISASSEMBLER if not disassembler() else ""
 
 
@@ -66,7 +66,8 @@ def found() -> tuple[Path, Path]:
 
 
 def identity() -> str:
-    """What differs once one of them does, or what is made of their answers. Raises MissingDriverError."""
+    """Return a text that changes with either tool, or with the program that uses their results. Raises
+    MissingDriverError."""
     compiler, lister = found()
     builtins = sorted(compiler.parent.glob("libnvrtc-builtins.so*"))
     own = sorted(path for path in Path(__file__).parent.glob("*.py"))
@@ -74,7 +75,7 @@ def identity() -> str:
 
 
 def title(number: str) -> str:
-    """Both and their versions; `number` is what NVRTC says of itself. Raises MissingDriverError."""
+    """Return both tools' names and versions; `number` is NVRTC's own version. Raises MissingDriverError."""
     compiler, lister = found()
     compiler_title = f"NVRTC {_package_version(compiler) or number} (CUDA's compiler, not the graphics driver's)"
     return f"{compiler_title}, nvdisasm {_version(lister)}"

@@ -1,1 +1,1 @@
-"""What is likely wrong with a user's encoder and decoder: each is tried by itself, and both together."""
+"""Likely mistakes in a user's encoder and decoder: each is tried by itself, and both together."""

@@ -1,7 +1,7 @@
-"""What makes a pair of two functions that are none: a step between them, or axes that the two mean otherwise.
+"""Causes that keep two functions from being a pair: a step between them, or axes that they interpret differently.
 
-Steps are tried on the codes: another range, numbers swapped or negated, the turn by 45 degrees that fills the square,
-the fold of the other function. The plainest that makes a pair is named.
+Steps are tried on the codes: another range, numbers swapped or negated, the rotation by 45 degrees that fills the
+square, the fold of the other function. The simplest step that makes a pair is named.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ Change = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class Step:
-    """Something between the two functions.
+    """A change of codes between the two functions.
 
     Attributes:
-        said: it in words, as what it makes of a code c; empty for nothing.
-        change: it, of codes of shape (count, size).
+        said: its words, as the result for a code c; empty for no change.
+        change: its function of codes of shape (count, size).
     """
 
     said: str
@@ -101,8 +101,8 @@ def _order_text(order: Sequence[int], signs: Sequence[int]) -> str:
 
 @cache
 def steps(size: int) -> tuple[Step, ...]:
-    """Return every Step to try between an encoder and a decoder whose code has `size` numbers, the plainest first, but
-    the one that changes nothing."""
+    """Return every Step to try between an encoder and a decoder whose code has `size` numbers, the simplest first,
+    except for the step that changes nothing."""
     kinds = (RANGES, _orders(size), TURNS, FOLDS) if size == 2 else (RANGES, _orders(size))
     combined_steps = [_one_after_another(parts) for parts in itertools.product(*kinds)]
     return tuple(sorted(combined_steps, key=lambda step: (step.said.count(THEN), len(step.said))))[1:]
@@ -118,15 +118,15 @@ def _one_after_another(parts: Sequence[Step]) -> Step:
 
 
 def decoded_after(probe: Probe, codes: np.ndarray, changes: Sequence[Step]) -> np.ndarray:
-    """What comes back of codes after each step: of shape (steps, count, 3)."""
+    """Decode codes after each step; return directions of shape (steps, count, 3)."""
     given = np.concatenate([step.change(codes) for step in changes])
     return probe.decode(given).reshape(len(changes), len(codes), 3)
 
 
 def step_between(trip: Trip, probe: Probe) -> tuple[Step, Domain] | None:
-    """The plainest step that makes a pair, and of which directions; None where none does.
+    """Return the simplest step that makes a pair, and the directions for which it does; None if no step does.
 
-    A decoder that normalises takes codes of several ranges: the widest one that a storage holds is named.
+    A decoder that normalises accepts codes in several ranges: the widest range that a storage holds is chosen.
     """
     few = trip.of(np.arange(len(trip.n) - TRIED, len(trip.n)))
     tried, candidates = steps(probe.size), []
@@ -139,13 +139,13 @@ def step_between(trip: Trip, probe: Probe) -> tuple[Step, Domain] | None:
 
 
 def _unlikely(step: Step, codes: np.ndarray) -> tuple[int, bool, float]:
-    """How many changes a step has, whether its codes reach beyond [-1, 1], and how little of it they use."""
+    """Return how many changes a step has, whether its codes exceed [-1, 1], and how little of that range they use."""
     changed = step.change(codes)
     return step.said.count(THEN), bool(np.abs(changed).max() > 1 + BEYOND), -round(float(np.ptp(changed)), 1)
 
 
 def axes_of(trip: Trip) -> str:
-    """Which axes are swapped or reversed in what comes back; empty where none are."""
+    """Say which axes are swapped or reversed in the decoded directions; empty if none are."""
     for order, signs in turns():
         if (angles_deg(trip.n[:, order] * np.array(signs), trip.decoded) < SAME_DEG).mean() > MOST:
             return axes_said(order, signs)

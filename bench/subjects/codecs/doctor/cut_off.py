@@ -1,10 +1,10 @@
-"""Whether an encoder cuts its codes off instead of rounding them, however it packs them.
+"""Detection of codes that are truncated instead of rounded, however the encoder packs them.
 
-The directions that have the same code fill a cell. If codes are rounded, the decoder gives the middle of the cell; if
-they are cut off, it gives a corner. So in a small patch of the sphere all directions come back shifted by the same
-vector, half a cell long. Each patch is judged by itself, because over the whole sphere the shifts cancel. The squared
-length of the shift, counted in the covariance of what comes back, does not depend on the shape of cells: it is 3 for
-each number that is cut off. It is 0 for a decoder that adds the half that the encoder cuts off.
+The directions that have the same code fill a cell. If codes are rounded, the decoder returns the middle of the
+cell; if they are truncated, it returns a corner. So all directions in a small patch of the sphere decode with the
+same shift, half a cell long. Each patch is judged by itself, because the shifts cancel over the whole sphere. The
+squared length of the shift, relative to the covariance of the decoded directions, does not depend on the shape of
+the cells: it is 3 for each truncated number. It is 0 for a decoder that adds the half that the encoder truncates.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ SHIFT = "codes are shifted: without that the error would be {:.0f} % of this; ar
 
 
 def cut_off(held: Trip, probe: Probe) -> Iterator[str]:
-    """That codes are cut off, or shifted otherwise, in a line; nothing where decode gives the middle of each cell.
+    """Yield a line if codes are truncated or otherwise shifted; nothing if decode returns the middle of each cell.
 
     Args:
-        held: directions that the encoding is made for, and what comes back of them.
+        held: directions that the encoding is made for, and the directions that they decode to.
     """
     radius = np.radians(min(IN_ERRORS * float(np.median(held.angles())), LARGEST_DEG))
     patches = _patches(held.n[-PATCHES:], probe, radius)
@@ -55,7 +55,7 @@ def cut_off(held: Trip, probe: Probe) -> Iterator[str]:
 
 
 def _patches(centres: np.ndarray, probe: Probe, radius: float) -> Iterator[np.ndarray]:
-    """By what directions of each patch come back shifted, in its plane: (count, 2)."""
+    """Yield the shifts of the decoded directions in each patch, in its plane: (count, 2)."""
     inside = np.random.default_rng(3).uniform(-radius, radius, size=(len(centres), INSIDE, 2))
     planes = _planes(centres)
     n = unit((centres[:, None] + np.einsum("pik,pkj->pij", inside, planes)).reshape(-1, 3)).astype(np.float32)
@@ -78,7 +78,7 @@ def _squared_shift(shifts: np.ndarray) -> float:
 
 
 def _errors(shifts: np.ndarray) -> tuple[float, float]:
-    """A patch's mean error, and the one that is left without its shift."""
+    """Return a patch's mean error, and its mean error without the shift."""
     return _mean_length(shifts), _mean_length(shifts - shifts.mean(axis=0))
 
 

@@ -1,4 +1,4 @@
-"""What is likely wrong with an encoder and its decoder, from what they do to directions before any storage.
+"""Likely mistakes in an encoder and its decoder, found from what they do to directions without any storage.
 
 Each diagnosis is a line with its figure and a direction that shows it.
 """
@@ -31,13 +31,13 @@ NO_PAIR, MAKES_ONE = "encode and decode are not a pair", "between the two makes 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What there is to say of a pair.
+    """The diagnosis of a pair.
 
     Attributes:
-        domain: what it is made for.
-        wrong: what is likely wrong, lines.
+        domain: the directions it is made for.
+        wrong: likely mistakes, as lines.
         broken: a direction of the domain where a function is not finite, if many are; nothing can be measured then.
-        hole: a direction outside of the domain where a function is not finite; else empty.
+        hole: a direction outside of the domain where a function is not finite; otherwise empty.
     """
 
     domain: Domain
@@ -54,7 +54,7 @@ def bad(probe: Probe, domain: Domain) -> np.ndarray:
 
 
 def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
-    """What is likely wrong.
+    """Diagnose the likely mistakes.
 
     Args:
         probe: the two functions.
@@ -83,7 +83,7 @@ def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
 
 
 def _finite_diagnosis(trip: Trip, probe: Probe, gl: Device, meant: Domain | None) -> Diagnosis:
-    """What is likely wrong, of directions that are finite.
+    """Diagnose the likely mistakes for directions that are finite.
 
     Args:
         meant: the domain that the user says it is made for; None to find out.
@@ -102,18 +102,18 @@ def _finite_diagnosis(trip: Trip, probe: Probe, gl: Device, meant: Domain | None
 
 
 def _nearly_back(trip: Trip, domain: Domain) -> Domain | None:
-    """A wider domain than the one that comes back, which comes back nearly; None where there is none."""
+    """Return a wider domain that nearly round-trips, other than the one that does; None if no such domain exists."""
     wider = guessed(trip, NEARLY_DEG)
     return wider if wider.name and wider != domain else None
 
 
 def _near_diagnosis(trip: Trip, probe: Probe, domain: Domain, found: list[str]) -> Diagnosis:
-    """Of a domain that comes back nearly, and why."""
+    """Return the diagnosis of a domain that nearly round-trips, with the mistakes found."""
     return Diagnosis(domain, [*found, *exact.lengths(domain.held(trip)), *exact.ranges(trip, domain, probe)])
 
 
 def _same_within_deg(trip: Trip) -> float:
-    """How near a direction comes back to be the same one."""
+    """Return the angle in degrees within which a decoded direction counts as the same."""
     lattice = nearly.lattice_of(trip.codes)
     return max(SAME_DEG, OF_A_STEP_DEG / lattice.steps) if lattice else SAME_DEG
 
@@ -124,10 +124,10 @@ def _is_lost(trip: Trip, domain: Domain, within: float) -> bool:
 
 
 def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[str]:
-    """Of a pair that undoes itself on a domain.
+    """Return the mistakes in a pair that round-trips on a domain.
 
     Args:
-        is_meant: whether its author says that it is made for that; what it wastes is then meant as well.
+        is_meant: whether its author says that it is made for that domain; what it wastes is then intended as well.
     """
     held, ranges = domain.held(trip), list(exact.ranges(trip, domain, probe))
     wasted = [] if is_meant else [*unread(probe, trip.codes), *(() if ranges else unused(held, probe))]
@@ -135,7 +135,7 @@ def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[s
 
 
 def _of_held(held: Trip, probe: Probe) -> list[str]:
-    """What is wrong, in lines, with directions that the code holds."""
+    """Return the mistakes in directions that the encoding is made for, as lines."""
     mistakes = list(_inexact(held, probe)) if np.median(held.angles()) > EXACT_DEG else []
     # What is scaled or shifted is far off where the map is steep, which says nothing more.
     seams = [] if mistakes else [*exact.seam(held, probe), *exact.poles(held)]
@@ -143,7 +143,7 @@ def _of_held(held: Trip, probe: Probe) -> list[str]:
 
 
 def _inexact(held: Trip, probe: Probe) -> Iterator[str]:
-    """Why directions come back nearly. The steps of a code that is packed are not those of its halves."""
+    """Yield why directions only nearly round-trip. The steps of a packed code are not those of its halves."""
     mistakes = [] if probe.is_packed else list(nearly.mistakes(held, probe))
     rounds_itself = probe.is_packed or nearly.lattice_of(held.codes)
     mistakes = mistakes or (list(nearly.scaled_angles(held)) if rounds_itself else [])
@@ -151,7 +151,7 @@ def _inexact(held: Trip, probe: Probe) -> Iterator[str]:
 
 
 def _half_faults(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
-    """What is wrong where a half alone comes back; nothing where it is a design for that half."""
+    """Yield the mistakes if only one half round-trips; nothing if the encoding is designed for that half."""
     sides = Sides(trip, probe, half)
     gone = sides.gone
     if not sides.encoder_knows and not sides.decoder_reaches:
@@ -167,14 +167,14 @@ def _half_faults(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
 
 
 def _elsewhere_text(half: Domain, gone: Trip) -> str:
-    """How a half comes back that both functions know."""
+    """Say how a half decodes that both functions know."""
     if axes := axes_of(gone):
         return f"directions with {half.lost_text} come back with {axes}: {gone.worst}"
     return f"of directions with {half.lost_text} {exact.lost(gone)}: {gone.worst}"
 
 
 def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
-    """Of functions that are no pair, or not one on the domain that a user gives."""
+    """Diagnose functions that are not a pair, or not a pair on the domain that a user gives."""
     nearby = given if given.name else guessed(trip, NEARLY_DEG)
     if given.name and (mistakes := list(nearly.mistakes(given.held(trip), probe))):
         return _near_diagnosis(trip, probe, given, mistakes)
@@ -210,7 +210,7 @@ def _scale_text(trip: Trip, held: Trip, probe: Probe) -> str:
 
 
 def _apart_text(held: Trip, likely: Domain) -> str:
-    """How far the two are from a pair."""
+    """Say how far the two are from being a pair."""
     return f"{NO_PAIR}: {held.angles().mean():.3g} degrees apart on average{_domain_text(likely)} without any storage"
 
 
@@ -226,7 +226,7 @@ def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> st
 
 
 def _or_numbers(trip: Trip, probe: Probe) -> str:
-    """What of the code's numbers would do the same as other axes; empty where nothing does."""
+    """Say which change of the code's numbers would have the same effect as other axes; empty if none would."""
     between = step_between(trip, probe)
     return f", as with {between[0].said} between the two" if between else ""
 
@@ -236,7 +236,7 @@ def _domain_text(domain: Domain) -> str:
 
 
 def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
-    """What makes a pair of them; empty where nothing that is known does."""
+    """Say what would make a pair of the two; empty if nothing known would."""
     if mistakes := folds.mistakes(probe):
         return mistakes[0]
     if between := step_between(trip, probe):

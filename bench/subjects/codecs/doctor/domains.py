@@ -1,4 +1,4 @@
-"""Which directions an encoding is made for: what comes back says so, unless its author does."""
+"""The directions that an encoding is made for: those that round-trip, unless its author says otherwise."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ HEMISPHERE = "hemisphere"
 
 @dataclass(frozen=True)
 class Domain:
-    """Directions that an encoding is made for.
+    """The directions that an encoding is made for.
 
     Attributes:
-        name: what rows call it: "sphere", "hemisphere" or "view"; empty where nothing comes back.
-        axis: of a hemisphere, the component that is at least 0, or with `side` -1 at most 0: 0, 1 or 2.
+        name: its name in rows: "sphere", "hemisphere" or "view"; empty if nothing round-trips.
+        axis: for a hemisphere, the component that is at least 0, or at most 0 if `side` is -1: 0, 1 or 2.
         side: 1 or -1.
     """
 
@@ -31,7 +31,7 @@ class Domain:
     side: int = 1
 
     def holds(self, trip: Trip) -> np.ndarray:
-        """Which directions of a trip it has."""
+        """Return which directions of a trip are in the domain."""
         if self.name == HEMISPHERE:
             return trip.n[:, self.axis] * self.side >= 0
         return np.sum(trip.n * trip.view, axis=1) < 0 if self.name == "view" else np.full(len(trip.n), True)
@@ -46,17 +46,17 @@ class Domain:
 
     @property
     def text(self) -> str:
-        """Of a hemisphere: z >= 0."""
+        """The condition for a hemisphere, such as z >= 0."""
         return f"{AXES[self.axis]} {'>=' if self.side > 0 else '<='} 0"
 
     @property
     def lost_text(self) -> str:
-        """Of a hemisphere, the other one: z < 0."""
+        """The condition for the other half of a hemisphere, such as z < 0."""
         return f"{AXES[self.axis]} {'<' if self.side > 0 else '>'} 0"
 
     @property
     def made_for(self) -> str:
-        """What a note says of it; empty for the sphere."""
+        """The domain's description in notes; empty for the sphere."""
         return f"normals with {self.text}" if self.name == HEMISPHERE else MADE_FOR.get(self.name, "")
 
     @property
@@ -85,7 +85,7 @@ AS_WELL, EXACT_DEG = 1.1, 5e-5
 
 
 def guessed(trip: Trip, within: float) -> Domain:
-    """Where the decoder undoes the encoder within so many degrees, seams and poles apart; NONE where nowhere."""
+    """Return the domain that round-trips within an angle in degrees, apart from seams and poles; NONE if none does."""
     is_same = trip.angles() < within
     shares = {domain: is_same[domain.holds(trip)].mean() for domain in IN_TURN}
     # A code of the sphere undoes seams of a half a little better; z >= 0 and what faces the viewer share most.

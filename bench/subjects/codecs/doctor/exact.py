@@ -1,4 +1,4 @@
-"""What of a pair that undoes itself is wrong at some directions, or wastes a storage: seams, poles, lengths, ranges."""
+"""Mistakes in a pair that round-trips, at some directions or in a storage: seams, poles, lengths, unused ranges."""
 
 from __future__ import annotations
 
@@ -39,9 +39,10 @@ FEW_VALUES = 16
 
 
 def is_unit(codes: np.ndarray, share: float = NEARLY_FULL) -> bool:
-    """Whether every number of some codes lies in [0, 1] and, unless it has few values, fills a share of it.
+    """Whether every number of some codes is in [0, 1] and, unless it has few values, fills a share of that range.
 
-    Of numbers in [-1, 1] a large share is negative, so that the few that roundings lead beyond make no difference.
+    A large share of numbers in [-1, 1] is negative, so the few that rounding pushes out of [0, 1] make no
+    difference.
     """
     low, high = codes.min(axis=0), codes.max(axis=0)
     beyond = (codes < -ROUNDED) | (codes > 1 + ROUNDED)
@@ -57,14 +58,14 @@ def values(codes: np.ndarray, number: int) -> np.ndarray:
 
 
 def lost(trip: Trip, within: float = SAME_DEG) -> str:
-    """How many directions come back more than so many degrees off, and how far at most."""
+    """Say how many directions are off by more than an angle in degrees after decoding, and the largest error."""
     angles = trip.angles()
     count = int((angles > within).sum())
     return f"{count} of {len(angles)} come back more than {within:g} degree off, up to {angles.max():.3g}"
 
 
 def unusual(trip: Trip) -> float:
-    """How far off, in degrees, a direction is elsewhere: more than roundings of few codes move it."""
+    """Return the error in degrees above which a direction is lost: more than rounding to few codes causes."""
     return max(SAME_DEG, UNUSUAL * float(np.median(trip.angles())))
 
 
@@ -86,7 +87,7 @@ def seam(trip: Trip, probe: Probe) -> Iterator[str]:
 
 
 def _is_only_there(gone: Trip, probe: Probe) -> bool:
-    """Whether what lies right beside directions comes back."""
+    """Whether directions immediately next to these round-trip."""
     random = np.random.default_rng(2).normal(size=(TRIES, *gone.n.shape)) * BESIDE
     beside = (gone.n + random).reshape(-1, 3).astype(np.float32)
     back = probe.decode(np.clip(probe.encode(beside), -1, 1))
@@ -94,14 +95,14 @@ def _is_only_there(gone: Trip, probe: Probe) -> bool:
 
 
 def _where(gone: Trip, is_fold: bool) -> str:
-    """What single directions have in common; those of an octahedral fold are where a number to be folded is 0."""
+    """Say what single directions have in common; for an octahedral fold, a number to be folded is 0."""
     if is_fold or (gone.n == 0).any(axis=1).all():
         return "sign() is 0 where a number is 0: only directions with a 0 in them are lost, not those next to them"
     return "only directions with equal numbers or a 0 in them are lost, not those next to them: a comparison or sign()"
 
 
 def poles(trip: Trip) -> Iterator[str]:
-    """Directions beside an axis that come back elsewhere, by a large part of their distance from it."""
+    """Yield a line for each pole where nearby directions are off by a large part of their distance from it."""
     for axis, side in itertools.product(range(3), (1.0, -1.0)):
         pole = side * np.eye(3)[axis]
         beside = angles_deg(trip.n, np.broadcast_to(pole, trip.n.shape))
@@ -151,9 +152,9 @@ def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
 
 
 def bits_used(codes: np.ndarray) -> int:
-    """How many of the 32 bits of integers, whose halves are two numbers in [-1, 1], are not the same in all.
+    """Return how many of the 32 bits of integers, whose halves are two numbers in [-1, 1], differ between the integers.
 
-    Of floats that are whole numbers, the bits of these.
+    If the integers hold floats with whole values, count the bits of these values.
     """
     halves = np.rint((codes.astype(np.float64) * 0.5 + 0.5) * (2**16 - 1)).astype(np.uint32)
     whole = halves[:, 0] | halves[:, 1] << 16

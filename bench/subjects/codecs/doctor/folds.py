@@ -79,7 +79,7 @@ def _by_size(bare: Numbers) -> Side:
 
 
 def _beyond(c: np.ndarray) -> np.ndarray:
-    """By how much a point lies outside of the diamond."""
+    """Return how far a point is outside of the diamond."""
     return _sum(c, ()) - 1
 
 
@@ -121,7 +121,7 @@ DECODERS: Mapping[str, Sequence[Side]] = MappingProxyType(
 
 @dataclass(frozen=True, eq=False)
 class Axes:
-    """Which direction of an octahedron a direction is: m = matrix n. Its codes may lie turned by 45 degrees as well."""
+    """The axes of an octahedron, where a direction n is m = matrix n. Its codes may also be rotated by 45 degrees."""
 
     matrix: np.ndarray
     is_turned: bool = False
@@ -155,7 +155,7 @@ def frames() -> tuple[Axes, ...]:
 
 @dataclass(frozen=True)
 class Found:
-    """Which octahedral maps two functions are: of each mistake, "" for none, the axes by their index in `frames`."""
+    """The octahedral maps that two functions match: by mistake, "" for none, the indices of the axes in `frames`."""
 
     encoder: Mapping[str, set[int]]
     decoder: Mapping[str, set[int]]
@@ -178,7 +178,7 @@ def mistakes(probe: Probe) -> list[str]:
 
 
 def found(probe: Probe) -> Found:
-    """Which octahedral maps the two functions of a code of two numbers are."""
+    """Return which octahedral maps the two functions of a code of two numbers match."""
     n, codes = directions()[-COUNT:], np.random.default_rng(1).uniform(-1, 1, size=(COUNT, 2)).astype(np.float32)
     given, back = probe.encode(n), unit(probe.decode(codes))
     # In every axes at once: (axes, count, 3), and the points that codes stand for.

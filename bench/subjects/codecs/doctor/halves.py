@@ -40,11 +40,11 @@ def square(size: int) -> np.ndarray:
 
 
 class Sides:
-    """What either function makes of the directions that a hemisphere loses.
+    """The treatment by each function of the directions that a hemisphere loses.
 
     Attributes:
-        gone: these directions; those of the other half that come back all the same are none.
-        share: in words, how many of the other half they are, where they are not nearly all.
+        gone: these directions, without those of the other half that still round-trip.
+        share: in words, how many of the other half they are, if they are not nearly all.
         encoder_knows: whether they have codes of their own.
         decoder_reaches: whether codes of the square decode to most of them.
     """
@@ -62,7 +62,7 @@ class Sides:
 
 
 def _cells(n: np.ndarray, half: Domain) -> np.ndarray:
-    """The cells of the sphere that directions lie in, whole numbers; those of the half itself are below 0."""
+    """Return the cells of the sphere that directions are in, as whole numbers; those of the half itself are below 0."""
     height = -half.side * n[:, half.axis]
     x, y = (n[:, (half.axis + step) % 3] for step in (1, 2))
     sector = np.floor((np.arctan2(y, x) / (2 * np.pi) + 0.5) * SECTORS).clip(max=SECTORS - 1)
@@ -71,7 +71,7 @@ def _cells(n: np.ndarray, half: Domain) -> np.ndarray:
 
 
 def lost(sides: Sides, half: Domain) -> str:
-    """Which function loses the half that a hemisphere lacks, in a line; empty where both have it, or neither."""
+    """Say which function loses the half that a hemisphere lacks; empty if both have it, or neither."""
     axes = axes_of(sides.gone)
     which = f"{sides.share}directions with {half.lost_text}{f', which come back with {axes}' if axes else ''}"
     if sides.encoder_knows and not sides.decoder_reaches:

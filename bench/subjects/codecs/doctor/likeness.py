@@ -1,4 +1,4 @@
-"""Which encoding of the catalogue the two functions are, each by itself: in any axes, range and order of numbers."""
+"""The encodings of the catalogue that two functions match, each by itself: in any axes, range and order of numbers."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ AXES = 48
 
 @dataclass(frozen=True)
 class Likeness:
-    """What the two functions are.
+    """The encodings that the two functions match.
 
     Attributes:
-        encoder, decoder: the names of the encodings of the catalogue that each is, empty where it is none.
+        encoder, decoder: the names of the encodings of the catalogue that each matches, empty if it matches none.
     """
 
     encoder: tuple[str, ...]
     decoder: tuple[str, ...]
 
     def shared(self, domain: str = "") -> str:
-        """The encoding that both are, of a domain if one is given; empty where there is none."""
+        """Return the encoding that both match, of a domain if one is given; empty if they share no encoding."""
         both = [name for name in self.encoder if name in self.decoder]
         return next((name for name in both if domain in ("", ENCODINGS[name].domain)), "")
 
 
 def likeness(gl: Device, probe: Probe, domain: Domain) -> Likeness:
-    """Which encodings of the catalogue a user's functions are on a domain."""
+    """Return the encodings of the catalogue that a user's functions match on a domain."""
     n = domain.held(trip_of(probe, directions())).n[-COUNT:]
     matrices = np.stack([axes.matrix for axes in frames()[:AXES]])
     # Of shape (axes, count, 3): each direction in each axes.
@@ -74,7 +74,7 @@ def _codes_of(gl: Device, encoding: Encoding, turned: np.ndarray) -> np.ndarray:
 
 
 def _held_mask(encoding: Encoding, turned: np.ndarray) -> np.ndarray:
-    """Which directions an encoding is made for, bool of shape (axes, count)."""
+    """Return which directions an encoding is made for, bool of shape (axes, count)."""
     return turned[..., 2] > 0 if encoding.domain != "sphere" else np.full(turned.shape[:2], True)
 
 

@@ -1,7 +1,7 @@
-"""What is wrong with a pair whose directions come back nearly: codes that are scaled, shifted or cut off between them.
+"""Mistakes in a pair that nearly round-trips: codes that are scaled, shifted or truncated between the two functions.
 
-The decoder says which code it wants for a direction: the one that decodes to it, by Newton's method from the code that
-the encoder gives. How wanted codes differ from given ones names the mistake, whatever the map.
+The code that the decoder wants for a direction is the one that decodes to it, found by Newton's method from the
+code that the encoder gives. The difference between wanted and given codes identifies the mistake, whatever the map.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ HALF_STEP, WHOLE = 0.08, 0.02
 
 @dataclass(frozen=True)
 class Fit:
-    """What the decoder wants in place of a number c of a code, counted from 1: scale c + shift."""
+    """The value that the decoder wants in place of a number c of a code, counted from 1: scale c + shift."""
 
     number: int
     scale: float
@@ -75,7 +75,7 @@ class Lattice:
         return storage.kind == ("unorm" if self.is_unit else "snorm") and scales == {self.steps}
 
     def whole(self, codes: np.ndarray) -> np.ndarray:
-        """Codes counted in steps: whole numbers where they lie on the lattice."""
+        """Return codes counted in steps: whole numbers if they are on the lattice."""
         return (codes * 0.5 + 0.5 if self.is_unit else codes) * self.steps
 
     @property
@@ -85,7 +85,7 @@ class Lattice:
 
 
 def lattice_of(codes: np.ndarray) -> Lattice | None:
-    """The coarsest steps that all codes lie on; None where they lie on none."""
+    """Return the coarsest lattice that contains all codes; None if no lattice does."""
     for bits in BITS:
         for lattice in (Lattice(bits, True), Lattice(bits, False), Lattice(bits, True, True)):
             whole = lattice.whole(codes.astype(np.float64))
@@ -96,14 +96,14 @@ def lattice_of(codes: np.ndarray) -> Lattice | None:
 
 @dataclass(frozen=True)
 class Start:
-    """Where the search for a scale begins: codes times `scale`, about a point of each number."""
+    """The start of the search for a scale: codes times `scale`, about a point of each number."""
 
     scale: float = 1.0
     about: float = 0.0
 
     @property
     def shift(self) -> float:
-        """What is added to scale times a number."""
+        """The number that is added to scale times a number."""
         return self.about * (1 - self.scale)
 
     def of(self, codes: np.ndarray) -> np.ndarray:
@@ -115,7 +115,7 @@ UNCHANGED = Start()
 
 
 def start(trip: Trip, probe: Probe) -> Start:
-    """Return the Start whose median angle is the least, of a few scales about 0 and about 0.5."""
+    """Return the Start with the smallest median angle, among a few scales about 0 and about 0.5."""
     scales = np.geomspace(1 / FARTHEST, FARTHEST, SCALES)
     tried = [Start(float(scale), about) for about in (0.0, 0.5) for scale in scales]
     few = trip.of(np.arange(max(len(trip.n) - FEW, 0), len(trip.n)))
@@ -152,7 +152,7 @@ def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
 
 
 def _fit(at: int, given: np.ndarray, wanted_codes: np.ndarray, begin: Start) -> Fit:
-    """A line through most of the wanted numbers, by least squares on what lies nearest, again and again."""
+    """Fit a line through most of the wanted numbers, by repeated least squares on the nearest of them."""
     x, y = given[:, at], wanted_codes[:, at]
     scale, shift = begin.scale, begin.shift
     kept = np.isfinite(y) & (np.abs(y - begin.of(x)) < 0.5)
@@ -166,10 +166,10 @@ def _fit(at: int, given: np.ndarray, wanted_codes: np.ndarray, begin: Start) -> 
 
 
 def mistakes(trip: Trip, probe: Probe, begin: Start = UNCHANGED) -> Iterator[str]:
-    """What the numbers of codes are scaled or shifted by between the two, or how they are cut off.
+    """Yield lines on how the numbers of codes are scaled, shifted or truncated between the two functions.
 
     Args:
-        begin: about what codes must be changed by.
+        begin: the approximate change that the codes need.
     """
     lattice = lattice_of(trip.codes)
     x, y = trip.codes.astype(np.float64), wanted(trip, probe, begin)
@@ -208,7 +208,7 @@ def _is_shift(scale: np.ndarray, shift: np.ndarray) -> bool:
 
 
 def _half_step(shift: float) -> int:
-    """The bits whose half step codes are shifted by; 0 where it is none."""
+    """Return the bit count whose half step codes are shifted by; 0 if no bit count fits."""
     halves = ((bits, abs(shift) * steps) for bits in BITS for steps in (2**bits - 1, 2**bits))
     return next((bits for bits, share in halves if abs(share - 1) < NEAR_A_HALF), 0)
 
@@ -227,7 +227,7 @@ def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Pr
 
 
 def _fixed_point_text(scale: float, shift: float, probe: Probe) -> str:
-    """What stays where it is when codes are scaled, if that is not 0: 0.5, or else a shift in the user's own range."""
+    """Say which point stays fixed when codes are scaled, unless it is 0: 0.5, or a shift in the user's own range."""
     own = (1 - scale + shift) / 2 if probe.is_unit else shift
     stays = own / (1 - scale)
     # Codes in [0, 1] that have become [-1, 1] by the user's own doing are scaled about -1.
@@ -245,7 +245,7 @@ def _of_steps(shift: float) -> str:
 
 
 def _shift_said(scale: float, shift: float) -> str:
-    """A shift in words; empty where there is none, or where in [0, 1] there is none."""
+    """Describe a shift in words; empty if nothing is shifted, or nothing in [0, 1]."""
     is_told = min(abs(shift), abs(shift - (scale - 1))) > ALIKE * abs(scale - 1)
     return f" {'plus' if shift > 0 else 'minus'} {abs(shift):.3g}" if is_told else ""
 
@@ -261,7 +261,7 @@ def _fraction(scale: float) -> str:
 
 
 def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]:
-    """Of codes that the encoder rounds by itself."""
+    """Yield the mistake in codes that the encoder rounds by itself."""
     off = (y - x) / lattice.step
     off = off[np.isfinite(off).all(axis=1) & (np.abs(off) < 4).all(axis=1)]
     kept = x[np.isfinite(y).all(axis=1) & (np.abs((y - x) / lattice.step) < 4).all(axis=1)]
@@ -278,7 +278,7 @@ def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]
 
 
 def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator[str]:
-    """Of codes that are rounded to steps of another size than they are divided by: 254 for 255."""
+    """Yield the mistake in codes that are rounded to steps of another size than they are divided by: 254 for 255."""
     slopes = [_slope(x[:, i], off[:, i]) for i in range(x.shape[1])]
     # One step too many or too few from end to end.
     steps = np.array(slopes) * (2.0 if lattice.is_unit else 1.0)

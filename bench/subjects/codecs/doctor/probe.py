@@ -40,7 +40,7 @@ class Probe:
 
     @property
     def range(self) -> str:
-        """What the user's own numbers lie in."""
+        """The range of the user's own numbers."""
         return "[0, 1]" if self.is_unit else "[-1, 1]"
 
     def own(self, number: float) -> float:
@@ -69,7 +69,7 @@ def probe_of(gl: Device, encoding: Encoding) -> Probe:
 
 @dataclass(frozen=True)
 class Trip:
-    """Directions, where they are seen from, their codes, and what comes back of these as storages clip them."""
+    """Directions, where they are seen from, their codes, and what these decode to, clipped as in storages."""
 
     n: np.ndarray
     view: np.ndarray
@@ -82,12 +82,12 @@ class Trip:
 
     @property
     def is_finite(self) -> np.ndarray:
-        """Which directions have a finite code that decodes to finite numbers, bool of shape (count,)."""
+        """Whether each direction has a finite code that decodes to finite numbers, bool of shape (count,)."""
         return np.asarray(np.isfinite(self.codes).all(axis=1) & np.isfinite(self.decoded).all(axis=1))
 
     @property
     def hole(self) -> str:
-        """The first direction where a function is not finite, in words; empty where there is none."""
+        """The first direction where a function is not finite, in words; empty if all are finite."""
         for what, numbers in (("encode", self.codes), ("decode", self.decoded)):
             indices = np.flatnonzero(~np.isfinite(numbers).all(axis=1))
             if len(indices):
@@ -95,7 +95,7 @@ class Trip:
         return ""
 
     def angles(self) -> np.ndarray:
-        """How far each comes back, in degrees."""
+        """Return the angle by which each direction is off after decoding, in degrees."""
         return angles_deg(self.n, self.decoded)
 
     def example(self, at: int) -> str:

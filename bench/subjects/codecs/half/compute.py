@@ -41,7 +41,7 @@ def half_device() -> Any:
 
 
 def name() -> str:
-    """What a row calls the device, and whether it rounds every step. Raises MissingError as `half_device` does."""
+    """Return the device's name in rows, and whether it rounds every step. Raises MissingError as `half_device` does."""
     steps = "some steps keep more digits" if keeps_digits() else "every step rounded"
     return f"{half_device().adapter.info['device']}, {API}, {steps}"
 
@@ -54,11 +54,11 @@ def keeps_digits() -> bool:
 
 
 def computed(source: Source, given: np.ndarray, views: np.ndarray) -> np.ndarray:
-    """What a compute shader makes of float32 arrays of shape (count, 4): an array of that shape.
+    """Run a compute shader on float32 arrays of shape (count, 4); return an array of that shape.
 
     Raises:
-        MissingError: no device or no compiler.
-        ShaderError: it does not compile.
+        MissingError: there is no device or no compiler.
+        ShaderError: the shader does not compile.
         FormatError: the device refuses it.
     """
     from wgpu.utils.compute import compute_with_buffers

@@ -18,7 +18,7 @@ KERNELS = ("GIVEN", "BESIDE", "MADE")
 
 @dataclass(frozen=True, eq=False)
 class HalfOperation(Operation):
-    """What stands between numbers of 32 bits and is computed in 16; the empty one converts as many to and fro."""
+    """A 16-bit operation between 32-bit numbers; the empty operation only converts as many numbers both ways."""
 
     @property
     def empty(self) -> Operation:

@@ -68,10 +68,10 @@ NAMED: Mapping[str, Kind] = MappingProxyType({kind.word: kind for kind in (NORMA
 
 
 def kinds_named(names: Names, of: str) -> dict[Kind, Names]:
-    """Return names by the kind that they are of: the one that is said, or what each name says; of normals in doubt.
+    """Return names by their kind: the kind `of` if it is given, otherwise what each name says; normals if in doubt.
 
     Raises:
-        UsageError: an unknown kind, or names that several kinds have.
+        UsageError: an unknown kind, or names that belong to several kinds.
     """
     if of:
         (kind,) = choose("kind", (of,), NAMED)
@@ -106,7 +106,7 @@ def _kind_of_word(word: str) -> Kind:
 
 
 def _kind_of_file(file: UserFile) -> Kind:
-    """What a user's file is of: what its functions' names say, or else of normals where it can be."""
+    """Return the kind of a user's file: what its functions' names say, otherwise normals if it can be."""
     from ..encoding_names import encodings_named
 
     if (spoken := kind_by_names(file)) and spoken in MADE:
@@ -122,14 +122,14 @@ def _kind_of_file(file: UserFile) -> Kind:
 def codecs_of_kind(
     kind: Kind, names: Names, storages: Names | None, roundings: Sequence[str], usual: slice = slice(None)
 ) -> list[Any]:
-    """Return codecs of another kind than normals: each encoding in each storage, rounded in each way.
+    """Return codecs of a kind other than normals: each encoding in each storage, rounded in each way.
 
     Args:
-        names: of encodings and of users' files; of light and curves over a range as well: rgbm:8.
-        usual: which of an encoding's usual storages, where none is named.
+        names: of encodings and of users' files; for light and curves also with a range: rgbm:8.
+        usual: which of an encoding's usual storages, if none is named.
 
     Raises:
-        UsageError: an unknown name, or a range that is none.
+        UsageError: an unknown name, or an invalid range.
     """
     ranged = [word for word in names if isinstance(word, str) and ":" in word and not names_an_encoder(word)]
     plain = tuple(word for word in names if word not in ranged)

@@ -61,7 +61,7 @@ def _depth_facts(own: Own, gl: Device) -> dict[str, Any]:
 
 
 def _faults_of_bytes(own: Own, gl: Device) -> Iterator[str]:
-    """What is wrong with a code over bytes: a digit that it lacks, or a number that is no whole byte."""
+    """Yield the mistakes in an encoding over bytes: a digit that it lacks, or a number that is not a whole byte."""
     values, size = _depths(own), own.made.components
     x = values.given[:, 0].astype(np.float64)
     trial = own.tried(gl, values.given, values.more)

@@ -82,7 +82,7 @@ def _frame_facts(own: Own, gl: Device) -> dict[str, Any]:
 
 
 def _level_count(numbers: np.ndarray) -> int:
-    """How many values numbers have, if these are few and evenly spread from -1 to 1, or one; else 0."""
+    """Return how many values numbers have, if these are few and evenly spread from -1 to 1, or one; otherwise 0."""
     values = np.unique(np.round(numbers, 4))
     if len(values) == 1:
         return 1

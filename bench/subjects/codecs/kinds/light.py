@@ -35,7 +35,7 @@ def _lights(own: Own) -> Values:
 
 
 def _light_errors(values: Values, found: Tried) -> np.ndarray:
-    """Of the colours; in shares of the brightest, or of a 256th."""
+    """Return the errors of the colours, relative to the brightest channel or to 1/256, whichever is larger."""
     return _light_apart(values.given, found.back[0])[:, :3].max(axis=1)
 
 
@@ -61,7 +61,7 @@ def _light_facts(own: Own, gl: Device) -> dict[str, Any]:
 
 
 def _added(own: Own, gl: Device, held: Values) -> dict[str, Any]:
-    """How texels of lights are added: by the sum or the product of their codes, or as lights; and the fourth number."""
+    """Find how texels of lights add: by the sum or product of their codes, or as lights; and the fourth number."""
     trial = own.tried(gl, held.given, held.more)
     both = held.given + held.given[::-1]
     blend = "read"

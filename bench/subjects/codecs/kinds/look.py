@@ -41,7 +41,7 @@ NOT_EXACT = "{} does not come back exactly, before any storage: {:.3g} {} off"
 
 
 def look(kind: OwnKind, file: UserFile) -> dict[str, Any]:
-    """What there is to say of a file; see above."""
+    """Return the findings on a file; see above."""
     try:
         return _look_at_one(kind, file)
     except SeveralEncodersError as error:
@@ -59,7 +59,7 @@ def _undoes_itself(kind: OwnKind, file: UserFile) -> bool:
 
 
 def _look_at_one(kind: OwnKind, file: UserFile) -> dict[str, Any]:
-    """The same of a file of which one pair is meant. Raises SeveralEncodersError."""
+    """Look at a file of which one pair is meant. Raises SeveralEncodersError."""
     try:
         gl, translation = device(), translated(file, kind=kind.kind)
         own = Own(file, translation, {})
@@ -79,7 +79,7 @@ def _look_at_one(kind: OwnKind, file: UserFile) -> dict[str, Any]:
 
 
 def _endless(kind: OwnKind, own: Own, gl: Device) -> str:
-    """What is said of a loop that the device has ended; empty where it has ended none."""
+    """Describe a loop that the device has ended; empty if it has ended none."""
     values = kind.values(own)
     trial = own.tried(gl, values.given, values.more)
     for what, flags in (("encode", trial.encode_ended), ("decode", trial.decode_ended)):
@@ -134,7 +134,7 @@ def _beyond(kind: OwnKind, own: Own, values: Values, found: Tried) -> Iterator[s
 
 
 def _inexact(kind: OwnKind, own: Own, gl: Device) -> dict[str, str]:
-    """By what it is called, a line on each value that should come back exactly and does not."""
+    """Return, by name, a line on each value that should round-trip exactly and does not."""
     lines: dict[str, str] = {}
     for name, values in kind.exactly(own).items():
         error = float(kind.errors(values, own.tried(gl, values.given, values.more))[0])
@@ -144,7 +144,7 @@ def _inexact(kind: OwnKind, own: Own, gl: Device) -> dict[str, str]:
 
 
 def main(words: Sequence[str]) -> None:
-    """What the command does; see above."""
+    """Run the command; see above."""
     children.limit_this_process()
     # Whatever users' code prints goes to stderr.
     answer = os.dup(1)

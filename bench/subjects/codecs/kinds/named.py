@@ -38,13 +38,13 @@ T = TypeVar("T", bound=AnyEncoding)
 
 
 def own_codes_named(kind: Kind, names: Names, catalogue: Mapping[str, T], what: str = "") -> list[T]:
-    """Return the codes of a kind that names stand for: the catalogue's, or users' files of shaders.
+    """Return the encodings of a kind that names stand for: the catalogue's, or users' files of shaders.
 
-    A file is looked at first, in a process of its own: what does not compile, does not end or is not finite is named on
-    standard error and left out.
+    A file gets a first look in a process of its own: if it does not compile, does not end or is not finite, it is
+    named on standard error and left out.
 
     Args:
-        what: what the names are of, for messages; the kind's encoding if it is not said.
+        what: what the names are, for messages; by default the kind's encoding.
 
     Raises:
         UsageError: an unknown name, or nothing left.
@@ -83,24 +83,24 @@ def _looked_at(kind: Kind, file: UserFile) -> tuple[Any, list[str]]:
 
 
 def said_of(own: Own) -> list[str]:
-    """What is to be said of a code that can be measured: what is likely wrong first, and then notes."""
+    """Return the remarks on an encoding that can be measured: first the likely mistakes, then notes."""
     quiet = {UNIT, *own.found.get("measured", [])}
     return [*own.found.get("wrong", []), *(line for line in notes_of(own) if line not in quiet)]
 
 
 def notes_of(own: Own) -> list[str]:
-    """What was guessed and found of a file, in sentences."""
+    """Return what was guessed and found about a file, in sentences."""
     findings = own.found
     guessed = [*([IN_32_BITS] if has_halves(own.made.text) else []), *([UNIT] if own.is_unit else [])]
     return [*own.made.notes, *findings.get("notes", []), *guessed, *findings.get("measured", [])]
 
 
 def kind_of(file: UserFile, said: str) -> OwnKind | None:
-    """The kind of a user's file that is no encoding of normals: what its functions' names say, or the first that fits;
-    None where none does.
+    """Return the kind of a user's file that is not an encoding of normals: the first that fits, or what its functions'
+    names say; None if there is no such kind.
 
     Args:
-        said: why it is no encoding of normals.
+        said: why it is not an encoding of normals.
     """
     fitting = (kind for kind in OWN if _fits(file, kind))
     spoken = (kind for kind in OWN if f"is of {kind.plural}, not of" in said)
@@ -147,7 +147,7 @@ def own_code(kind: Kind, file: UserFile) -> Own:
 
 
 def examined_code(kind: OwnKind, file: UserFile) -> Own:
-    """The same of a code that may not be finite or not end, which is the first thing that is wrong with it then.
+    """Return an encoding as `own_code` does, even if it is not finite or does not end: that is its first mistake then.
 
     Raises: as `own_code`.
     """
@@ -165,7 +165,7 @@ def examined_code(kind: OwnKind, file: UserFile) -> Own:
 
 
 def _found(kind: Kind, file: UserFile) -> dict[str, Any]:
-    """What the first look says. Raises UsageError where its process does not end well."""
+    """Return the findings of the first look. Raises UsageError if its process does not end well."""
     try:
         done = forks.finished(LOOK, [kind.name, file.word], TIME_LIMIT)
         output, ended = done.stdout, children.how_it_ended(done)

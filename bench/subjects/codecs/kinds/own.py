@@ -44,14 +44,14 @@ class Own:
 
     @property
     def shape(self) -> Shape:
-        """What its functions take and give."""
+        """The inputs and outputs of its functions."""
         return next(
             shape for shapes in SHAPES.values() for shape in shapes if shape.template == self.made.shaped["template"]
         )
 
     @property
     def settings(self) -> Sequence[str]:
-        """What its functions are given besides."""
+        """The further inputs of its functions."""
         return self.made.shaped["settings"]
 
     @property
@@ -60,7 +60,7 @@ class Own:
         return self.found.get("is_unit", False)
 
     def size(self, part: str) -> tuple[int, int]:
-        """How many numbers the encoder is given of a part, and the decoder gives; 0 for none."""
+        """Return how many numbers of a part the encoder takes and the decoder returns; 0 for none."""
         encoded, decoded = self.made.shaped["parts"].get(part, (0, 0))
         return encoded, decoded
 
@@ -70,7 +70,7 @@ class Own:
         return tried(gl, self.made.glsl(False), self.made.prefix, results, given, more, codes)
 
     def described(self) -> dict[str, Any]:
-        """What encodings of every kind say of themselves."""
+        """Return the values that encodings of every kind have."""
         lacking = lacking_twin(f"{self.made.name} {NO_TWIN}")
         return {
             "name": self.made.name,
@@ -87,8 +87,8 @@ class Own:
 
 @dataclass(frozen=True)
 class Values:
-    """What functions are tried with: what an adapter is given, and more, of which it is given three; float32 of shape
-    (count, 4)."""
+    """Inputs that functions are tried with: `given` for an adapter, and `more`, of which it takes three numbers;
+    float32 of shape (count, 4)."""
 
     given: np.ndarray
     more: np.ndarray
@@ -96,19 +96,21 @@ class Values:
 
 @dataclass(frozen=True)
 class OwnKind:
-    """How a user's own code of a kind is tried, and becomes an encoding.
+    """A kind of users' own encodings: how they are tried, and how they become encodings like the catalogue's.
 
     Attributes:
-        kind: of the catalogue.
-        values: what a code is tried with.
-        errors: what was given and what came back, as adapters have it, to how far it is off; float64 of shape (count,).
-        unit: what the errors are counted in.
-        nearly: how far what undoes itself is off at most, before any storage.
-        exactly: by what it is called, a value that should come back exactly.
-        encoding: the code as the catalogue has such.
-        facts: what the first look finds besides; `wrong` and `notes` are lines, `is_open`, that codes are unbound.
+        kind: the kind in the catalogue.
+        values: the values that an encoding is tried with.
+        errors: from what was given and what came back, as adapters have it, to the errors; float64 of shape
+            (count,).
+        unit: the unit of the errors.
+        nearly: the largest error of an encoding that round-trips, before any storage.
+        exactly: by name, a value that should round-trip exactly.
+        encoding: the user's functions as an encoding like those of the catalogue.
+        facts: other findings of the first look; `wrong` and `notes` are lines, `is_open` means that codes are
+            unbounded.
         said: a value in words.
-        rounded: how far a number may lead beyond what a storage holds.
+        rounded: how far a number may exceed what a storage holds.
     """
 
     kind: Kind
@@ -145,7 +147,7 @@ def number(given: np.ndarray, _: np.ndarray) -> str:
 
 
 def one_number_errors(values: Values, found: Tried) -> np.ndarray:
-    """How far off one number comes back."""
+    """Return the errors of one number."""
     return np.abs(found.back[0][:, 0].astype(np.float64) - values.given[:, 0])
 
 

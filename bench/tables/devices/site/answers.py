@@ -1,4 +1,4 @@
-"""Which code to take on a device: `pick`'s decision over the device's own errors."""
+"""The encoding to use on a device: `pick`'s decision from the device's own errors."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ MANY = 1 << 16
 
 
 class Known:
-    """What `pick` knows of the codecs of devices: issue slots, and errors of length. It is found when it is first asked
-    for, which imports JAX and calls compilers.
+    """Facts that `pick` knows about the codecs of devices: issue slots, and errors of length. They are computed on
+    first use, which imports JAX and calls compilers.
 
     Args:
-        rows: of all devices, each device's by itself.
+        rows: rows of all devices, one sequence for each device.
     """
 
     def __init__(self, rows: Iterable[Sequence[Row]]):
@@ -50,22 +50,22 @@ class Known:
         return str(PickOptions().family[0])
 
     def of(self, row: Row) -> Row:
-        """What is known of a device's codec; nothing of one of the reader's own."""
+        """Return the known facts about a device's codec; empty for a reader's own codec."""
         codec = _codec(row)
         return self._price_rows.get(codec.name, {}) if codec else {}
 
 
 def _codec(row: Row) -> Codec | None:
-    """A row's codec, rounded to the nearest, which decides neither its price nor its length."""
+    """Return a row's codec with rounding to nearest, because rounding affects neither its cost nor its length."""
     encoding, storage = ENCODINGS.get(row["encoding"]), STORAGES.get(row["storage"])
     return Codec(encoding, storage) if encoding and storage else None
 
 
 def answers(rows: Sequence[Row], known: Known) -> Iterator[Sheet]:
-    """For each storage of a device the code to take, in sentences, and the codes that no other one beats.
+    """Yield for each storage of a device the encoding to use, in sentences, and the Pareto-optimal encodings.
 
     Args:
-        rows: the device's, of the table `devices`.
+        rows: the device's rows of the table `devices`.
     """
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:

@@ -64,7 +64,7 @@ class Entry:
 
     @property
     def words(self) -> str:
-        """What the index finds the device by, besides its cells."""
+        """The words by which the index finds the device, besides its cells."""
         known = (str(row[name]) for row in self.rows for name in ("encoding", "storage", "target"))
         return " ".join(dict.fromkeys([*known, self.device.file.renderer, self.device.file.vendor]))
 
@@ -171,7 +171,7 @@ def _taken_list(entries: Sequence[Entry]) -> Searched:
 
 
 def _column_name(sheet: Sheet) -> str:
-    """What the column of a question's storage is called; a storage of a reader's own may be called "device"."""
+    """Return the name of the column for a question's storage; a storage of a reader's own may be called "device"."""
     return f"in {sheet.keys['storage']}"
 
 
