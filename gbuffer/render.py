@@ -235,7 +235,8 @@ def check(device: Device, pipeline: Pipeline, plan: Plan, is_metal_rough: bool =
     if missing := sorted(pipeline.needs - components):
         without = [other.name for other in PIPELINES.values() if other.needs and other.needs <= components]
         does = f"; --pipeline {','.join(without)} does not need it" if without else ""
-        raise LayoutError(f"{pipeline.name} needs {', '.join(missing)}, which layout {layout.name} does not keep{does}")
+        needed = ", ".join(missing)
+        raise LayoutError(f"{pipeline.name} needs {needed}, which layout {layout.name} does not store{does}")
     if not pipeline.has_gbuffer:
         return
     if plan.light_targets not in pipeline.light_targets:
@@ -245,7 +246,7 @@ def check(device: Device, pipeline: Pipeline, plan: Plan, is_metal_rough: bool =
         raise LayoutError(f"one light target needs an alpha channel, which {light.name} does not have")
     beside = int(pipeline.starts_light)
     if len(layout.targets) + beside > device.max_targets:
-        more = ", and a light buffer comes on top" if beside else ""
+        more = ", plus a light buffer" if beside else ""
         raise LayoutError(
             f"layout {layout.name} has {len(layout.targets)} targets{more}; {device.renderer} has {device.max_targets}"
         )
@@ -255,8 +256,9 @@ def check_metal_rough(pipeline: Pipeline) -> None:
     """Raise LayoutError if a pipeline does not support metallic-roughness materials; one line."""
     if pipeline.told.get("LIGHT_HOLDS") == TERMS:
         raise LayoutError(
-            f"{pipeline.name} cannot carry metal/rough materials: its light buffer keeps no light by Fresnel's term; "
-            "forward, forward_multipass, deferred and hybrid can"
+            f"{pipeline.name} cannot be used with metallic-roughness materials: its light buffer keeps no light by "
+            "Fresnel's term; "
+            "use forward, forward_multipass, deferred or hybrid"
         )
 
 

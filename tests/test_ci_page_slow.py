@@ -31,4 +31,4 @@ def test_the_hook_holds_the_gates_that_read_a_changed_file(run, tmp_path, monkey
         assert found[0] == status and len(json.loads(found[1])) == count, found
     (tmp_path / "third.glsl").write_text(body)
     status, out, err = run(*words, *hook()["args"], "third.glsl")
-    assert (status, out, err) == (0, "", "normalbench: no gate of gates.toml reads third.glsl\n")
+    assert (status, out, err) == (0, "", "normalbench: no gate in gates.toml uses third.glsl\n")

@@ -59,7 +59,7 @@ def test_a_kind_is_a_class_a_pair_a_module_and_six_lines(copy):
     assert (done.returncode, done.stdout) == (
         2,
         "",
-    ) and "mine.glsl: codes of heights are the catalogue's alone" in done.stderr
+    ) and "mine.glsl: only the catalogue's encodings of heights can be measured" in done.stderr
 
 
 @pytest.mark.usefixtures("gl")

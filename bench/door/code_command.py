@@ -65,9 +65,7 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     if output and output.is_file():
         raise UsageError(f"{output} is a file; code writes into a folder")
     if output and output.suffix in {language.ending for language in LANGUAGES.values()}:
-        raise UsageError(
-            f"{output}: code writes into a folder, as {file_name(codecs[0], languages[0])} there; name one"
-        )
+        raise UsageError(f"{output}: code writes {file_name(codecs[0], languages[0])} into a folder; name the folder")
     check_place(output, len(codecs) * len(languages))
     return _write(codecs, languages, options, output)
 
@@ -88,8 +86,8 @@ def _check_prefix(prefix: str) -> None:
     is_name = re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", prefix) and not prefix.lower().startswith("gl_")
     if prefix and not (is_name and len(prefix) <= LONGEST):
         raise UsageError(
-            f"--prefix {prefix[:LONGEST]!r}: letters, digits and single underscores between them, a letter first, "
-            f"{LONGEST} at most, such as engine_normal"
+            f"--prefix {prefix[:LONGEST]!r}: use letters, digits and single underscores between them, a letter first, "
+            f"at most {LONGEST} characters, such as engine_normal"
         )
 
 
@@ -115,7 +113,7 @@ def _codecs(options: CodeOptions) -> list[Any]:
 def _of_kind(kind: Kind, names: Names, options: CodeOptions) -> list[Any]:
     rounded = roundings_named(options.rounding)
     if rounded != ["nearest"] and kind not in ROUNDED:
-        raise UsageError(f"--rounding is for {ROUNDED_WORDS}; codes of {kind.word} are rounded to the nearest")
+        raise UsageError(f"--rounding applies only to {ROUNDED_WORDS}; encodings of {kind.word} round to nearest")
     return that_fit(codecs_of_kind(kind, names, options.storage, rounded, slice(1)))
 
 
@@ -147,7 +145,7 @@ def _write_codec(codec: Any, languages: Sequence[str], prefix: str, output: Path
         language = proof.code.language
         if proof.why_not:
             status = 1
-            tell(f"{codec.name} in {language}: {proof.why_not}; it is not written")
+            tell(f"{codec.name} in {language}: {proof.why_not}; not written")
             continue
         if proof.row["verdict"] == NOT_RUN:
             tell(f"{codec.name} in {language}: {proof.row['says']}")
@@ -204,7 +202,7 @@ def _why_not(code: Code, row: Row, made: Sequence[tuple[Code, Row]]) -> str:
     if row["verdict"] == NOT_RUN:
         others = others or witness((code_of(code.codec, name, code.prefix) for name in WITNESSES), verified)
     wrong = [other.language for other, other_row in others if other_row["verdict"] == DIFFERS]
-    return f"its translation is seen to be wrong in {wrong[0]}" if wrong else ""
+    return f"its translation to {wrong[0]} is wrong" if wrong else ""
 
 
 def _all_made(codecs: Sequence[Any], languages: Sequence[str], prefix: str) -> list[Code]:

@@ -36,11 +36,11 @@ def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str
     compared = verified.replace(" are equal, bit", " are the catalogue's, bit", 1) if kind.is_ours(codec) else verified
     names = ", ".join(f"{code.prefix}_{name}" for name in ("encode", "pack", "unpack", "decode"))
     return [
-        f"{codec.name} in {LANGUAGES[code.language].title}: {names}; for a render target {code.prefix}_to_target and "
+        f"{codec.name} in {LANGUAGES[code.language].title}: {names}; for a render target, {code.prefix}_to_target and "
         f"{code.prefix}_from_target. {LANGUAGES[code.language].advice}",
         "",
         f"Encoding: {encoding.title}. Source: {encoding.citation}.",
-        f"Storage: {codec.storage.title}, {codec.bits} bits, rounded to {rounding_of(codec)}. "
+        f"Storage: {codec.storage.title}, {codec.bits} bits, rounding: {rounding_of(codec)}. "
         f"{kind.plural.capitalize()}: {kind.held(codec)}.",
         *said,
         *table_lines(code.interface.tables),
@@ -72,7 +72,7 @@ def figures(codec: Codec) -> list[str]:
 def _errors(codec: Codec) -> Iterator[str]:
     domain = codec.encoding.domain
     if domain not in NORMAL_SETS:
-        yield "Errors: they depend on where each normal is seen; `normalbench quality` measures them on a scene."
+        yield "Errors: not given, because they depend on the view; `normalbench quality` measures them on a scene."
         return
     backend = "jax" if has_twin(codec.encoding) else "glsl"
     chosen = NORMAL_SETS[domain](DEFAULT_COUNT, 0)
@@ -89,17 +89,17 @@ def _errors(codec: Codec) -> Iterator[str]:
 def _largest(supremum: float | None, met: float) -> str:
     """The largest error in words: of exact arithmetic, and what float32 makes of it where that is more."""
     if supremum is None:
-        return f"the largest of these is {met:.4g} degrees"
-    text = f"the largest of all directions is {supremum:.4g} degrees"
-    return text + (f"; {met:.4g} was met in float32" if met > supremum * (1 + SAME) else "")
+        return f"largest sampled error {met:.4g} degrees"
+    text = f"supremum {supremum:.4g} degrees"
+    return text + (f"; largest sampled error in float32 {met:.4g}" if met > supremum * (1 + SAME) else "")
 
 
 def _instructions(codec: Codec) -> Iterator[str]:
     rows = cost.counted(cost.cases([codec.encoding], (), cost.OPERATIONS), FAMILY, STAGE)
     counts: Sequence[Any] = [row["instructions"] for row in rows.values()]
     if len(counts) != len(cost.OPERATIONS):
-        yield "Instructions: not counted here: `normalbench doctor` says what is missing."
+        yield "Instructions: not counted here; `normalbench doctor` shows what is missing."
         return
-    loops = ", a loop counted once" if any(row["loops"] for row in rows.values()) else ""
+    loops = ", each loop counted once" if any(row["loops"] for row in rows.values()) else ""
     encode, decode = (rows[codec.encoding.name, operation]["instructions"] for operation in cost.OPERATIONS)
     yield f"Instructions: {encode} to encode and {decode} to decode, without packing, on {FAMILY_TITLE}{loops}."

@@ -44,7 +44,7 @@ def compared(
     except (MissingError, NoDeviceError) as error:
         return {"verdict": NOT_RUN, "says": f"not run here: {error}"}
     except ShaderError as error:
-        return {"verdict": DIFFERS, "says": f"it does not run: {error}"}
+        return {"verdict": DIFFERS, "says": f"does not run: {error}"}
     row: Row = {"verdict": VERIFIED if agrees.holds else DIFFERS, "values": agrees.count}
     row |= {name: getattr(agrees, name) for name in (*more, "differing", "steps")}
     return row | {"run_by": how, "says": f"{agrees.says}; run by {how}"}
@@ -62,7 +62,7 @@ def check_place(output: Path | None, count: int) -> None:
     if output:
         check_folder(output)
     elif count > 1:
-        raise UsageError("several files are written into a folder: name one with -o")
+        raise UsageError("several files need a folder; name one with -o")
 
 
 def save(code: Code | GBufferCode, head: Sequence[str], output: Path | None) -> None:
@@ -70,7 +70,7 @@ def save(code: Code | GBufferCode, head: Sequence[str], output: Path | None) -> 
     there are several files and no folder."""
     files = code.files(head)
     if output is None and len(files) > 1:
-        raise UsageError(f"{code.name} comes with look-up tables: name a folder with -o")
+        raise UsageError(f"{code.name} needs files of lookup tables; name a folder with -o")
     if output is None:
         say(code.text(head))
         return

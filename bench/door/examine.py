@@ -35,7 +35,7 @@ from ..tables.quality.measure import QualityCase, measure
 from ..tables.quality.sphere_maps import sphere_map
 
 STORAGE = "rgba8"
-RIGHT = "nothing is likely wrong"
+RIGHT = "No problems found."
 FOR_PEOPLE = ("table", "markdown")
 DOMAINS = ("sphere", "hemisphere", "view")
 # Normals that it is compared with the catalogue's on, and by how much it may be worse.
@@ -70,16 +70,16 @@ def examine_encoding(
         UsageError: no file is given, it is not an encoding, a name is unknown, or something cannot be written.
     """
     if file is None:
-        raise UsageError("doctor examines a file with --plot, --storage and --domain: name it")
+        raise UsageError("these options of doctor require a file or a folder; name one, such as mine.glsl")
     if file.is_dir():
         if option := next((name for name, value in {"plot": plot, "domain": domain}.items() if value), ""):
-            raise UsageError(f"{file} is a folder, and --{option} is of one file: name a file")
+            raise UsageError(f"--{option} cannot be used with a folder; name a file in {file}")
         from .folder import examine_folder
 
         return examine_folder(file, format, output, _storage(storage) if storage else None, diff, report, sources)
     for option, value in {"diff": diff, "report": report}.items():
         if value:
-            raise UsageError(f"--{option} is of a folder, and {file} is none: name its folder")
+            raise UsageError(f"--{option} requires a folder; name the folder of {file}")
     shader = UserFile(word_of(file, sources))
     check_plot(plot)
     kept = _storage(storage or STORAGE)
@@ -93,7 +93,7 @@ def examine_encoding(
             raise
         given = {"plot": plot, "storage": storage, "domain": domain}
         if option := next((name for name, value in given.items() if value), ""):
-            raise UsageError(f"{shader}: --{option} is of normals, and this file is of {kind.kind.plural}") from None
+            raise UsageError(f"{shader}: --{option} requires normals; this file is of {kind.kind.plural}") from None
         return _examine_own(shader, kind, format, output)
     codec = Codec(examination.encoding, kept)
     if storage and codec.misfit:
@@ -111,7 +111,7 @@ def examine_encoding(
         if is_meant
         else ([*examination.wrong, *worse], examination.notes)
     )
-    failing = [f"{pair} is no pair: {why}; name it to see more" for pair, why in examination.failing.items()]
+    failing = [f"{pair} is not a pair: {why}; name it to see more" for pair, why in examination.failing.items()]
     wrong, notes = [*wrong, *no_numbers(kept, row), *failing], [*notes, *halves]
     about = {
         "file": shader.path.name,
@@ -122,7 +122,7 @@ def examine_encoding(
     _write(about, wrong, notes, format, output)
     if plot and examination.is_measurable:
         save_plot(plot, _picture(codec, examination))
-        tell(f"the error over the sphere is in {plot}")
+        tell(f"plot of the error over the sphere: {plot}")
     return int(bool(wrong))
 
 
@@ -180,7 +180,7 @@ def _storage(name: str) -> Storage:
     """Return the storage of a name. Raises UsageError if it does not name exactly one."""
     storages = storages_named((name,))
     if len(storages) != 1:
-        raise UsageError(f"--storage {name}: doctor measures in one storage")
+        raise UsageError(f"--storage {name}: doctor measures in one storage; name one")
     return storages[0]
 
 
@@ -193,9 +193,9 @@ def no_numbers(storage: Storage, row: Mapping[str, Any]) -> list[str]:
     """Report how many rounded codes decode to NaN or infinity, whatever exact codes do, by a row of `quality`."""
     if not row.get("invalid"):
         return []
-    share = f"{row['invalid']} of {row['count']} rounded codes ({100 * row['invalid'] / row['count']:.2g} %)"
-    remedy = "rounding may move a code beyond what decode expects; write for example sqrt(max(0.0, ...))"
-    return [f"in {storage.name}, {share} decode to NaN or infinity, and count as 180° off: {remedy}"]
+    share = f"{row['invalid']} of {row['count']} rounded codes ({100 * row['invalid'] / row['count']:.2g}%)"
+    remedy = "rounding may move a code out of the range that decode expects; write for example sqrt(max(0.0, ...))"
+    return [f"in {storage.name}, {share} decode to NaN or infinity and count as 180° off; {remedy}"]
 
 
 def _compared(found: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str]:
@@ -208,9 +208,10 @@ def _compared(found: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str
     own, its = _means(row), _means(row_of(Codec(like, replace(codec.storage, holds_unit=False))))
     if not WORSE < own[0] / its[0] < ANOTHER:
         return []
-    how = f"{own[0]:.3g} degrees on average for {its[0]:.3g}, {own[1]:.3g} at most for {its[1]:.3g}"
-    why = "; codes in [0, 1] use half of its range: store s = 2 c - 1 and decode (s + 1) / 2" if is_half_used else ""
-    return [f"in {codec.storage.name} this is {found.like}, {100 * (own[0] / its[0] - 1):.0f} % worse: {how}{why}"]
+    how = f"mean {own[0]:.3g} degrees instead of {its[0]:.3g}, largest {own[1]:.3g} instead of {its[1]:.3g}"
+    why = "; codes in [0, 1] use half of the range; store s = 2 c - 1 and decode (s + 1) / 2" if is_half_used else ""
+    percent = 100 * (own[0] / its[0] - 1)
+    return [f"in {codec.storage.name} this is {found.like}, but {percent:.0f}% worse: {how}{why}"]
 
 
 def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
@@ -219,13 +220,13 @@ def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
         return []
     half = Codec(in_half(codec.encoding), codec.storage)
     if half.misfit:
-        return [f"it declares numbers of 16 bits, but {half.misfit}"]
+        return [f"the file declares 16-bit numbers, but {half.misfit}"]
     in_half_row, own = row_of(half), _means(row)
     if in_half_row["skipped"]:
-        return [f"it declares numbers of 16 bits, and is computed in 32: {in_half_row['skipped']}"]
-    text = "{:.3g} degrees on average and {:.3g} at most".format(*_means(in_half_row))
-    text += f"; in 32 bits {own[0]:.3g} and {own[1]:.3g}"
-    return [f"in the half arithmetic that it declares, {codec.storage.name} has {text}"]
+        return [f"the file declares 16-bit numbers, but is computed in 32 bits: {in_half_row['skipped']}"]
+    text = "mean error {:.3g} degrees and largest {:.3g}".format(*_means(in_half_row))
+    text += f"; in 32 bits, mean {own[0]:.3g} and largest {own[1]:.3g}"
+    return [f"in {codec.storage.name}, with the half precision that the file declares: {text}"]
 
 
 def _rounded_for(found: Examined, codec: Codec) -> str:
@@ -235,7 +236,7 @@ def _rounded_for(found: Examined, codec: Codec) -> str:
         return ""
     fitting = [storage for storage in STORAGES.values() if storage.channels >= size and lattice.is_of(storage, size)]
     named = min(fitting, key=lambda one: one.channels, default=None)
-    return f"encode rounds to 1/{lattice.steps} itself" + (f": try --storage {named.name}" if named else "")
+    return f"encode itself rounds to 1/{lattice.steps}" + (f"; try --storage {named.name}" if named else "")
 
 
 def _means(row: Mapping[str, Any]) -> tuple[float, float]:

@@ -160,12 +160,12 @@ def examine_folder(
     _write(told, format, output)
     if diff:
         _save(diff, patch)
-        tell(f"the patch is in {diff}; nothing is applied" if "@@" in patch else f"{diff} is empty: nothing to change")
+        tell(f"patch: {diff}; not applied" if "@@" in patch else f"{diff} is empty: nothing to change")
     if report:
         from ...reports.page.folder import folder_html
 
         _save(report, folder_html(str(folder), told.lead, told.measured, told.lines, patch))
-        tell(f"the page is in {report}")
+        tell(f"page: {report}")
     return int(any(each.findings for each in (*pairs, *others)))
 
 
@@ -195,7 +195,7 @@ def files_below(folder: Path) -> Iterator[Path]:
             seen.add(path.resolve())
             count += 1
             if count > MOST_FILES:
-                raise UsageError(f"{folder}: it has more than {MOST_FILES} shader files; name a folder below it")
+                raise UsageError(f"{folder}: more than {MOST_FILES} shader files; name a subfolder")
             yield path
 
 
@@ -343,10 +343,10 @@ def _of_target(path: Path, functions: str) -> Iterator[str]:
     text, decode = _text(path), functions.rpartition(":")[2].partition("(")[0]
     if match := re.search(_FILTERED.format(re.escape(decode)), text, re.I):
         line = text.count("\n", 0, match.start()) + 1
-        yield f"line {line}: {match[1]} mixes codes before {decode}; across seams that gives other normals. Load texels"
+        yield f"line {line}: {match[1]} filters codes before {decode}, giving wrong normals across seams; load texels"
     if match := _SRGB.search(text):
         line = text.count("\n", 0, match.start()) + 1
-        yield f"line {line}: {match[1]} of normals: sRGB converts codes when they are written and read"
+        yield f"line {line}: {match[1]} for normals; sRGB formats change codes when they are written and read"
 
 
 def _measure(pairs: Sequence[Pair]) -> None:
@@ -355,7 +355,7 @@ def _measure(pairs: Sequence[Pair]) -> None:
     for pair in pairs:
         codec = Codec(pair.looked.encoding, pair.storage)
         if codec.misfit:
-            pair.findings.append(f"{pair.storage.name} does not hold it: {codec.misfit}")
+            pair.findings.append(f"does not fit {pair.storage.name}: {codec.misfit}")
         elif codec.encoding.is_packed:
             pair.row = _packed_figures(codec)
         else:
@@ -418,7 +418,7 @@ class Told:
         better = sum(row["best_mean_deg"] is not None for row in shown)
         count = f"{len(shown)} pair{'s' * (len(shown) != 1)} in {files} shader file{'s' * (files != 1)}"
         self.lead = f"{count} of {folder.resolve().name or folder}: {wrong or 'none'} with findings, "
-        self.lead += f"{better or 'none'} with a better code of as many bits."
+        self.lead += f"{better or 'none'} with a better encoding of the same bit count."
 
 
 def _row(told: Pair | Other) -> Row:

@@ -43,7 +43,7 @@ def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str,
         UsageError: a name is not known, a layout is not written, or something cannot be.
     """
     if options.storage:
-        raise UsageError("--storage: a layout says its formats itself")
+        raise UsageError("--storage cannot be used with layouts; a layout has its own formats")
     layouts = layouts_named(options.codec)
     if options.prefix and len(layouts) > 1 and not options.check:
         raise UsageError(f"--prefix {options.prefix}: names of {len(layouts)} layouts would collide; name one layout")
@@ -86,5 +86,5 @@ def verified(code: GBufferCode) -> Row:
     """A row: how a file's results compare with the renderer's, by running it."""
     row: Row = {"layout": code.layout.name, "bytes_per_pixel": code.layout.bytes_per_pixel, "language": code.language}
     if code.language in NEVER_RUN:
-        return row | {"verdict": NOT_RUN, "says": f"not run here: nothing runs layouts in {code.language}"}
+        return row | {"verdict": NOT_RUN, "says": f"not run here: layouts cannot be run in {code.language}"}
     return row | compared(partial(agreement, code), code.language)

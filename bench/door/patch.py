@@ -47,7 +47,7 @@ def _is_of_normals(pair: Pair) -> bool:
     """Whether a code is of normals beyond doubt: its functions' names say so, or it is one of the catalogue."""
     is_sure = bool(pair.looked.like) or name_speaks_of_normals(pair.functions)
     if not is_sure:
-        tell(f"{pair.file} {pair.functions} is not in the patch: its names do not say that it is of normals")
+        tell(f"{pair.file} {pair.functions} is not in the patch: the names of its functions do not mention normals")
     return is_sure
 
 
@@ -66,7 +66,7 @@ def _part_of(folder: Path, file: str, pairs: Sequence[Pair]) -> str:
         except (UsageError, MissingError) as error:
             tell(f"{file} {pair.functions} is not in the patch: {error}")
             continue
-        summaries.append(f"{file} {pair.functions}: {best}, {mean:.4g} degrees on average in place of {before:.4g}\n")
+        summaries.append(f"{file} {pair.functions}: {best}, mean error {mean:.4g} degrees instead of {before:.4g}\n")
         text = patched
     before, after = (version.splitlines(keepends=True) for version in (was, text))
     lines = difflib.unified_diff(before, after, f"a/{file}", f"b/{file}")
@@ -84,7 +84,7 @@ def _mean_of(patched: str, path: Path, pair: Pair) -> float:
         mean = row_of(Codec(examined(UserFile(word)).encoding, pair.storage))["angle_mean_deg"]
     wanted = pair.row["best_mean_deg"]
     if mean is None or abs(mean - wanted) > NEARLY * wanted:
-        raise UsageError(f"with {pair.row['best']} it would have {mean} degrees in place of {wanted:.4g}")
+        raise UsageError(f"its mean error with {pair.row['best']} would be {mean} degrees, not {wanted:.4g}")
     return mean
 
 
@@ -95,12 +95,12 @@ def patched_text(text: str, pair: Pair) -> str:
         UsageError: it cannot be changed so; a sentence.
     """
     if "," in pair.file:
-        raise UsageError("its functions lie in two files")
+        raise UsageError("its functions are in two files")
     looked, best = pair.looked, ENCODINGS.get(pair.row["best"])
     if best is None or (best.components, best.sign_bits) != (looked.encoding.components, 0):
         raise UsageError(f"{pair.row['best']} has another number of components")
     if shader_text(text, Path(pair.file).suffix.lower()) != text or "PROGRAM" in text:
-        raise UsageError("its functions lie in a block of something else")
+        raise UsageError("its functions are in a shader block of another format")
     language = {"GLSL": "glsl", "WGSL": "wgsl"}.get(name_of(UserFile(pair.word)), "hlsl")
     prefix = f"nb_{best.name}"
     code = code_of(Codec(best, pair.storage), language, prefix).body.partition(_PACKING)[0].rstrip()
@@ -111,7 +111,7 @@ def patched_text(text: str, pair: Pair) -> str:
     places = {item.name: item for item in items(bare) if item.function}
     names = [name.rpartition("::")[2] for name in pair.functions.split(":") if name]
     if len(names) != 2 or not {*names} <= {*places}:
-        raise UsageError("its functions are not in this file, or are given more than a normal and a code")
+        raise UsageError("its functions are not in this file, or take more than a normal or a code")
     out, back = (" * 0.5 + 0.5", " * 2.0 - 1.0") if looked.encoding.is_unit else ("", "")
     encode, decode = (places[name] for name in names)
     calls = {

@@ -103,7 +103,7 @@ def _check_taken(chosen: Iterable[Table], said: Mapping[str, Any]) -> None:
         takers = [table for table in TABLES.values() if _takes(table, name)]
         if not set(takers) & set(chosen):
             option, those = name.replace("_", "-"), ", ".join(table.name for table in takers)
-            raise UsageError(f"--{option} is an option of {those}; none of them is measured")
+            raise UsageError(f"--{option} applies only to {those}; measure one of them with --tables")
 
 
 def _takes(table: Table, name: str) -> bool:
@@ -166,7 +166,7 @@ def _measured_and_shown(
 ) -> Shown:
     total = sum(1 for ask in asks for _ in with_parts(ask.steps))
     if run.kept:
-        tell(f"{run.folder} goes on: {_there(run, asks)} of {total} steps are there")
+        tell(f"resuming {run.folder}: {_there(run, asks)} of {total} steps are done")
     others = _beside(asks) if second and len(asks) > 1 else []
     try:
         with progress_of_all(expected(asks, others)):
@@ -178,7 +178,7 @@ def _measured_and_shown(
             with progress(1, PAGE):
                 _complete(run, shown)
     except (KeyboardInterrupt, SystemExit):
-        tell(f"{run.kept} of {total} steps are kept; the same command goes on")
+        tell(f"{run.kept} of {total} steps were saved; to resume, run the same command")
         raise
     return shown
 
@@ -304,4 +304,4 @@ def _complete(run: Run, shown: Shown) -> None:
     keep_code(run.folder, done)
     page = write_report(run.folder, done, run.folder / REPORT, CHARTS, most_charts=CHARTS_OF_A_RUN)
     run.finish()
-    say(f"The page: {page}\nA table: normalbench show {run.folder} {shown.asks[0].table.name}\n")
+    say(f"Page: {page}\nTo print a table: normalbench show {run.folder} {shown.asks[0].table.name}\n")

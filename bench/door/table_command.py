@@ -101,9 +101,9 @@ def _measured(ask: Asked, kept: Beside | None, where: Place) -> Measured:
     if kept:
         kept_count = sum(kept.find(ask.table.name, step) is not None for step in with_parts(ask.steps))
         if kept_count < len(kept):
-            other = f"{kept.path} keeps {len(kept)} steps of another {ask.table.name}"
-            raise UsageError(f"{other}; run that one, delete it, or name another file")
-        tell(f"{kept_count} of {total} steps were measured before")
+            other = f"{kept.path} has {len(kept)} steps of another {ask.table.name} command"
+            raise UsageError(f"{other}; finish that command, delete the file, or name another file")
+        tell(f"{kept_count} of {total} steps are already measured")
     try:
         return measured(ask, Nothing() if kept is None else kept, where)
     except (KeyboardInterrupt, SystemExit):
@@ -113,9 +113,9 @@ def _measured(ask: Asked, kept: Beside | None, where: Place) -> Measured:
 
 def _say_how_to_go_on(kept: Beside | None, total: int) -> None:
     if kept is not None:
-        tell(f"{len(kept)} of {total} steps are kept; the same command goes on")
+        tell(f"{len(kept)} of {total} steps were saved; to resume, run the same command")
     else:
-        tell("nothing is kept; with -o FILE a stopped command goes on")
+        tell("nothing was saved; use -o FILE to make the command resumable")
 
 
 def _show(table: Table, done: Measured, format: str, output: Path | None) -> bool:
@@ -152,7 +152,7 @@ def _plot(table: Table, done: Measured) -> None:
 
 def _why_nothing(table: Table, rows: Sequence[Row]) -> str:
     """Return why rows have no chart: the first reason that a row gives, or that they have too few figures."""
-    few = f"{len(rows)} row{'s' * (len(rows) != 1)} with too few figures for a chart; ask for more: {table.example}"
+    few = f"too few figures for a chart in {len(rows)} row{'s' * (len(rows) != 1)}; ask for more: {table.example}"
     return next((row["skipped"] for row in rows if row.get("skipped")), few)
 
 
@@ -175,4 +175,4 @@ def _write_page(table: Table, done: Measured, folder: Path, target: Path) -> Non
     facts |= {"request": {"tables": [table.name]}}
     steps = [{"table": table.name, "key": {}, "rows": rows}]
     shown = Done(facts, steps, whole={table.name: rows})
-    say(f"\nThe page: {write_report(folder, shown, target, name=target.stem)}\n")
+    say(f"\nPage: {write_report(folder, shown, target, name=target.stem)}\n")

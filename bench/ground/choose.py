@@ -69,12 +69,12 @@ def choose_or_read(
     called = [file.name for file in files]
     twice = [name for name in called if called.count(name) > 1]
     if twice:
-        raise UsageError(f"two files are called {twice[0]}, which is how rows name them; rename one")
+        raise UsageError(f"two files are called {twice[0]}, which rows could not tell apart; rename one")
     others = [word for word in words if Path(str(word)).suffix.lower() not in endings or isinstance(word, Given)]
     try:
         chosen = choose(what, others, known) if others or not files else []
     except UsageError as error:
-        raise UsageError(f"{error}; or a file that ends in {', '.join(endings)}") from None
+        raise UsageError(f"{error}; or a file ending in {', '.join(endings)}") from None
     return chosen + [read(file) for file in files]
 
 

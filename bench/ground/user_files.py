@@ -141,14 +141,14 @@ class UserFile:
         pairs = re.findall(_SETTING, match["settings"], re.I) if match else []
         of = {kind: tuple(value for name, value in pairs if name.lower() == kind) for kind in SETTINGS}
         if odd := [f"{kind}={value}" for kind, value in pairs if not (value and value.isprintable())]:
-            raise UsageError(f"{odd[0]!r}: nothing can be called so; leave it out")
+            raise UsageError(f"{odd[0]!r}: not a valid value; leave it out")
         if wrong := [macro for macro in of[DEFINE] if not _MACRO.fullmatch(macro)]:
             raise UsageError(
-                f"-D {wrong[0]!r}: it is NAME or NAME=VALUE; write a macro with a comma in a file for --prelude"
+                f"-D {wrong[0]!r}: must be NAME or NAME=VALUE; write a macro with a comma in a file for --prelude"
             )
         names = [language for name in of[LANGUAGE] for language in LANGUAGES if language.lower() == name.lower()]
         if of[LANGUAGE] and not names:
-            raise UsageError(f"--language {of[LANGUAGE][0]}: it is one of {', '.join(LANGUAGES).lower()}")
+            raise UsageError(f"--language {of[LANGUAGE][0]}: must be one of {', '.join(LANGUAGES).lower()}")
         roots = tuple(_root(folder) for folder in of[INCLUDE])
         return Settings(of[DEFINE], of[PRELUDE], roots, names[0] if names else "", "".join(of[FORMAT][:1]))
 
@@ -305,7 +305,7 @@ def check_word(word: str, known: Collection[str], has_format: bool = False) -> N
     if file and spelled("encoding", word, known) is None:
         raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")
     if UserFile(word).settings.format and not has_format:
-        raise UsageError(f"{word}: {FORMAT} is of light buffers; --storage names what others lie in")
+        raise UsageError(f"{word}: {FORMAT} applies only to light buffers; for others use --storage")
     if lacks_a_function(word):
         raise UsageError(
             f"{word}: name both functions, such as mine.hlsl:EncodeNormal:DecodeNormal, or one in each of two "
@@ -313,4 +313,4 @@ def check_word(word: str, known: Collection[str], has_format: bool = False) -> N
         )
     if (ending := Path(word).suffix.lower()) in OTHER_LANGUAGES:
         language, how = OTHER_LANGUAGES[ending]
-        raise UsageError(f"{word}: {language} is not read; {how}. docs/your-encoding.md shows how two functions look")
+        raise UsageError(f"{word}: {language} is not supported; {how}; see docs/your-encoding.md")

@@ -39,7 +39,7 @@ def answered(key: str, command: Callable[[], int]) -> int:
     if kept and all(state_of(Path(path)) == state for path, state in kept["files"].items()):
         for is_error, text in kept["said"]:
             (errors.tell if is_error else say)(text)
-        errors.tell(f"kept from {kept['date']}; --anew measures again")
+        errors.tell(f"cached on {kept['date']}; to measure again, use --anew")
         return kept["status"]
     with errors.hearing() as messages:
         status = command()

@@ -36,12 +36,12 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,
         "code in C, and fast rows of quality (cc)": c.compiler,
-        "code in C of your files (Landlock)": walls.require,
+        "code in C from your files (Landlock)": walls.require,
         "code in Slang (slangc)": lambda: tools.path_of(tools.SLANG),
         "rays (method_rms of effects)": require_rays,
         "encoders in HLSL": lambda: require_language("HLSL"),
         "encoders in Slang": lambda: require_language("Slang"),
-        "what was compiled and measured is kept (the cache folder)": cache.require_folder,
+        "cache of compiled programs and figures": cache.require_folder,
     }
 )
 

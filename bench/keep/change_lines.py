@@ -39,7 +39,7 @@ def what_matters(before: Done, after: Done, changes: Sequence[Row]) -> list[str]
     """Return a sentence for each encoding that changed, the worst first: in how many of its rows, and the figures in
     degrees and decibels of the row that changed most."""
     if changes and not _share_a_row(before, after):
-        return ["the runs share no row"]
+        return ["the runs have no row in common"]
     return sentences(before, after, changes)
 
 

@@ -34,10 +34,10 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
     if ours.facts.get("machine") != theirs.facts.get("machine"):
         tell("the machines differ; times are not compared")
     if apart := _settings_apart(ours.facts.get("machine") or {}, theirs.facts.get("machine") or {}):
-        tell(f"figures may differ because settings do: {'; '.join(apart)}")
+        tell(f"figures may differ because settings changed: {'; '.join(apart)}")
     if otherwise := measured_otherwise(ours, theirs):
         more = f"; and {len(otherwise) - MOST_NAMED} other conditions" if len(otherwise) > MOST_NAMED else ""
-        tell(f"figures may differ because rows were measured otherwise: {'; '.join(otherwise[:MOST_NAMED])}{more}")
+        tell(f"figures may differ because conditions changed: {'; '.join(otherwise[:MOST_NAMED])}{more}")
     if not changes:
         tell(f"no change in {len(ours.steps)} steps")
     if format in ("table", "markdown"):

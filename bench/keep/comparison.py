@@ -28,7 +28,7 @@ CEILING = -20 * math.log10(FLOOR)
 # `severity_of`, and counts and times are taken like it.
 SMALL, SMALL_OTHER = 0.1, 0.2
 # As people read it.
-LITTLE = f"{SMALL:g} dB, about {10 ** (SMALL / 20) - 1:.0%}".replace("%", " %")
+LITTLE = f"{SMALL:g} dB, about {10 ** (SMALL / 20) - 1:.0%}"
 # What decides a figure beside the code that is measured: where two rows differ in one of them, so may their figures.
 ASKED = ("count", "seed", "size", "samples", "lights")
 CONDITIONS = (*ASKED, "device", "rounded_by")

@@ -67,7 +67,7 @@ def history_command(folders: Sequence[Path], wanted: Wanted, by: str, format: st
     _tell_what_else(runs, groups)
     is_for_people = format in ("table", "markdown")
     if by == COMMIT and not figures:
-        tell("no figure changed; name one by --column")
+        tell("no figure changed; name one with --column")
     if by == COMMIT:
         write((_across if is_for_people else _long)(runs, figures), format, output, total=_left_out(figures))
     elif is_for_people:
@@ -94,7 +94,7 @@ def _chosen(series: Sequence[Series], wanted: Wanted) -> list[Series]:
             chosen = choose(what.removesuffix("s"), names, {str(name): name for name in known})
             remaining = [row_series for row_series in remaining if _name(row_series, what) in chosen]
     if not remaining:
-        raise UsageError("the runs have no row of these names together")
+        raise UsageError("the runs have no row with all of these names")
     return remaining
 
 
@@ -153,7 +153,7 @@ def _tell_what_else(runs: Sequence[Past], groups: Sequence[Group]) -> None:
     apart = list(named_apart(runs))
     for index in dict.fromkeys(group.at for group in groups):
         if apart[index]:
-            tell(f"at {runs[index].name} something else changed too: {apart[index]}")
+            tell(f"at {runs[index].name} these changed too: {apart[index]}")
 
 
 def _lead(runs: Sequence[Past], series: Sequence[Series], groups: Sequence[Group]) -> str:
@@ -161,7 +161,7 @@ def _lead(runs: Sequence[Past], series: Sequence[Series], groups: Sequence[Group
     first, last = runs[0], runs[-1]
     lines = [f"{len(runs)} run{'s' * (len(runs) > 1)}, from {_called(first)} to {_called(last)}"]
     others = len(series) - len({(each.table.name, each.called) for each in series})
-    lines += [f"rows of other counts of normals are not compared: {others} rows"] if others else []
+    lines += [f"not compared, because their counts of normals differ: {others} rows"] if others else []
     worse = [group for group in groups if group.kind != BETTER]
     lines += [_sentence(runs, group) for group in worse[:SENTENCES]]
     more = len(worse) - SENTENCES
@@ -230,5 +230,5 @@ def _long(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list[R
 def _left_out(figures: Sequence[tuple[Series, str]]) -> str:
     if not figures:
         return ""
-    more = f"; {len(figures) - MOST} more figures are left out: name some by --encoding and --column"
-    return f"runs whose figures are those of the line above are left out{more * (len(figures) > MOST)}"
+    more = f"; {len(figures) - MOST} more figures are left out; name some with --encoding and --column"
+    return f"runs with the same figures as the line above are left out{more * (len(figures) > MOST)}"

@@ -107,7 +107,7 @@ def journal(path: Path) -> Iterator[Journal]:
         try:
             lock(file)
         except OSError as error:
-            raise UsageError(f"another process writes {path}; wait for it, or name another place") from error
+            raise UsageError(f"another process is writing {path}; wait for it, or name another place") from error
         kept = Journal(path, file)
         try:
             yield kept
@@ -144,5 +144,5 @@ def _parsed_line(place: str, line: bytes) -> Line:
     except (ValueError, RecursionError):
         record = None
     if not isinstance(record, dict):
-        raise UsageError(f"{place} was damaged: it is not a line of JSON; take it out to measure it again")
+        raise UsageError(f"{place} is damaged: it is not a line of JSON; delete it to measure it again")
     return record

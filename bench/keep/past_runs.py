@@ -78,7 +78,7 @@ def _run_folders(folder: Path) -> list[Path]:
         return [folder]
     runs = sorted(path.parent for pattern in ("*", "*/*") for path in folder.glob(f"{pattern}/{RUN}"))
     if not runs:
-        raise UsageError(f"{folder} holds no run: neither it nor a folder in it has {RUN}")
+        raise UsageError(f"{folder} contains no run: there is no {RUN} in it or in its folders")
     return runs
 
 

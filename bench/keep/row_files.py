@@ -16,8 +16,10 @@ from ..tables.registry import TABLES
 
 # How a line of a table for people is split into its columns.
 BETWEEN = re.compile(r"\s*\|\s*|\s{2,}")
-# How texts without the columns of a table begin: those of `doctor` and `history`.
-BEGINS = re.compile(rb"\d+ findings?\n|nothing is likely wrong\n|\d+ runs?, from |(\| )?commit +(\| )?date ")
+# How texts without the columns of a table begin: those of `doctor`, of earlier versions too, and `history`.
+BEGINS = re.compile(
+    rb"\d+ findings?\n|No problems found\.\n|nothing is likely wrong\n|\d+ runs?, from |(\| )?commit +(\| )?date "
+)
 # Which share of the names in a header must be columns: another version may have others.
 KNOWN_SHARE = 0.75
 

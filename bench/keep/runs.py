@@ -174,7 +174,7 @@ def _check_steps(folder: Path, lines: Sequence[Row], checked: set[int]) -> None:
         try:
             check_step(line, f"{folder / ROWS}, line {number}", keys)
         except UsageError as error:
-            raise UsageError(f"{error}; mend the line, or take it out, which measures it again") from None
+            raise UsageError(f"{error}; correct the line, or delete it to measure it again") from None
 
 
 def _seal_columns(data: bytes) -> Row:
@@ -329,7 +329,7 @@ def _other_place(facts: Row, others: Row) -> str:
     """Return what distinguishes a run from one that is to be added to it: sources, or facts of the machine with both
     values; empty if nothing does."""
     reasons = (
-        [f"of other sources ({_there_and_here(facts, others, 'sources')})"]
+        [f"from other sources ({_there_and_here(facts, others, 'sources')})"]
         if _is_different(facts, others, "sources")
         else []
     )
@@ -337,7 +337,7 @@ def _other_place(facts: Row, others: Row) -> str:
     names = [name for name in {**there, **here} if _is_different(there, here, name)]
     fact_texts = [f"{name} ({_there_and_here(there, here, name)})" for name in names[:MOST_FACTS]]
     more = [f"{len(names) - MOST_FACTS} more"] if len(names) > MOST_FACTS else []
-    reasons += [f"of another machine: {', '.join([*fact_texts, *more])}"] if names else []
+    reasons += [f"from another machine: {', '.join([*fact_texts, *more])}"] if names else []
     return " and ".join(reasons)
 
 
@@ -393,7 +393,7 @@ def opened(folder: Path, facts: Row) -> Iterator[Run]:
             writes it, or nothing can be written.
     """
     if _holds_something_else(folder):
-        raise UsageError(f"{folder} exists already and holds no run; name a folder that does not")
+        raise UsageError(f"{folder} already exists and contains no run; name a new folder")
     check_folder(folder)
     with journal(folder / ROWS) as kept:
         yield Run(folder, _begun_facts(folder, facts), kept)

@@ -324,6 +324,6 @@ def beside(output: Path | None, work: Row) -> Iterator[Beside | None]:
         if not kept.lines:
             kept.add(header)
         elif kept.lines[0] != header:
-            raise UsageError(f"{kept.path} keeps rows of another version or machine; delete it, or name another file")
+            raise UsageError(f"{kept.path} has rows from another version or machine; delete it, or name another file")
         yield Beside(kept)
         kept.remove()

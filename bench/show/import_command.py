@@ -46,9 +46,9 @@ def import_command(files: Sequence[Path], folder: Path | None) -> int:
     for device in candidates:
         called = replace(device, name=names[device.file.renderer]).called
         if device in new and run.sources not in ("", device.file.sources):
-            tell(f"{called}: measured on the page of a run of other sources, whose codes may differ from this run's")
+            tell(f"{called}: measured on a page from other sources, so its codes may differ from this run's")
         say(f"{called}: {_said(device.file, there.get(device.file.identity))}\n")
-    say(f"The page with them: normalbench report {folder}\n")
+    say(f"To write the page with them: normalbench report {folder}\n")
     return 0
 
 
@@ -86,11 +86,11 @@ def _said(file: DeviceFile, there: Mapping[str, Any] | None) -> str:
     if there is None:
         return f"added {what}"
     if _is_newer(file, there):
-        return f"added {what}, in place of those of {there.get('made')}"
+        return f"added {what}, replacing those from {there.get('made')}"
     if file.made < str(there.get("made")):
-        return f"nothing added; the run has a newer file, of {there.get('made')}"
-    other = "" if file.digest == there.get("digest") else ", with other figures; the run's stay"
-    return f"nothing added; the run has the file of {file.made} already{other}"
+        return f"nothing added; the run has a newer file, from {there.get('made')}"
+    other = "" if file.digest == there.get("digest") else ", with other figures; the run keeps its own"
+    return f"nothing added; the run already has the file from {file.made}{other}"
 
 
 def _with(lines: Sequence[Row], new: Sequence[Device]) -> list[Row]:

@@ -209,9 +209,9 @@ def _other_version(facts: Row) -> str:
     """Say which version measured a run, if it was not measured by these sources."""
     machine = facts.get("machine")
     version = plain_text(str(machine.get("normalbench") or "")) if isinstance(machine, dict) else ""
-    there = plain_text(str(facts.get("sources") or "that it did not keep"))
+    there = plain_text(str(facts.get("sources") or "unknown"))
     program = f"normalbench {version}".strip()
-    return f"{program} of sources {there} measured this run, and this page is made by sources {sources()}."
+    return f"This run was measured by {program} (sources {there}); this page was made by sources {sources()}."
 
 
 def _clean_code(kept: dict[str, Any]) -> dict[str, Any]:
@@ -249,7 +249,7 @@ def _summary(done: Done, table: Table, remarks: list[str]) -> list[Sheet]:
         return summary(table, done.finished_rows(table.name))
     except UNEXPECTED:
         remedy = done.remedy(table.name)
-        remarks.append(f"The rows of {table.name} are not those of this version, and shown as they are; {remedy}.")
+        remarks.append(f"The rows of {table.name} do not match this version and are shown as they are; {remedy}.")
         return []
 
 

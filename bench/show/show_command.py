@@ -24,7 +24,7 @@ def show_command(folder: Path, tables: Names) -> None:
     """
     done = read_to_show(folder, needs_rows=True)
     if not done.facts.get("finished", True):
-        tell(f"{folder} is not finished, and verdicts are of the rows so far; the command that began it goes on")
+        tell(f"{folder} is not finished, so verdicts cover only the rows so far; to finish it, run its command again")
     here = {name: table for name, table in TABLES.items() if name in done.tables}
     say = show_summary if tables else say_verdict
     for table in choose("table of the run", tables or ("all",), here):
@@ -32,4 +32,4 @@ def show_command(folder: Path, tables: Names) -> None:
             say(table, done.finished_rows(table.name))
         except UNEXPECTED as error:
             remedy = done.remedy(table.name)
-            raise UsageError(f"{folder}: the rows of {table.name} are not those of this version; {remedy}") from error
+            raise UsageError(f"{folder}: the rows of {table.name} do not match this version; {remedy}") from error

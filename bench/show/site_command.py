@@ -27,9 +27,9 @@ from .site_files import write_site
 CHOOSE, LAYOUTS = "choose.html", "layouts.html"
 # What the links to its other pages are called.
 LABORATORY, ENCODINGS, DEVICES = "Laboratory", "Every encoding", "Devices"
-TITLE = "Normals of a G-buffer in few bits"
+TITLE = "Normal encodings for G-buffers"
 DESCRIPTION = (
-    "See on your own GPU what an encoding of normals does to reflections, and find the one that your bits need."
+    "See on your own GPU what an encoding of normals does to reflections, and find the best one for your bits."
 )
 
 
@@ -48,7 +48,7 @@ def site_command(folders: Sequence[Path], output: Path) -> int:
         [folder for folder in folders if not _is_run(folder)],
     )
     if len(runs) > 1:
-        raise UsageError(f"{runs[0]} and {runs[1]} are both runs; a site is of one")
+        raise UsageError(f"{runs[0]} and {runs[1]} are both runs; name only one")
     run = read_to_show(runs[0]) if runs else None
     site_devices, wrong = _devices_in(others, reads_of_rows(run.tables.get(TABLE.name, []), runs[0]) if run else [])
     html_pages = _pages_of_run(runs[0], run, site_devices) if run else pages(site_devices)
@@ -71,7 +71,7 @@ def _devices_in(folders: Sequence[Path], imported: Sequence[Read]) -> tuple[list
     have none."""
     read, wrong = _device_files(checked_number([path for folder in folders for path in _files_in(folder)]))
     if folders and not read:
-        raise UsageError(f"{folders[0]}: there is no device file in it; {SAVED}")
+        raise UsageError(f"{folders[0]}: no device file in it; {SAVED}")
     return devices([*imported, *read]), wrong
 
 
@@ -116,14 +116,14 @@ def _views(run: Found) -> list[ViewPage]:
     choose, layouts = _parts(run, View.CHOOSE), _parts(run, View.LAYOUTS)
     views = []
     if choose:
-        about = "The encoding of normals to take for each storage, its error in degrees and its price in issue slots."
-        link = (f"{INDEX}#v1/{View.CHOOSE}", "Ask something else, and see charts and pictures")
-        question = "Which encoding of normals should I take?"
-        views.append(ViewPage(CHOOSE, "What to take", about, question, _answer(choose), link, choose))
+        about = "The encoding of normals to use for each storage, its error in degrees and its cost in issue slots."
+        link = (f"{INDEX}#v1/{View.CHOOSE}", "Ask another question, and see charts and pictures")
+        question = "Which encoding of normals should I use?"
+        views.append(ViewPage(CHOOSE, "Recommendation", about, question, _answer(choose), link, choose))
     if layouts:
-        about = "What the image loses when normals and the rest of the G-buffer are stored in few bits."
+        about = "How image quality changes when normals and the rest of the G-buffer are stored in few bits."
         link = (f"{INDEX}#v1/{View.LAYOUTS}", "See the charts")
-        question = "What does the image lose to the layout of the G-buffer?"
+        question = "How does the G-buffer layout affect image quality?"
         views.append(ViewPage(LAYOUTS, "Layouts", about, question, _answer(layouts), link, layouts))
     return views
 

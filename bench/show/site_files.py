@@ -34,7 +34,7 @@ def write_site(folder: Path, made: Mapping[str, str]) -> None:
     check_folder(folder)
     for path in made:
         if path not in before and (folder / path).exists():
-            raise UsageError(f"{folder / path} is not of an earlier site; take it away, or name another folder")
+            raise UsageError(f"{folder / path} is not from an earlier site; delete it, or name another folder")
     try:
         with _partial_folder(folder) as partial:
             _write(partial, made, sorted({*before, *made}))
@@ -47,16 +47,16 @@ def write_site(folder: Path, made: Mapping[str, str]) -> None:
 def _files_before(folder: Path) -> list[str]:
     """Return the names of the files that this program wrote there before. Raises UsageError."""
     if folder.exists() and not folder.is_dir():
-        raise UsageError(f"{folder} is not a folder; site writes into one")
+        raise UsageError(f"{folder} is not a folder; name a folder")
     # Behind a link lies somebody else's folder.
     if any((folder / name).is_symlink() for name in (MARKER, INDEX, *FOLDERS)):
-        raise UsageError(f"{folder} has a link in the place of a site's files; name another folder")
+        raise UsageError(f"{folder} has a link where the site's files go; name another folder")
     if not (folder / MARKER).exists():
         return []
     try:
         files = file_json(folder / MARKER)["files"]
         if not all(isinstance(name, str) and OWN.fullmatch(name) for name in files):
-            raise ValueError("it lists what no site has")
+            raise ValueError("it lists files that no site has")
     except (OSError, ValueError, TypeError, KeyError) as error:
         reason = (
             error if isinstance(error, OSError | ValueError) and not isinstance(error, KeyError) else "files is missing"

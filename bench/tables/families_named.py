@@ -16,5 +16,5 @@ def families_named(names: Names) -> list[str]:
         UsageError: an unknown name; of a GPU that `roofline` knows, the message says its family.
     """
     if gpu := next((word for word in map(str, names) if word.lower() in GPUS), None):
-        raise UsageError(f"{gpu} is a GPU and not a family; its family is {GPUS[gpu.lower()].family}")
+        raise UsageError(f"{gpu} is a GPU, not a family; use its family, {GPUS[gpu.lower()].family}")
     return list(dict.fromkeys(name for several in choose("family", names, gpu_families.CHOICES) for name in several))

@@ -194,8 +194,8 @@ def require_surface(maker: SceneMaker, is_seen: bool) -> None:
 def says_little(scene: str, covered: float) -> Iterator[str]:
     """Yield a remark on a scene that covers too few percent of its image; nothing for one that fills it."""
     if 0 < covered < LEAST_COVERED:
-        what = f"{scene}: surfaces cover {covered:.0f} % of the picture"
-        yield f"{what}; a camera in the file that comes nearer gives more pixels to judge by"
+        what = f"{scene}: surfaces cover only {covered:.0f}% of the image"
+        yield f"{what}; move the camera in the file closer for more pixels to compare"
 
 
 def checked_device(repeats: int, least: int = 0) -> Device:

@@ -33,9 +33,10 @@ def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
     for channel, count in enumerate(levels):
         bits = storage.bits[channel]
         if count > storage.levels(channel):
-            return f"number {channel + 1} has {count} values, more than {storage.title} tells apart"
+            return f"component {channel + 1} has {count} values, more than {storage.title} can distinguish"
         if not count and bits < LEAST_BITS and not storage.is_said:
-            return f"number {channel + 1} has {bits} bits in {storage.title}, which are for one of few values"
+            least = f"ordinary components need at least {LEAST_BITS}"
+            return f"component {channel + 1} has only {bits} bits in {storage.title}; {least}"
     return None
 
 
@@ -52,9 +53,9 @@ def codec_name(encoding_name: str, storage_name: str, rounding: str) -> str:
 def rounding_misfit(storage: Storage, rounding: str) -> str | None:
     """Why the numbers of a storage cannot be rounded so, by one of ROUNDINGS or DITHERED; None where they can."""
     if storage.kind == "float" and rounding == DITHERED:
-        return f"{storage.title}: the steps of floats are not even; noise is for fixed point"
+        return f"{storage.title}: float steps are uneven; use noise only with fixed point"
     if storage.kind == "float" and rounding == "truncate_half":
-        return f"{storage.title} is of floats, and {rounding} is for fixed point"
+        return f"{storage.title} stores floats, but {rounding} is for fixed point"
     return None
 
 
@@ -103,9 +104,9 @@ class Codec:
         if misfit := rounding_misfit(storage, self.rounding) or self._not_with_noise:
             return misfit
         if storage.kind == "float" and encoding.is_precise:
-            return f"{storage.title} is of floats, and precise rounding is for fixed point"
+            return f"{storage.title} stores floats, but precise rounding is for fixed point"
         if encoding.is_precise and self.rounding != "nearest":
-            return "it is rounded precisely, not otherwise"
+            return "it supports only precise rounding"
         if encoding.is_half and self._not_in_half:
             return f"{self._not_in_half} for half arithmetic"
         return numbers_misfit(storage, levels)
@@ -121,33 +122,33 @@ class Codec:
         if not self.is_dithered:
             return ""
         if self.encoding.is_half or self.encoding.before:
-            return "noise is for one code in float32"
+            return "noise can be added only to a single encoding in float32"
         return self.undithered or ""
 
     @property
     def _not_in_half(self) -> str:
         """Why half arithmetic cannot be asked of the encoding; empty where it can."""
         if self.encoding.is_packed:
-            return "an integer of 32 bits is not a number"
+            return "a 32-bit integer code is not supported"
         if self.encoding.before:
-            return "the first of two codecs is not computed again"
+            return "chains are not supported"
         if self.encoding.is_precise:
-            return "precise rounding compares errors too small"
+            return "precise rounding compares errors that are too small"
         # Whole numbers are bits and counts of loops, which stay integers.
         numbers = [value for value in self.encoding.constants.values() if isinstance(value, float)]
         is_large = self.encoding.has_tables or max(numbers, default=0.0) > FORMS[16].largest
-        return "it counts in numbers too large" if is_large else ""
+        return "it uses numbers that are too large" if is_large else ""
 
     @property
     def undithered(self) -> str | None:
         """Why no noise is added to its numbers before they are rounded; None where it can be."""
         encoding = self.encoding
         if encoding.is_packed or (encoding.levels and all(encoding.levels)):
-            return "its code is chosen among whole numbers, as an index is, and noise would choose another one"
+            return "its code is an integer, such as an index, and noise would select a different one"
         if encoding.is_precise or rounds_to(self.rounding) != "nearest":
-            return "noise is for numbers that are rounded to the nearest"
+            return "noise can be added only with rounding to nearest"
         if self.storage.kind == "float":
-            return f"{self.storage.title}: the steps of floats are not even"
+            return f"{self.storage.title}: float steps are uneven"
         return None
 
     def dither(self, frame: int) -> Dither:

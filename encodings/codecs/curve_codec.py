@@ -104,7 +104,7 @@ class CurveCodec:
     def misfit(self) -> str | None:
         """Why the storage cannot hold what the encoding makes; None where it can: every one has a channel."""
         if self.storage.is_centred:
-            return "centred numbers have a sign, and a curve's are from 0 to 1"
+            return "centred numbers are signed, but a curve's values are 0 to 1"
         return rounding_misfit(self.storage, self.rounding)
 
     @property

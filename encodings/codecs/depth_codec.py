@@ -123,7 +123,7 @@ class DepthCodec:
         if self.encoding.signed and not self.storage.is_signed:
             return f"{self.storage.title}: no room for a sign"
         if self.storage.home in ("attachment", "bytes") and self.rounding != "nearest":
-            return f"{self.storage.title}: the device rounds it, to the nearest"
+            return f"{self.storage.title}: the device always rounds it to nearest"
         return rounding_misfit(self.storage.format, self.rounding)
 
     @property

@@ -54,7 +54,7 @@ class LightCodec:
         if encoding.any_bits != storage.kind:
             more = f", and {encoding.any_bits} of any bits" if encoding.any_bits else ""
             return f"{encoding.name} is made for {', '.join(encoding.storages)}{more}"
-        return None if storage.channels >= COLOURS else f"{storage.title}: light has {COLOURS} numbers or four"
+        return None if storage.channels >= COLOURS else f"{storage.title}: light has {COLOURS} or four components"
 
     @property
     def bits(self) -> int:

@@ -35,10 +35,10 @@ def across(kind: str, bits: tuple[int, ...]) -> Storage:
     """
     spread = ":".join(map(str, bits))
     if not all(1 <= b <= MOST_BITS for b in bits) or sum(bits) > MOST_TOGETHER or len(bits) not in (1, 2, 3, 4):
-        most = f"of 1 to {MOST_BITS} bits each, for a float32 has 24, and of {MOST_TOGETHER} together"
-        raise ValueError(f"{kind}:{spread}: a code is one to four numbers {most}")
+        most = f"of 1 to {MOST_BITS} bits (a float32 has 24), {MOST_TOGETHER} bits in total"
+        raise ValueError(f"{kind}:{spread}: expected one to four components {most}")
     if kind != "unorm" and 1 in bits:
-        raise ValueError(f"{kind}:{spread}: a signed number has at least 2 bits")
+        raise ValueError(f"{kind}:{spread}: a signed component needs at least 2 bits")
     target = _target_of(sum(bits))
     signed = {"unorm": "", "snorm": "signed ", "snorm_full": "fully signed "}[kind]
     name, title = f"{target}_{spread.replace(':', '_')}{ENDINGS[kind]}", f"{spread} {signed}in {target.upper()}"
@@ -88,9 +88,7 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
     if kind == "centred":
         like = by_rule("unorm", bits)
         if like.name not in STORAGES or like.is_packed:
-            raise ValueError(
-                f"centred numbers lie in a format of a GPU, such as centred:8:8, not {':'.join(map(str, bits))}"
-            )
+            raise ValueError(f"centred numbers need a GPU format, such as centred:8:8, not {':'.join(map(str, bits))}")
         return centred_storage(like)
     same = SAME.get(kind, kind)
     if kind in ("uint", "sint") and sum(bits) <= MOST_IN_WORD:
@@ -110,7 +108,7 @@ def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
     text = ":".join((kind, *map(str, bits)))
     if len(bits) != 2 or not (2 <= bits[0] <= MOST_EXPONENT and 1 <= bits[1] <= MOST_MANTISSA):
         known = f"{kind}:EXPONENT:MANTISSA, of 2 to {MOST_EXPONENT} and of 1 to {MOST_MANTISSA} bits"
-        raise ValueError(f"floats are said as {known}, such as float:5:10, not {text}")
+        raise ValueError(f"write floats as {known}, such as float:5:10, not {text}")
     return replace(_floats(FloatForm(*bits, is_signed=kind == "float"), len(RGBA)), is_uncounted=True)
 
 
@@ -172,5 +170,5 @@ def storage_of(name: str) -> Storage | None:
     kind = next(kind for kind, ending in ENDINGS.items() if ending == (match[5] or ""))
     storage = (word if match[3] else across)(kind, tuple(map(int, match[4][1:].split("_"))))
     if storage.name != name:
-        raise ValueError(f"{name}: these bits are called {storage.name}")
+        raise ValueError(f"{name}: these bits are named {storage.name}")
     return storage

@@ -143,7 +143,7 @@ class Storage:
     def only_measured(self) -> str:
         """A description of its numbers, if neither a layout stores them nor a page reads them; else empty."""
         if self.form:
-            return "floats of a form that no GPU has"
+            return "float formats that no GPU has"
         if self.is_centred:
             return "centred numbers"
         if self.is_full:

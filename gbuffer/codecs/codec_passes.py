@@ -27,7 +27,7 @@ def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, obj
         ShaderError: its GLSL file cannot be read or lacks one of the two functions, or it is of half arithmetic.
     """
     if encoding.before:
-        raise ShaderError(f"{encoding.name}: a chain of codecs is not drawn into a G-buffer; {BY_JAX} it by JAX")
+        raise ShaderError(f"{encoding.name}: a chain of codecs cannot be drawn into a G-buffer; {BY_JAX} it by JAX")
     if encoding.is_half and not as_half:
         raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; {BY_JAX} half arithmetic by JAX")
     check_functions(encoding.glsl, encoding.signatures)

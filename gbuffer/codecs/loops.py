@@ -70,7 +70,7 @@ def turns_made(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarr
     defines = encoding_defines(encoding) | {"MOST_LOOPS": MOST_LOOPS, "KERNEL_SCALE": scale}
     text, loops = _counted_text(Source(_COUNTER, defines, {"ENCODING": encoding.glsl}))
     if loops > MOST_LOOPS:
-        raise ShaderError(f"{encoding.glsl}: {loops} loops, of which at most {MOST_LOOPS} are counted")
+        raise ShaderError(f"{encoding.glsl}: {loops} loops; the maximum is {MOST_LOOPS}")
     # A normal once for each loop, which its fourth number names.
     given = np.repeat(n, loops, axis=0)
     given[:, 3] = np.tile(np.arange(loops), len(n))

@@ -69,7 +69,7 @@ class Effect:
         result: the image that it computes of its own, which tables compare: a resource that one of its passes writes.
         passes: makes its passes; takes a value for each of `settings` by keyword.
         settings: what can be chosen, by name.
-        lacks: why a scene has nothing for it, such as "nothing here is skin"; None where it has.
+        lacks: why a scene has nothing for it, such as "it has no skin"; None where it has.
         scene: the scene that shows it, where nobody asks for another.
         hits: where rays of its pixels meet something: x and y in pixels, and in w 1, or 0 where one meets nothing; None
             of an effect without rays.

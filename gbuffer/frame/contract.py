@@ -162,7 +162,7 @@ def _misfits(one: Pass, earlier: Sequence[Pass], stages: Sequence[Pass]) -> Iter
         if resource.name not in _written(stages if resource.kept else earlier):
             yield f"reads {resource.name}, which no {'' if resource.kept else 'earlier '}pass writes"
         if taker := next((other for other in _written(earlier).values() if other.shares == resource), None):
-            yield f"reads {resource.name}, whose place {taker.name} has taken"
+            yield f"reads {resource.name}, which {taker.name} has replaced"
     yield from _macro_misfits(one, {name: value for other in earlier for name, value in other.tells.items()})
 
 
@@ -183,7 +183,7 @@ def _macro_misfits(one: Pass, told: Mapping[str, int]) -> Iterator[str]:
     """Why a pass cannot work with what it is told."""
     for macro, value in one.tells.items():
         if told.get(macro, value) != value:
-            yield f"tells {macro} {value}, and an earlier pass {told[macro]}"
+            yield f"defines {macro} as {value}, but an earlier pass defines it as {told[macro]}"
     for macro, values in one.expects.items():
         if told.get(macro) not in values:
-            yield f"expects {macro} {' or '.join(map(str, values))}, and is told {told.get(macro, 'nothing')}"
+            yield f"expects {macro} {' or '.join(map(str, values))}, but has {told.get(macro, 'nothing')}"

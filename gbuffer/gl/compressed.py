@@ -24,7 +24,7 @@ def device_texels(device: Device, blocks: bytes, size: tuple[int, int], internal
         FormatError: the device does not support the format, or a texture of this size.
     """
     if max(size) > device.max_size:
-        raise FormatError(f"{device.renderer} has textures of up to {device.max_size} texels a side, not {max(size)}")
+        raise FormatError(f"{device.renderer} has textures of up to {device.max_size} texels per side, not {max(size)}")
     with ExitStack() as stack:
         device.context.error  # noqa: B018 # reading it clears what an earlier call left
         number = compressed_texture(size, internal_format, blocks)

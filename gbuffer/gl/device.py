@@ -40,9 +40,9 @@ BY_ALPHA = (0x8003, 0x8004)
 POINTS = moderngl.POINTS
 # What to do about it, by system.
 INSTALL = {
-    "linux": "install a GL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)",
+    "linux": "install an OpenGL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)",
     "win32": "install the driver of the GPU's vendor",
-    "darwin": "Apple's OpenGL ends at 4.1; quality --backend wgsl measures by Metal",
+    "darwin": "Apple's OpenGL ends at 4.1; use quality --backend wgsl, which runs on Metal",
 }
 
 
@@ -69,7 +69,7 @@ def _create_context() -> moderngl.Context:
         return moderngl.create_context(standalone=True, require=430, **options)
     except Exception as error:
         reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
-        raise NoDeviceError(f"no GL 4.3 device: {reason}; {INSTALL.get(sys.platform, INSTALL['linux'])}") from error
+        raise NoDeviceError(f"no OpenGL 4.3 device: {reason}; {INSTALL.get(sys.platform, INSTALL['linux'])}") from error
 
 
 class FormatError(Exception):
@@ -185,7 +185,7 @@ class Device:
         """
         if max(size) > self.max_volume:
             asked = " x ".join(map(str, size))
-            raise FormatError(f"{self.renderer} has volumes of up to {self.max_volume} texels a side, not {asked}")
+            raise FormatError(f"{self.renderer} has volumes of up to {self.max_volume} texels per side, not {asked}")
         volume = self.context.texture3d(size, storage.channels, dtype=_dtype(storage))
         volume.filter = (moderngl.NEAREST, moderngl.NEAREST)
         return volume

@@ -149,7 +149,7 @@ def _expanded(
         targets = [*map(_resolved_path, stand_for[named])] if named else [_beside(path, match["file"])]
         for target in targets:
             if may_read and not (_is_own(target) or may_read(target)):
-                raise ShaderError(f"{main}: it includes {target}, which lies outside its folder; move it there")
+                raise ShaderError(f"{main}: it includes {target}, which is outside its folder; move it there")
         return [included_line for target in targets if target not in seen for included_line in expand(target)]
 
     lines = expand(main)

@@ -63,10 +63,10 @@ def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
     if quantity == MOTION:
         return _kept_motion(name, limit)
     if quantity not in (*COLOURS, *SINGLE):
-        raise ValueError(f"only {', '.join((*COLOURS, *SINGLE, MOTION))} lie on a curve")
+        raise ValueError(f"only {', '.join((*COLOURS, *SINGLE, MOTION))} can use a curve")
     if name in WHOLE:
         if quantity != LIGHT or limit is not None:
-            raise ValueError(f"{name} keeps a light in a whole texel, as in {name}({LIGHT})")
+            raise ValueError(f"{name} stores light in a whole texel, as in {name}({LIGHT})")
         return Kept(WHOLE[name])
     if name not in CURVE_ENCODINGS:
         raise ValueError(f"unknown curve {name!r}; known: {', '.join((*CURVE_ENCODINGS, *WHOLE))}")
@@ -77,7 +77,7 @@ def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
 def _kept_motion(name: str, limit: str | None) -> Kept:
     """Return the encoding of motion. Raises ValueError."""
     if name not in MOTION_ENCODINGS:
-        raise ValueError(f"unknown code of motion {name!r}; known: {', '.join(MOTION_ENCODINGS)}")
+        raise ValueError(f"unknown encoding of motion {name!r}; known: {', '.join(MOTION_ENCODINGS)}")
     return Kept(MOTION_ENCODINGS[name], 1.0 if limit is None else _range_of(limit))
 
 
@@ -88,5 +88,5 @@ def _range_of(text: str) -> float:
         number = math.nan
     # Not a number is no range either.
     if not 1e-3 <= number <= 65504:
-        raise ValueError(f"a range is 0.001 to 65504, not {text}")
+        raise ValueError(f"a range must be 0.001 to 65504, not {text}")
     return number

@@ -92,21 +92,21 @@ class Layout:
         components = [word.component for word in self.words]
         for component in components:
             if components.count(component) > 1:
-                raise LayoutError(f"layout {self.name}: {component} lies in two places")
+                raise LayoutError(f"layout {self.name}: {component} is stored twice")
         self._check_normal_words(components)
         if self.rounding == DITHERED and (why := self._undithered):
-            raise LayoutError(f"layout {self.name}: its normal is not dithered: {why}")
+            raise LayoutError(f"layout {self.name}: its normal cannot be dithered: {why}")
         self._check_colours()
         if self.depth_encoding.signed != self.has_signed_depth:
             known = ", ".join(depth.name for depth in self._suitable_depths)
-            message = f"{self.depth_encoding.name} does not suit {self.encoding.name}, whose depth is {known}"
+            message = f"{self.depth_encoding.name} cannot be used with {self.encoding.name}; use {known}"
             raise LayoutError(f"layout {self.name}: {message}")
 
     @property
     def _undithered(self) -> str | None:
         """Why no noise is added to the normal's code; None where it can be."""
         if any(word.bits for word in self.words if word.component.startswith("normal.")):
-            return "noise is for numbers that have a channel each"
+            return "noise needs one channel per component"
         return self.codec.undithered
 
     def _check_normal_words(self, found: Collection[str]) -> None:
@@ -115,25 +115,25 @@ class Layout:
         normal = {f"normal.{axis}" for axis in "xyz"[: encoding.components]}
         kept = {c for c in found if c.startswith("normal.")} | ({carried} if carried else set())
         if kept != normal or carried in found:
-            raise LayoutError(f"layout {self.name}: {name} needs {', '.join(sorted(normal))}, and no more")
+            raise LayoutError(f"layout {self.name}: {name} needs exactly {', '.join(sorted(normal))}")
         if carried and encoding.levels_of("xyz".index(carried[-1])) != 2:
-            raise LayoutError(f"layout {self.name}: {carried} of {name} is no sign, which a quantity could carry")
+            raise LayoutError(f"layout {self.name}: {carried} of {name} is not a sign, so no quantity can carry it")
         if encoding.sign_bits and "depth" not in found:
-            raise LayoutError(f"layout {self.name}: {name} keeps a sign in the depth's, but the layout keeps no depth")
+            raise LayoutError(f"layout {self.name}: {name} needs the depth's sign, but the layout has no depth")
 
     def _check_colours(self) -> None:
         """Raise LayoutError if the channels of a colour are not stored alike."""
         for colour in (*COLOURS, MOTION):
             words = [word for word in self.words if quantity_of(word.component) == colour]
             if len({word.kept for word in words}) > 1:
-                raise LayoutError(f"layout {self.name}: all channels of {colour} lie on one curve")
+                raise LayoutError(f"layout {self.name}: all channels of {colour} must use the same curve")
             if colour == MOTION:
                 if len(words) == 1 and words[0].kept:
-                    raise LayoutError(f"layout {self.name}: a code of motion has two numbers")
+                    raise LayoutError(f"layout {self.name}: an encoding of motion has two components")
                 continue
             is_whole = bool(words and words[0].kept and words[0].kept.is_whole)
             if is_whole != any(word.component == f"{colour}.a" for word in words) or (is_whole and len(words) < 4):
-                raise LayoutError(f"layout {self.name}: a code of light has four numbers, as in rgb9e5({LIGHT})")
+                raise LayoutError(f"layout {self.name}: encodings of light have four components, as in rgb9e5({LIGHT})")
 
     @property
     def kept(self) -> dict[str, Kept]:
@@ -178,7 +178,7 @@ class Layout:
         """The positions of all components. Raises LayoutError if one does not fit."""
         words = [word for index, target in enumerate(self.targets) for word in placed(self.name, index, target)]
         if len([word for word in words if word.sign]) > 1:
-            raise LayoutError(f"layout {self.name}: only one quantity may carry a sign")
+            raise LayoutError(f"layout {self.name}: a layout can have only one quantity with a sign")
         for word in words:
             self._check_word(word)
         return tuple(words)
@@ -201,13 +201,13 @@ class Layout:
         """Raise LayoutError if a number of the normal's code is not stored as the encoding needs it."""
         encoding = self.encoding
         if encoding.is_packed and storage != BITS_32:
-            raise LayoutError(f"{place}: {encoding.name} packs 32 bits itself, which need the format {BITS_32.name}")
+            raise LayoutError(f"{place}: {encoding.name} packs 32 bits itself and needs the format {BITS_32.name}")
         if encoding.is_precise and (storage.kind == "float" or self.rounding != "nearest" or self.packing != "nearest"):
-            raise LayoutError(f"{place}: {encoding.name} is rounded precisely, in fixed point and not otherwise")
+            raise LayoutError(f"{place}: {encoding.name} supports only precise rounding, in fixed point")
         levels = encoding.levels_of("xyz".index(component[-1]))
         room = storage.levels(0) if storage.kind == "float" else 2**bits - (storage.kind == "snorm")
         if levels > room:
-            raise LayoutError(f"{place}: {component} has {levels} values, more than {bits} bits tell apart")
+            raise LayoutError(f"{place}: {component} has {levels} values, more than {bits} bits can distinguish")
 
     @property
     def summary(self) -> str:
@@ -284,12 +284,12 @@ class Layout:
         """
         storage, components = codec.storage, "xyz"[: codec.encoding.components]
         if storage.only_measured:
-            raise LayoutError(f"layout {self.name}: {storage.title}: a layout does not keep {storage.only_measured}")
+            raise LayoutError(f"layout {self.name}: {storage.title}: a layout cannot store {storage.only_measured}")
         if storage.is_packed and codec.is_dithered:
-            raise LayoutError(f"layout {self.name}: {storage.title}: words across channels are drawn without noise")
+            raise LayoutError(f"layout {self.name}: {storage.title}: fields across channels are drawn without noise")
         is_signed = storage.is_packed and storage.kind == "snorm"
         if is_signed and codec.rounding != "nearest":
-            raise LayoutError(f"layout {self.name}: {storage.title}: signed words of a layout are rounded to nearest")
+            raise LayoutError(f"layout {self.name}: {storage.title}: signed fields must be rounded to nearest")
         kept = [replace(t, holds=" ".join(without_normal(t.holds))) for t in self.targets]
         kept = [target for target in kept if any(not word.startswith(FREE) for word in target.holds.split())]
         sizes = [f":{bits}" if storage.is_packed else "" for bits in storage.bits]
@@ -382,9 +382,9 @@ def _layout_from_data(path: Path, data: dict[str, Any], encoding_named: Callable
     texts |= {key: data.get(key, texts.get(key)) for key in (*texts, "encoding")}
     targets = data.get("targets")
     if not all(isinstance(text, str) for text in texts.values()):
-        raise LayoutError(f"{path}: {', '.join(texts)} are texts, and encoding must be given")
+        raise LayoutError(f"{path}: {', '.join(texts)} must be strings, and encoding must be given")
     if not isinstance(targets, list) or not targets or not all(_is_target(target) for target in targets):
-        raise LayoutError(f"{path}: targets is a list of tables, each with a format and what it holds, as texts")
+        raise LayoutError(f"{path}: targets must be a list of tables, each with the strings format and holds")
     named: dict[str, Any] = {"encoding": encoding_named(texts.pop("encoding"))}
     depth = texts.pop("depth")
     named |= {"depth": _known_value(path, "depth", depth, DEPTH_ENCODINGS)} if depth else {}

@@ -31,7 +31,7 @@ CURVED: Mapping[str, str] = MappingProxyType(
     }
 )
 # Those that mean several things, and what to write.
-_SQUARE = "is the square of the roughness in most engines, and the roughness in others; write squared(roughness)"
+_SQUARE = "is the square of the roughness in most engines, the roughness itself in others; write squared(roughness)"
 REFUSED: Mapping[str, str] = MappingProxyType(
     {
         "alpha": _SQUARE,
@@ -62,7 +62,7 @@ def named(word: str, has_curve: bool = False) -> str:
     if plain in CURVED and not dot:
         if has_curve:
             quantity = CURVED[plain].partition("(")[2][:-1]
-            raise RefusedWordError(f"{word} has a curve of its own, {CURVED[plain]}; within another write {quantity}")
+            raise RefusedWordError(f"{word} has its own curve, {CURVED[plain]}; inside another curve write {quantity}")
         return CURVED[plain]
     # The channels of a colour in place of a metallic's number.
     return NAMES.get(plain, "f0" if plain == "specular" else base) + dot + channel

@@ -113,11 +113,11 @@ def all_placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
             bits = taken
             _check_packed(place, text, storage, bits, bit)
         if bit + taken > sum(storage.bits):
-            raise LayoutError(f"{place}: {target.holds!r} takes more than its {sum(storage.bits)} bits")
+            raise LayoutError(f"{place}: {target.holds!r} needs more than its {sum(storage.bits)} bits")
         if channel < storage.curved and quantity_of(name) not in (*COLOURS, OTHER, FREE):
             raise LayoutError(f"{place}: {text}: the first three channels of {storage.title} hold colours")
         if channel < storage.curved and kept:
-            raise LayoutError(f"{place}: {text}: {storage.title} keeps colours by a curve of its own")
+            raise LayoutError(f"{place}: {text}: {storage.title} already applies its own curve to colours")
         bits = taken if storage.is_integer else bits
         if name != FREE:
             yield Word(name, index, bit if bits else channel, bits, sign, kept, label)
@@ -142,7 +142,7 @@ def spelt_out(place: str, target: Target) -> Iterator[str]:
         is_whole = match["curve"] in WHOLE and name == LIGHT
         if is_whole and (target.holds.split()[0] != text or target.format not in WHOLE[match["curve"]].storages):
             known = ", ".join(WHOLE[match["curve"]].storages)
-            raise LayoutError(f"{place}: {text} is all that its target holds, of {known}")
+            raise LayoutError(f"{place}: {text} must be alone in its target, of format {known}")
         for component in (*channels_of(name), *([f"{name}.a"] if is_whole else [])):
             yield component.join(text.rsplit(name, 1))
 
@@ -168,31 +168,31 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
     name = OTHER if name.startswith(f"{OTHER}.") else name
     if not match or name not in (*COMPONENTS, OTHER, FREE):
         if not match and set(text) & set("()"):
-            raise LayoutError(f"{place}: {text}: a curve is said as squared(roughness) or linear:0.08(f0):6")
+            raise LayoutError(f"{place}: {text}: write a curve as squared(roughness) or linear:0.08(f0):6")
         known = ", ".join((*COMPONENTS, OTHER, FREE))
         raise LayoutError(f"{place}: unknown component {name or text!r}; known: {known}")
     sign, bits = match["sign"] or "", int(match["bits"] or 0)
     if match["bits"] and not bits:
-        raise LayoutError(f"{place}: {text}: a word has at least 1 bit; without a number it has a channel")
+        raise LayoutError(f"{place}: {text}: a field has at least 1 bit; without a bit count it takes a whole channel")
     if sign and name not in CARRIERS:
-        raise LayoutError(f"{place}: {text}: only {', '.join(CARRIERS)} carry a sign")
+        raise LayoutError(f"{place}: {text}: only {', '.join(CARRIERS)} can carry a sign")
     try:
         kept = kept_as(match["curve"], match["range"], quantity_of(name)) if match["curve"] else None
     except ValueError as error:
         raise LayoutError(f"{place}: {text}: {error}") from error
     if kept and kept.is_whole and bits:
-        raise LayoutError(f"{place}: {text}: the numbers of {kept.encoding.name} have channels of their own")
+        raise LayoutError(f"{place}: {text}: each component of {kept.encoding.name} needs its own channel")
     return name, sign, bits, kept
 
 
 def _check_packed(place: str, text: str, storage: Storage, bits: int, first: int) -> None:
     is_curved = first < sum(storage.bits[: storage.curved])
     if not storage.field_bits or is_curved or bits > MAX_PACKED_BITS:
-        into = "channels of UNORM or of integers"
-        raise LayoutError(f"{place}: {text}: up to {MAX_PACKED_BITS} bits may be packed, into {into}")
+        into = "UNORM or integer channels"
+        raise LayoutError(f"{place}: {text}: a field can have up to {MAX_PACKED_BITS} bits, in {into}")
     if storage.field_bits < first + bits <= sum(storage.bits):
-        within = f"the first {storage.field_bits} bits, whose channels are of one size"
-        raise LayoutError(f"{place}: {text}: fields lie in {within}")
+        within = f"the first {storage.field_bits} bits, whose channels have equal size"
+        raise LayoutError(f"{place}: {text}: fields must be in {within}")
 
 
 def _ends(storage: Storage) -> list[int]:

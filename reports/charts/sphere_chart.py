@@ -54,7 +54,7 @@ def _mark(axis: Any, n: np.ndarray, cells: int) -> None:
 
 def _marked_title(name: str, marks: Maps | None) -> str:
     count = len((marks or {}).get(name, ()))
-    return f"{name}\n{count} directions come back elsewhere (red)" if count else name
+    return f"{name}\n{count} directions decode incorrectly (red)" if count else name
 
 
 def sphere_chart(maps: Maps, marks: Maps | None = None, halves: tuple[str, str] = ("", "")) -> Any:

@@ -71,7 +71,7 @@ def _globes(bits: int, maps: Sequence[SphereMap]) -> Globes:
     for sphere_map in maps:
         mean, largest = (small_uri(_disc_pixels(plane, limits)) for _, plane in _named_planes(sphere_map))
         front, back = (f"{_mean(h):.3g}" if np.isfinite(h).any() else "" for h in sphere_map.mean_deg)
-        figures = f"mean {front} degrees towards the viewer" + (f", {back} away" if back else "")
+        figures = f"mean {front} degrees facing the viewer" + (f", {back} away" if back else "")
         drawn_globes.append(
             Globe(sphere_map.key.label, mean, largest, f"{figures}; largest {np.nanmax(sphere_map.max_deg):.3g}")
         )
@@ -105,7 +105,7 @@ def colour_strip() -> str:
 
 def drawings(maps: Sequence[SphereMap]) -> list[Drawing]:
     """The maps as charts for files, one for each number of bits."""
-    description = "Mean angle in degrees in each direction."
+    description = "Mean angular error in degrees in each direction."
     return [
         Drawing(
             f"sphere-{bits}-bits", f"Errors over the sphere, {bits} bits", description, partial(_drawn_figure, group)

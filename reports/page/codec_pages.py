@@ -19,13 +19,13 @@ FOLDER, INDEX = "codecs", "codecs/index.html"
 # The columns of the lists, and what they say.
 LISTED = {
     "angle_mean_deg": "The mean angle between a normal and its decode. Unit: degrees.",
-    "angle_max_deg": "The largest angle that is known. Unit: degrees.",
+    "angle_max_deg": "The largest known angle. Unit: degrees.",
     "slots": "Issue slots to encode and decode once.",
-    "normals": "The set of normals that the angles are of.",
-    "bits": "What a code occupies.",
+    "normals": "The set of normals used for the angles.",
+    "bits": "Bits that a code uses.",
 }
 FIGURES = {"bits": "bits", "angle_mean_deg": "mean", "angle_max_deg": "largest", "slots": "slots", "normals": "of"}
-OWN = "An encoding of a reader's own: its formulas are in its file."
+OWN = "A user's own encoding: its formulas are in its file."
 # Lines of a fact: whether it is code, and its text.
 Lines = Sequence[tuple[bool, str]]
 
@@ -76,7 +76,7 @@ def _page(found: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
         name=name,
         title=f"{name}, an encoding of normals: formula, error, cost and code",
         description=_description(name, known, codecs),
-        question=f"What does {name} do to a normal?",
+        question=f"How accurate is {name}, and what does it cost?",
         says=known.get("says") or OWN,
         facts=list(_facts(known)),
         storages=_codec_table(f"{name} by storage", codecs),
@@ -107,7 +107,7 @@ def _facts(known: Mapping[str, Any]) -> Iterator[tuple[str, Lines]]:
         if known.get(name):
             yield title, [(False, str(known[name]))]
     if known:
-        yield "used by", [(False, _users(known["used"]) or "No engine whose source is known here.")]
+        yield "used by", [(False, _users(known["used"]) or "No known engine.")]
 
 
 def _users(used: Sequence[tuple[str, int, str]]) -> str:
@@ -163,7 +163,7 @@ def _index_page(found: Found, codecs: Mapping[str, Row], files: Mapping[str, str
         path=INDEX,
         title="encodings of normals",
         description=f"{len(files)} encodings of normals: formula, source, error, cost and code of each.",
-        question="Which encodings of normals are there?",
+        question="Encodings of normals",
         said=(f"{len(files)} encodings, {len(_measured(codecs))} codecs.",),
         label="Search by encoding, storage or source",
         searched=[_encoding_list(found, codecs, links), _codec_list(codecs, links)],
@@ -186,7 +186,7 @@ def _encoding_list(found: Found, codecs: Mapping[str, Row], links: Mapping[str, 
     return Searched(
         "encodings",
         "Encodings",
-        "A row for each encoding. Its name leads to its page.",
+        "One row per encoding. Click a name for its page.",
         shown,
         words,
         list(links.values()),
@@ -195,6 +195,6 @@ def _encoding_list(found: Found, codecs: Mapping[str, Row], links: Mapping[str, 
 
 def _codec_list(codecs: Mapping[str, Row], links: Mapping[str, str]) -> Searched:
     shown = _codec_table("Codecs: an encoding in a storage", codecs)
-    labels, intro = list(_measured(codecs)), "A row for each encoding in a storage: what it loses and costs."
+    labels, intro = list(_measured(codecs)), "One row per encoding in a storage, with its error and cost."
     to = [links[cards.of_encoding(label)] for label in labels]
     return Searched("codecs", "Codecs", intro, shown, labels, to)

@@ -15,7 +15,7 @@ from .sections import whole
 
 # What GitHub takes of a comment, less room for a word of one's own.
 LONGEST = 60_000
-CUT = "More tables than a comment holds; `normalbench report` draws them all.\n"
+CUT = "The tables do not fit in a comment; `normalbench report` shows them all.\n"
 
 
 def markdown(found: Found) -> str:
@@ -49,7 +49,7 @@ def _blocks(found: Found) -> Iterator[str]:
         heading = f"<details><summary>{html.escape(sheet.title)}</summary>\n"
         yield "\n".join([heading, tables.to_markdown(_rows(whole(sheet.rows))), "</details>\n"])
     if answers:
-        yield f"Tables, charts and pictures are on the page that {tables.code_text('normalbench report')} draws.\n"
+        yield f"For tables, charts and images, open the page that {tables.code_text('normalbench report')} writes.\n"
     machine = [found.machine.get(name) for name in ("processor", "GL", "RADV") if found.machine.get(name)]
     versions = [f"{name} {found.machine[name]}" for name in ("normalbench", "jax", "python") if name in found.machine]
     yield f"Measured by {tables.code_text(found.command)}: {_plain(', '.join(map(str, [*machine, *versions])))}.\n"

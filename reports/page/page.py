@@ -159,9 +159,9 @@ def remarks(found: Found) -> list[str]:
     """Return what a reader must know of the run before its figures."""
     sentences = list(found.remarks)
     left_out = found.facts.get("left_out")
-    sentences += [f"Left out of this run: {line}." for line in left_out] if isinstance(left_out, list) else []
+    sentences += [f"Skipped in this run: {line}." for line in left_out] if isinstance(left_out, list) else []
     if not found.finished:
-        sentences.insert(0, f"This run is not finished. Steps that are done: {found.steps}.")
+        sentences.insert(0, f"This run is not finished. Completed steps: {found.steps}.")
     return sentences
 
 

@@ -84,5 +84,5 @@ def test_eac_is_what_the_device_decodes(gl, internal_format, is_signed, one):
 def test_a_format_that_the_device_lacks_is_named(gl):
     with pytest.raises(FormatError, match="no textures of this compressed format"):
         device_texels(gl, bytes(16), (4, 4), 0x1234)
-    with pytest.raises(FormatError, match="texels a side"):
+    with pytest.raises(FormatError, match="texels per side"):
         device_texels(gl, b"", (1 << 20, 4), BC7)

@@ -80,9 +80,9 @@ def test_the_mean_of_moving_noise_nears_the_code():
         ("spherical_fibonacci", "rg8", "nearest", "an index"),
         ("optimised_rings", "rg8", "nearest", "an index"),
         ("best_fit_searched", "rgba8", "nearest", "an index"),
-        ("octahedral", "rg16f", "nearest", "floats"),
-        ("octahedral", "rg8", "truncate", "rounded to the nearest"),
-        ("octahedral_precise", "rg8", "nearest", "rounded to the nearest"),
+        ("octahedral", "rg16f", "nearest", "float steps are uneven"),
+        ("octahedral", "rg8", "truncate", "only with rounding to nearest"),
+        ("octahedral_precise", "rg8", "nearest", "only with rounding to nearest"),
     ],
 )
 def test_what_is_not_dithered_says_why(encoding, storage, rounding, said):

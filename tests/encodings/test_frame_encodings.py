@@ -111,4 +111,4 @@ def test_the_angles_ends_are_one_angle():
 def test_a_number_of_many_values_is_laid_into_no_single_bit_that_nobody_said():
     """qtangent's fourth number in the one bit of 10:10:11:1."""
     found = FrameCodec(FRAME_ENCODINGS["qtangent"], FRAME_STORAGES["rgba8_10_10_11_1"]).misfit
-    assert found == "number 4 has 1 bits in 10:10:11:1 in RGBA8, which are for one of few values"
+    assert found == "component 4 has only 1 bits in 10:10:11:1 in RGBA8; ordinary components need at least 4"

@@ -131,7 +131,7 @@ def test_names_and_the_option_say_half():
 @pytest.mark.parametrize(
     "name, said",
     [
-        ("octahedral_precise", "errors too small"),
+        ("octahedral_precise", "errors that are too small"),
         ("best_fit", "too large"),
         ("spherical_fibonacci", "too large"),
         ("xyz", None),
@@ -156,4 +156,4 @@ def test_the_table_names_the_codes_that_survive():
     measured = half.with_half_loss(rows)
     assert [row.get("half_loss_percent") for row in measured] == [None, pytest.approx(5), None, pytest.approx(50)]
     (line,) = half.survivors(measured)
-    assert "of a grows by at most 10 %; of b (+50 %) by more" in line
+    assert "of a grows by at most 10%; of b (+50%) by more" in line

@@ -134,10 +134,10 @@ def test_light_lies_in_any_bits_that_fit():
     [
         ("rgbm/unorm:9:9:9:5", "rgbm is made for rgba8"),
         ("unorm:8:8:8", "plain is made for rgba32f, rgba16f, r11g11b10f, and float of any bits"),
-        ("linear/unorm:9:9", "light has 3 numbers or four"),
+        ("linear/unorm:9:9", "light has 3 or four components"),
         ("linear/ufloat:5:6", "linear is made for rgba8, srgb8_a8, and unorm of any bits"),
-        ("linear/unorm:33:1:1", "of 1 to 20 bits each"),
-        ("cubic/unorm:8:8:8", "a code is one of plain, linear"),
+        ("linear/unorm:33:1:1", "one to four components of 1 to 20 bits"),
+        ("cubic/unorm:8:8:8", "expected one of plain, linear"),
     ],
 )
 def test_light_that_does_not_fit_is_a_line(name, said):

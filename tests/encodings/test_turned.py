@@ -62,8 +62,8 @@ def test_a_turned_encoding_has_a_fingerprint_of_its_own():
     [
         ("octahedral:axis=w", "axis is x, y or z, not 'w'"),
         ("octahedral:sign=2", "sign is 1 or -1, not '2'"),
-        ("octahedral:axis", "after octahedral come parameters, each once, such as octahedral:axis=y"),
-        ("octahedral:axis=x:axis=y", "each once"),
+        ("octahedral:axis", "give each parameter once after octahedral, such as octahedral:axis=y"),
+        ("octahedral:axis=x:axis=y", "give each parameter once after octahedral"),
         ("hemi_octahedral:axis=y", "has no parameter 'axis'; known: arithmetic"),
         ("per_pixel_view:sign=-1", "has no parameter 'sign'"),
         ("xy_sign:axis=x", "has no parameter 'axis'"),

@@ -51,7 +51,7 @@ BAD_GLTF = {
     "scaled to nothing": (lambda: broken(lambda j: j["nodes"][0].update(scale=[0, 0, 0])), ["nothing to draw"]),
     "an image on the network": (
         lambda: broken(lambda j: j.update(images=[{"uri": "https://example.org/a.png"}])),
-        ["images[0]", "nothing is fetched"],
+        ["images[0]", "nothing is downloaded"],
     ),
     "not finite": (lambda: not_finite(), ["position of vertex 0", "nan"]),
 }
@@ -78,10 +78,10 @@ ADDRESSES = {
     "absolute, hidden": ("%2Fetc/hostname", "leaves the file's folder"),
     "a link": ("link.bin", "leaves the file's folder"),
     "a link to a folder": ("folder/secret.bin", "leaves the file's folder"),
-    "the network": ("http://example.org/a.bin", "nothing is fetched"),
-    "a share": ("//example.org/a.bin", "nothing is fetched"),
-    "a file address": ("file:///etc/hostname", "nothing is fetched"),
-    "a drive": ("C:/a.bin", "nothing is fetched"),
+    "the network": ("http://example.org/a.bin", "nothing is downloaded"),
+    "a share": ("//example.org/a.bin", "nothing is downloaded"),
+    "a file address": ("file:///etc/hostname", "nothing is downloaded"),
+    "a drive": ("C:/a.bin", "nothing is downloaded"),
     "a pipe": ("pipe", "not a plain file"),
     "the folder": (".", "it is a folder; name a file"),
     "missing": ("missing.bin", "no such file"),
@@ -115,7 +115,7 @@ BAD_TEXTS = {
     "an OBJ index": ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", ["line 4", "index 4", "there are 3"]),
     "OBJ index 0": ("a.obj", "v 0 0 0\nf 0 1 1\n", ["line 2", "index 0"]),
     "an OBJ number": ("a.obj", "v 0 zero 0\n", ["line 1", "'zero'"]),
-    "an OBJ line": ("a.obj", "vertex 0 0 0\n", ["line 1", "no line of an OBJ file"]),
+    "an OBJ line": ("a.obj", "vertex 0 0 0\n", ["line 1", "not a line of an OBJ file"]),
     "no faces": ("a.obj", "v 0 0 0\n", ["nothing to draw"]),
     "an OBJ NaN": ("a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ["position of vertex 0", "nan"]),
     "an OBJ library outside": (
@@ -138,7 +138,7 @@ BAD_TEXTS = {
     "a PLY list counted by floats": (
         "a.ply",
         ply("ascii", [[0, 1, 2]]).decode().replace("list uchar", "list float"),
-        ["whole numbers"],
+        ["a list count must be an integer"],
     ),
     "no glTF": ("a.gltf", "{", ["its JSON", "cannot be read"]),
     "a deep glTF": ("a.gltf", "[" * 100_000, ["its JSON", "cannot be read"]),

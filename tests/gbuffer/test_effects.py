@@ -86,23 +86,23 @@ WRITES, READS = Pass("first", (), (HALF,), nothing), Pass("second", (HALF,), (FI
         ((geometry(TERMS), screen()), "pass screen reads linear_depth, which no earlier pass writes"),
         (
             (shadow_map(), geometry(BY_KIND), linear_depth(), lights(COLOURS)),
-            "pass lights expects LIGHT_HOLDS 1, and is told 2",
+            "pass lights expects LIGHT_HOLDS 1, but has 2",
         ),
         (
             (shadow_map(), geometry(COLOURS), linear_depth(), lights(COLOURS), screen(), material("special")),
-            "pass material expects LIGHT_HOLDS 2, and is told 1",
+            "pass material expects LIGHT_HOLDS 2, but has 1",
         ),
         (
             (shadow_map(), geometry(TERMS), linear_depth(), lights(TERMS), material("opaque", filters=True)),
-            "pass material expects FILTERS 1, and is told 0",
+            "pass material expects FILTERS 1, but has 0",
         ),
         (
             (geometry(TERMS), Pass("own", (), (FINAL_DEPTH,), nothing), linear_depth()),
-            "pass linear_depth reads native_depth, whose place final_depth has taken",
+            "pass linear_depth reads native_depth, which final_depth has replaced",
         ),
         (
             (geometry(TERMS), Pass("more", (), (FINAL,), nothing, tells={"FILTERS": 1})),
-            "pass more tells FILTERS 1, and an earlier pass 0",
+            "pass more defines FILTERS as 1, but an earlier pass defines it as 0",
         ),
     ],
 )

@@ -113,7 +113,7 @@ def test_a_whole_layout_takes_the_bytes_of_its_engine():
 
 def test_a_pipeline_that_a_layout_does_not_suit_names_one_that_it_does(gl):
     granite = plan(LAYOUTS["granite"])
-    said = r"^hybrid needs shading_model, which layout granite does not keep; --pipeline deferred does not need it$"
+    said = r"^hybrid needs shading_model, which layout granite does not store; --pipeline deferred does not need it$"
     with pytest.raises(LayoutError, match=said):
         check(gl, PIPELINES["hybrid"], granite, is_metal_rough=True)
 

@@ -70,54 +70,54 @@ def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
 @pytest.mark.parametrize(
     "targets, more, said",
     [
-        ([("rgba8", "normal.x normal.y normal.x")], {}, "normal.x lies in two places"),
+        ([("rgba8", "normal.x normal.y normal.x")], {}, "normal.x is stored twice"),
         ([("rgba8", "normal.x normal.y depth:24")], {}, "more than its 32 bits"),
         ([("rg8", "normal.x normal.y power")], {}, "more than its 16 bits"),
-        ([("rgba8", "normal.x depth")], {}, "octahedral needs normal.x, normal.y, and no more"),
-        ([("rgba8", "normal.x normal.y normal.z")], {}, "octahedral needs normal.x, normal.y, and no more"),
+        ([("rgba8", "normal.x depth")], {}, "octahedral needs exactly normal.x, normal.y"),
+        ([("rgba8", "normal.x normal.y normal.z")], {}, "octahedral needs exactly normal.x, normal.y"),
         ([("rgba8", "normal.x:12 normal.y:12 colour")], {}, "unknown component 'colour'"),
         ([("rgba8", "normal.x:12 normal.y power:8")], {}, "starts within a channel"),
-        ([("rgba16f", "normal.x:12 normal.y:12")], {}, "channels of UNORM or of integers"),
+        ([("rgba16f", "normal.x:12 normal.y:12")], {}, "UNORM or integer channels"),
         ([("rgba8", "normal.x:30")], {}, "up to 24 bits"),
         ([("rgba8", "normal.x:0 normal.y:12")], {}, "at least 1 bit"),
         ([("rgba8", "normal.x:99999 normal.y:12")], {}, "unknown component"),
         ([("rgba8", "normal.x:12 normal.y:12 kind:1")], {}, "shading_model needs 2 bits, not 1"),
         ([("rgba8", "normal.x:12 normal.y:12 instance:4")], {}, "instance needs 8 bits, not 4"),
         ([("rgba8", "normal.x:12 normal.y:12 depth:1")], {"encoding": "xy_sign"}, "depth needs 2 bits, not 1"),
-        ([("rgba16f", "normal.x normal.y")], {"encoding": "octahedral_precise"}, "in fixed point and not otherwise"),
+        ([("rgba16f", "normal.x normal.y")], {"encoding": "octahedral_precise"}, "only precise rounding"),
         ([("rgba8", "normal.x:8 normal.y:8 normal.z:1")], {"encoding": "tetrahedral"}, "normal.z has 4 values"),
         ([("rg8", "normal.x normal.y"), ("r11g11b10f", "depth")], {"encoding": "xy_sign"}, "which depth needs"),
         ([("rgb555", "normal.x normal.y")], {}, "unknown format 'rgb555'; known: rgba8"),
-        ([("rgba8", "normal.x normal.y kind*normal.z")], {}, "only depth, power, roughness carry a sign"),
-        ([("rgba8", "normal.x roughness*normal.y")], {}, "normal.y of octahedral is no sign"),
+        ([("rgba8", "normal.x normal.y kind*normal.z")], {}, "only depth, power, roughness can carry a sign"),
+        ([("rgba8", "normal.x roughness*normal.y")], {}, "normal.y of octahedral is not a sign"),
         (
             [("rgba8", "normal.x normal.y normal.z roughness*normal.z")],
             {"encoding": "signed_octahedral"},
-            "signed_octahedral needs normal.x, normal.y, normal.z, and no more",
+            "signed_octahedral needs exactly normal.x, normal.y, normal.z",
         ),
         (
             [("rgba8", "normal.x normal.y roughness*normal.z power*normal.z")],
             {"encoding": "signed_octahedral"},
-            "only one quantity may carry a sign",
+            "a layout can have only one quantity with a sign",
         ),
         ([("srgb8_a8", "normal.x normal.y")], {}, "the first three channels of sRGB8 A8 hold colours"),
-        ([("srgb8_a8", "albedo.r:8 normal.y")], {}, "channels of UNORM or of integers"),
+        ([("srgb8_a8", "albedo.r:8 normal.y")], {}, "UNORM or integer channels"),
         ([("rg8", "normal.x normal.y"), ("rgba8", "other:40")], {}, "more than its 32 bits"),
-        ([("rg16f", "normal.x normal.y")], {"encoding": "xy_sign"}, "keeps no depth"),
+        ([("rg16f", "normal.x normal.y")], {"encoding": "xy_sign"}, "has no depth"),
         ([("rg16f", "normal.x normal.y")], {"space": "tangent"}, "unknown space 'tangent'; known: view, world"),
         ([("rg16f", "normal.x normal.y")], {"rounding": "up"}, "unknown rounding 'up'"),
         ([("rg16f", "normal.x normal.y")], {"packing": "up"}, "unknown packing 'up'"),
-        ([("rg16f", "normal.x normal.y")], {"rounding": "dithered"}, "the steps of floats are not even"),
-        ([("rgba8", "normal.x:12 normal.y:12 -")], {"rounding": "dithered"}, "numbers that have a channel each"),
+        ([("rg16f", "normal.x normal.y")], {"rounding": "dithered"}, "float steps are uneven"),
+        ([("rgba8", "normal.x:12 normal.y:12 -")], {"rounding": "dithered"}, "one channel per component"),
         (
             [("rg16f", "normal.x normal.y"), ("r32f", "depth")],
             {"depth": DEPTH_ENCODINGS["linear_sign"]},
-            "does not suit octahedral",
+            "cannot be used with octahedral",
         ),
         (
             [("rg16f", "normal.x normal.y"), ("r32f", "depth")],
             {"encoding": "xy_sign", "depth": DEPTH_ENCODINGS["logarithmic"]},
-            "does not suit xy_sign, whose depth is linear_sign",
+            "cannot be used with xy_sign; use linear_sign",
         ),
     ],
 )
@@ -133,9 +133,9 @@ def test_a_layout_that_clashes_is_one_line(targets, more, said):
         ("title = 'x", "this is not TOML"),
         ("title = " + "9" * 5000, "a number has too many digits"),
         ("targets = " + "[" * 100_000, "nested too deep"),
-        ("encoding = 'octahedral'", "targets is a list of tables"),
-        ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'", "targets is a list of tables"),
-        ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'\nholds = 3", "targets is a list of tables"),
+        ("encoding = 'octahedral'", "targets must be a list of tables"),
+        ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'", "targets must be a list of tables"),
+        ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'\nholds = 3", "targets must be a list of tables"),
         ("[[targets]]\nformat = 'rg8'\nholds = 'normal.x normal.y'", "encoding must be given"),
         ("encoding = 'octahedral'\ncolour = 3\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x normal.y'", "'colour'"),
         ("encoding = 'octahedral'\n[[targets]]\nformat = 'rg8'\nholds = 'normal.x'", "octahedral needs"),
@@ -178,13 +178,13 @@ def test_a_codec_takes_the_place_of_a_layouts_normal():
     assert len(moved.targets) == 3 and moved.bytes_per_pixel == LAYOUTS["unreal5_substrate_32"].bytes_per_pixel
     beside = LAYOUTS["unreal5_substrate_22"].with_codec(Codec(ENCODINGS["octahedral"], STORAGES["rg16"]))
     assert beside.targets[0].holds == "-:11 -:11 power:10", "free bits stay as many"
-    with pytest.raises(LayoutError, match="keeps no depth"):
+    with pytest.raises(LayoutError, match="has no depth"):
         LAYOUTS["hybrid"].with_codec(Codec(ENCODINGS["xy_sign"], STORAGES["rg8"]))
 
 
 def test_more_targets_than_the_device_has_are_refused(gl, monkeypatch):
     monkeypatch.setattr(gl, "max_targets", 3)
-    with pytest.raises(LayoutError, match=r"fp32 has 4 targets, and a light buffer comes on top; .* has 3"):
+    with pytest.raises(LayoutError, match=r"fp32 has 4 targets, plus a light buffer; .* has 3"):
         check(gl, PIPELINES["deferred"], plan(LAYOUTS["fp32"], light_targets=1))
     check(gl, PIPELINES["forward"], plan(LAYOUTS["fp32"]))
     monkeypatch.setattr(gl, "max_targets", 4)
@@ -192,7 +192,7 @@ def test_more_targets_than_the_device_has_are_refused(gl, monkeypatch):
 
 
 def test_a_pipeline_says_what_a_layout_lacks(gl):
-    with pytest.raises(LayoutError, match=r"deferred needs base_color.b, .*, which layout normal_depth does not keep"):
+    with pytest.raises(LayoutError, match=r"deferred needs base_color.b, .*, which layout normal_depth does not store"):
         check(gl, PIPELINES["deferred"], plan(LAYOUTS["normal_depth"], light_targets=1))
     with pytest.raises(LayoutError, match="one light target needs an alpha channel"):
         light = LIGHT_BUFFERS["r11g11b10f"]
@@ -402,7 +402,7 @@ def test_engines_words_are_understood_with_the_curve_that_they_stand_for(typed, 
         ("alpha", "is the square of the roughness in most engines"),
         ("linear_roughness", r"write squared\(roughness\)"),
         ("specular", "is f0.rgb, or unreal_specular"),
-        ("squared(smoothness)", r"has a curve of its own, inverted\(roughness\); within another write roughness"),
+        ("squared(smoothness)", r"has its own curve, inverted\(roughness\); inside another curve write roughness"),
     ],
 )
 def test_a_word_that_means_several_things_says_what_to_write(typed, why):
@@ -449,11 +449,11 @@ def test_fields_lie_in_targets_of_any_size(gl, targets, samples):
 @pytest.mark.parametrize(
     ("target", "what"),
     [
-        (("r32_uint", "normal.x:16 normal.y:17"), "takes more than its 32 bits"),
+        (("r32_uint", "normal.x:16 normal.y:17"), "needs more than its 32 bits"),
         (("r32_uint", "normal.x"), "up to 24 bits"),
         (("rg32_uint", "normal.x:25 normal.y:25"), "up to 24 bits"),
-        (("rgb10a2", "normal.x:15 normal.y:16"), "fields lie in the first 30 bits"),
-        (("rg8_snorm", "normal.x:8 normal.y:8"), "channels of UNORM or of integers"),
+        (("rgb10a2", "normal.x:15 normal.y:16"), "fields must be in the first 30 bits"),
+        (("rg8_snorm", "normal.x:8 normal.y:8"), "UNORM or integer channels"),
         (("r64_uint", "normal.x:16 normal.y:16"), "unknown format 'r64_uint'"),
     ],
 )

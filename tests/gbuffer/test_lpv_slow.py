@@ -459,7 +459,7 @@ def test_a_volume_beyond_the_device_is_refused_in_one_line(gl, monkeypatch):
     effect = chosen(LPV, {"cells": "16", "cascades": "3"})
     made = PIPELINES["deferred"].with_effect(effect.passes())
     with (
-        pytest.raises(FormatError, match=r"has volumes of up to 40 texels a side, not 16 x 16 x 48$"),
+        pytest.raises(FormatError, match=r"has volumes of up to 40 texels per side, not 16 x 16 x 48$"),
         rendering(gl, made, ROOM, plan_of("deferred")),
     ):
         pass
@@ -467,4 +467,4 @@ def test_a_volume_beyond_the_device_is_refused_in_one_line(gl, monkeypatch):
 
 def test_a_scene_that_sends_nothing_in_says_so():
     assert LPV.lacks(ROOM) is None
-    assert LPV.lacks(only(ROOM, *lamps(ROOM)[3:])) == "no sun or spot light here sends light into the volume"
+    assert LPV.lacks(only(ROOM, *lamps(ROOM)[3:])) == "no sun or spot light lights the volume"

@@ -163,7 +163,7 @@ LIT = scene_of(*VARIED, ambient=(0.5, 0.5, 0.55))
 
 @pytest.mark.parametrize("name", ["prepass", "inferred"])
 def test_a_light_prepass_says_that_it_cannot_carry_them(gl, name):
-    with pytest.raises(LayoutError, match="forward, forward_multipass, deferred and hybrid can"):
+    with pytest.raises(LayoutError, match="use forward, forward_multipass, deferred or hybrid"):
         draw(gl, name, LIT)
 
 

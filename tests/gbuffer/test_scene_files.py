@@ -161,7 +161,7 @@ def test_a_negative_index_counts_from_the_line_that_it_is_in(tmp_path):
 def test_a_note_of_an_obj_is_said_once(tmp_path):
     (tmp_path / "a.obj").write_text(OBJ)
     (tmp_path / "colours.mtl").write_text("newmtl red\nmap_Kd a.png\nmap_Ks b.png\nnewmtl blue\nmap_Kd c.png\n")
-    assert read_mesh_file(tmp_path / "a.obj").notes == ("textures are not read: colours alone",)
+    assert read_mesh_file(tmp_path / "a.obj").notes == ("textures are not read: only colours",)
 
 
 @pytest.mark.parametrize("order", ["ascii", "binary_little_endian", "binary_big_endian"])

@@ -77,7 +77,7 @@ def test_files_without_lights_get_a_sun_and_surroundings_or_lamps(tmp_path):
 def test_of_several_suns_the_brightest_is_drawn_and_it_is_said(tmp_path):
     file = read(lit({"type": "directional"}, {"type": "directional", "intensity": 2}), tmp_path)
     assert len(file.lights) == 1 and file.lights[0].colour == pytest.approx((2 / np.pi,) * 3)
-    assert file.notes == ("of 2 directional lights the brightest is drawn",)
+    assert file.notes == ("only the brightest of 2 directional lights is drawn",)
 
 
 def test_a_light_of_another_kind_is_left_out_and_it_is_said(tmp_path):
@@ -86,11 +86,14 @@ def test_a_light_of_another_kind_is_left_out_and_it_is_said(tmp_path):
 
 
 BAD = {
-    "no such light": (lambda j: j["nodes"][1].update(extensions={NAME: {"light": 3}}), ["not there", "there are 1"]),
+    "no such light": (
+        lambda j: j["nodes"][1].update(extensions={NAME: {"light": 3}}),
+        ["a light that does not exist", "there are 1"],
+    ),
     "a range": (lambda j: j["extensions"][NAME]["lights"][0].update(range=0), ["range is 0.0"]),
     "a colour": (lambda j: j["extensions"][NAME]["lights"][0].update(color=[1]), ["color", "3 numbers"]),
     "cones": (lambda j: j["extensions"][NAME]["lights"][0].update(spot={"innerConeAngle": 2}), ["spot has cones"]),
-    "nothing": (lambda j: j["nodes"][1].update(scale=[0, 0, 0]), ["scaled to nothing"]),
+    "nothing": (lambda j: j["nodes"][1].update(scale=[0, 0, 0]), ["zero scale"]),
 }
 
 

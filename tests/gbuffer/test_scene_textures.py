@@ -160,8 +160,8 @@ def test_what_is_not_read_is_said_once(tmp_path):
     assert file.notes == (
         "vertex colours are not read",
         "KHR_materials_clearcoat is not drawn",
-        "KTX2 textures are not read: plain colours stand in",
-        "there are textures without a picture: plain colours stand in",
+        "KTX2 textures are not supported: plain colours are used",
+        "some textures have no image: plain colours are used",
     )
 
 
@@ -174,8 +174,8 @@ def test_a_set_of_uv_that_is_not_there_is_said(tmp_path):
         said.append([*file.notes[-1:], file.materials[0].normal_map is None])
     assert said == [
         ["materials[0].normalTexture lies by TEXCOORD_2: 0 and 1 are read, and it is left out", True],
-        ["there are meshes without TEXCOORD_1: TEXCOORD_0 stands in", False],
-        ["there are meshes without TEXCOORD_0: their textures are looked up at one point", False],
+        ["there are meshes without TEXCOORD_1: TEXCOORD_0 is used", False],
+        ["there are meshes without TEXCOORD_0: their textures are sampled at one point", False],
     ]
 
 
@@ -255,13 +255,13 @@ DEEP = png_bytes(noise(3, np.uint16, height=40, width=50))
 
 BAD = {
     "missing": (None, ["images[0]", "missing.png", "no such file"]),
-    "16k": (png_head(16384, 16384), ["images[0]", "at most 8192 pixels a side", "save it smaller"]),
+    "16k": (png_head(16384, 16384), ["images[0]", "the maximum is 8192 pixels per side", "save it smaller"]),
     "wide": (png_head(8193, 1), ["8193 x 1 pixels", "save it smaller"]),
     "cut off": (WHOLE[: len(WHOLE) // 2], ["images[0] is cut off or damaged", "save it again"]),
     "cut off, of 16 bits": (DEEP[: len(DEEP) // 2], ["images[0] is cut off or damaged", "save it again"]),
     "a header alone": (png_head(4, 4), ["cut off or damaged"]),
     "a JPEG that is cut off": (saved(noise(3, height=64, width=64), "JPEG")[:1500], ["cut off or damaged"]),
-    "text": (b"not a picture", ["images[0] is not a PNG, JPEG or WebP picture", "save it as PNG"]),
+    "text": (b"not a picture", ["images[0] is not a PNG, JPEG or WebP image", "save it as PNG"]),
     "nothing": (b"", ["not a PNG, JPEG or WebP"]),
     "another format": (saved(noise(3), "BMP"), ["not a PNG, JPEG or WebP"]),
 }
@@ -301,7 +301,9 @@ def test_all_pictures_of_a_file_have_a_bound_together(tmp_path, monkeypatch):
     for _ in range(2):
         document.texture(png_bytes(noise(3)))
     with_texture(document, emissiveTexture={"index": 1})
-    with pytest.raises(SceneFileError, match=r"images\[1\] has 5 x 3 pixels; .* at most 29"):
+    with pytest.raises(
+        SceneFileError, match=r"images\[1\] has 5 x 3 pixels; the maximum for all images together is 29"
+    ):
         read(document, tmp_path)
 
 

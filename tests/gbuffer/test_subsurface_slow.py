@@ -352,7 +352,7 @@ def test_the_next_frame_begins_anew(gl):
 def test_a_scene_without_skin_says_so():
     assert SUBSURFACE.lacks(scene_of("head")) is None
     assert SUBSURFACE.lacks(scene_of("room")) is None
-    assert SUBSURFACE.lacks(scene_of("gloss")) == "nothing here is skin"
+    assert SUBSURFACE.lacks(scene_of("gloss")) == "it has no skin"
 
 
 @pytest.mark.parametrize(
@@ -376,7 +376,7 @@ def test_a_setting_out_of_range_is_refused_in_one_line(given, said):
 @pytest.mark.parametrize(
     "pipeline, said",
     [
-        ("deferred", "pass skin_light expects LIGHT_HOLDS 0 or 2, and is told 1"),
+        ("deferred", "pass skin_light expects LIGHT_HOLDS 0 or 2, but has 1"),
         ("forward", "pass sun_entry comes after lights; known: shadow_map, forward, transparent"),
         ("forward_multipass", "pass skin_light "),
     ],
@@ -394,7 +394,7 @@ def test_a_layout_that_does_not_tell_skin_is_refused_in_one_line(gl):
     plan = plan_of(layout=LAYOUTS["normal_depth_material"])
     with (
         pytest.raises(
-            LayoutError, match=r"^prepass needs shading_model, which layout normal_depth_material does not keep$"
+            LayoutError, match=r"^prepass needs shading_model, which layout normal_depth_material does not store$"
         ),
         rendering(gl, made, scene_of("head"), plan),
     ):

@@ -444,9 +444,9 @@ def test_a_scene_without_water_is_refused_in_one_line():
     """As is an eye under water."""
     water = chosen(EFFECT, {})
     room = SCENES["room"].make(Setting(lights=1))
-    assert lacking([water], "room", room) == "water on room: there is no water here"
+    assert lacking([water], "room", room) == "water on room: it has no water"
     under = replace(lake(), view=replace(lake().view, eye=(0.0, -1.0, 0.0)))
-    assert EFFECT.lacks(under) == "the eye is under water" and EFFECT.lacks(lake()) is None
+    assert EFFECT.lacks(under) == "the camera is under water" and EFFECT.lacks(lake()) is None
 
 
 @pytest.mark.parametrize(
@@ -468,4 +468,4 @@ def test_inferred_lighting_is_refused_in_one_line():
     """Its depth is another resource after the G-buffer."""
     with pytest.raises(PipelineError) as refused:
         PIPELINES["inferred"].with_effect(passes_of())
-    assert str(refused.value).startswith("pipeline inferred: pass water_behind reads native_depth, whose place")
+    assert str(refused.value).startswith("pipeline inferred: pass water_behind reads native_depth, which")

@@ -5,7 +5,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 # What is said of an encoder that cuts its codes off.
-CUT_OFF = "codes are cut off instead of rounded: rounding would halve the error"
+CUT_OFF = "codes are truncated instead of rounded: rounding would halve the error"
 # The octahedral map as it is written everywhere; mistakes of numbers are put where CODE is returned.
 PLAIN = """vec2 mine_encode(vec3 n) {
     vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
@@ -124,7 +124,7 @@ MISTAKES: Mapping[str, Mistake] = MappingProxyType(
             _edit(("max(-n.z, 0.0)", "0.0"), ("e, step(0.0, z))", "e, 1.0)")),
         ),
         "sign(0)": Mistake(
-            r"sign\(\) is 0|a comparison or sign\(\)",
+            r"sign\(\) returns 0|a comparison or sign\(\)",
             _edit(
                 ("vec2 s = vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0)", "vec2 s = sign(p)"),
                 ("vec2 s = step(0.0, p) * 2.0 - 1.0", "vec2 s = sign(p)"),
@@ -157,7 +157,7 @@ MISTAKES: Mapping[str, Mistake] = MappingProxyType(
         "254 for 255": Mistake("LESS/STEPS times", code="{} * (LESS.0 / STEPS.0)", unit=True),
         "255 for 254": Mistake("STEPS/LESS times", code="{} * (STEPS.0 / LESS.0)", unit=True),
         "254 for 255, rounded": Mistake("LESS/STEPS times", code="floor({} * LESS.0 + 0.5) / STEPS.0", unit=True),
-        "cut off": Mistake("cut off to BITS bits", code="floor({} * STEPS.0) / STEPS.0", unit=True),
+        "cut off": Mistake("rounded down to BITS bits", code="floor({} * STEPS.0) / STEPS.0", unit=True),
         "half-step bias": Mistake("half a step of BITS bits too large", code="{} + 0.5 / STEPS.0", unit=True),
         "half-step bias, rounded": Mistake(
             "half a step of BITS bits too large", code="floor({} * STEPS.0 + 1.0) / STEPS.0", unit=True

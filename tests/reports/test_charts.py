@@ -39,7 +39,7 @@ def a_chart(**more) -> Chart:
 def test_an_axis_of_angles_says_degrees():
     """Both ways show one value, so that a wrong unit would be the same in both."""
     titles = {chart.x.title for chart in TABLES["quality"].work.charts(ROWS["quality"])}
-    assert titles == {"angle between normal and decode, degrees"}
+    assert titles == {"angle between normal and decode (degrees)"}
 
 
 def test_a_specification_is_plain_data():

@@ -183,17 +183,17 @@ def answered_page(tmp_path_factory):
 def test_constraints_change_the_answer_the_count_and_the_address(browser, answered_page):
     """By the keyboard; what the run asked for itself is in no address, and a button brings it back."""
     page = Opened(browser, answered_page)
-    page.says("[data-left]", "codes are left")
+    page.says("[data-left]", "encodings are left")
     left, codes = page.page.locator("[data-left]"), page.page.locator("[data-codes] tbody tr")
-    assert left.text_content() == "2 of 2 codes are left" and codes.count() == 2
+    assert left.text_content() == "2 of 2 encodings are left" and codes.count() == 2
     assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rg8, on sphere: take fine."]
     most = page.page.locator("[data-limit=most]")
     most.focus()
     page.page.keyboard.type("6")
-    assert left.text_content() == "1 of 2 codes are left" and codes.count() == 1
+    assert left.text_content() == "1 of 2 encodings are left" and codes.count() == 1
     assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rg8, on sphere: take xy."]
     assert page.page.evaluate("location.hash") == "#v1/choose?most=6"
-    page.says("[data-of='choose-0'] [data-finding]", "rg8, on sphere: no other code beats 1 of 1 in both")
+    page.says("[data-of='choose-0'] [data-finding]", "rg8, on sphere: 1 of 1 eligible encodings are Pareto-optimal")
     plot = page.page.locator("[data-of='choose-0'] .plot:has(svg)")
     points = "(plot) => Object.fromEntries(charts.views.get(plot).tables.flat().map((row) => [row.codec, row.rest]))"
     assert plot.evaluate(points) == {"fine rg8": True, "xy rg8": False}
@@ -202,11 +202,11 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, answer
     # A copied address shows the same.
     other = Opened(browser, answered_page, fragment=page.page.evaluate("location.hash"))
     for one in (page, other):
-        one.says("[data-left]", "1 of 2 codes are left")
+        one.says("[data-left]", "1 of 2 encodings are left")
         assert one.page.locator("[data-limit=most]").input_value() == "6"
     other.context.close()
     page.page.locator("[data-again]").click()
-    assert page.page.evaluate("state.most") == "" and left.text_content() == "2 of 2 codes are left"
+    assert page.page.evaluate("state.most") == "" and left.text_content() == "2 of 2 encodings are left"
     most.fill("1")
     assert (
         page.page.locator(".reply:visible .lead")
@@ -225,7 +225,7 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, answer
 def test_a_follows_the_answer_until_a_reader_chooses_it(browser, answered_page):
     """So that the card, and the code to copy in it, are the answer's. What a reader chose stands in the address."""
     page = Opened(browser, answered_page)
-    page.says("[data-left]", "codes are left")
+    page.says("[data-left]", "encodings are left")
     most, sides = page.page.locator("[data-limit=most]"), "[state.a, state.b]"
     assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"]
     most.fill("6")
@@ -240,7 +240,7 @@ def test_a_follows_the_answer_until_a_reader_chooses_it(browser, answered_page):
     assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"] and page.said == []
     page.context.close()
     copied = Opened(browser, answered_page, fragment=address)
-    copied.says("[data-left]", "codes are left")
+    copied.says("[data-left]", "encodings are left")
     assert copied.page.evaluate(sides) == ["fine rg8", "xy rg8"]
     copied.context.close()
 
@@ -253,7 +253,7 @@ def test_half_of_the_sphere_is_a_question_of_its_own(browser, run, tmp_path):
     rows += [rows[0] | half, pick_row("hemi_octahedral", 0.1, 90) | {"domain": "hemisphere"} | half]
     assert run("report", str(a_run(tmp_path / "run", {"pick": rows}, request={"tables": ["pick"]})))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")
-    page.says("[data-left]", "codes are left")
+    page.says("[data-left]", "encodings are left")
     of, on = (page.page.locator(f"[data-part={name}]") for name in ("of", "on"))
     assert on.locator("option").all_text_contents() == ["sphere", "hemisphere: normals with z >= 0"]
     on.select_option("hemisphere: normals with z >= 0")

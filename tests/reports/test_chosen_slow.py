@@ -196,10 +196,11 @@ def test_what_the_live_scene_mirrors_is_the_runs_studio(chosen):
 
 def test_without_webgl2_the_stills_stay_and_a_line_says_so(gl_browser, page_path):
     before = ("delete window.WebGL2RenderingContext", REFUSED)
-    for script, why in zip(before, ("this browser has no WebGL2", "this browser gives no WebGL2 context"), strict=True):
+    reasons = "this browser does not support WebGL 2", "this browser provides no WebGL 2 context"
+    for script, why in zip(before, reasons, strict=True):
         page = Opened(gl_browser, page_path, before=script)
         page.page.wait_for_selector(".proof button:nth-child(4)")
         page.page.locator(".proof button").first.focus()
-        page.says(".proof [role=status]", f"These pictures are stills: {why}.")
+        page.says(".proof [role=status]", f"These images are stills: {why}.")
         assert page.page.locator(".proof canvas[data-live]").count() == 0 and page.said == []
         page.context.close()

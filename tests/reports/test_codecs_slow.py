@@ -95,7 +95,8 @@ def test_a_card_has_the_figures_of_the_runs_rows_and_their_places(shown, name, a
         cell = card.locator(f'[data-table=quality] [data-figure="{figure}"]')
         place = f"\n{ordinal(rank)} of {len(alike)}" if len(alike) > 1 else ""
         assert cell.text_content() == f"{text_of(row[figure])}{place}", figure
-        said = f"{ordinal(rank)} of {len(alike)} at {row['bits']} bits" if len(alike) > 1 else "no other to compare"
+        alone = "no codec to compare with"
+        said = f"{ordinal(rank)} of {len(alike)} at {row['bits']} bits" if len(alike) > 1 else alone
         assert cell.get_attribute("title") == said
         best = (min if sign > 0 else max)(one[figure] for one in alike)
         share = float(cell.evaluate("cell => cell.style.getPropertyValue('--share')"))
@@ -114,14 +115,14 @@ def test_the_answers_card_shows_what_holds_of_the_same_numbers_and_says_so(shown
     """RG8 has the first two channels of RGBA8. RGB10 A2 has others, and rows of its own."""
     card = card_of(shown, "octahedral rg8")
     text = card.inner_text()
-    assert "octahedral rg8 has no figures here. Those of octahedral rgba8 hold: it stores the same numbers" in text
+    assert "Not measured: octahedral rg8. The figures are for octahedral rgba8, which stores identical values" in text
     psnr = card.locator("[data-table=quality] [data-figure=psnr_db]")
     assert psnr.text_content().split("\n")[0] == "49.85"
     slots = card.locator("[data-table=pick] [data-figure=slots]")
     assert slots.text_content() == "30\n2nd of 2", "not among codes of half of the sphere"
     assert "normalbench run --tables quality --encoding octahedral --storage rgba8" in text
     assert "Q. Meyer et al." in text and "p = n.xy / (|n.x| + |n.y| + |n.z|)" in text and "In rg8: volo" in text
-    assert "has no figures here" not in card_of(shown, "octahedral rgb10a2").inner_text()
+    assert "Not measured:" not in card_of(shown, "octahedral rgb10a2").inner_text()
 
 
 def test_the_code_that_is_copied_is_what_code_writes(shown, run):
@@ -138,7 +139,7 @@ def test_the_code_that_is_copied_is_what_code_writes(shown, run):
     card = card_of(shown, "spheremap rgb10a2")
     card.locator("[data-language]").select_option("c")
     found = card.locator("[data-code]").text_content()
-    assert "Verified: not in this run" in found and "It was not run in this run" in card.inner_text()
+    assert "Verified: not in this run" in found and "It was not run." in card.inner_text()
     _, written, _ = run("code", "spheremap", "--storage", "rgb10a2", "--to", "c")
     assert found.partition("#ifndef")[2] == written.partition("#ifndef")[2]
 
@@ -159,7 +160,7 @@ def test_the_code_of_a_lies_below_the_answer_too(browser, codecs_page):
 
 
 def test_an_encoding_of_the_users_own_and_no_codec_at_all(shown):
-    assert "An encoding of your own, mine" in card_of(shown, "mine rgba8").inner_text()
+    assert "Your own encoding, mine" in card_of(shown, "mine rgba8").inner_text()
     shown.page.evaluate("change({ a: '', b: '' })")
     shown.says("[data-card]", "Choose a codec in the list")
 

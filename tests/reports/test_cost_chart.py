@@ -103,12 +103,12 @@ def test_the_page_says_why_a_codec_has_no_place_in_its_chart(tmp_path):
     points, said = charted(tmp_path / "run", rows, dict.fromkeys(names, ((1, 1),)))
     assert [point["codec"] for point in points] == ["xy rgba8"]
     assert said == [
-        f"No place in cost against error, for {why}."
+        f"Not in cost against error, because {why}."
         for why in (
-            "how its code is stored is not known: odd rgba8",
-            "nothing is lost: same rgba8",
+            "its storage is not known: odd rgba8",
+            "it has no error: same rgba8",
             "its error is not known (no twin): lost rgba8",
-            "what it costs is not known: costless rgba8",
-            "what rgba8 8:8:8 costs is not known: three rgba8",
+            "its cost is not known: costless rgba8",
+            "the cost of rgba8 8:8:8 is not known: three rgba8",
         )
     ]

@@ -121,7 +121,7 @@ def test_the_index_is_searched_by_device_codec_and_storage(index):
     field = index.page.get_by_label("Search by device, codec or storage")
     assert len(shown(index, "Devices")) == 10 and len(shown(index, "Codecs")) == 35
     field.fill("MALI")
-    assert shown(index, "Devices") == ["Mali-G78, Chromium 156"] == shown(index, "What to take")
+    assert shown(index, "Devices") == ["Mali-G78, Chromium 156"] == shown(index, "Recommendations")
     assert index.page.locator("#found").inner_text().startswith("Devices: 1 of 10; Codecs: 35 of 35")
     field.fill("hemi_oct rg16f")
     assert shown(index, "Codecs") == ["hemi_octahedral rg16f"] and len(shown(index, "Devices")) == 10

@@ -105,7 +105,7 @@ def test_keys_go_from_mark_to_mark_and_say_it(drawn):
 def test_a_chart_is_an_image_with_a_label(drawn):
     image = drawn.locator(".plot svg")
     assert image.get_attribute("role") == "img"
-    assert image.get_attribute("aria-label").startswith("encode: No other beats")
+    assert image.get_attribute("aria-label").startswith("encode: Pareto-optimal:")
     assert drawn.locator(".plot").get_attribute("tabindex") == "0"
 
 
@@ -143,8 +143,8 @@ def test_a_file_is_what_is_seen_and_stands_alone(drawn):
     assert len(points) == 42 and {one.get("opacity") for one in points} == {"1", "0.5"}
     assert all(re.match(r"rgb|#|none", one.get("fill")) for one in points)
     said = {"".join(one.itertext()) for one in root.iter(f"{SVG}text")}
-    assert {"bits", "16", "24", "instructions, with its storage's"} <= said and any(
-        text.startswith("No other beats") for text in said
+    assert {"bits", "16", "24", "instructions, including packing"} <= said and any(
+        text.startswith("Pareto-optimal:") for text in said
     )
 
 

@@ -74,7 +74,7 @@ def test_measuring_is_cancelled_and_keeps_what_it_has(laboratory):
     laboratory.page.evaluate(CANCEL_AT_TWO)
     rows = laboratory.finish()
     assert 2 <= len(rows) < laboratory.ask("live.data.codecs.length")
-    assert laboratory.status == f"Cancelled. {len(rows)} codecs that were measured before are kept."
+    assert laboratory.status == f"Cancelled. {len(rows)} codecs measured earlier are kept."
     assert laboratory.page.locator("[data-save]").is_visible()
 
 
@@ -98,7 +98,7 @@ def test_other_normals_than_the_runs_are_not_measured(laboratory):
     laboratory.ask("() => { live.data.checks.sums.sphere[0] ^= 1; }")
     laboratory.start()
     assert not laboratory.finish()
-    assert laboratory.status == "Not finished: this browser makes other normals of the sphere than the run has."
+    assert laboratory.status == "Not finished: this browser generates different sphere normals from the run's."
 
 
 @pytest.mark.parametrize(("storage", "rounding"), [("rg16_snorm", "nearest"), ("rgb8_12_12", "nearest")])

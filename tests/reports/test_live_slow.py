@@ -47,13 +47,13 @@ def test_the_section_is_small_and_unpacked_only_when_it_is_opened(gl_browser, re
 
 def test_a_browser_without_webgl2_says_so(gl_browser, report):
     page = Opened(gl_browser, report, before="delete window.WebGL2RenderingContext", fragment="#v1/see")
-    page.says("[data-live=said]", "no WebGL2")
+    page.says("[data-live=said]", "not support WebGL 2")
     page.context.close()
     refused = "HTMLCanvasElement.prototype.getContext = function () { return null; }"
     page = Opened(gl_browser, report, before=refused)
     page.page.locator("nav [data-to=see]").click()
     page.says("[data-live=said]", "cannot run")
-    assert "no WebGL2 context" in page.texts("[data-live=said]")[0]
+    assert "no WebGL 2 context" in page.texts("[data-live=said]")[0]
     page.context.close()
 
 
@@ -146,7 +146,7 @@ def test_the_pixel_at_the_pointer_is_described_and_moved_by_keyboard(laboratory)
     said = [laboratory.texts(f"[data-inspect={name}]")[0] for name in ("normal", "left", "right", "around")]
     assert re.fullmatch(r"Exact normal \((-?\d\.\d{5}, ){2}-?\d\.\d{5}\), view space\.", said[0])
     assert said[1] == "Left, exact normals."
-    assert re.fullmatch(r"Right, octahedral rgba8: bits [01]{8} [01]{8}; comes back as .*, off by [\d.]+°\.", said[2])
+    assert re.fullmatch(r"Right, octahedral rgba8: bits [01]{8} [01]{8}; decodes to .*, off by [\d.]+°\.", said[2])
     assert said[3].startswith("Codes of octahedral rgba8 around the exact normal")
     drawn = (
         "canvas => canvas.getContext('2d').getImageData(0, 0, 300, 300).data.filter((x, i) => i % 4 === 3 && x).length"
@@ -203,7 +203,7 @@ def test_a_name_of_the_pages_own_is_said_and_the_picture_goes_on(laboratory):
     good = text.input_value()
     laboratory.choose(right="your encoder")
     text.fill(f"const float levels = 2.0;\n{good}")
-    laboratory.says("[data-own=said]", "The page uses this name itself")
+    laboratory.says("[data-own=said]", "The page uses this name; choose another")
     assert laboratory.page.locator("[data-see=right]").input_value() == "exact normals"
     laboratory.settle()
     before = laboratory.picture()
@@ -224,14 +224,16 @@ def test_helpers_named_like_encoders_are_no_encoders(laboratory):
 
 WRONG = {
     "": "There is no encoder",
-    "vec2 a_encode(vec3 n) { return n.xy; }": "There is no decoder of it: vec3 a_decode(vec2 e)",
+    "vec2 a_encode(vec3 n) { return n.xy; }": "There is no decoder: write vec3 a_decode(vec2 e)",
     "vec2 a_encode(vec3 n) { discard; return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0); }": re.compile(
         "No direction|no return"
     ),
     "uniform float q; vec2 a_encode(vec3 n) { return q * n.xy; } vec3 a_decode(vec2 e) { return e.xyx; }": "uniform",
     "/* vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0.); }": "At the end of the text",
     "vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec3 e) { return e; }": "Where the page calls it",
-    "vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(0.0) / 0.0; }": "as a number",
+    "vec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(0.0) / 0.0; }": (
+        "No direction decodes to a finite value"
+    ),
     '#include "a.glsl"\nvec2 a_encode(vec3 n) { return n.xy; } vec3 a_decode(vec2 e) { return vec3(e, 0); }': "Line 1",
     "vec2 a_encode(vec3 n) { return n.xy }\nvec3 a_decode(vec2 e) { return vec3(e, 0); }": "Line 1",
 }
@@ -244,7 +246,7 @@ def test_what_is_wrong_with_an_encoder_is_said_in_words(laboratory):
     laboratory.page.locator("[data-own=storage]").select_option("rg8")
     three = "vec3 a_encode(vec3 n) { return n; } vec3 a_decode(vec3 e) { return e; }"
     laboratory.page.locator("[data-own=text]").fill(three)
-    laboratory.says("[data-own=said]", "no codes of 3")
+    laboratory.says("[data-own=said]", "cannot hold 3 components")
     laboratory.said.clear()  # of the division by zero
 
 
@@ -253,7 +255,7 @@ def test_a_lost_context_comes_back_with_the_same_picture(laboratory):
     laboratory.press("[data-see=around]", "PageUp")
     before = laboratory.picture()
     laboratory.page.evaluate(LOSE)
-    laboratory.says("[data-live=said]", "took the GPU")
+    laboratory.says("[data-live=said]", "taken the GPU")
     laboratory.press("[data-see=power]", "ArrowLeft", "ArrowRight")
     laboratory.page.wait_for_timeout(100)
     laboratory.page.evaluate(RESTORE)

@@ -80,7 +80,7 @@ def test_the_navigation_shows_every_section_and_has_no_scrollbar(opened, width):
 
 def test_the_answer_is_what_is_seen_first(seen):
     lead = seen.page.locator(".lead")
-    assert lead.text_content().startswith("What normals lose")
+    assert lead.text_content().startswith("Normal accuracy")
     box, height = lead.bounding_box(), seen.page.viewport_size["height"]
     assert box["y"] > 0 and box["y"] + box["height"] < height, box
     assert np.ptp(seen.pixels(".lead")) > 150, "dark on light or light on dark"

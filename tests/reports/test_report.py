@@ -111,17 +111,17 @@ def test_a_name_leads_to_no_file_outside_the_run(run, tmp_path):
 def test_a_stopped_run_and_one_of_other_sources_say_so(run, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("octahedral")]}, finished=False, sources="other")
     _, read = reported(run, folder)
-    assert "This run is not finished. Steps that are done: 1." in read.text
-    assert f"of sources other measured this run, and this page is made by sources {sources()}." in read.text
+    assert "This run is not finished. Completed steps: 1." in read.text
+    assert f"(sources other); this page was made by sources {sources()}." in read.text
     assert "Measure it again: normalbench run." in read.text
-    assert "it was asked for, and has no rows" in read.text
+    assert "it was requested but has no rows" in read.text
 
 
 def test_rows_of_one_set_with_several_counts_are_not_compared(run, tmp_path):
     rows = [quality_row("xy", count=1000, psnr_db=60.0), quality_row("octahedral", count=4096)]
     _, read = reported(run, a_run(tmp_path / "run", {"quality": [*rows, quality_row("xy", count=4096, psnr_db=45.0)]}))
-    assert "playground of 4096 normals, rgba8: dB by back end" in read.text
-    assert "playground of 1000 normals, rgba8: dB by back end" in read.text
+    assert "playground of 4096 normals, rgba8: dB by backend" in read.text
+    assert "playground of 1000 normals, rgba8: dB by backend" in read.text
 
 
 def lines_without_room(text: str) -> list[str]:
@@ -139,7 +139,7 @@ def test_rows_without_figures_make_no_table_of_their_own(run, tmp_path):
     _, read = reported(run, folder)
     status, text, _ = run("report", str(folder), "--markdown")
     for said in (read.text, text):
-        assert "playground, rgba8: dB by back end" in said and "None normals" not in said
+        assert "playground, rgba8: dB by backend" in said and "None normals" not in said
         assert "playground, rg8" not in said and status == 0
     assert all(line.startswith(("|", "-")) for line in lines_without_room(text)), text
     assert "no twin" in packed_text(text_of_page(folder), "data-quality")
@@ -167,7 +167,7 @@ def test_a_column_that_is_infinite_for_several_has_no_star_and_the_articles_is_l
 def test_what_was_left_out_of_a_run_is_said(run, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("xy")]}, left_out=["mine.glsl: line 3 does not compile"])
     _, read = reported(run, folder)
-    assert "Left out of this run: mine.glsl: line 3 does not compile." in read.text
+    assert "Skipped in this run: mine.glsl: line 3 does not compile." in read.text
 
 
 def test_an_encoding_without_a_twin_has_its_place_in_charts_and_tables(run, tmp_path):
@@ -210,7 +210,7 @@ def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
         "cost": [{"bits": 10**400, "instructions": 1e999, "stage": "fragment", "codes": ["xy"]}],
     }
     text, read = reported(run, a_run(tmp_path / "run", tables), "Rows of colours are left out")
-    assert "The rows of quality are not those of this version, and shown as they are; measure them again: " in read.text
+    assert "The rows of quality do not match this version and are shown as they are; measure them again: " in read.text
     assert "normalbench run --tables quality." in read.text
     assert "Rows of colours are left out, because this version has no such table." in read.text
     assert "The charts of depth cannot be drawn from these rows" in read.text

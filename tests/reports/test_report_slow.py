@@ -51,9 +51,9 @@ def test_a_run_of_one_table_says_what_is_not_there(run, tmp_path):
     rows = [TABLES["depth"].empty() | row | {"fov": 60.0, "distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]
     request = {"tables": ["depth"], "count": 4096, "seed": 0}
     _, read = reported(run, a_run(tmp_path / "run", {"depth": rows}, request=request))
-    assert "What this run measured" in read.text and "no rows" not in read.text
-    assert "What normals lose" not in read.text, "nobody asked for it"
-    assert "What depth loses" in read.text and "the worst position error, near 0.1, far 10" in read.text
+    assert "Results of this run" in read.text and "no rows" not in read.text
+    assert "Normal accuracy" not in read.text, "nobody asked for it"
+    assert "Depth accuracy" in read.text and "largest position error, near 0.1, far 10" in read.text
     assert not (tmp_path / "run/charts").exists()
     assert run("report", str(tmp_path / "run"), "--charts")[0] == 0
     assert {path.name for path in (tmp_path / "run/charts").iterdir()} == {"depth.png", "depth.svg"}
@@ -75,7 +75,7 @@ def test_markdown_calls_nobody_links_nowhere_and_fits_a_comment(run, tmp_path):
     first = quality_row("@everyone", psnr_db=60.0)
     folder = a_run(tmp_path / "run", {"quality": [first, quality_row(HOSTILE), *many]})
     status, out, _ = run("report", str(folder), "--markdown")
-    assert status == 0 and len(out) <= LONGEST and "`@everyone" in out and out.rstrip().endswith("draws them all.")
+    assert status == 0 and len(out) <= LONGEST and "`@everyone" in out and out.rstrip().endswith("shows them all.")
     outside = re.sub(r"`[^`\n]*`", "", out)
     assert not re.search(r"http|@|\]\(|<(?!/?(details|summary)>)", outside), "what is odd is code"
     assert out.startswith("## normalbench: run\n")
@@ -93,7 +93,7 @@ def test_markdown_of_a_real_run(run, results, tmp_path):
 def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run, results, tmp_path):
     folder, out, _ = results
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-    assert f"The page: {folder / 'report.html'}" in out
+    assert f"Page: {folder / 'report.html'}" in out
     begin = time.process_time()
     status, _, err = run("report", str(folder), "--charts", "-o", str(tmp_path / "page.html"))
     assert status == 0, err
@@ -132,5 +132,5 @@ def test_maps_are_in_the_page_with_means_by_area(results):
     case = quality.QualityCase(Codec(ENCODINGS["xy"], STORAGES["rgba8"]), hemisphere(2**18), "jax")
     measured = quality.measure(case)["angle_mean_deg"]
     (text,) = [alt for alt in alts if alt.startswith("xy rgba8,")]
-    (mean,) = re.findall(r"mean ([\d.]+) degrees towards the viewer", text)
+    (mean,) = re.findall(r"mean ([\d.]+) degrees facing the viewer", text)
     assert float(mean) == pytest.approx(measured, rel=0.01) and "away" not in text, "it cannot hold what faces away"

@@ -198,19 +198,19 @@ def test_surroundings_are_mirrored(laboratory, make):
 
 
 DAMAGED = {
-    "no file": (b"GIF89a", "it is no PNG, Radiance HDR or EXR file"),
+    "no file": (b"GIF89a", "it is not a PNG, Radiance HDR or EXR file"),
     "half an EXR": (pixel_files.exr(bumps(), "none")[:4000], "the file ends too early"),
-    "a packed EXR": (pixel_files.exr(bumps(), "RLE"), "its compression is RLE; none, ZIPS and ZIP are read"),
-    "tiles": (pixel_files.exr(bumps(), flags=0x200), "an EXR with tiles is not read; scanlines of one part are"),
-    "a block": (pixel_files.exr(bumps(), "ZIP")[:-30] + b"\xff" * 30, "a block of it is damaged"),
+    "a packed EXR": (pixel_files.exr(bumps(), "RLE"), "its compression is RLE; use none, ZIPS or ZIP"),
+    "tiles": (pixel_files.exr(bumps(), flags=0x200), "EXR with tiles is not supported; save one part as scanlines"),
+    "a block": (pixel_files.exr(bumps(), "ZIP")[:-30] + b"\xff" * 30, "a block is damaged"),
     "half an HDR": (pixel_files.hdr(sky())[:300], "the file ends too early"),
-    "a long run": (b"#?RADIANCE\n\n-Y 1 +X 9\n\2\2\0\11" + b"\xff\1" * 40, "a run of it is longer than its row"),
-    "a large one": (b"#?RADIANCE\n\n-Y 99999 +X 99999\n", "it has 99999 x 99999 pixels; at most 67108864 are read"),
+    "a long run": (b"#?RADIANCE\n\n-Y 1 +X 9\n\2\2\0\11" + b"\xff\1" * 40, "a run is longer than its row"),
+    "a large one": (b"#?RADIANCE\n\n-Y 99999 +X 99999\n", "it has 99999 x 99999 pixels; the maximum is 67108864"),
     "half of 16 bits": (pixel_files.png16(3e4 + 3e4 * bumps())[:300], "the file ends too early"),
     "no rows of 16 bits": (pixel_files.png16(np.ones((9, 9, 3))).replace(b"IDAT", b"xDAT"), "its rows are damaged"),
     "interlaced": (
         pixel_files.png16(np.ones((9, 9, 3)), True),
-        "its rows of 16 bits are interlaced, which is not read",
+        "16-bit interlaced PNGs are not supported",
     ),
     "half a PNG": (pixel_files.png(np.zeros((9, 9, 3), np.uint8))[:60], "the file ends too early"),
     "no rows": (
@@ -289,7 +289,7 @@ UNKNOWN = [
     ("%%%", "The laboratory's part of the address is damaged"),
     ("A" * 3000, "The laboratory's part of the address is damaged"),
     ({"roughness": 7, "left": "no rgba8", "zoom": 2}, "The address names left no rgba8 and roughness 7 and zoom 2"),
-    ([1], "The laboratory's part of the address is damaged: it holds no controls."),
+    ([1], "The laboratory's part of the address is damaged: it contains no controls."),
 ]
 
 

@@ -69,7 +69,7 @@ def test_imported_devices_have_the_sections_that_their_files_have(run, run_folde
     ]
     assert texts[0] and texts[0] == texts[1].replace(made.CHROMIUM, "Chromium 156")
     status, out, err = run("site", str(tmp_path / "run"), str(tmp_path / "files"), "-o", str(tmp_path / "both"))
-    assert status == 0 and "1 device\n" in out and "is of the same device and browser, and not older" in err
+    assert status == 0 and "1 device\n" in out and "is from the same device and browser and at least as recent" in err
 
 
 def test_every_link_leads_to_a_page_and_a_place_in_it(site, pages):
@@ -145,7 +145,7 @@ def test_the_large_page_is_there_once(site):
 
 def test_two_runs_are_one_line(run, run_folder, tmp_path):
     status, out, err = run("site", str(run_folder), str(run_folder), "-o", str(tmp_path / "site"))
-    assert (status, out, err.count("\n")) == (2, "", 1) and "a site is of one" in err
+    assert (status, out, err.count("\n")) == (2, "", 1) and "name only one" in err
     assert not Path(tmp_path / "site").exists()
 
 

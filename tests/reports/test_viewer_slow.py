@@ -129,7 +129,7 @@ def test_nothing_is_drawn_of_a_codec_without_a_picture(opened):
     opened.page.evaluate("change({ a: 'octahedral rgba8', b: 'spheremap rgba8' })")
     opened.says("[data-pixel=right]", "no picture")
     command = "normalbench run --tables quality --encoding spheremap --storage rgba8"
-    opened.says("[data-lacking]", f"The page has no picture of B, spheremap rgba8. To see one, run: {command}")
+    opened.says("[data-lacking]", f"The page has no images of B, spheremap rgba8. To see one, run: {command}")
     assert opened.texts("#viewer [data-name=right]") == ["spheremap rgba8: no picture"]
     assert not drawn(opened, "right").any() and drawn(opened, "left").std() > 8
     opened.page.evaluate("change({ b: 'xy rgba8' })")

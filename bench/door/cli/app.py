@@ -76,8 +76,8 @@ NO_CACHE, ANEW = "--no-cache", "--anew"
 # What the library that reads values says, and what is said for it.
 PARSERS_WORDS = {
     "Value error, ": "",
-    "Input should be a valid number, unable to parse string as a number": "it takes a number, such as 0.5",
-    "Input should be a valid integer, unable to parse string as an integer": "it takes a whole number, such as 4",
+    "Input should be a valid number, unable to parse string as a number": "expected a number, such as 0.5",
+    "Input should be a valid integer, unable to parse string as an integer": "expected a whole number, such as 4",
 }
 # How soon an interruption is tried again that came at a bad time, in seconds.
 AGAIN_S = 0.02
@@ -96,12 +96,14 @@ def _version(is_asked: bool) -> None:
 
 def every_command(
     _is_asked: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="The version.")
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
     ] = False,
     no_cache: Annotated[
-        bool, typer.Option(NO_CACHE, help="Neither read nor keep instruction counts and compiled programs.")
+        bool, typer.Option(NO_CACHE, help="Do not read or write cached instruction counts and compiled programs.")
     ] = False,
-    anew: Annotated[bool, typer.Option(ANEW, help="Measure again what pick, budget and cost have kept.")] = False,
+    anew: Annotated[
+        bool, typer.Option(ANEW, help="Ignore cached results of pick, budget and cost, and measure again.")
+    ] = False,
     **typed: Any,
 ) -> None:
     """Measure how accurate and how expensive compact normals and G-buffers are."""
@@ -146,25 +148,31 @@ def list_command(
 
 def doctor(
     file: Annotated[
-        Path | None, typer.Argument(help="Your shader file, or the folder of your engine's: GLSL, HLSL, Slang or WGSL.")
+        Path | None, typer.Argument(help="Shader file, or a folder of shader files: GLSL, HLSL, Slang or WGSL.")
     ] = None,
     plot: Annotated[
         Path | None,
-        typer.Option("--plot", help="Draw the encoding's error over the sphere into this file, bad directions marked."),
+        typer.Option(
+            "--plot", help="Plot the encoding's error over the sphere to this file, with bad directions marked."
+        ),
     ] = None,
     storage: Annotated[
         str | None,
         typer.Option(
-            "--storage", help="The storage of the picture and of the comparison with the catalogue. Default: rgba8."
+            "--storage", help="Storage for the plot and for the comparison with the catalogue. Default: rgba8."
         ),
     ] = None,
     domain: Annotated[
         str | None,
-        typer.Option("--domain", help="The normals it is meant for: sphere, hemisphere or view. Default: found out."),
+        typer.Option(
+            "--domain", help="Normals that the encoding is meant for: sphere, hemisphere or view. Default: detected."
+        ),
     ] = None,
     diff: Annotated[
         Path | None,
-        typer.Option("--diff", help="Of a folder: write a patch here that puts better codes in. Nothing is applied."),
+        typer.Option(
+            "--diff", help="Folders only: write a patch with better encodings to this file. Nothing is applied."
+        ),
     ] = None,
     report: Path | None = None,
     format: Format | None = None,
@@ -173,9 +181,9 @@ def doctor(
 ) -> int:
     """Describe this machine, or check a shader file or a folder of them.
 
-    The exit status is 1 if a problem is found. Without a file: versions, cores, the GL device and how it rounds. With
-    one: what its encode and decode do to directions before any storage. With a folder: a line for each pair below it,
-    with the best code of as many bits.
+    The exit status is 1 if a problem is found. Without a file: versions, cores, the OpenGL device and how it rounds.
+    With a file: what encode and decode do to directions before any storage. With a folder: one line per pair in it,
+    with the best encoding of the same bit count.
     """
     require_memory()
     if file is None and plot is None and not any((storage, domain, diff, report, *sources.values())):
@@ -205,7 +213,7 @@ CommitOption = Annotated[
     str | None,
     typer.Option(
         "--commit",
-        help="What history calls the change that is measured. Default: the commit of this folder's Git repository.",
+        help="Name of the measured change in history. Default: the commit of this folder's Git repository.",
         metavar="NAME",
     ),
 ]
@@ -216,7 +224,7 @@ def _run_info() -> CommandInfo:
     return CommandInfo(
         rich_help_panel=Group.ANSWER,
         help="Measure the default suite into a folder, with a report page.\n\n"
-        "A run that was stopped goes on when the same command is run again. With -o a finished run is extended.",
+        "To resume a run that was stopped, run the same command again. With -o a finished run is extended.",
         epilog="Example: normalbench run --tables quality,cost --encoding octahedral,xyz --storage rgb10a2",
         callback=_run_with_options,
     )
@@ -255,7 +263,7 @@ app.command(
 
 @app.command("columns", rich_help_panel=Group.MACHINE, epilog="Example: normalbench columns quality")
 def columns_command(
-    table: Annotated[str, typer.Argument(help="A table, or several, comma-separated, or all.")],
+    table: Annotated[str, typer.Argument(help="Tables, comma-separated, or all.")],
     format: Format | None = None,
     output: Path | None = None,
 ) -> None:
@@ -270,7 +278,9 @@ def check(
     gates: Annotated[Path, typer.Argument(help="A TOML file of [[gate]] tables.")],
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Hold only gates that read one of these files, includes too.", metavar="FILE..."),
+        typer.Argument(
+            help="Check only the gates that use one of these files, directly or by #include.", metavar="FILE..."
+        ),
     ] = None,
     run: Annotated[
         Path | None, typer.Option("--run", help="Take the figures from this results folder. Default: measure them.")
@@ -300,15 +310,15 @@ class FailOn(StrEnum):
 @app.command(rich_help_panel=Group.KEEP, epilog="Example: normalbench compare before after")
 def compare(
     before: Annotated[Path, typer.Argument(help="A results folder.")],
-    after: Annotated[Path, typer.Argument(help="Another one.")],
-    fail_on: Annotated[FailOn, typer.Option("--fail-on", help="What makes the exit status 1.")] = FailOn.never,
+    after: Annotated[Path, typer.Argument(help="Another results folder.")],
+    fail_on: Annotated[FailOn, typer.Option("--fail-on", help="When to exit with status 1.")] = FailOn.never,
     format: Format | None = None,
     output: Path | None = None,
 ) -> int:
     """Compare two runs, the largest changes first.
 
-    Figures are compared exactly, timings only if the change exceeds the noise. For people at most 20 lines; JSON and
-    CSV have every figure that differs.
+    Figures are compared exactly; timings count only if the change exceeds the noise. Tables and Markdown have at most
+    20 lines; JSON and CSV have every figure that differs.
     """
     from ...keep.compare_command import compare_command
 
@@ -320,7 +330,7 @@ def show(
     run: Annotated[Path, typer.Argument(help="A results folder.", metavar="RUN")],
     tables: Annotated[str, typer.Argument(help="Tables to print, comma-separated, or all.", metavar="TABLE")] = "",
 ) -> None:
-    """Print the verdict of each table of a run, or a table."""
+    """Print the verdict of each table of a run, or whole tables."""
     from ...show.show_command import show_command
 
     show_command(run, names(tables))
@@ -335,20 +345,24 @@ class PicturePlace(StrEnum):
 def report(
     run: Annotated[Path, typer.Argument(help="A results folder.", metavar="RUN")],
     markdown: Annotated[
-        bool, typer.Option("--markdown", help="A text for a pull request comment instead, to standard output or -o.")
+        bool,
+        typer.Option("--markdown", help="Write Markdown for a pull request comment instead, to standard output or -o."),
     ] = False,
     pictures: Annotated[
         PicturePlace,
-        typer.Option("--pictures", help="inside: as many as keep the page small; beside: all, in files next to it."),
+        typer.Option(
+            "--pictures", help="inside: as many as keep the page small; beside: all, in files next to the page."
+        ),
     ] = PicturePlace.inside,
     charts: Annotated[
-        bool, typer.Option("--charts", help="Also write every chart as PNG and SVG, into the folder charts next to it.")
+        bool,
+        typer.Option("--charts", help="Also write every chart as PNG and SVG, to the folder charts next to the page."),
     ] = False,
     output: Path | None = None,
 ) -> None:
-    """Write a run as one page that opens offline.
+    """Write a run's report as one page that opens offline.
 
-    The run's own files stay as they are.
+    The run's own files do not change.
     """
     from ...show.report import report_command
 
@@ -442,7 +456,7 @@ def main() -> int:
         why = lack_of_memory()
         if not (why or isinstance(error, MemoryError)):
             raise
-        _say(why or f"not enough memory: {str(error) or 'the system gives no more'}; measure less at once")
+        _say(why or f"not enough memory: {str(error) or 'the system has no more'}; measure less at once")
         return MissingError.exit_code
     except OSError as error:
         # Standard output has no name.

@@ -27,7 +27,7 @@ from .names import NAMES, completion_of
 from .shared import FILES, WRITTEN, marks, split
 
 # A panel of a command's help.
-MEASURED = "What is measured"
+MEASURED = "Measurement"
 
 
 MOST_OPTIONS = 12
@@ -135,7 +135,7 @@ class Grouped(TyperGroup):
             formatter.write(f"{group}:\n")
             formatter.write("".join(f"  {name:<10}{self._lead(name)}\n" for name in names if name not in FURTHER))
         formatter.write(f"More: {', '.join(sorted(FURTHER))}\n")
-        formatter.write(f"COMMAND --help shows the options of a command, {HELP_ALL} everything.\n")
+        formatter.write(f"COMMAND --help shows the options of a command; {HELP_ALL} shows everything.\n")
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the first paragraph of each command's help under the title of its group."""

@@ -11,13 +11,11 @@ from ...ground.output.writing import check_is_folder
 from ...tables.table import Group
 
 Files = Annotated[
-    list[Path], typer.Argument(help='Device files, which a page saves by "Save this device".', metavar="FILE...")
+    list[Path], typer.Argument(help='Device files, saved with "Save this device" on a page.', metavar="FILE...")
 ]
 Folders = Annotated[
     list[Path],
-    typer.Argument(
-        help="A run's folder, folders of device files, or both; folders in these count.", metavar="FOLDER..."
-    ),
+    typer.Argument(help="A run's folder, folders of device files, or both; subfolders count too.", metavar="FOLDER..."),
 ]
 
 
@@ -30,9 +28,9 @@ def add_devices(app: typer.Typer) -> None:
 
 
 def import_command(files: Files, output: Path | None = None) -> int:
-    """Add readers' devices to a run, for its page to show.
+    """Add devices that readers measured to a run, for its page to show.
 
-    Of one GPU in one browser the newest file stays. All files are checked before any is added.
+    For each GPU and browser the newest file is kept. All files are checked before any is added.
     """
     from ...show.import_command import import_command as add
 
@@ -40,10 +38,10 @@ def import_command(files: Files, output: Path | None = None) -> int:
 
 
 def site_command(folders: Folders, output: Path = Path("site")) -> int:
-    """Make a static website of a run, of readers' devices, or of both.
+    """Make a static website from a run, readers' devices, or both.
 
-    It has the laboratory, the answer, and a page for each encoding. Devices are a list to search, with the codec to
-    take on each.
+    The site has the laboratory, the answer and a page for each encoding. A searchable list of devices gives the codec
+    to use on each.
     """
     from ...show.site_command import site_command as make
 

@@ -33,7 +33,7 @@ def format_of(format: Format | None, output: Path | None) -> Format:
         UsageError: a file whose name promises a page, a chart, or a format that is not written.
     """
     if not format and output and (other := OTHERS.get(output.suffix.lower())):
-        raise UsageError(f"-o writes rows, not {output.name}; {other} {output} does, where a command has it")
+        raise UsageError(f"-o writes only rows; for {output.name} use {other} {output}, if the command has that option")
     if output and output.suffix.lower() in NOT_WRITTEN:
-        raise UsageError(f"-o writes no {output.suffix}; name it {output.with_suffix('.csv').name}, or .json")
+        raise UsageError(f"-o cannot write {output.suffix} files; use {output.with_suffix('.csv').name}, or .json")
     return format or (ENDINGS.get(output.suffix.lower()) if output else None) or Format.table

@@ -13,9 +13,10 @@ from ...tables.table import Group
 from .formats import Format, format_of
 
 Runs = Annotated[
-    list[Path], typer.Argument(help="Results folders, or folders that hold some.", metavar="RUN...", show_default=False)
+    list[Path],
+    typer.Argument(help="Results folders, or folders that contain some.", metavar="RUN...", show_default=False),
 ]
-SHOWN = "What is shown"
+SHOWN = "Selection"
 
 
 class By(StrEnum):
@@ -27,14 +28,16 @@ ByOption = Annotated[
     By,
     typer.Option(
         "--by",
-        help="change: where figures got worse, or better than ever; commit: the figures themselves.",
+        help="change: where figures got worse, or better than ever; commit: the figures at each commit.",
         rich_help_panel=SHOWN,
     ),
 ]
 Tables = Annotated[str | None, typer.Option("--tables", help="Tables, comma-separated.", rich_help_panel=SHOWN)]
-Encoding = Annotated[str | None, typer.Option("--encoding", help="Encodings.", rich_help_panel=SHOWN)]
-Storage = Annotated[str | None, typer.Option("--storage", help="Storages.", rich_help_panel=SHOWN)]
-Column = Annotated[str | None, typer.Option("--column", help="Figures, by their columns.", rich_help_panel=SHOWN)]
+Encoding = Annotated[str | None, typer.Option("--encoding", help="Encodings, comma-separated.", rich_help_panel=SHOWN)]
+Storage = Annotated[str | None, typer.Option("--storage", help="Storages, comma-separated.", rich_help_panel=SHOWN)]
+Column = Annotated[
+    str | None, typer.Option("--column", help="Columns of the figures, comma-separated.", rich_help_panel=SHOWN)
+]
 
 
 def add_history(app: typer.Typer) -> None:
@@ -54,8 +57,8 @@ def history(
 ) -> int:
     """Find the commit at which a figure got worse, over many runs.
 
-    Figures are judged as compare does. A time counts where many runs of one machine before and behind a commit agree.
-    A run knows the commit of the folder that it was started in; see run --commit.
+    Figures are judged as in compare. A time counts only if many runs of one machine before and after a commit agree.
+    A run records the commit of the folder that it was started in; see run --commit.
     """
     from ...keep.history_command import Wanted, history_command
 

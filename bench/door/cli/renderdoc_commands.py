@@ -27,9 +27,9 @@ def renderdoc(
 ) -> int:
     """Print a script that saves a capture's G-buffer in RenderDoc.
 
-    It writes EXR files, and says which commands measure them.
+    The script writes EXR files and prints the commands that measure them.
 
-    In RenderDoc, open the capture and run the script by Window > Python Shell; or: python3 SCRIPT frame.rdc
+    In RenderDoc, open the capture and run the script in Window > Python Shell. Or run: python3 SCRIPT frame.rdc
     """
     write_text(lambda: SCRIPT.read_text(encoding="utf-8"), script)
     return 0

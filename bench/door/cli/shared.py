@@ -16,11 +16,11 @@ from ...ground.output.errors import UsageError
 from ...run.workers.words import HELP
 from .formats import Format
 
-OUTPUT = "Write the rows to this file, or the page or the folder that a command makes. A stopped command then goes on."
-FORMAT = f"{', '.join(Format)}. Default: as the name of -o ends, or table."
-REPORT = "Write a page of what is measured, with its charts and pictures, to this file."
+OUTPUT = "Write the rows, page or folder that the command makes to this path. A stopped command can then be resumed."
+FORMAT = f"{', '.join(Format)}. Default: by the extension of -o, or table."
+REPORT = "Write a page with the results, charts and pictures to this file."
 # Panels of the program's help.
-WRITTEN, SHADERS, FILES = "What is written", "How shader files are read", "How files of normals are read"
+WRITTEN, SHADERS, FILES = "Output", "Shader files", "Files of normals"
 # Where rows go, by the names that commands have for it in Python.
 WRITES: Mapping[str, Any] = MappingProxyType(
     {

@@ -87,7 +87,7 @@ def _stray(word: str, made: Sequence[str], by_flag: dict[str, Any]) -> UsageErro
     flag = made[-2] if len(made) > 1 else ""
     if flag in by_flag and _takes(by_flag[flag], str):
         return UsageError(f"separate names by commas: {flag} {made[-1]},{word}")
-    return UsageError(f"{word} stands after no option; say for example {next(iter(by_flag))} {word}")
+    return UsageError(f"unexpected argument {word}; did you mean {next(iter(by_flag))} {word}?")
 
 
 def _option_of(word: str, by_flag: dict[str, Any]) -> tuple[str, Any]:

@@ -52,7 +52,7 @@ def read_baseline(path: Path) -> dict[str, Entry]:
     try:
         entries = file_json(path)
         if not isinstance(entries, list):
-            raise ValueError("it holds something else")
+            raise ValueError("it is not a list of entries")
     except (OSError, ValueError) as error:
         raise UsageError(f"{path} is not a baseline: {error}") from error
     from ...keep.schema import check_entry
@@ -126,14 +126,14 @@ class Baseline:
         before = self._read.get(_text(one))
         if before is None:
             row_name = f"{_name(one)}{self._other_compilers(one)}"
-            raise NoRowError(f"{self.path} has no row {row_name}; {self.writer} writes it", row_name)
+            raise NoRowError(f"{self.path} has no row {row_name}; write it with {self.writer}", row_name)
         lines = list(changes(before["row"], one["row"], tolerances))
         if lines and before.get("listing") and one.get("listing"):
             changed = list(listing_differences(before["listing"], one["listing"]))
-            lines.append("\n  ".join(["its instructions, with + and - where they changed:", *changed]))
+            lines.append("\n  ".join(["instructions, with changes marked + and -:", *changed]))
         devices = [row.get("device") for row in (before["row"], one["row"])]
         if lines and devices[0] != devices[1]:
-            lines.append(f"measured on {devices[1]}, the baseline on {devices[0]}")
+            lines.append(f"measured on {devices[1]}, baseline measured on {devices[0]}")
         return lines
 
     def _other_compilers(self, one: Entry) -> str:
@@ -167,8 +167,8 @@ def changes(before: Row, after: Row, tolerances: Mapping[str, float]) -> Iterato
     for column in dict.fromkeys([*before, *after]):
         previous, other = before.get(column), after.get(column)
         if column not in HOW and not same(previous, other) and not _near(previous, other, tolerances.get(column, 0.0)):
-            allowed = f", tolerated {tolerances[column]:g}" if column in tolerances else ""
-            yield f"{column} is {other}, the baseline says {previous} ({difference(previous, other)}{allowed})"
+            allowed = f", tolerance {tolerances[column]:g}" if column in tolerances else ""
+            yield f"{column} is {other}, but {previous} in the baseline ({difference(previous, other)}{allowed})"
 
 
 def _near(one: Any, other: Any, tolerance: float) -> bool:
@@ -179,7 +179,7 @@ def checked_tolerances(tolerances: Mapping[str, Any], columns: Sequence[str]) ->
     """Return the tolerances. Raises UsageError for an unknown column or a value that is not a tolerance."""
     for column, value in tolerances.items():
         if column not in columns:
-            raise UsageError(f"no column {column!r}; there are {', '.join(columns)}")
+            raise UsageError(f"no column {column!r}; known: {', '.join(columns)}")
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
-            raise UsageError(f"{column}: a tolerance is a number from 0, not {value!r}")
+            raise UsageError(f"{column}: a tolerance must be a number from 0 up, not {value!r}")
     return dict(tolerances)

@@ -24,7 +24,7 @@ def check_command(
     """
     chosen_gates, baselines = read_gates(gates), Baselines(writes)
     if files and not (chosen_gates := gates_that_read(files, chosen_gates, gates)):
-        tell(f"no gate of {gates} reads {', '.join(map(str, files))}")
+        tell(f"no gate in {gates} uses {', '.join(map(str, files))}")
         return 0
     if writes:
         _check_baselines(gates, chosen_gates, run)
@@ -48,14 +48,14 @@ def check_command(
     write(rows, format, output, ("table",))
     failed = sum(row["holds"] == "FAIL" for row in rows)
     if failed:
-        tell(f"{failed} of {len(rows)} limits do not hold")
+        tell(f"{failed} of {len(rows)} thresholds failed")
     return int(failed > 0)
 
 
 def _check_baselines(path: Path, gates: Sequence[Gate], run: Path | None) -> None:
     """Raise UsageError if there is no baseline to write, or it cannot be written."""
     if run:
-        raise UsageError("--write-baseline writes what is measured now; leave out --run")
+        raise UsageError("--write-baseline cannot be used with --run")
     named = dict.fromkeys(gate.baseline for gate in gates if gate.baseline)
     if not named:
         raise UsageError(f'{path}: no gate names a baseline; add {BASELINE} = "costs.json" to one')

@@ -58,7 +58,7 @@ class Gate:
                 # A name without an ending may be one of the catalogue's.
                 lost = [path for path in files_in(word) if Path(path).suffix and path not in there]
                 if lost:
-                    reason = f"{lost[0]} is in this shell's folder, and paths are relative to the file of gates"
+                    reason = f"{lost[0]} is in the current folder, but paths are relative to the gates file"
                     raise UsageError(f"{name}: {reason}; write {os.path.relpath(lost[0], self.folder)}")
         return located(self.table, self.options, self.folder)
 
@@ -82,11 +82,11 @@ def read_gates(path: Path) -> list[Gate]:
         raise UsageError(f"{path}: {error}") from error
     gates = data.get("gate")
     if other := sorted(set(data) - {"gate"}):
-        raise UsageError(f"{path}: {other[0]!r} is not known; a file of gates has only [[gate]] tables")
+        raise UsageError(f"{path}: unknown key {other[0]!r}; a gates file has only [[gate]] tables")
     if not isinstance(gates, list) or not all(isinstance(gate, dict) for gate in gates):
-        raise UsageError(f"{path}: there is no [[gate]] table in it")
+        raise UsageError(f"{path}: no [[gate]] table")
     if not 1 <= len(gates) <= MAX_GATES:
-        raise UsageError(f"{path}: {len(gates)} gates; from 1 to {MAX_GATES}")
+        raise UsageError(f"{path}: {len(gates)} gates; a file may have 1 to {MAX_GATES}")
     return [_gate(f"{path}, gate {number}", values, path.parent) for number, values in enumerate(gates, 1)]
 
 
@@ -94,10 +94,10 @@ def _gate(place: str, values: dict[str, Any], folder: Path) -> Gate:
     named = values.pop(BASELINE, None)
     try:
         if named is not None and not (isinstance(named, str) and named):
-            raise UsageError(f"{BASELINE} is {named!r}; it must be a file's name")
+            raise UsageError(f"{BASELINE} is {named!r}; it must be a file name")
         for name, value in values.items():
             if not isinstance(value, str | int | float):
-                raise UsageError(f"{name} is {value!r}; it must be a text or a number")
+                raise UsageError(f"{name} is {value!r}; it must be text or a number")
         table = table_named(values.pop("table", USUAL))
         raw_options, limits = split_limits(values, table, may_lack=named is not None)
         known = fields_of(table.options)
@@ -132,7 +132,7 @@ def measured_for(gate: Gate) -> list[Found]:
 def _rows_of_run(run: Path) -> Measure:
     done = read_run(run)
     if done.damage:
-        raise UsageError(f"{done.damage}; measure it anew")
+        raise UsageError(f"{done.damage}; measure it again")
     tables = done.tables
 
     def rows(gate: Gate) -> list[Found]:
@@ -142,15 +142,15 @@ def _rows_of_run(run: Path) -> Measure:
         for option in gate.options:
             if not gate.table.column(option):
                 keys = ", ".join(column.name for column in gate.table.of_role(Role.KEY))
-                raise UsageError(f"{gate.place}: rows of {name} have no {option!r}; they are named by {keys}")
+                raise UsageError(f"{gate.place}: rows of {name} have no {option!r}; their keys are {keys}")
             if not any(_is(row.get(option), gate.options[option]) for row in tables[name]):
                 there = ", ".join(dict.fromkeys(str(row.get(option)) for row in tables[name]))
                 wanted = f"{option} {typed(gate.options[option])!r}"
-                raise UsageError(f"{gate.place}: no row of {name} in {run} has {wanted}; there are {there}")
+                raise UsageError(f"{gate.place}: no row of {name} in {run} has {wanted}; values there: {there}")
         rows = [row for row in _finished(done, gate, run) if all(_is(row.get(n), v) for n, v in gate.options.items())]
         if not rows:
             asked = ", ".join(f"{option} {typed(value)!r}" for option, value in gate.options.items())
-            raise UsageError(f"{gate.place}: {run} has rows with each of {asked}, but none with all of them")
+            raise UsageError(f"{gate.place}: no row in {run} combines {asked}")
         for limit in gate.limits:
             _check_was_measured(gate, limit, rows, run)
         return [Found(row, lambda: None) for row in rows]
@@ -165,7 +165,7 @@ def _finished(done: Done, gate: Gate, run: Path) -> list[Row]:
         return done.finished_rows(name)
     except UNEXPECTED as error:
         raise UsageError(
-            f"{gate.place}: the rows of {name} in {run} are not those of this version; {done.remedy(name)}"
+            f"{gate.place}: the rows of {name} in {run} do not match this version; {done.remedy(name)}"
         ) from error
 
 

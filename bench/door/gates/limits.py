@@ -39,10 +39,10 @@ class Limit:
         column = table.column(self.column)
         if column is None:
             figures = ", ".join(c.name for c in table.of_role(Role.FIGURE, Role.TIME))
-            raise UsageError(f"{table.name}: no column {self.column!r}; figures are {figures}")
+            raise UsageError(f"{table.name}: no column {self.column!r}; figures: {figures}")
         if column.role not in (Role.FIGURE, Role.TIME):
             raise UsageError(
-                f"{table.name}: {self.column} is not a figure; `normalbench columns {table.name}` lists them"
+                f"{table.name}: {self.column} is not a figure; `normalbench columns {table.name}` lists the figures"
             )
 
     def option_of(self, table: Table) -> str:
@@ -57,7 +57,7 @@ class Limit:
             UsageError: the row has no such column.
         """
         if self.column not in row:
-            raise UsageError(f"no column {self.column!r}; there are {', '.join(row)}")
+            raise UsageError(f"no column {self.column!r}; known: {', '.join(row)}")
         figure = row[self.column]
         if self.holds(figure):
             return None
@@ -97,7 +97,7 @@ def limit(column: str, text: Any) -> Limit | None:
 
 def not_a_limit(column: str, value: Any) -> UsageError:
     """Return the error for a value that is not a limit."""
-    return UsageError(f'{column}: {value!r} is not a limit; say "at least 47.5" or "at most 0.95"')
+    return UsageError(f'{column}: {value!r} is not a threshold; write "at least 47.5" or "at most 0.95"')
 
 
 def split_limits(
@@ -112,5 +112,5 @@ def split_limits(
     if not limits and figures:
         raise not_a_limit(figures[0], values[figures[0]])
     if not limits and not may_lack:
-        raise UsageError('no limit given; add for example psnr_db = "at least 47.5"')
+        raise UsageError('no threshold given; add for example psnr_db = "at least 47.5"')
     return options, limits

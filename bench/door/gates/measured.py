@@ -78,7 +78,7 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
         ask = asked(table, options)
     # What is named and not there would pass unseen; of "all" some never fit.
     if left_out and ("all",) not in given.values():
-        raise UsageError(f"a row that is asked for cannot be measured: {left_out[0]}")
+        raise UsageError(f"a requested row cannot be measured: {left_out[0]}")
     done = find_measured(ask, Nothing())
     # By name: a finished row may be another object.
     step_of = {table.name_of(row): step for step, rows in zip(ask.steps, done.kept, strict=True) for row in rows}

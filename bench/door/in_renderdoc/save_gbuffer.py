@@ -100,7 +100,7 @@ def planes(data, layout, kind, width, count, bgra=False):
         numbers = regular(data, kind, width)
         channels = [list(numbers[channel::count]) for channel in range(count)]
     else:
-        raise ValueError(f"formats like {layout} are not read")
+        raise ValueError(f"formats like {layout} are not supported")
     return [channels[2], channels[1], channels[0], *channels[3:]] if bgra else channels
 
 
@@ -304,16 +304,16 @@ def say_description(folder, said, targets):
         for name, source in guessed(targets).items()
     ]
     if held:
-        say(f"{where}: guessed by the targets' names: {', '.join(held)}")
+        say(f"{where}: guessed from the targets' names: {', '.join(held)}")
     lacks = [name for name in said if said[name] is None and name != "view_matrix"]
     if lacks:
         say(
-            f"{where}: null stands for what is not known: {', '.join(lacks)}. "
+            f"{where}: null marks what is not known: {', '.join(lacks)}. "
             'Write {"file": "FILE.exr", "channel": "R"}, or "channels": "R,G,B" for a colour'
         )
     needed = [name for name in NEEDED if name in lacks]
     command = f"normalbench budget --bytes 12,16 --scene {where}"
-    return f"# once it has {', '.join(needed)}: {command}" if needed else command
+    return f"# once you have filled in {', '.join(needed)}: {command}" if needed else command
 
 
 def planes_of_projection(rows, lowest):
@@ -353,7 +353,8 @@ def of_normals(folder, target, matrices, options):
     read = f"--normals {folder / target['file']} {target['normals']}{options}"
     lines = [f"normalbench quality {read} --storage rg8,rgb10a2 --encoding octahedral"]
     for name in views(matrices):
-        lines.append(f"# if they are in world space, add: --space world --view-matrix {folder / file_of_matrix(name)}")
+        world = f"--space world --view-matrix {folder / file_of_matrix(name)}"
+        lines.append(f"# if the normals are in world space, add: {world}")
     return lines
 
 
@@ -387,12 +388,12 @@ def chosen(controller, rd, event):
     draws = [action for action in all_actions(controller.GetRootActions()) if action.flags & rd.ActionFlags.Drawcall]
     if event is not None:
         draws = [draw for draw in draws if draw.eventId == event]
-        return draws[0] if draws else sys.exit(f"no draw has the number {event}")
+        return draws[0] if draws else sys.exit(f"no draw has event number {event}")
     several = [draw for draw in draws if len(targets_of(draw, rd)) > 1] or [
         draw for draw in draws if targets_of(draw, rd)
     ]
     if not several:
-        sys.exit("no draw of the capture writes a target")
+        sys.exit("no draw in the capture writes to a render target")
     sets = [targets_of(draw, rd) for draw in several]
     most = max(sets, key=sets.count)
     return [draw for draw in several if targets_of(draw, rd) == most][-1]
@@ -507,7 +508,7 @@ class Saving:
             try:
                 kept[name] = self.target(self.textures[number], file_name(name, index, kept), mask)
             except ValueError as why:
-                say(f"{name} is left out: {why}")
+                say(f"skipped {name}: {why}")
         return kept
 
     def matrices(self):
@@ -530,7 +531,10 @@ def save(controller, rd, folder, event=None):
     kept = {"event": saving.action.eventId, "targets": targets, "matrices": matrices, "commands": lines}
     write_text(folder / "gbuffer.json", json.dumps({**scene, "capture": kept}, indent=1))
     if not any(target["normals"] for target in targets.values()):
-        say("No target holds unit normals. If one holds a code, write what your shader decodes into a float target.")
+        say(
+            "No target holds unit normals. If a target holds encoded normals, write what your shader decodes to a "
+            "float target."
+        )
     say("\n".join([*lines, say_description(folder, scene, targets)]))
 
 

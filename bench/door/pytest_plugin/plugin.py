@@ -25,20 +25,22 @@ if TYPE_CHECKING:
 
 MARKER = (
     'normalbench(table="quality", encoding=..., psnr_db="at least 49.5", ...): measure with these options, which are '
-    "those of the table's command, and hold columns of the rows to limits before the test runs."
+    "those of the table's command, and check the rows against these thresholds before the test runs."
 )
 KEPT = "normalbench_baseline"
 REPORTED = pytest.StashKey[list[str]]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    group = parser.getgroup("normalbench", "normalbench: for tests that do not say otherwise")
+    group = parser.getgroup("normalbench", "normalbench: defaults for tests that set nothing else")
     for name, fields in mirrored().items():
         group.addoption(flag(name), dest=destination(name), default=None, **_parsed(fields))
     group.addoption(
-        flag(REQUIRE_GL), action="store_true", help="Without a GL driver fail tests that need one. Default: skip them."
+        flag(REQUIRE_GL),
+        action="store_true",
+        help="Fail tests that need OpenGL if there is no driver. Default: skip them.",
     )
-    group.addoption(flag(BASELINE), metavar="FILE", help="What .matches_baseline() compares rows with.")
+    group.addoption(flag(BASELINE), metavar="FILE", help="Baseline file for .matches_baseline().")
     group.addoption(flag(WRITE_BASELINE), action="store_true", help="Write the baseline instead of comparing with it.")
 
 
@@ -63,7 +65,7 @@ def _check_baseline(path: Path | None) -> None:
     from ...ground.output.writing import check_writable
 
     if not path:
-        raise pytest.UsageError(f"{flag(WRITE_BASELINE)} needs {flag(BASELINE)} FILE")
+        raise pytest.UsageError(f"{flag(WRITE_BASELINE)} requires {flag(BASELINE)} FILE")
     try:
         check_writable(path, makes_folder=True)
     except UsageError as error:

@@ -99,7 +99,7 @@ class Measured:
     @ends_here
     def __getitem__(self, column: str) -> Any:
         if len(self.found) != 1:
-            raise UsageError(f"there are {len(self.found)} rows; take one of .rows")
+            raise UsageError(f"there are {len(self.found)} rows; choose one from .rows")
         self._skip_where_lacking()
         return self.rows[0][column]
 
@@ -112,7 +112,7 @@ class Measured:
             UsageError: a column is unknown, or its value is not a limit.
         """
         if not limits:
-            raise UsageError('no limit given; add for example psnr_db="at least 47.5"')
+            raise UsageError('no threshold given; add for example psnr_db="at least 47.5"')
         self.hold(_checked_limit(column, text) for column, text in limits.items())
 
     def hold(self, limits: Iterable[Limit]) -> None:
@@ -140,7 +140,7 @@ class Measured:
         """
         baseline = self.session.baseline
         if not baseline:
-            raise UsageError("no baseline is named; --normalbench-baseline FILE names one")
+            raise UsageError("no baseline; name one with --normalbench-baseline FILE")
         checked_tolerances(tolerances, list(self.rows[0]))
         wrong: list[tuple[Found, list[str]]] = []
         for measurement in self._measurable():

@@ -63,9 +63,9 @@ def encoding(
         glsl: a file with its GLSL twin; without one, rows by GLSL say that it is missing.
     """
     if not name.isidentifier() or components not in CODES:
-        raise UsageError(f"encoding {name!r}: the name is an identifier, and components are 2 or 3")
+        raise UsageError(f"encoding {name!r}: the name must be an identifier, and components must be 2 or 3")
     if name in ENCODINGS:
-        raise UsageError(f"encoding {name!r}: the catalogue has one of this name; choose another name")
+        raise UsageError(f"encoding {name!r} already exists in the catalogue; choose another name")
     twin = glsl or Path(f"{name}.glsl")
     return Encoding(name, name, encode, decode, components, domain, "the caller's own", twin, (0, 0), "not compared")
 
@@ -154,7 +154,7 @@ def decode(codec: Codec | str, codes: Any, view: Any = None) -> Any:
     chosen = codec_of(codec)
     values = jnp.asarray(codes.values if isinstance(codes, Codes) else codes)
     if jnp.issubdtype(values.dtype, jnp.integer):
-        raise UsageError(f"codes are of {values.dtype}; decode takes what encode gave, or its values in [-1, 1]")
+        raise UsageError(f"codes are of {values.dtype}; decode takes the result of encode, or its values in [-1, 1]")
     values = values.astype(jnp.float32)
     size = chosen.encoding.components + chosen.encoding.sign_bits
     if values.ndim < 1 or values.shape[-1] != size:
@@ -166,7 +166,7 @@ def decode(codec: Codec | str, codes: Any, view: Any = None) -> Any:
 def _planes(what: str, array: Any) -> Vec3:
     array = jnp.asarray(array, jnp.float32)
     if array.ndim < 1 or array.shape[-1] != 3:
-        raise UsageError(f"{what} have shape {array.shape}; (..., 3) is needed")
+        raise UsageError(f"{what} have shape {array.shape}, but (..., 3) is needed")
     return from_array(array)
 
 

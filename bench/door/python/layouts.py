@@ -97,8 +97,8 @@ def _check_names(what: str, given: Mapping[str, Any], wanted: Mapping[str, Any] 
     """Raise UsageError if the names are not the wanted ones."""
     if set(given) != set(wanted):
         lacking, odd = sorted(set(wanted) - set(given)), sorted(set(given) - set(wanted))
-        wrong = [f"lacks {', '.join(lacking)}"] * bool(lacking) + [f"has no {', '.join(odd)}"] * bool(odd)
-        raise UsageError(f"{what} {' and '.join(wrong)}; it has {', '.join(wanted) or 'none'}")
+        wrong = [f"lacks {', '.join(lacking)}"] * bool(lacking) + [f"cannot have {', '.join(odd)}"] * bool(odd)
+        raise UsageError(f"{what} {' and '.join(wrong)}; expected: {', '.join(wanted) or 'none'}")
 
 
 def _ran(code: GBufferCode, rows: np.ndarray, settings: Mapping[str, Any], shape: tuple[int, ...]) -> np.ndarray:

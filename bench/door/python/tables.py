@@ -80,7 +80,7 @@ def function_of(name: str) -> Callable[..., Rows]:
     call.__name__ = call.__qualname__ = name
     call.__signature__ = inspect.Signature(parameters, return_annotation=Rows)  # pyright: ignore[reportFunctionMemberAccess]
     arguments = "".join(f"\n    {n}: {f.option.help}" for n, f in known.items()) + f"\n    on: {HELP}"
-    call.__doc__ = f"{table.help}\n\nArgs:{arguments}\n\nReturns:\n    a pandas DataFrame, a line for each row.\n"
+    call.__doc__ = f"{table.help}\n\nArgs:{arguments}\n\nReturns:\n    a pandas DataFrame with one line per row.\n"
     return call
 
 
@@ -114,21 +114,17 @@ def _check_unit(name: str, array: np.ndarray) -> None:
     if not np.issubdtype(array.dtype, np.floating):
         raise UsageError(f"normals: {name} is of {array.dtype}; give floats in [-1, 1]")
     if not np.isfinite(array).all():
-        raise UsageError(
-            f"normals: {name} has numbers that are NaN or infinite; set those normals to 0 to leave them out"
-        )
+        raise UsageError(f"normals: {name} contains NaN or infinity; set these normals to 0 to leave them out")
     lengths = np.linalg.norm(array.reshape(-1, 3).astype(np.float64), axis=1)
     off = np.mean(abs(lengths[lengths > 0] - 1) > UNIT_WITHIN) if (lengths > 0).any() else 1.0
     if off > OFF_UNIT_SHARE:
-        raise UsageError(f"normals: {off:.1%} of {name} are not unit vectors; divide by their lengths, or unpack them")
+        raise UsageError(f"normals: {off:.1%} of {name} are not unit vectors; normalise or unpack them")
 
 
 def _depths(name: str, array: np.ndarray) -> np.ndarray:
     if array.ndim != 2 or not array.size or not (np.issubdtype(array.dtype, np.floating) or array.dtype.kind == "u"):
         description = f"of {array.dtype} and shape {array.shape}"
-        raise UsageError(
-            f"depths: {name} is {description}; give floats or unsigned whole numbers of shape (height, width)"
-        )
+        raise UsageError(f"depths: {name} is {description}; give floats or unsigned integers of shape (height, width)")
     return array
 
 
@@ -138,9 +134,9 @@ def _value(key: str, name: str, value: Any) -> Any:
     if key == "depths":
         return _depths(name, array)
     if key != "normals" or array.ndim < 2 or array.shape[-1] != 3 or not array.size:
-        raise UsageError(f"{key}: {name} stands for an array of normals of shape (count, 3) or (height, width, 3)")
+        raise UsageError(f"{key}: {name} must be an array of normals of shape (count, 3) or (height, width, 3)")
     if name in NORMAL_SETS:
-        raise UsageError(f"normals: {name} is a set of normalbench's own; call yours otherwise")
+        raise UsageError(f"normals: {name} is a built-in set; use another name")
     _check_unit(name, array)
     array = array.astype(np.float32)
     flat = array.reshape(-1, 3)

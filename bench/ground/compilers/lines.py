@@ -82,6 +82,6 @@ def with_known_directives(text: str, kept: re.Pattern[str] | None = None) -> str
         name = match[1]
         if name in KNOWN or (kept and kept.fullmatch(match[0].strip())):
             return match[0]
-        return "" if name in _LEFT_OUT or not match[0].strip("# \t") else f"#error #{name} is not read"
+        return "" if name in _LEFT_OUT or not match[0].strip("# \t") else f"#error #{name} is not supported"
 
     return DIRECTIVE.sub(known, text)

@@ -20,7 +20,7 @@ from weakref import finalize
 from ..output.errors import MissingError
 from .text import RefusedError, Text, judged
 
-MISSING = "no Slang: its compiler is not there; install it (pip install slangpy)"
+MISSING = "no Slang: its compiler is not installed; install it (pip install slangpy)"
 # Packages with the library in one of these folders. None of them is imported: they need what is not installed.
 WHEELS, FOLDERS = ("slangpy", "slangtorch"), ("", "bin", "lib")
 NAMES = ("libslang-compiler.so*", "slang-compiler.dll", "libslang-compiler*.dylib", "libslang.so*", "slang.dll")
@@ -74,7 +74,7 @@ class Api:
         make = self.function("slang_createGlobalSession2", c.c_int, c.POINTER(_Description), c.POINTER(c.c_void_p))
         self.session = c.c_void_p()
         if make(c.byref(_Description(c.sizeof(_Description), 0, LANGUAGE, True)), c.byref(self.session)):
-            raise MissingError(f"{path_of_library()}: Slang's compiler does not start; install it anew")
+            raise MissingError(f"{path_of_library()}: Slang's compiler does not start; reinstall it")
         text, pointer, number = c.c_char_p, c.c_void_p, c.c_uint
         self.request = self.function("spCreateCompileRequest", pointer, pointer)
         self.destroy = self.function("spDestroyCompileRequest", None, pointer)
@@ -182,7 +182,7 @@ def _expanded(words: Sequence[str]) -> str:
         RefusedError: the output cannot be captured here, so nothing would be judged.
     """
     if not _is_seen(Path(words[0]).with_name("seen.slang")):
-        raise RefusedError(0, "Slang's compiler does not say what its preprocessor makes of it")
+        raise RefusedError(0, "Slang's compiler does not print the output of its preprocessor")
     return _printed(words)
 
 

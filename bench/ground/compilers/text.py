@@ -108,7 +108,7 @@ RULES: Mapping[str, Rules] = MappingProxyType(
 _ODD = re.compile(r"\\[^\S\n]*$|//|/\*|%:|\?\?", re.M)
 # Of native code: what begins an attribute of C++ and of C.
 _ATTRIBUTE = re.compile(r"\[\s*\[|<:|\b__attribute")
-_REASONS = {"/": "a comment", "\\": "a line that goes on", "%": "another way to write #", "?": "a trigraph"}
+_REASONS = {"/": "a comment", "\\": "a line continuation", "%": "a digraph", "?": "a trigraph"}
 # A # in a line that is no directive, or a second one in a directive that is no macro and no message.
 _INNER = re.compile(r"^[ \t]*[^\s#][^\n#]*#|^[ \t]*#[ \t]*(?!define\b|error\b|warning\b)[^\n#]*#", re.M)
 _WORD = re.compile(r"[^\W\d]\w*")
@@ -139,7 +139,7 @@ def judged(
     _check_directives(text, rules)
     plain = Text(text, is_own=False)
     if rules.words is not None and expanded is None and "##" in text:
-        raise _refusal_at(text, text.index("##"), "a macro that joins words is not read here")
+        raise _refusal_at(text, text.index("##"), "a macro that joins words is not supported here")
     if rules.words is not None:
         words = _WORD.findall(_without_heads(text, rules) if expanded is None else expanded(plain))
         _check_words(text, dict.fromkeys(words), rules, knows)
@@ -150,12 +150,12 @@ def own(*files: Path, **numbers: int | str) -> Text:
     """Return files of this program as one text, with macros in front.
 
     Raises:
-        ValueError: a file is none of this program's, or a macro is no number and no name.
+        ValueError: a file is none of this program's, or a macro is neither a number nor a name.
     """
     if strange := [path for path in files if not is_own_file(path)]:
-        raise ValueError(f"{strange[0]} is no file of normalbench")
+        raise ValueError(f"{strange[0]} is not a file of normalbench")
     if odd := [value for value in numbers.values() if not re.fullmatch(r"-?[\w.]+", str(value))]:
-        raise ValueError(f"{odd[0]!r} is no number and no name")
+        raise ValueError(f"{odd[0]!r} is neither a number nor a name")
     macros = [f"#define {name} {value}" for name, value in numbers.items()]
     return Text("\n".join([*macros, *(path.read_text(encoding="utf-8") for path in files)]), is_own=True)
 
@@ -168,13 +168,13 @@ def is_own_file(path: Path) -> bool:
 def _check_letters(text: str, rules: Rules) -> None:
     if not text.replace("\n", "").replace("\t", "").isprintable():
         place = next(i for i, letter in enumerate(text) if not (letter.isprintable() or letter in "\n\t"))
-        raise _refusal_at(text, place, f"the letter U+{ord(text[place]):04X} is not read")
+        raise _refusal_at(text, place, f"the character U+{ord(text[place]):04X} is not supported")
     for match in _ODD.finditer(text):
-        raise _refusal_at(text, match.start(), f"{_REASONS[match[0][0]]} is not read here")
+        raise _refusal_at(text, match.start(), f"{_REASONS[match[0][0]]} is not supported here")
     bare = _without_heads(text, rules) if rules.marks else ""
     for mark in rules.marks:
         if mark in bare:
-            raise _refusal_at(bare, bare.index(mark), f"the letter {mark} is not read here")
+            raise _refusal_at(bare, bare.index(mark), f"the character {mark} is not supported here")
 
 
 def _without_heads(text: str, rules: Rules) -> str:
@@ -184,18 +184,18 @@ def _without_heads(text: str, rules: Rules) -> str:
 def _check_directives(text: str, rules: Rules) -> None:
     for match in DIRECTIVE.finditer(text):
         if match[1] not in KNOWN and not rules.heads.fullmatch(match[0].strip()):
-            raise _refusal_at(text, match.start(), f"#{match[1]} is not read")
+            raise _refusal_at(text, match.start(), f"#{match[1]} is not supported")
     for match in _INNER.finditer(text):
-        raise _refusal_at(text, match.end() - 1, "a # inside a line is not read")
+        raise _refusal_at(text, match.end() - 1, "a # inside a line is not supported")
     for match in (*_PROBE.finditer(text), *_ATTRIBUTE.finditer(text)) if rules.is_native else ():
-        raise _refusal_at(text, match.start(), f"{match[0]} is not read")
+        raise _refusal_at(text, match.start(), f"{match[0]} is not supported")
 
 
 def _check_words(text: str, words: Iterable[str], rules: Rules, knows: Callable[[str], bool]) -> None:
     for word in words:
         is_marked = word.startswith("__") and word not in (rules.words or ())
         if word in rules.refused or (is_marked and knows(word)):
-            raise RefusedError(_line_of(text, word), f"{word} is not read", word)
+            raise RefusedError(_line_of(text, word), f"{word} is not supported", word)
 
 
 def _line_of(text: str, word: str) -> int:

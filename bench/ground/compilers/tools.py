@@ -31,7 +31,7 @@ MISSING: Mapping[str, str] = MappingProxyType(
         GLSLANG: f"no GLSL compiler: {GLSLANG} is not on the path; install it ({how_to_install('glslang-tools')})",
         SPIRV_CROSS: f"no HLSL: {SPIRV_CROSS} is not on the path; install it ({how_to_install('spirv-cross')})",
         SPIRV_OPT: f"no SPIR-V counts: {SPIRV_OPT} is not on the path; install it ({how_to_install('spirv-tools')})",
-        SLANG: f"no Slang: {SLANG} is not there; install it (pip install --no-deps slangtorch)",
+        SLANG: f"no Slang: {SLANG} is not installed; install it (pip install --no-deps slangtorch)",
         SLANG_LIBRARY: slang.MISSING,
         C: f"no C compiler: {C} is not on the path; install it ({how_to_install('gcc')})",
     }

@@ -76,7 +76,7 @@ def finished(command: Sequence[str], seconds: float, folder: Path | None = None)
 
 def how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
     """Return how a process that limits itself ended, and the last line that it printed to standard error."""
-    limits = f"it may use {MEMORY >> 20} MiB of memory and {SECONDS} s of processor time"
+    limits = f"its limits are {MEMORY >> 20} MiB of memory and {SECONDS} s of processor time"
     if name := signal_name(done.returncode):
         return f"killed the process ({name}); {limits}"
     last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]

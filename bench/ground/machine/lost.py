@@ -10,4 +10,4 @@ def require_living_device() -> None:
     """Raise MissingError if an open OpenGL device no longer answers, because its last results are not valid figures."""
     for gl in OPENED:
         if not gl.answers:
-            raise MissingError(f"{gl.renderer} was lost by its driver: it draws no longer; run the same command again")
+            raise MissingError(f"{gl.renderer} was lost by its driver and no longer draws; run the same command again")

@@ -32,7 +32,7 @@ def lack_of_memory() -> str:
     most = most_addresses()
     if most is None or most >= LEAST:
         return ""
-    limit = f"this process is limited to {most / 1e9:.2g} GB of addresses, and JAX and OpenGL need {LEAST / 1e9:g} GB"
+    limit = f"this process is limited to {most / 1e9:.2g} GB of addresses, but JAX and OpenGL need {LEAST / 1e9:g} GB"
     return f"not enough memory: {limit}; raise the limit: ulimit -v {LEAST // 1000}"
 
 

@@ -20,12 +20,12 @@ class CodeOptions(Sources):
         str,
         Option(
             "--of",
-            "What the codes are of: normal, frame (tangent frames and quaternions), motion, curve (roughness and the "
-            "like), light or depth; or layout: packing and unpacking a whole G-buffer. Default: what the names say.",
+            "Quantity that is encoded: normal, frame (tangent frames and quaternions), motion, curve (roughness and "
+            "similar), light or depth; or layout: packing and unpacking a whole G-buffer. Default: by the names.",
         ),
     ] = ""
     storage: Annotated[
-        Names | None, Option("--storage", f"Storages, {NAMED}. Default: rgba8; with --check, those that people ship.")
+        Names | None, Option("--storage", f"Storages, {NAMED}. Default: rgba8; with --check, those in common use.")
     ] = None
     rounding: Annotated[Names, Option("--rounding", "nearest, truncate, truncate_half; comma-separated, or all.")] = (
         "nearest",
@@ -35,8 +35,8 @@ class CodeOptions(Sources):
         str,
         Option(
             "--prefix",
-            "What every name begins with. Default: normal, or what else the codes are of; with several codecs of a "
-            "kind their names.",
+            "Prefix of every name. Default: normal, or another name for what is encoded; with several codecs of a "
+            "kind, their names.",
         ),
     ] = ""
     check: Annotated[

@@ -50,7 +50,7 @@ def in_range(option: str, value: float, low: float, high: float) -> None:
 def checked_count(count: int) -> int:
     """The count itself. Raises UsageError where no set has that many."""
     if not 1 <= count <= MAX_COUNT:
-        raise UsageError(f"--count {count}: a count is 1 to {MAX_COUNT} (2^40)")
+        raise UsageError(f"--count {count}: from 1 to {MAX_COUNT} (2^40)")
     return count
 
 

@@ -48,7 +48,7 @@ Encodings = Annotated[
 StorageNames = Annotated[
     Names,
     Option(
-        "--storage", f"Storages, {NAMED}. Any bits are one too: unorm:9:7, snorm:12:12, unorm:4:4..16:16.", in_run=True
+        "--storage", f"Storages, {NAMED}. Bit counts also work: unorm:9:7, snorm:12:12, unorm:4:4..16:16.", in_run=True
     ),
 ]
 Roundings = Annotated[
@@ -62,8 +62,8 @@ Normals = Annotated[Names, Option("--normals", f"Normal sets or files, {NAMED}."
 Backends = Annotated[Names, Option("--backend", "jax, glsl; comma-separated, or all.", in_run=True)]
 # Of a table that measures by WGSL on Vulkan as well.
 BackendsAndWgsl = Annotated[Names, Option("--backend", "jax, glsl, wgsl; comma-separated, or all.", in_run=True)]
-Count = Annotated[int, Option("--count", "Normals in a uniform set.", in_run=True)]
-Seed = Annotated[int, Option("--seed", "The random seed of uniform sets, points and scenes.", in_run=True)]
+Count = Annotated[int, Option("--count", "Number of normals in a uniform set.", in_run=True)]
+Seed = Annotated[int, Option("--seed", "Random seed of uniform sets, points and scenes.", in_run=True)]
 Pipelines = Annotated[Names, Option("--pipeline", f"Pipelines, {NAMED}.", in_run=True)]
 Layouts = Annotated[Names | None, Option("--layout", "Layouts: names or TOML files.", files=True, in_run=True)]
 Scenes = Annotated[
@@ -77,40 +77,40 @@ LightBuffers = Annotated[
     Names,
     Option(
         "--light-buffer",
-        f"Light buffers or files of yours, {NAMED}. Any bits are one too: ufloat:6:9, linear/unorm:10:10:10.",
+        f"Light buffers or your own files, {NAMED}. Bit counts also work: ufloat:6:9, linear/unorm:10:10:10.",
         files=True,
         in_run=True,
     ),
 ]
 Effects = Annotated[
-    Names | None, Option("--effects", "Effects in the image, all at once, with settings: gtao:size=half,lpv.")
+    Names | None, Option("--effects", "Effects in the image, applied together, with settings: gtao:size=half,lpv.")
 ]
 LightTargets = Annotated[Names, Option("--light-targets", "1, 2; comma-separated, or all.")]
 Shadow = Annotated[Names, Option("--shadow", "on, off; comma-separated, or all.")]
 Size = Annotated[str, Option("--size", "WIDTHxHEIGHT of the image.")]
 Samples = Annotated[int, Option("--samples", "Samples per pixel; the device may give more.")]
-Scale = Annotated[float, Option("--scale", "Size of inferred's buffers relative to the image's, up to 1.")]
-Objects = Annotated[int, Option("--objects", "Objects in the scene `objects`.")]
-Lights = Annotated[int, Option("--lights", "Point lights.")]
+Scale = Annotated[float, Option("--scale", "Size of the inferred pipeline's buffers relative to the image, at most 1.")]
+Objects = Annotated[int, Option("--objects", "Number of objects in the scene `objects`.")]
+Lights = Annotated[int, Option("--lights", "Number of point lights.")]
 Families = Annotated[
-    Names, Option("--family", "GPU families that issue slots are counted for, comma-separated; the dearest counts.")
+    Names, Option("--family", "GPU families to count issue slots on, comma-separated; the highest count is used.")
 ]
 Arithmetics = Annotated[
     Names,
     Option(
         "--arithmetic",
-        "What codes are computed in: float (32 bits), half (every step rounded to 16 bits), or declared: float, and "
-        "half as well for a file that declares half, min16float, float16_t or mediump; comma-separated, or all.",
+        "Arithmetic of the encodings: float (32 bits), half (every step rounded to 16 bits), or declared: float, and "
+        "also half for a file that declares half, min16float, float16_t or mediump; comma-separated, or all.",
         in_run=True,
     ),
 ]
-Repeats = Annotated[int, Option("--repeats", "Frames that times are taken over; of render, 0 takes none.")]
-Images = Annotated[Path | None, Option("--images", "Write pictures into this folder.")]
+Repeats = Annotated[int, Option("--repeats", "Number of frames to time; 0 in render for no timing.")]
+Images = Annotated[Path | None, Option("--images", "Write pictures to this folder.")]
 Live = Annotated[
     Path | None,
-    Option("--live", "Write the GLSL ES of each codec, which a page runs in the reader's browser, into this folder."),
+    Option("--live", "Write the GLSL ES of each codec, which a page runs in the browser, to this folder."),
 ]
-Plot = Annotated[Path | None, Option("--plot", "Draw the table into this PNG, SVG or PDF file.")]
+Plot = Annotated[Path | None, Option("--plot", "Plot the table to this PNG, SVG or PDF file.")]
 Verbose = Annotated[
     bool, Option("--verbose", "Print every sentence of the answer, and every column that fits.", letter="-v")
 ]
@@ -140,15 +140,15 @@ class Sources(Options):
         Names | None, Option("--define", "Shader files: macros, NAME or NAME=VALUE.", in_run=True, letter="-D")
     ] = None
     prelude: Annotated[
-        Names | None, Option("--prelude", "Shader files: files that are put in front.", files=True, in_run=True)
+        Names | None, Option("--prelude", "Shader files: files to put in front.", files=True, in_run=True)
     ] = None
     include: Annotated[
         Names | None,
-        Option("--include", "Shader files: where includes lie: FOLDER, or NAME=FOLDER of NAME/file.", True, True),
+        Option("--include", "Shader files: include folders: FOLDER, or NAME=FOLDER for NAME/file.", True, True),
     ] = None
     language: Annotated[
         str | None,
-        Option("--language", "Shader files: hlsl, slang, glsl or wgsl. Default: by the ending.", in_run=True),
+        Option("--language", "Shader files: hlsl, slang, glsl or wgsl. Default: by the extension.", in_run=True),
     ] = None
 
 
@@ -175,31 +175,40 @@ class Reading(Options):
     ] = None
     unpack: Annotated[
         bool | None,
-        Option("--unpack/--no-unpack", "Captures: [0,1] stands for [-1,1]. Default: for integers.", in_run=True),
+        Option("--unpack/--no-unpack", "Captures: map [0,1] to [-1,1]. Default: only integers.", in_run=True),
     ] = None
     curve: Annotated[
-        str, Option("--curve", "Captures: linear, srgb (to be undone), srgb-removed (to be redone).", in_run=True)
+        str,
+        Option(
+            "--curve",
+            "Captures: transfer curve of the values: linear, srgb (decode), srgb-removed (decoded by mistake; encode "
+            "again).",
+            in_run=True,
+        ),
     ] = "linear"
     normalise: Annotated[bool, Option("--normalise", "Captures: accept normals of any length.", in_run=True)] = False
-    space: Annotated[str, Option("--space", "Captures: view, view-left-handed, world.", in_run=True)] = "view"
+    space: Annotated[
+        str, Option("--space", "Captures: space of the normals: view, view-left-handed, world.", in_run=True)
+    ] = "view"
     code_space: Annotated[
-        str, Option("--code-space", "Captures: the space that normals are encoded in: view, world.", in_run=True)
+        str, Option("--code-space", "Captures: space to encode normals in: view, world.", in_run=True)
     ] = "view"
     view_matrix: Annotated[
         str | None,
-        Option("--view-matrix", "World to view space: 9 or 16 numbers by rows, or a file.", files=True, in_run=True),
+        Option("--view-matrix", "World-to-view matrix: 9 or 16 numbers by rows, or a file.", files=True, in_run=True),
     ] = None
     mask: Annotated[
         str | None,
         Option("--mask", "Captures: a file or a channel that is 0 on the background.", files=True, in_run=True),
     ] = None
     nan_share: Annotated[
-        float, Option("--nan-share", "Captures: the share of NaN that is masked and counted.", in_run=True)
+        float, Option("--nan-share", "Captures: largest share of NaN to mask and count.", in_run=True)
     ] = 0.0
     fov: Annotated[
-        float | None, Option("--fov", "Captures: vertical degrees, for per-pixel view space.", in_run=True)
+        float | None,
+        Option("--fov", "Captures: vertical field of view in degrees, for per-pixel view space.", in_run=True),
     ] = None
-    size: Annotated[str, Option("--size", "WIDTHxHEIGHT of the picture of a mesh.")] = "640x480"
+    size: Annotated[str, Option("--size", "WIDTHxHEIGHT of the image of a mesh.")] = "640x480"
 
     @property
     def reading(self) -> Reading:
@@ -264,7 +273,7 @@ class Field:
         return value
 
 
-KINDS = {str: "a text", int: "a whole number", float: "a number", bool: "true or false", Path: "a path"}
+KINDS = {str: "text", int: "a whole number", float: "a number", bool: "true or false", Path: "a path"}
 
 
 @cache

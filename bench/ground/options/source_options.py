@@ -15,7 +15,7 @@ from .option import Sources
 
 # The options whose names may be users' files.
 NAMED = ("encoding", "against", "codec", "depth", "light_buffer")
-NO_FILE = "--{} is of users' shader files, and none is named; a layout has it in its file: mine.hlsl:{}=..."
+NO_FILE = "--{} applies only to your own shader files; name one, or write mine.hlsl:{}=... in a layout"
 
 
 def in_names(values: Mapping[str, Any]) -> dict[str, Any]:

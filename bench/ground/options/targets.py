@@ -23,7 +23,7 @@ T = TypeVar("T")
 def check_scale(scale: float) -> None:
     """Raise UsageError for a scale that is not from 0.05 to 1."""
     if not 0.05 <= scale <= 1:
-        raise UsageError(f"--scale {scale}: a scale is 0.05 to 1")
+        raise UsageError(f"--scale {scale}: from 0.05 to 1")
 
 
 def checked_setting(objects: int, lights: int, seed: int) -> Setting:
@@ -46,8 +46,8 @@ def _check_budget(size: tuple[int, int], samples: int) -> None:
     """Raise UsageError if frames of this size, with all their samples, are too large to store."""
     if math.prod(size) * samples > MAX_SAMPLES:
         raise UsageError(
-            f"--size {size[0]}x{size[1]}: with samples and frames {math.prod(size) * samples} in all; "
-            f"the most is {MAX_SAMPLES} (2^25)"
+            f"--size {size[0]}x{size[1]}: {math.prod(size) * samples} samples in all frames; "
+            f"use at most {MAX_SAMPLES} (2^25)"
         )
 
 
@@ -84,7 +84,7 @@ N = TypeVar("N", bound=Noisy)
 
 def not_with_noise(option: str) -> str:
     """Why codes with noise are not measured where an option asks for what only exact codes have."""
-    return f"{option} is of codes without noise; leave it out to measure --rounding {DITHERED}"
+    return f"{option} cannot be used with --rounding {DITHERED}"
 
 
 def without_noise(codecs: Iterable[N], reason: str) -> list[N]:

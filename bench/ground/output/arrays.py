@@ -28,7 +28,7 @@ def array_of(data: bytes) -> np.ndarray:
         file = io.BytesIO(data)
         shape, is_fortran, dtype = HEADERS[np.lib.format.read_magic(file)](file)
         if dtype.hasobject or math.prod(shape) * dtype.itemsize != len(data) - file.tell():
-            raise DamagedError("its size is not what its header says")
+            raise DamagedError("its size differs from its header")
         return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape, order="F" if is_fortran else "C")
     except Exception as error:  # a header is Python source: of a damaged one anything may come
         raise DamagedError("it is damaged") from error

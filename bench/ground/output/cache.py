@@ -85,7 +85,7 @@ def require_folder() -> None:
     try:
         make_folder(folder())
     except OSError as error:
-        raise MissingError(f"{error.strerror or error}: {folder()}; XDG_CACHE_HOME names another one") from error
+        raise MissingError(f"{error.strerror or error}: {folder()}; name another folder with XDG_CACHE_HOME") from error
 
 
 def keep_only_files(path: Path) -> None:

@@ -98,7 +98,7 @@ def _speak_until(ended: Event) -> None:
     while not ended.wait(EVERY):
         waited += EVERY
         # Each line as it is: what is told once is counted in the main thread.
-        tell_together(f"{waited} s, {_whole[-1].says() if _whole else 'finding out what there is to measure'}", ())
+        tell_together(f"{waited} s, {_whole[-1].says() if _whole else 'finding out what to measure'}", ())
 
 
 @contextmanager

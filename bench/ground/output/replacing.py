@@ -60,7 +60,7 @@ def check_alike(path: Path, new: Path) -> None:
 
 def not_ours(path: Path, what: str) -> UsageError:
     """Return the error for a file that normalbench did not write."""
-    return UsageError(f"{path}: it is not a {what} of normalbench; name another file or delete it")
+    return UsageError(f"{path}: not a {what} of normalbench; name another file, or delete this one")
 
 
 def is_empty(data: bytes) -> bool:

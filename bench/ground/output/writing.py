@@ -67,8 +67,8 @@ def check_folder(folder: Path) -> None:
     while not there.exists() and there != there.parent:
         if there.is_symlink():
             # To make a folder of this name would only say that the name is taken.
-            why = f"{there} is a link to {there.readlink()}, where there is nothing"
-            raise UsageError(f"cannot write to {folder}: {why}; mend the link, or name another folder")
+            why = f"{there} is a link to {there.readlink()}, which does not exist"
+            raise UsageError(f"cannot write to {folder}: {why}; fix the link, or name another folder")
         there = there.parent
     try:
         with tempfile.TemporaryFile(dir=there):
@@ -82,7 +82,7 @@ def target_of(path: Path) -> Path:
     try:
         return path.resolve()
     except (OSError, RuntimeError) as error:
-        raise UsageError(f"cannot write to {path}: links lead back to themselves; name another file") from error
+        raise UsageError(f"cannot write to {path}: its links form a loop; name another file") from error
 
 
 def is_special(path: Path) -> bool:

@@ -29,7 +29,7 @@ MOST_TABLES = 2**16
 STAND_INS = {2: "octahedral", 3: "xyz"}
 USUAL = ("rgba8", "rgb10a2", "rg8", "rg16", "rg16f", "rgb8_12_12", "r11g11b10f")
 HELPERS = "vec.glsl"
-TABLES_TOO_LARGE = "its look-up tables are too large for a page"
+TABLES_TOO_LARGE = "its lookup tables are too large for a page"
 
 
 class NotLiveError(ValueError):
@@ -49,9 +49,9 @@ def program(codec: Codec) -> Record:
 
 def _program(codec: Codec) -> Record:
     if codec.is_dithered:
-        raise NotLiveError(f"{codec.name}: a page adds no noise")
+        raise NotLiveError(f"{codec.name}: a page cannot add noise")
     if what := codec.storage.only_measured:
-        raise NotLiveError(f"{codec.name}: a page does not read {what}")
+        raise NotLiveError(f"{codec.name}: a page cannot read {what}")
     try:
         code = code_of(codec, LANGUAGE, PREFIX)
     except (UsageError, ShaderError) as error:

@@ -85,11 +85,11 @@ def broken(codes: int, area: float, s: Statistics) -> str:
     spared = 1 - SCATTER / math.sqrt(s.count)
     for what, figure, bound in (("RMS", s.angle_rms_deg, least.rms_deg), ("mean", s.angle_mean_deg, least.mean_deg)):
         if figure < bound * spared:
-            return f"{what} {figure:.5g} degrees, of {bound:.5g} at least"
+            return f"{what} {figure:.5g} degrees, below the bound of {bound:.5g}"
     for degrees, count in s.within:
         # Each code has its cap: so many directions at most lie that near to any.
         share = SPHERE / area * math.sin(math.radians(degrees) / 2) ** 2
         most = min(codes * share * (RESONANCE if share * s.count < 1 else 1), 1.0) * s.count
         if degrees > RESOLUTION_DEG and count > most + SIGMAS * math.sqrt(most) + SIGMAS:
-            return f"{count} angles below {degrees:.2g} degrees, of {most:.2g} at most"
+            return f"{count} angles below {degrees:.2g} degrees, more than the {most:.2g} possible"
     return ""

@@ -32,7 +32,7 @@ def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Ro
             "sup_found_by": "nothing: half arithmetic and chains of codecs have no exact map, which the search needs"
         }
     if AREAS[domain] < area:
-        return {"sup_found_by": f"nothing: the limit and codes are of the {domain}, the set is larger"}
+        return {"sup_found_by": f"nothing: the bound and codes cover only the {domain}; the set is larger"}
     from . import recorded
 
     worst = _exactly(recorded.supremum, codec, domain)
@@ -65,7 +65,7 @@ def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T
     except TypeError as error:
         where = codec.encoding.twin
         message = str(error).splitlines()[0]
-        raise UsageError(f"{where}: in float64: {message}; leave out --worst-case and --codes") from error
+        raise UsageError(f"{where}: fails in float64: {message}; leave out --worst-case and --codes") from error
 
 
 def held(codec: Codec, domain: str | None, s: Statistics, sup_deg: float | None) -> Row:

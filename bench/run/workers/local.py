@@ -83,7 +83,7 @@ class LocalWorkers:
         self._failures += not was_ready
         if self._failures >= MOST_FAILURES * (len(self._workers) + 1):
             last = lines[-1].strip() if lines else f"exit status {ended.status}"
-            raise UsageError(f"--on {self._address}: the workers do not stay: {last}")
+            raise UsageError(f"--on {self._address}: the workers keep ending: {last}")
         self._start()
 
     def _take(self, name: str, answer: Answer | Exception) -> None:

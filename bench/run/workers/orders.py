@@ -117,7 +117,7 @@ def _packed(options: Any, packing: Packing) -> dict[str, Any]:
     values = {option.name: getattr(options, option.name) for option in fields(options)}
     for name, value in values.items():
         if own := [word.name for word in value if isinstance(word, Given)] if isinstance(value, tuple) else []:
-            raise UsageError(f"{name}: {', '.join(own)} is a value of this process; workers measure names and files")
+            raise UsageError(f"{name}: {', '.join(own)} exists only in this process; with --on use names and files")
     for name, words in words_of(options).items():
         packed = tuple(map(packing.packed, words))
         values[name] = packed if isinstance(values[name], tuple) else "".join(packed) or values[name]

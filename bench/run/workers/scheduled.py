@@ -62,7 +62,7 @@ class Scheduled:
     def _look(self) -> None:
         """Look who is there, now and then. Raises UsageError where the scheduler does not come back."""
         if self._client.status == "closed":
-            raise UsageError(f"--on {self._address}: the scheduler is gone and does not come back")
+            raise UsageError(f"--on {self._address}: the scheduler is gone and has not come back")
         if self._client.status != "running":
             self._workers.clear()
         elif time.monotonic() - self._looked_at > AGAIN_S:

@@ -55,7 +55,7 @@ def measure(order: Order | str, needs: Set[str], wanted: Sequence[str]) -> Answe
     if laid is None:
         return Answer(knows=False)
     if not laid.steps.keys() >= set(wanted):
-        return Answer(refused="workers make other steps of the same options")
+        return Answer(refused="workers make other steps from the same options")
     steps: list[tuple[list[Row], dict[str, bytes]]] = []
     error = None
     with _in_folder(laid.folder), _listening() as lines:

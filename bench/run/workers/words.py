@@ -42,7 +42,7 @@ def checked_address(option: str, word: str) -> str:
     match = _ADDRESS.fullmatch(word.strip())
     if not match or not 0 < int(match["port"]) < 2**16:
         local = "local:N, such as local:4, or " if option == "--on" else ""
-        raise UsageError(f"{option} {word or repr(word)}: say {local}tcp://HOST:PORT, such as tcp://10.0.0.5:8786")
+        raise UsageError(f"{option} {word or repr(word)}: use {local}tcp://HOST:PORT, such as tcp://10.0.0.5:8786")
     return word.strip()
 
 

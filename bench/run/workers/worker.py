@@ -126,7 +126,7 @@ class Connection(threading.Thread):
 
 def why(error: BaseException) -> str:
     """Say why a scheduler could not be reached."""
-    nobody = "" if isinstance(error, MISCONFIGURED) else "nobody answers; start a scheduler there: dask scheduler"
+    nobody = "" if isinstance(error, MISCONFIGURED) else "no scheduler responded; start one there with: dask scheduler"
     return ": ".join(filter(None, (nobody, str(error))))
 
 
@@ -155,7 +155,7 @@ def worker_command(address: str) -> int:
     require_dask()
     quiet()
     warnings.simplefilter("ignore")
-    tell(f"joins {checked}; interrupt it to end it")
+    tell(f"joining {checked}; interrupt the worker to end it")
     if reason := serve(checked):
         raise UsageError(f"worker {checked}: {reason}")
     tell(f"{checked} is gone")

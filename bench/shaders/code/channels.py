@@ -19,9 +19,9 @@ TEMPLATE = Path(__file__).with_name("storage.glsl.j2")
 FIELDS, PARTS, WORD = "xyzw", "rgba", 32
 RULES: Mapping[str, str] = MappingProxyType(
     {
-        "nearest": "the integer nearest to {x} {scale}, of two as near the even one",
-        "truncate": "{x} {scale} cut off toward zero",
-        "truncate_half": "{x} ({scale} + 1/2) cut off toward zero, {scale} at most",
+        "nearest": "{x} {scale} rounded to the nearest integer, ties to even",
+        "truncate": "{x} {scale} truncated toward zero",
+        "truncate_half": "{x} ({scale} + 1/2) truncated toward zero, at most {scale}",
     }
 )
 
@@ -267,7 +267,7 @@ class Channels:
             place = ("first", "second", "third", "fourth")[self.numbers.skipped // self.part]
             bit = self.part - self.numbers.skipped % self.part
             begin = "the highest bit" if bit == self.part else f"bit {bit - 1}"
-            return f"{spread}, from {begin} of the {place} {what} on"
+            return f"{spread}, starting at {begin} of the {place} {what}"
         places = (f"{c.name} in bits {c.first % WORD} to {c.first % WORD + c.bits - 1}" for c in self.channels)
         owners = (f" of the {('first', 'second', 'third', 'fourth')[c.first // WORD]}" for c in self.channels)
         return ", ".join(p + (o if self.words > 1 else "") for p, o in zip(places, owners, strict=True))
@@ -279,13 +279,13 @@ class Channels:
         if first.form:
             if not self.part:
                 return ""
-            return f"Each is a float of {first.form.exponent} bits of exponent and {first.form.mantissa} of mantissa."
+            return f"Each is a float of {first.form.exponent} exponent bits and {first.form.mantissa} mantissa bits."
         if first.share == "signed":
             half = first.integer // 2
             return f"Up to {half} it is the integer nearest to code {half}; above, that of -code."
         x = "(code / 2 + 1/2)" if self.numbers.is_biased else "code"
         scales = dict.fromkeys(str(c.integer) for c in self.channels)
-        offset = f", and {' or '.join(scales)} more" if first.is_offset else ""
+        offset = f", plus {' or '.join(scales)}" if first.is_offset else ""
         return f"Each is {RULES[first.rounding].format(x=x, scale=' or '.join(scales))}{offset}."
 
     def context(self) -> dict[str, Any]:

@@ -56,9 +56,12 @@ LANGUAGES: Mapping[str, Language] = MappingProxyType(
         "essl": Language("GLSL ES", ".essl", EsslWriter, "For GLSL ES 3.1 and later."),
         "wgsl": Language("WGSL", ".wgsl", WgslWriter, "For WebGPU.", has_preprocessor=False),
         "msl": Language(
-            "Metal", ".metal", MslWriter, "For Metal 2 and later. Without -fno-fast-math the compiler rounds otherwise."
+            "Metal",
+            ".metal",
+            MslWriter,
+            "For Metal 2 and later. Compile with -fno-fast-math, which preserves rounding.",
         ),
-        "c": Language("C", ".h", CWriter, "For C99. Compile with -ffp-contract=off: fused products round otherwise."),
+        "c": Language("C", ".h", CWriter, "For C99. Compile with -ffp-contract=off: fused products round differently."),
     }
 )
 

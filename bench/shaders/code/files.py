@@ -132,14 +132,14 @@ def _untranslatable_reason(codec: Any, said: str) -> str:
     if source is None or not UserFile(str(source)).is_translated:
         return said if re.match(r"\S+:\d+: ", said) else f"{encoding.glsl}: {said}"
     what = re.sub(r"^\S*?:?\d+:(\d+:)? ", "", said).replace("is not a type that is known here", "parameters or types")
-    return f"{source}: it is measured, but cannot be written in other languages: {what}"
+    return f"{source}: it can be measured, but not written in other languages: {what}"
 
 
 def _check_written(codec: Any) -> None:
     """Raise UsageError for a codec that can only be measured."""
     if getattr(codec.encoding, "before", None):
-        raise UsageError(f"{codec.encoding.name}: a chain of codecs is not written; write each codec of it")
+        raise UsageError(f"{codec.encoding.name}: a chain of codecs cannot be written; write each codec separately")
     if getattr(codec.storage, "code", None):
-        raise UsageError(f"{codec.name}: code over bytes of your own is written already")
+        raise UsageError(f"{codec.name}: it packs its own bytes; use your functions as they are")
     if getattr(codec.storage, "curved", 0):
-        raise UsageError(f"{codec.name}: {codec.storage.title} converts colours by itself; write the curve srgb, in r8")
+        raise UsageError(f"{codec.name}: {codec.storage.title} converts colours itself; write the curve srgb in r8")

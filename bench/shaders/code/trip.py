@@ -46,9 +46,9 @@ def by_wgsl(codec: Codec) -> Iterator[Trip]:
 
 def _wgsl_code(codec: Codec) -> Code:
     if codec.encoding.before:
-        raise ShaderError(f"{codec.name}: a chain of codecs is not written in WGSL; measure it by jax")
+        raise ShaderError(f"{codec.name}: a chain of codecs cannot be written in WGSL; use --backend jax")
     if codec.encoding.is_half:
-        raise ShaderError(f"{codec.name}: WGSL computes in 32 bits here; measure half arithmetic by jax or glsl")
+        raise ShaderError(f"{codec.name}: WGSL computes in 32 bits here; use --backend jax or glsl for half arithmetic")
     wgsl.device()
     try:
         return code_of(codec, "wgsl", PREFIX)

@@ -94,13 +94,13 @@ class Agreement:
         if not self.differing:
             codes = f"all {self.texels} texels of {self.count} {self.plural} are equal, bit for bit"
         elif self.searches:
-            near = "as near" if self.worse <= SEARCHED else f"up to {self.worse:.1g} {self.unit} farther off"
-            codes = f"the texels of {self._share_text} differ, {near}: a search finds several codes alike"
+            near = "equally accurate" if self.worse <= SEARCHED else f"up to {self.worse:.1g} {self.unit} farther off"
+            codes = f"the texels of {self._share_text} differ, {near}: the search finds equivalent codes"
         else:
             steps = f"by {self.steps} step{'s' * (self.steps != 1)} at most"
             codes = f"the texels of {self._share_text} differ, {steps if self.steps else 'not what they decode to'}"
-        codes += "" if self.are_ties or self.searches else ", which is more than a tie"
-        wrong = f"; {self.unpacked} numbers come back otherwise" if self.unpacked else ""
+        codes += "" if self.are_ties or self.searches else ", which is more than rounding of ties"
+        wrong = f"; {self.unpacked} numbers come back different" if self.unpacked else ""
         wrong += f"; {self.targets} texels of the render target differ" if self.targets else ""
         far = f", {self.far} of them next to where the map is singular" if self.far else ""
         decoded = f"within {self.decoded / EPSILON:.3g} x 2^-23" if self.decoded else "equal"

@@ -74,7 +74,7 @@ def _instance(vk: Any) -> Any:
         application = vk.VkApplicationInfo(apiVersion=VULKAN_1_3)
         return vk.vkCreateInstance(vk.VkInstanceCreateInfo(pApplicationInfo=application), None)
     except vk.VkError as error:
-        raise DriverError(f"the Vulkan loader takes no driver: {type(error).__name__}") from error
+        raise DriverError(f"the Vulkan loader accepts no driver: {type(error).__name__}") from error
 
 
 def uses_halves(code: bytes) -> bool:
@@ -146,11 +146,11 @@ class Compiler:
         except vk.VkErrorFeatureNotPresent:
             self._has_passes = True
         except vk.VkError as error:
-            raise DriverError(f"{self.device} makes no device: {type(error).__name__}") from error
+            raise DriverError(f"{self.device} creates no device: {type(error).__name__}") from error
         try:
             return made(tells)
         except vk.VkError as error:
-            raise DriverError(f"{self.device} makes no device: {type(error).__name__}") from error
+            raise DriverError(f"{self.device} creates no device: {type(error).__name__}") from error
 
     def compile(self, stage: str, code: bytes, vertex: bytes, planes: int) -> list[dict[str, Any]]:
         """Compile a shader and return its kernels.
@@ -169,7 +169,7 @@ class Compiler:
         """
         vk = self._vk
         if not self._has_halves and uses_halves(code):
-            raise DriverError(f"{self.device} computes no shaders in 16 bits")
+            raise DriverError(f"{self.device} does not support 16-bit shader arithmetic")
         self._layout = self._layout or self._pipeline_layout(planes)
         try:
             pipeline = self._compute_pipeline(code) if stage == "compute" else self._graphics_pipeline(code, vertex)
@@ -180,7 +180,7 @@ class Compiler:
         except vk.VkError as error:
             raise DriverError(f"{self.device} does not compile it: {type(error).__name__}") from error
         if not kernels:
-            raise DriverError(f"{self.device} tells of no {stage} kernel")
+            raise DriverError(f"{self.device} reports no {stage} kernel")
         return kernels
 
     def _kernel(self, pipeline: Any, index: int, width: int) -> dict[str, Any]:

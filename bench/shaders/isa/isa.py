@@ -256,7 +256,7 @@ def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str,
         outcomes = _by_children(name, variables, driver, jobs)
         if not all(isinstance(o, Failure) and REFUSAL in o.reason for o in outcomes.values()):
             return outcomes
-    return dict.fromkeys(jobs, Failure(f"this Mesa knows no family {' or '.join(names)}"))
+    return dict.fromkeys(jobs, Failure(f"this Mesa version does not know family {' or '.join(names)}"))
 
 
 def _variables(family: str, name: str) -> dict[str, str]:
@@ -275,7 +275,7 @@ def _by_children(
     lost = 0
     while len(outcomes) < len(jobs):
         left = {key: job for key, job in jobs.items() if key not in outcomes}
-        begun, end = "", Failure("the driver ended without a word")
+        begun, end = "", Failure("the driver ended without a message")
         for line in _answers(name, variables, driver, left):
             if isinstance(line, Failure):
                 end = line

@@ -86,7 +86,7 @@ def _built_library(folder: Path, stem: str) -> Path:
             return path.resolve()
     except OSError as error:
         message = f"the null device cannot be written into the cache folder {folder}: {error.strerror or error}"
-        raise NullDeviceError(f"{message}; XDG_CACHE_HOME names another one") from error
+        raise NullDeviceError(f"{message}; set XDG_CACHE_HOME to another folder") from error
 
 
 def _compile(path: Path) -> None:

@@ -39,7 +39,7 @@ def defined(module: bytes) -> bytes:
     Divisions of whole numbers are noted, CONVERTED converts floats, and variables begin as 0.
 
     Raises:
-        ValueError: it divides whole numbers of other than 32 bits.
+        ValueError: it divides integers that do not have 32 bits.
     """
     words = np.frombuffer(module, "<u4")
     instructions = [*_instructions(words)]
@@ -62,7 +62,7 @@ def defined(module: bytes) -> bytes:
         if opcode in DIVISIONS:
             divided_type, _, x, y = of
             if divided_type not in notes:
-                raise ValueError("it divides whole numbers of other than 32 bits")
+                raise ValueError("it divides integers that do not have 32 bits")
             result, note = notes[divided_type]
             new_words += _written(CALL, (result, next(numbers), note, x, y))
         if opcode in CONVERSIONS and of[0] in converters and function not in converters.values():

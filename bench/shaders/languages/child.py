@@ -59,9 +59,9 @@ _A = {"uint": "a uint", "int": "an int", "float": "a float"}
 # What compilers say of a name that nothing defines.
 _UNKNOWN = re.compile(r"undefined identifier|unknown variable|no matching overloaded function")
 _UNDEFINED = re.compile(r"undefined identifier '(\w+)'")
-BY_MACRO = "; a macro that is not there is given by -D or --prelude"
-WHICH = "what is measured is {}"
-HAS_PARAMETERS = "they have their parameters alone"
+BY_MACRO = "; define missing macros with -D or --prelude"
+WHICH = "measured: {}"
+HAS_PARAMETERS = "they have only their parameters"
 MOST_NAMED, MOST_OTHERS = 12, 4
 
 
@@ -153,7 +153,7 @@ def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Pa
         *([] if asked else _others(parsed.functions, pair)),
     ]
     facts = _pair_facts(parsed, pair, text, folder, by, asked) | {"named": named}
-    by_glslang = f"it is read by {GLSLANG} alone, as {slang.COMPILER} does not read it"
+    by_glslang = f"only {GLSLANG} can read it; {slang.COMPILER} cannot"
     return facts | {"notes": [*([by_glslang] if facts["read_by"] == GLSLANG else []), *notes]}
 
 
@@ -168,7 +168,7 @@ def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, b
     language = language_of(source.file, by)
     parsed = language.read(source, folder)
     if asked and not all(wiring_of(text).is_plain for text in asked):
-        raise NoPairError("what a function is given is said of normals alone; name the two functions")
+        raise NoPairError("arguments can be given only for normals; name the two functions")
     own = functions_in(parsed.source.own_text)
     try:
         pair = shaped_pair(language.placed(parsed.source, parsed.functions), kind, asked, str(source.path), own)

@@ -55,7 +55,7 @@ def _check(source: Source, status: int, said: str) -> None:
         return
     match = _ERROR.search(said)
     if not match:
-        why = next((line for line in said.splitlines() if "error" in line.lower()), f"status {status} without a word")
+        why = next((line for line in said.splitlines() if "error" in line.lower()), f"status {status}, no message")
         raise TranslationError(f"{source.path}: {tools.GLSLANG}: {why}")
     token, what = match[2], match[3].strip()
     said = f"{what.lower()} {token}" if what == "Expected" else f"{token}: {what}" if token else what

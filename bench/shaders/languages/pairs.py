@@ -39,7 +39,7 @@ OF_OTHERS = "{} is of {}, not of {}: `{}" + IS_OF
 NO_PAIR = "no encoder and decoder found"
 # Behind the name of a pair that was not measured.
 IF_NAMED = "is measured if it is named"
-BY_PARAMETER = "{} returns nothing; write a function that returns what it gives through its parameter"
+BY_PARAMETER = "{} returns nothing; write a function that returns what it writes to its parameter"
 
 
 @dataclass(frozen=True)
@@ -234,7 +234,7 @@ def pair_of(
         raise SeveralPairsError(file, names)
     if too_many(*_sides(found)):
         encoders, decoders = map(len, _sides(found))
-        message = f"{encoders} functions may encode and {decoders} may decode, and no two are named alike"
+        message = f"{encoders} functions may encode and {decoders} may decode, but no two have matching names"
         raise NoPairError(f"{message}; name two: {file}:ENCODE:DECODE")
     if other := _of_something_else(found, file):
         raise NoPairError(other)
@@ -285,7 +285,8 @@ def _asked(found: Sequence[Function], asked: tuple[str, str], pairs: Sequence[Pa
     for function in found:
         if function.name in asked and function.gives_by_parameter:
             raise NoPairError(BY_PARAMETER.format(function.name))
-    raise NoPairError(f"{asked[0]} must take a float3 and give what {asked[1]} takes; {asked[1]} must give a float3")
+    encode, decode = asked
+    raise NoPairError(f"{encode} must take a float3 and return what {decode} takes; {decode} must return a float3")
 
 
 def _by_name(pairs: Sequence[Pair]) -> list[Pair]:
@@ -403,7 +404,7 @@ def _none_fits(found: Sequence[Function]) -> str:
         if candidate.takes_a_normal and not candidate.result and role(candidate.name) == "encode"
     ]
     if others and not encoders:
-        return f"{others[0].name} gives a {others[0].kind}, but a code is two or three numbers that are not packed yet"
+        return f"{others[0].name} returns a {others[0].kind}, but a code must be two or three unpacked numbers"
     if encoders and not decoders:
         return f"{encoders[0]} has no decoder"
     if decoders and not encoders:

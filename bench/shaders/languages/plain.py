@@ -35,7 +35,7 @@ _HALF = re.compile(r"\bf16(vec|mat)(\d)|\bfloat16_t\b")
 _HALF_NUMBER = re.compile(r"(?<=[\d.])HF\b", re.I)
 
 
-HAS_A_NORMAL = "an encoder has the normal and the view-space position alone"
+HAS_A_NORMAL = "an encoder has only the normal and the view-space position"
 
 
 def plain(shader: str, prefix: str, given: str, has: str = HAS_A_NORMAL) -> str:

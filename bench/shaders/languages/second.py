@@ -150,7 +150,7 @@ def _run(command: list[str], folder: Path) -> None:
     except subprocess.TimeoutExpired as error:
         raise NoSecondWayError(f"it did not end within {SECONDS:g} s") from error
     if done.returncode == by_spirv.UNDEFINED:
-        raise UndefinedError("it divides a whole number by 0, of some normal")
+        raise UndefinedError("it divides an integer by 0 for some normal")
     if done.returncode:
         lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
         ended = signal_name(done.returncode) or f"status {done.returncode}"

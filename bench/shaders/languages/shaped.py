@@ -209,7 +209,7 @@ def _why_not(found: Sequence[Function], kind: Kind, asked: tuple[str, str]) -> s
     names = {function.name for function in found}
     if missing := [name for name in asked if name not in names]:
         return f"no function is named {missing[0]}; there are: {', '.join(dict.fromkeys(names)) or 'none'}"
-    return f"{asked[0]} and {asked[1]} are no code of {kind.plural}; the two functions must be {_wanted(kind)}"
+    return f"{asked[0]} and {asked[1]} are not a pair for {kind.plural}; the two functions must be {_wanted(kind)}"
 
 
 def _why_none(found: Sequence[Function], kind: Kind, file: str) -> str:
@@ -222,12 +222,12 @@ def _why_none(found: Sequence[Function], kind: Kind, file: str) -> str:
         other = _other_kind(spoken[0].name, kind) or NORMAL
         return OF_OTHERS.format(spoken[0].name, other.plural, kind.plural, other.command.format(file))
     if packs := next((function for function in of_kind if function.kind in PACKED[:2]), None):
-        return f"{packs.name} gives a {packs.kind}, but a code of {kind.plural} is numbers; {wanted}"
+        return f"{packs.name} returns a {packs.kind}, but a code of {kind.plural} must be numbers; {wanted}"
     for side, other in (("encode", "decode"), ("decode", "encode")):
         if sides[side] and not sides[other]:
             return f"{sides[side][0].name} has no {other}r; {wanted}"
     if of_kind:
-        return f"{of_kind[0].name} and its partner have other types than a code of {kind.plural}; {wanted}"
+        return f"{of_kind[0].name} and its partner do not have the types of a pair for {kind.plural}; {wanted}"
     return f"no encoder and decoder found; {wanted}"
 
 

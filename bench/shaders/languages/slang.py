@@ -206,7 +206,7 @@ def shader(source: Source, function: Function, folder: Path, options: tuple[str,
 def shader_of_glsl(source: Source, function: Function, folder: Path) -> str:
     """As `shader`, of a source in GLSL."""
     if line := next(_diagonals(source.text), 0):
-        what = "a matrix of one value is read otherwise than GLSL defines it; write out its elements"
+        what = "a matrix from one value is not what GLSL defines; write out its elements"
         raise TranslationError(source.explained(line, what))
     return shader(source, function, folder, GLSL)
 
@@ -250,7 +250,7 @@ def _explanation(source: Source, said: str) -> str:
     behind = f" ({source.missing[0]})" if source.missing else ""
     for number, column, what in _messages(said):
         return source.explained(number, what, column=column) + behind
-    return f"{source.path}: {COMPILER}: {' '.join(said.split())[:300] or 'it ended without a word'}"
+    return f"{source.path}: {COMPILER}: {' '.join(said.split())[:300] or 'it ended without a message'}"
 
 
 def _messages(said: str) -> Iterator[tuple[int, int, str]]:

@@ -97,7 +97,7 @@ def _read(own: Path, path: Path, language: str) -> _Text:
     lines = text.split("\n")
     includes = {i: match[match.lastindex or 0] for i, line in enumerate(lines) if (match := _INCLUDE.fullmatch(line))}
     if len(_ANY_INCLUDE.findall(text)) != len(includes):
-        raise UsageError(f'{path}: an #include is written as #include "FILE", in one line')
+        raise UsageError(f'{path}: an #include must be written as #include "FILE" in one line')
     if is_wgsl:
         return _Text(lines, includes, _NATURE)
     imports: dict[int, str] = {}
@@ -218,7 +218,7 @@ class Source:
             yield Line(f"#define {name} {value if '=' in macro else 1}", Path("--define"), 1)
         for prelude in self.settings.preludes:
             if _resolved(Path(prelude)).suffix.lower() not in ENDINGS:
-                raise UsageError(f"--prelude {prelude}: its name does not end as that of a shader, such as .hlsl")
+                raise UsageError(f"--prelude {prelude}: its name must end like a shader's, such as .hlsl")
             yield from self._expanded(Path(prelude))
         if len(self.mains) == 1:
             yield from self._expanded(self.path)
@@ -272,9 +272,9 @@ class Source:
         self._lines_left -= len(text.lines)
         self._count += 1
         if self._left < 0:
-            raise UsageError(f"{self.path}: with what it includes it is larger than {MOST_TEXT >> 20} MiB")
+            raise UsageError(f"{self.path}: with its includes it is larger than {MOST_TEXT >> 20} MiB")
         if self._lines_left < 0:
-            raise UsageError(f"{self.path}: with what it includes it has more than {MOST_LINES} lines")
+            raise UsageError(f"{self.path}: with its includes it has more than {MOST_LINES} lines")
         if self._count > MOST_INCLUDES:
             raise UsageError(f"{self.path}: its files are included more than {MOST_INCLUDES} times")
 
@@ -288,8 +288,8 @@ class Source:
         there = [target for target in self._targets(path, name) if is_file(Path(), str(target))]
         target = next((candidate for candidate in there if self.may_read(_resolved(candidate))), None)
         if target is None:
-            where = f"lies outside the folder of {self._main.name}" if there else f"is not next to {path.name}"
-            yield Line("#error not read", path, number, f"{name} {where}; name its folder by {_option_for(name)}")
+            where = f"is outside the folder of {self._main.name}" if there else f"is not next to {path.name}"
+            yield Line("#error not read", path, number, f"{name} {where}; name its folder with {_option_for(name)}")
         elif not self._is_read(_resolved(target), target, is_module):
             yield from self._expanded(target)
 

@@ -33,7 +33,7 @@ def read(source: Source, folder: Path) -> Read:  # noqa: ARG001 (no tool works t
     if source.settings.defines:
         raise TranslationError(f"{source.path}: WGSL has no macros; leave out -D")
     if len(source.mains) > 1:
-        raise TranslationError(f"{source.path}: WGSL in two files is not read; join them")
+        raise TranslationError(f"{source.path}: WGSL in two files is not supported; join them")
     source = source.with_text(_IMPORT.sub(lambda match: blank(match[0]), source.text))
     return Read(
         source, [_function(function) for function in _checked(source, lambda: read_wgsl(source.text)).functions]

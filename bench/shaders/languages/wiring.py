@@ -76,10 +76,10 @@ def wiring_of(text: str) -> Wiring:
     if not match or not all(
         _PLACE.fullmatch(place.strip()) and _VALUE.fullmatch(value.strip()) for place, _, value in parts
     ):
-        raise NoPairError(f"{text} is not written as Pack(s.normal=n; s.roughness=0.5)->o1.xyz")
+        raise NoPairError(f"{text} is not in the form Pack(s.normal=n; s.roughness=0.5)->o1.xyz")
     outputs = re.split(r"[;,]", (match["made"] or "").strip("()"))
     if wrong := [place.strip() for place in outputs if place.strip() and not _PLACE.fullmatch(place.strip())]:
-        raise NoPairError(f"{text}: {wrong[0]!r} is no place of what a function gives")
+        raise NoPairError(f"{text}: {wrong[0]!r} is not an output of a function; write for example o1.xyz")
     return Wiring(
         match["name"],
         tuple((place.strip(), value.strip()) for place, _, value in parts),
@@ -100,9 +100,9 @@ def wired(pair: Sequence[Wiring], found: Sequence[Function]) -> tuple[str, Pair]
     size, kind = _made(encode, pair[0])
     size_back, kind_back = _made(decode, pair[1])
     if size_back != NORMAL or kind_back != "float":
-        raise NoPairError(f"{pair[1]} gives no normal; say where it is, as in {pair[1].function}(...)->n")
+        raise NoPairError(f"{pair[1]} returns no normal; name it, as in {pair[1].function}(...)->n")
     if not (size in (2, 3) and kind == "float") and not (size == 1 and kind in PACKED):
-        raise NoPairError(f"{pair[0]} gives a code of {size} numbers; say which two or three, as in ->o1.xy")
+        raise NoPairError(f"{pair[0]} returns a code of {size} numbers; name two or three, as in ->o1.xy")
     code = kind if size == 1 else f"float{size}"
     text = _caller(encode, pair[0], "float3", N, code) + _caller(decode, pair[1], code, CODE, "float3")
     sizes = ((size if size > 1 else 0), NORMAL), (NORMAL, size if size > 1 else 0)
@@ -150,7 +150,7 @@ def _output(function: Function, path: str) -> Place:
         if whole == place.path and letters in set(_swizzles(place.size)):
             return Place(path, place.kind, len(letters))
     known = ", ".join(place.path or "its result" for place in outputs_of(function)) or "nothing"
-    raise NoPairError(f"{function.name} does not give {path}; it gives {known}")
+    raise NoPairError(f"{function.name} does not return {path}; it returns {known}")
 
 
 def _made(function: Function, wiring: Wiring) -> tuple[int, str]:
@@ -178,7 +178,7 @@ def _caller(function: Function, wiring: Wiring, given: str, called: str, made: s
     known = set(_all_paths(function))
     if unknown := next((place for place, _ in wiring.bound if place not in known), ""):
         raise NoPairError(
-            f"{function.name} is not given {unknown}; it is given {', '.join(p.path for p in inputs_of(function))}"
+            f"{function.name} has no input {unknown}; its inputs are {', '.join(p.path for p in inputs_of(function))}"
         )
     bound = {path: _value(function, path, value) for path, value in wiring.bound}
     view = f", float3 {_local(VIEW)}_given" if _uses_view(wiring) else ""

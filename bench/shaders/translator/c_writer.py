@@ -150,7 +150,7 @@ class CWriter(Writer):
         if not hoisted and not any(isinstance(node, Call | Name) for node in inside(constant.value)):
             return f"static const {text};"
         if "[" in constant.kind:
-            raise TranslationError(f"{constant.name}: an array of what is computed is not written in C")
+            raise TranslationError(f"{constant.name}: an array of computed values cannot be written in C")
         self._computed.add(constant.name)
         head = f"static inline {self._kind(constant.kind)} {constant.name}(void)"
         result = text.partition(" = ")[2]
@@ -166,7 +166,7 @@ class CWriter(Writer):
         # What is read before it is assigned to is the same wherever it is compiled.
         nothing = "{0}" if array or kind not in SCALARS else {"float": "0.0f", "bool": "false"}.get(kind, "0")
         if array and value is not None and not isinstance(value, Elements):
-            raise TranslationError(f"{declared.name}: an array that is another one is not written in C")
+            raise TranslationError(f"{declared.name}: a copy of an array cannot be written in C")
         text = self._whole(value, is_initial=True) if value is not None else nothing
         return f"{self._kind(kind)} {self._name(declared.name)}{array} = {text}"
 

@@ -149,7 +149,7 @@ class _Calls:
         nested = [getattr(statement, name, None) for name in ("condition", "start", "step", "value", "target", "call")]
         for node in inside(nested):
             if isinstance(node, Call) and node.name in self.changing:
-                raise TranslationError(f"{node.name} changes what it is given: call it in a line of its own")
+                raise TranslationError(f"{node.name} changes its argument; call it in a separate statement")
         yield statement
 
     def _called(self, statement: Statement, call: Call) -> Iterator[Statement]:

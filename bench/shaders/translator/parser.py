@@ -449,7 +449,7 @@ class Parser:
             columns = [Index(f"vec{matrix.kind[3]}", matrix, Literal("int", str(column))) for column in range(size)]
             return Construct(kind, [Swizzle(f"vec{size}", column, FIELDS[0][:size]) for column in columns])
         if [a.kind for a in arguments] not in ([f"vec{size}"] * size, ["float"] * size**2):
-            raise self._error(f"a {kind} is read of {size} columns, of {size**2} numbers, or of one")
+            raise self._error(f"a {kind} is made of {size} columns, {size**2} numbers or one number")
         if len(arguments) > size:
             columns = [arguments[start : start + size] for start in range(0, size**2, size)]
             arguments = [Construct(f"vec{size}", column) for column in columns]

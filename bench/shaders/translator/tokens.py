@@ -23,7 +23,7 @@ COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 # Of a file that people wrote.
 MOST_TOKENS = 200_000
 MOST_DEPTH = 32
-TOO_LONG = f"more than {MOST_TOKENS} words and marks: no encoder is so long"
+TOO_LONG = f"more than {MOST_TOKENS} tokens; shorten the file"
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def tokens(text: str, first: int = 1) -> list[Token]:
         match = TOKEN.match(text, position)
         place = Place(line, position - begin + 1)
         if not match:
-            raise TranslationError(f"{line}:{place.column}: {text[position]!r} begins nothing known here")
+            raise TranslationError(f"{line}:{place.column}: {text[position]!r} is an unexpected character")
         piece, kind = match[0], str(match.lastgroup)
         if kind == "comment":
             is_behind = newlines == 0 and stream and not piece.startswith("/*")
@@ -193,7 +193,7 @@ class Preprocessor:
             yield token
             return
         if depth > MOST_DEPTH:
-            raise TranslationError(f"{token.place.line}:{token.place.column}: {token.text} stands for itself")
+            raise TranslationError(f"{token.place.line}:{token.place.column}: {token.text} is defined as itself")
         for each in self._macros[token.text]:
             yield from self._words(each, depth + 1)
 

@@ -182,7 +182,7 @@ class WgslParser(Parser):
         known = {declared: self._known_by(declared) for declared in declarations}
         for word, name in known.values():
             if word.text in SET_FROM_OUTSIDE:
-                what = f"{name} is set from outside; an encoder has its normal, and a view-space position, alone"
+                what = f"{name} is set from outside; an encoder has only its normal and a view-space position"
                 self._unread[name] = self._error(what, word.place)
         for declared, (word, name) in known.items():
             if word.text == "const":
@@ -283,7 +283,7 @@ class WgslParser(Parser):
         elif first.text == "fn":
             self._function(first)
         else:
-            raise self._error(f"{first.text}: only functions, constants, structures and aliases are read")
+            raise self._error(f"{first.text}: only functions, constants, structures and aliases are supported")
 
     def _constant(self, first: Token) -> None:
         if (name := self._next_token.text) not in self._read:
@@ -595,7 +595,7 @@ class WgslParser(Parser):
             values = self._all_alike(values)
         kinds = sorted({value.kind for value in values})
         if len(kinds) != 1:
-            message = f"an array of {', '.join(kinds) or 'nothing'}; its elements have one type"
+            message = f"an array of {', '.join(kinds) or 'nothing'}; its elements must have one type"
             raise self._error(message, token.place)
         return Elements(self._array_kind(kinds[0], Literal("int", str(len(values)))), values)
 

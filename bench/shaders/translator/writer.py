@@ -202,9 +202,9 @@ class Writer:
     def _check_parameters(self, function: Function) -> None:
         """Raise TranslationError for parameters and results that not every language supports."""
         if any(kind.endswith("]") for kind in (function.kind, *(p.kind for p in function.parameters))):
-            raise TranslationError(f"{function.name} takes or gives an array; write its numbers one by one")
+            raise TranslationError(f"{function.name} takes or returns an array; write its numbers one by one")
         if any(p.is_changed for p in function.parameters):
-            raise TranslationError(f"{function.name} changes what it is given; give back what it makes")
+            raise TranslationError(f"{function.name} changes its argument; return the result instead")
 
     def _signature(self, function: Function) -> str:
         parameters = ", ".join(f"{self._kind(p.kind)} {self._name(p.name)}" for p in function.parameters)

@@ -108,7 +108,7 @@ def _first_look(file: UserFile, domain: str, by: str) -> dict[str, Any]:
             kept, failing = _that_undo_themselves(file, error.pairs, by)
         except NoDeviceError as missing:
             named = ", ".join(dict.fromkeys(str(file.with_pair(pair)) for pair in error.pairs[:MOST_PAIRS]))
-            return {"error": f"{file}: name one of its pairs, which none is tried of here ({missing}): {named}"}
+            return {"error": f"{file}: name one of its pairs; they cannot be tried here ({missing}): {named}"}
         if len(kept) == 1:
             look = _look_at_one(file.with_pair(kept[0]), domain, by)
             return look | {"pair": kept[0], "failing": _alike(failing)}
@@ -118,7 +118,7 @@ def _first_look(file: UserFile, domain: str, by: str) -> dict[str, Any]:
         if not kept:
             return {"error": f"{file}: {_why_none(failing)}"}
         named = ", ".join(str(file.with_pair(pair)) for pair in kept)
-        how = f"{len(kept)} of its pairs undo themselves; name one: {named}"
+        how = f"{len(kept)} of its pairs round-trip; name one: {named}"
         return {"error": f"{file}: {how}{_untried(failing)}", "pairs": kept, "failing": _alike(failing)}
 
 
@@ -138,7 +138,7 @@ def _why_none(failing: Mapping[str, str]) -> str:
     named = [f"{pair}: {why}" for pair, why in failing.items() if why][:MOST_REASONS]
     if len(failing) == 1:
         return named[0]
-    return f"none of its {len(failing)} pairs undoes itself; {'; '.join(named)}{_untried(failing)}"
+    return f"none of its {len(failing)} pairs round-trips; {'; '.join(named)}{_untried(failing)}"
 
 
 def _untried(failing: Mapping[str, str]) -> str:
@@ -188,7 +188,7 @@ def _undone(file: UserFile, by: str) -> tuple[str, str]:
             trip = trip_of(probe_of(gl, encoding), directions())
             if domain := guessed(trip, within).name:
                 return domain, ""
-            return "", trip.hole or f"what is decoded is {np.median(trip.angles()):.2g} degrees off in the middle"
+            return "", trip.hole or f"decoded normals are {np.median(trip.angles()):.2g} degrees off (median)"
     except (UsageError, ShaderError) as error:
         return "", " ".join(str(error).split())[:LONGEST]
 
@@ -262,7 +262,7 @@ def _of_compiler(file: UserFile, said: str) -> str:
     line = " ".join(said.partition("=\n")[2].split()) or " ".join(said.split())
     if file.is_translated:
         said = re.sub(r"\S+\.glsl:(\d+)", r"line \1", line)[:LONGEST]
-        return f"{file}: the GLSL that was made of it does not compile on this device: {said}"
+        return f"{file}: its translation to GLSL does not compile on this device: {said}"
     named = line if file.path.name in line else f"{file}: {line}"
     hint = of_hlsl(read_shader(file.path))
     return (named if len(named) <= LONGEST else f"{named[:LONGEST]} ...") + (f" ({hint})" if hint else "")
@@ -274,7 +274,7 @@ def _endless(gl: Device, encoding: Encoding) -> dict[str, Any]:
     for what, flags in zip(("encode", "decode"), loops_ended(gl, encoding, n, view), strict=True):
         if flags.any():
             reason = (
-                f"after {loop_limit(gl) or 'too many'} turns in all this device ends a shader's loops without a word"
+                f"this device silently ends a shader's loops after {loop_limit(gl) or 'too many'} iterations in total"
             )
             return {"broken": f"the loops of {what} for {n[np.argmax(flags), :3].tolist()} do not end here: {reason}"}
     return {}
@@ -353,8 +353,8 @@ def _apart(
         if far.mean() > APART_SHARE:
             index = int(np.argmax(far))
             values = [row[index, : by_twin.shape[1]].round(4).tolist() for row in (by_twin, other)]
-            share = f"{100 * far.mean():.0f} % of directions, of {given[index].round(4).tolist()}"
-            return {"apart": f"{what} is another than the GLSL's for {share}: {values[0]}, by GLSL {values[1]}"}
+            share = f"{100 * far.mean():.0f}% of directions, such as {given[index].round(4).tolist()}"
+            return {"apart": f"{what} differs from the GLSL for {share}: {values[0]}, in GLSL {values[1]}"}
     return {}
 
 

@@ -45,7 +45,7 @@ def layouts_named(names: Names) -> list[Layout]:
     called = [layout.name for layout in chosen]
     for name in called:
         if called.count(name) > 1:
-            raise UsageError(f"two layouts are called {name}, which is a file's name without .toml; rename one")
+            raise UsageError(f"two layouts are named {name} (the file name without .toml); rename one")
     _check_encodings(chosen)
     return chosen
 
@@ -56,7 +56,7 @@ def _check_encodings(layouts: Sequence[Layout]) -> None:
     for encoding in (layout.encoding for layout in layouts):
         files.setdefault(encoding.name, set()).add((encoding.source, encoding.glsl))
         if len(files[encoding.name]) > 1:
-            raise UsageError(f"two layouts have each an encoding named {encoding.name} of its own; rename one")
+            raise UsageError(f"two layouts each have their own encoding named {encoding.name}; rename one")
 
 
 def _layout_from_file(path: Path, encoding_named: Callable[[str], Encoding]) -> Layout:
@@ -102,7 +102,7 @@ def _check_inside(folder: Path, file: str) -> None:
     """As for what an encoder includes: neither its name nor a link leads out of the folder."""
     place = Path(os.path.normpath(file))
     if place.is_absolute() or place.parts[:1] == (os.pardir,) or not _leads_inside(folder, place):
-        raise LayoutError(f"{file} is not in the folder of the layout, nor below it; copy it there")
+        raise LayoutError(f"{file} is not in the layout's folder or below it; copy it there")
 
 
 def _leads_inside(folder: Path, place: Path) -> bool:

@@ -17,10 +17,10 @@ from ...shaders.languages.pairs import IF_NAMED
 T = TypeVar("T", bound=AnyEncoding)
 # A code, and lines that are to be said of it.
 Looked = tuple[T, list[str]]
-TAKEN = "there is a code named {} already; rename {}"
+TAKEN = "an encoding named {} already exists; rename {}"
 # Of one file.
 MOST_PAIRS = 8
-TWICE = "another file has a code named {}; rename {}"
+TWICE = "another file has an encoding named {}; rename {}"
 
 
 def choose_or_look(

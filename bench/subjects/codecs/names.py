@@ -74,9 +74,9 @@ def _chained_encoding(word: str, own: Sequence[Given]) -> Encoding:
     first, second = (next((given for given in own if given.name == part), part) for part in (name, then))
     codecs, encodings = codecs_named((first,), (storage,), (NEAREST,)), encodings_named((second,))
     if len(codecs) != 1 or len(encodings) != 1:
-        raise UsageError(f"{word}: one codec and one encoding at a time")
+        raise UsageError(f"{word}: a chain has one codec and one encoding")
     if encodings[0].domain == "view" or codecs[0].encoding.sign_bits:
-        raise UsageError(f"{word}: codes that need a view ray or a depth are not chained")
+        raise UsageError(f"{word}: encodings that need a view ray or a depth cannot be chained")
     return encodings[0].behind(codecs[0])
 
 
@@ -102,7 +102,7 @@ def _computes_halves(encodings: Iterable[Encoding]) -> bool:
         try:
             half_device()
         except MissingError as error:
-            tell(f"what declares numbers of 16 bits is computed in 32 alone: {error}")
+            tell(f"encodings that declare 16-bit numbers are computed only in 32 bits: {error}")
             return False
     return True
 

@@ -77,7 +77,7 @@ def _unchecked_finding(file: UserFile, why: str) -> dict[str, Any]:
     if encoder.read_by == GLSLANG:
         if not (used := MISREAD.search(encoder.text)):
             return {}
-        what = f"it uses {used[0].strip('( ')}, which glslang reads otherwise than HLSL defines it"
+        what = f"it uses {used[0].strip('( ')}, which glslang interprets differently from HLSL"
         return {"error": f"{file}: {what}, and no second compiler reads the file: {why}"}
     return {"notes": [f"no second compiler has checked its translation: {why}"]}
 
@@ -100,9 +100,9 @@ def _disagreement(
     if why and by_glslang is None:
         raise why
     if disagreement or (why and by_glslang):
-        advice = "write it without what is read in two ways, such as % of negative whole numbers"
+        advice = "rewrite ambiguous expressions such as % of negative integers"
         return {"error": f"{file}: two compilers disagree: {disagreement or by_glslang}; {advice}"}
-    return {"notes": [f"{by_glslang}; the former is measured, as the language defines it"]} if by_glslang else {}
+    return {"notes": [f"{by_glslang}; the first is measured, as the language defines it"]} if by_glslang else {}
 
 
 def _by_second_way(file: UserFile, difference: Callable[[Way, tuple[str, str]], str]) -> str:

@@ -32,7 +32,7 @@ def tuned(word: str) -> Encoding:
         _, values = settings_in(word)
     except ValueError as error:
         raise UsageError(
-            f"{word}: after {name} come parameters, each once, such as {_example_setting(encoding)}"
+            f"{word}: give each parameter once after {name}, such as {_example_setting(encoding)}"
         ) from error
     table = values.pop(TABLE, None) if encoding.look_up else None
     try:

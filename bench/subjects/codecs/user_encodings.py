@@ -43,11 +43,11 @@ TIME_LIMIT = 60.0
 ANY = "any"
 FIRST_LOOK = "normalbench.bench.subjects.codecs.first_look"
 DECLARES_HALF = (
-    "it declares numbers of 16 bits: quality and cost have rows in half arithmetic as well, and pick goes by them; all "
+    "it declares 16-bit numbers: quality and cost also have rows in half arithmetic, which pick uses; all "
     "other tables compute in 32 bits"
 )
-IN_32_BITS = "it declares numbers of 16 bits, but its code is an integer: it is computed in 32 bits"
-UNIT = "{} are in [0, 1]; every storage holds them as they are, signed and float ones as well"
+IN_32_BITS = "it declares 16-bit numbers, but its code is an integer: it is computed in 32 bits"
+UNIT = "{} are in [0, 1]; every storage holds them unchanged, including signed and float ones"
 
 
 def looked_at(file: UserFile) -> Looked[Encoding]:
@@ -252,7 +252,7 @@ def _of_unit_text(file: Path, name: str, components: int) -> _Text:
     )
     # Into a text of this program goes no name that could end the line or the quotes.
     if '"' in str(file) or not str(file).isprintable():
-        raise UsageError(f"{file}: a file with quotes or control characters is not read; rename it")
+        raise UsageError(f"{file}: its name has quotes or control characters; rename it")
     prefix = f"unit_{name}"
     text = f'#include "{file}"\n' + pair(prefix, components, encoder, decoder, is_unit=True)
     return _Text(name, components, glsl_file(prefix, text), prefix)
@@ -275,7 +275,7 @@ def _lacking_functions(reason: str) -> tuple[Callable[..., Any], Callable[..., A
 def _twin_functions(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The encode and decode of a Python file; of a missing one, functions that raise NoTwinError."""
     if not path.exists():
-        return _lacking_functions(f"{path.stem} {NO_TWIN}; {path.name} next to it would add rows by JAX")
+        return _lacking_functions(f"{path.stem} {NO_TWIN}; add {path.name} next to it for rows computed by JAX")
     try:
         spec = importlib.util.spec_from_file_location(path.stem, path)
         assert spec and spec.loader
@@ -368,8 +368,8 @@ class Looks:
         if self.is_asked and hole:
             yield f"it is meant for {domain.made_for}; elsewhere {hole}"
         elif domain.made_for and not self.is_asked:
-            turned = "; tables turn it, so that this is their z >= 0" if domain.is_turned else ""
-            yield f"taken to be made for {domain.made_for} alone: {hole or 'no others come back'}{turned}"
+            turned = "; tables rotate it so that this half is z >= 0" if domain.is_turned else ""
+            yield f"assumed to be made only for {domain.made_for}: {hole or 'other normals do not come back'}{turned}"
 
 
 def _look(file: UserFile, domain: str = "") -> Looks:
@@ -412,7 +412,7 @@ def _said_of(file: UserFile, by: str) -> tuple[str, ...]:
     if by or file.is_translated:
         return tuple(translated(file).notes)
     name, _, others = encode_of(file, read_shader(file.path))
-    return tuple(f"{name} alone is measured; move {other} into a file of its own" for other in others)
+    return tuple(f"only {name} is measured; move {other} into a separate file" for other in others)
 
 
 def twin_is_looked_at(file: UserFile, found: dict[str, Any]) -> bool:

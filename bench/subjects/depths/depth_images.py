@@ -114,8 +114,8 @@ def _check_code(path: Path, numbers: np.ndarray, code: str) -> None:
     """Raise UsageError if numbers cannot be those of a depth encoding, which are in [0, 1]."""
     valid_numbers = numbers[~np.isnan(numbers)]
     if len(valid_numbers) and not 0 <= valid_numbers.min() <= valid_numbers.max() <= 1:
-        what = f"its numbers are {valid_numbers.min():.3g} to {valid_numbers.max():.3g}, and those of {code} 0 to 1"
-        raise refused(path, what, "--depths-are view takes distances")
+        what = f"its numbers are {valid_numbers.min():.3g} to {valid_numbers.max():.3g}, but those of {code} are 0 to 1"
+        raise refused(path, what, "use --depths-are view for distances")
 
 
 def _channel(path: Path, names: Sequence[str], asked: str | None) -> str:
@@ -123,12 +123,12 @@ def _channel(path: Path, names: Sequence[str], asked: str | None) -> str:
     shown = ", ".join(names[:40])
     if asked is not None:
         if asked not in names:
-            raise refused(path, f"no channel {asked!r}; it has {shown}", "--channel takes one by name")
+            raise refused(path, f"no channel {asked!r}; it has {shown}", "name one with --channel")
         return asked
     likely = [name for name in names if _is_called_like_depths(name, names)] or list(names)
     if len(likely) == 1:
         return likely[0]
-    raise refused(path, f"any of {', '.join(likely[:40])} may be depths", f"--channel {likely[0]} names one")
+    raise refused(path, f"any of {', '.join(likely[:40])} may be depths", f"choose one with --channel {likely[0]}")
 
 
 def _is_called_like_depths(name: str, names: Sequence[str]) -> bool:
@@ -143,15 +143,15 @@ def _notes(numbers: np.ndarray, pixels: Pixels, reading: DepthReading) -> list[s
     notes = []
     if pixels.full is not None:
         bits = pixels.full.bit_length()
-        notes.append(f"whole numbers of {bits} bits: codes of the same steps look better than they are")
+        notes.append(f"{bits}-bit integers: encodings with the same steps look better than they are")
     elif len(finite) and np.array_equal(finite, _half_floats(finite)):
-        notes.append("all its numbers are those of half floats: r16f looks better than it is")
+        notes.append("all its values are half floats: r16f looks better than it is")
     is_as_stored = reading.depths_are == VIEW and pixels.full is None and reading.depth_unit == 1
     if is_as_stored and len(finite) and 0 <= finite.min() <= finite.max() <= 1:
         codes = "window, reversed_window or linear"
-        notes.append(f"all its numbers are in [0, 1]: --depths-are {codes} reads a depth buffer's")
+        notes.append(f"all its values are in [0, 1]; for a depth buffer use --depths-are {codes}")
     if reading.fov is None:
-        notes.append("without --fov its points lie on the view axis, and errors are of depth alone")
+        notes.append("without --fov its points are on the view axis, and errors are in depth only")
     return notes
 
 

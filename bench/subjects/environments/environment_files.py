@@ -46,9 +46,7 @@ def _colours(path: Path, names: Sequence[str]) -> Sequence[str]:
     """Red, green and blue; alpha and what else is there are not read. Raises UsageError."""
     channels = {name.upper(): name for name in reversed(names)}
     if not set(COLOURS) <= set(channels):
-        raise refused(
-            path, f"it has {', '.join(names[:40])}", "an environment has channels R, G and B: save it in colour"
-        )
+        raise refused(path, f"it has {', '.join(names[:40])}", "it must have channels R, G and B; save it in colour")
     return [channels[colour] for colour in COLOURS]
 
 
@@ -56,11 +54,11 @@ def _check(path: Path, sides: tuple[int, int], channels: int) -> None:
     """Raise UsageError if an image does not have the width and height of an environment."""
     width, height = sides
     if width != 2 * height:
-        remedy = "an equirectangular environment is twice as wide as high: export it as one"
+        remedy = "an equirectangular environment must be twice as wide as high; export it so"
         raise refused(path, f"{width} x {height} pixels", remedy)
     if width > MOST_WIDTH:
         raise refused(
-            path, f"{width} x {height} pixels", f"at most {MOST_WIDTH} x {MOST_WIDTH // 2} are read: scale it down"
+            path, f"{width} x {height} pixels", f"at most {MOST_WIDTH} x {MOST_WIDTH // 2} are supported: scale it down"
         )
     if width < LEAST_WIDTH:
         raise refused(path, f"{width} x {height} pixels", f"at least {LEAST_WIDTH} x {LEAST_WIDTH // 2} are needed")
@@ -78,4 +76,4 @@ def _no_light(path: Path, planes: np.ndarray, wrong: np.ndarray) -> UsageError:
     row, column = (int(index) for index in np.argwhere(wrong.any(0))[0])
     channel = int(wrong[:, row, column].argmax())
     what = f"{COLOURS[channel]} is {planes[channel, row, column]:g} at column {column}, row {row}, counted from 0"
-    return refused(path, f"{what}, as at {wrong.any(0).sum()} pixels in all", "radiance is finite and not negative")
+    return refused(path, f"{what} ({wrong.any(0).sum()} pixels in total)", "radiance must be finite and not negative")

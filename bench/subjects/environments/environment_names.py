@@ -14,7 +14,7 @@ from ...ground.output.errors import UsageError
 from .environment_files import ENDINGS, environment_of
 
 READ = f"{' and '.join(ENDINGS)} files are read"
-LOW = "its pixels have no light beyond white; save the environment as .hdr or .exr"
+LOW = "it stores no light brighter than white; save the environment as .hdr or .exr"
 # By its ending, why a picture of another kind is not read.
 OTHERS: Mapping[str, str] = MappingProxyType(
     dict.fromkeys((".png", ".jpg", ".jpeg", ".webp", ".bmp", ".tga", ".gif"), LOW)

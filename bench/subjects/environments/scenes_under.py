@@ -25,7 +25,7 @@ def scenes_under(word: str | None, makers: Iterable[SceneMaker]) -> Iterator[Sce
     around = environment_named(word)
     for maker in makers:
         if not maker.make(Setting(objects=1, lights=0)).is_metal_rough:
-            raise UsageError(f"--environment: {maker.name} has no metal/rough materials, which alone reflect it")
+            raise UsageError(f"--environment: {maker.name} has no metallic-roughness materials to reflect it")
         yield replace(maker, make=Under(maker, around))
 
 

@@ -21,7 +21,7 @@ def backends_named(names: Names, has: Collection[str]) -> list[str]:
         return list(has)
     picked = choose("back end", names, dict(zip(BACKENDS, BACKENDS, strict=True)))
     available, lacking = [name for name in picked if name in has], [name for name in picked if name not in has]
-    message = f"{', '.join(lacking)}: this table measures by {' and '.join(has)}"
+    message = f"{', '.join(lacking)}: this table measures only with {' and '.join(has)}"
     if not available:
         raise UsageError(message)
     if lacking:

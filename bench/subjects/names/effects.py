@@ -40,13 +40,13 @@ def pipeline_with(pipeline: Pipeline, effects: Iterable[ChosenEffect], complaint
     for effect in effects:
         twin = makers.setdefault(effect.effect.result.name, effect.name)
         if twin != effect.name:
-            complaints.append(f"{twin} and {effect.name} both make {effect.effect.result.name}; name one of them")
+            complaints.append(f"{twin} and {effect.name} both produce {effect.effect.result.name}; name only one")
             return None
         try:
             pipeline = pipeline.with_effect(effect.passes())
         except PipelineError:
             others = ", ".join(name for name, other in PIPELINES.items() if _fits(other, effect))
-            complaints.append(f"{effect.name} does not go into pipeline {pipeline.name}, but into {others}")
+            complaints.append(f"{effect.name} cannot be used in pipeline {pipeline.name}; use {others}")
             return None
     return pipeline
 

@@ -40,7 +40,7 @@ def _said_codec(word: str) -> LightCodec:
         return codec
     chosen = storages_named((storage,), FORMATS, "light storage")
     if len(chosen) > 1:
-        raise UsageError(f"light buffer {word}: one storage, not {len(chosen)}")
+        raise UsageError(f"light buffer {word}: names {len(chosen)} storages; name one")
     stored_codec = replace(codec, storage=chosen[0])
     if stored_codec.misfit:
         raise UsageError(f"light buffer {word}: {stored_codec.misfit}")
@@ -51,7 +51,7 @@ def _plain_codec(name: str, word: str) -> LightCodec:
     """Light as it is, which goes by its formats' names."""
     if name != PLAIN:
         known = [*LIGHT_ENCODINGS]
-        raise UsageError(f"light buffer {word}: a code is one of {', '.join(known)}, as in linear/unorm:10:10:10")
+        raise UsageError(f"light buffer {word}: expected one of {', '.join(known)}, as in linear/unorm:10:10:10")
     return next(codec for codec in LIGHT_BUFFERS.values() if codec.encoding.is_plain)
 
 
@@ -65,7 +65,7 @@ def ranged_light_buffer(word: str) -> LightCodec:
     known = {name: codec for name, codec in LIGHT_BUFFERS.items() if codec.encoding.ranged}
     codec = known.get(name)
     if not codec or not codec.encoding.ranged:
-        raise UsageError(f"light buffer {word}: of {', '.join(known)} the range may be given, as in linear:1")
+        raise UsageError(f"light buffer {word}: only {', '.join(known)} take a range, as in linear:1")
     return replace(codec, encoding=codec.encoding.ranged(range_in(f"light buffer {word}", text)))
 
 
@@ -82,6 +82,6 @@ def range_in(what: str, text: str) -> float:
     except ValueError:
         limit = math.nan
     if not LEAST_RANGE <= limit <= MOST_LIGHT:
-        raise UsageError(f"{what}: a range is {LEAST_RANGE:g} to {MOST_LIGHT:g}, as in NAME:1")
+        raise UsageError(f"{what}: the range must be {LEAST_RANGE:g} to {MOST_LIGHT:g}, as in NAME:1")
     # As its name has it: two ranges that are called the same are the same.
     return float(f"{limit:g}")

@@ -35,15 +35,15 @@ NORMAL_SETS = {
 
 # Sets that users' files are, by how they are named.
 FILES_OF_NORMALS = {
-    "FRAME.exr": "a captured frame, also .png, .tif, .dds, .hdr, .webp and .npy",
-    "MESH.glb": "what a camera sees of a mesh, also .gltf, .obj and .ply",
-    "MESH.glb#vertices": "its vertex normals in object space, each vertex once, also .gltf, .obj and .ply",
+    "FRAME.exr": "a captured frame; also .png, .tif, .dds, .hdr, .webp and .npy",
+    "MESH.glb": "a mesh as a camera sees it; also .gltf, .obj and .ply",
+    "MESH.glb#vertices": "its vertex normals in object space, each vertex once; also .gltf, .obj and .ply",
     "POINTS.ply": "the normals of a point cloud in object space: nx, ny, nz and no faces",
 }
 
-FILES_OF_DEPTHS = {"DEPTH.exr": "the depths of a frame, also .png, .tif and .npy: `depth --depths`"}
+FILES_OF_DEPTHS = {"DEPTH.exr": "the depths of a frame; also .png, .tif and .npy; for `depth --depths`"}
 
-FRAME_SETS = {"rotations": "rotations spread evenly, of either hand, seeded"}
+FRAME_SETS = {"rotations": "rotations spread evenly, of either handedness, seeded"}
 
 HOW = {"add": "adding", "multiply": "multiplying", "read": "reading and writing"}
 COLUMNS = (
@@ -78,8 +78,8 @@ BY_BITS = {
     "snorm_gl2:B:...": "c is (2i+1)/(2^B-1): unorm's numbers",
     "centred:B:...": "snorm's integers and a half, in UNORM",
     "uint:B:... sint:B:...": "unorm and snorm in one integer, x lowest",
-    "float:E:M ufloat:E:M": "as many as 8 bytes hold, 4 at most",
-    "unorm:4:4..16:16": "each, from some bits to some others",
+    "float:E:M ufloat:E:M": "as many as fit in 8 bytes, at most 4",
+    "unorm:4:4..16:16": "every storage in a range of bit counts",
 }
 
 
@@ -96,7 +96,7 @@ def _rule_text(storage: Storage) -> str:
 def _texel_text(storage: Storage) -> str:
     """Say how a storage places its numbers in a texel."""
     texel = f"{storage.texel_bytes} bytes"
-    return f"{texel}, across channels" if storage.is_packed else f"{texel}, a channel each"
+    return f"{texel}, across channels" if storage.is_packed else f"{texel}, one channel each"
 
 
 def _depths() -> list[Row]:

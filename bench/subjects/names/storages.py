@@ -48,7 +48,7 @@ def storages_named(
 def roundings_named(names: Names, known: Collection[str] = ROUNDINGS) -> list[str]:
     """Return ways to round by their names. Raises UsageError for one that is not among the known."""
     if DITHERED not in known and DITHERED in names:
-        raise UsageError(f"--rounding {DITHERED}: no noise is added here; quality and render add it")
+        raise UsageError(f"--rounding {DITHERED}: this command adds no noise; use quality or render")
     return choose("rounding", names, {name: name for name in known})
 
 
@@ -97,14 +97,14 @@ def _in_range(word: str) -> list[str]:
     match = RANGE.fullmatch(word)
     if not match and RULE.match(word) and not BY_RULE.fullmatch(word):
         raise UsageError(
-            f"--storage {word}: bits are said as unorm:9:7, snorm:12:12, centred:8:8, float:5:10, unorm:4:4..16:16"
+            f"--storage {word}: write bits as unorm:9:7, snorm:12:12, centred:8:8, float:5:10, unorm:4:4..16:16"
         )
     if not match:
         return [word]
     first, last = ([int(bits) for bits in match[end].split(":")] for end in ("first", "last"))
     steps = {high - low for low, high in zip(first, last, strict=False)} - {0}
     if len(first) != len(last) or len(steps) > 1 or min(steps, default=0) < 0:
-        raise UsageError(f"--storage {word}: in a range numbers grow by as many bits, or stay, as in unorm:4:4..16:16")
+        raise UsageError(f"--storage {word}: bit counts of a range grow equally or stay, as in unorm:4:4..16:16")
     grows = [high > low for low, high in zip(first, last, strict=True)]
     every = ([b + step * g for b, g in zip(first, grows, strict=True)] for step in range(max(steps, default=0) + 1))
     return [":".join((match["kind"], *map(str, bits))) for bits in every]

@@ -126,8 +126,8 @@ def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: 
 def _of_a_matrix(to_view: np.ndarray) -> dict[str, np.ndarray]:
     """Return the possible misreadings of a frame in world space, with the matrices that correct them."""
     return {
-        "the matrix is transposed (it may be for row vectors, or turn view space to world space)": to_view.T,
-        "the matrix turns to a left-handed view space, z into the screen": MIRRORED @ to_view,
+        "the matrix is transposed (it may be for row vectors, or transform view space to world space)": to_view.T,
+        "the matrix transforms to a left-handed view space, z into the screen": MIRRORED @ to_view,
         "the matrix is transposed and left-handed": MIRRORED @ to_view.T,
         "they are in view space already": np.eye(3),
         "they are in left-handed view space already": MIRRORED,

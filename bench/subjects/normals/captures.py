@@ -128,7 +128,7 @@ def check_size(path: Path, shape: tuple[int, ...], wanted: tuple[int, ...]) -> N
     """Raise UsageError if an image does not have the (height, width) of another."""
     if shape != wanted:
         sides, others = (" x ".join(map(str, size[::-1])) for size in (shape, wanted))
-        raise refused(path, f"it is {sides}, and the depth is {others}", "save all of a frame in one size")
+        raise refused(path, f"it is {sides}, but the depth is {others}", "save all images of a frame in one size")
 
 
 def is_in_object_space(path: Path, reading: Reading) -> bool:
@@ -149,8 +149,8 @@ def _of_roundings(roundings: Sequence[Rounding], own: float | None, is_image: bo
     """Return remarks on normals that their file stores in few bits, with an error of `own` degrees."""
     if is_image and roundings == (EIGHT_BITS,):
         return [
-            "8 bits a channel, off by about 0.2 degrees themselves: storages of 8 bits look better on them than "
-            "they are; 16 bits or floats do not favour any"
+            "8 bits per channel, about 0.2 degrees off themselves: 8-bit storages look better on them than "
+            "they are; captures in 16 bits or floats favour none"
         ]
     if own is None or own < FINE:
         return []
@@ -160,9 +160,9 @@ def _of_roundings(roundings: Sequence[Rounding], own: float | None, is_image: bo
 def checked(reading: Reading) -> Reading:
     """Return how files are read, with the known names. Raises UsageError."""
     if not 0 <= reading.nan_share <= 1:
-        raise UsageError(f"--nan-share {reading.nan_share}: a share is 0 to 1")
+        raise UsageError(f"--nan-share {reading.nan_share}: out of range; use 0 to 1")
     if reading.fov is not None and not 1 <= reading.fov <= 175:
-        raise UsageError(f"--fov {reading.fov}: an angle of view is 1 to 175 degrees")
+        raise UsageError(f"--fov {reading.fov}: out of range; use 1 to 175 degrees")
     space, curve = choose_one("space", reading.space, SPACES), choose_one("curve", reading.curve, CURVES)
     code_space = choose_one("code space", reading.code_space, CODE_SPACES)
     return replace(reading, space=space, curve=curve, code_space=code_space)
@@ -201,13 +201,13 @@ def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list
             return layers[words[0]]
         if len(words) == 3 and set(words) <= set(names):
             return words
-        raise refused(path, f"no channels {asked!r}; it has {shown}", "--channels takes a layer, or x,y,z by name")
+        raise refused(path, f"no channels {asked!r}; it has {shown}", "give a layer or three channels with --channels")
     likely = [layer for layer in layers if NORMAL_WORDS.fullmatch(re.split(r"[._ ]", layer)[-1])]
     if len(likely) > 1:
-        raise refused(path, f"layers {', '.join(likely)} may all be normals", f"--channels {likely[0]} names one")
+        raise refused(path, f"layers {', '.join(likely)} may all be normals", f"choose one with --channels {likely[0]}")
     if likely or "" in layers or len(layers) == 1:
         return layers[likely[0] if likely else "" if "" in layers else next(iter(layers))]
-    raise refused(path, f"no channels that are called like normals; it has {shown}", "--channels x,y,z names three")
+    raise refused(path, f"no channels with names of normals; it has {shown}", "name three with --channels x,y,z")
 
 
 # What is surface
@@ -226,7 +226,7 @@ def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
         where, mask = f"channel {asked}", read_pixels(path, lambda names: _one_channel(path, names, asked)).planes[0]
     if mask.shape != shape:
         sides = " x ".join(map(str, mask.shape))
-        raise refused(path, f"{where} is {sides}, the normals are {' x '.join(map(str, shape))}", "one of one size")
+        raise refused(path, f"{where} is {sides}, the normals are {' x '.join(map(str, shape))}", "use the same size")
     return np.isfinite(mask) & (mask != 0)
 
 
@@ -256,7 +256,7 @@ def _directions_and_remarks(
     length = _plane_lengths(n)
     covered = surface & finite & (length >= BACKGROUND)
     if not covered.any() and path.suffix.lower() in CLOUDS:
-        raise refused(path, "none of its points has a normal: nx, ny, nz are 0, as splats have them", "export normals")
+        raise refused(path, "none of its points has a normal: nx, ny, nz are 0, as in splats", "export normals")
     if not covered.any():
         raise refused(path, "no normals: every pixel is background", "see --channels, --mask and --unpack")
     notes = _checked_unit(path, stored, length, covered, reading, unpack)
@@ -281,7 +281,7 @@ def _check_finite(path: Path, surface: np.ndarray, finite: np.ndarray, share: fl
         raise refused(
             path,
             f"{count} of {most} normals are NaN or infinite, the first at {first}",
-            f"--nan-share {needed:g} masks and counts them, --mask leaves them out",
+            f"use --nan-share {needed:g} to mask and count them, or --mask to exclude them",
         )
 
 
@@ -291,22 +291,22 @@ def _checked_unit(
     """Return remarks if a few normals are not unit. If more are not, raise UsageError with the option that would read
     them."""
     off = float(np.mean(abs(length[covered] - 1) > UNIT_WITHIN))
-    complaint = f"{off:.1%} of the normals are not unit"
+    complaint = f"{off:.1%} of the normals are not unit length"
     if off <= OFF_UNIT_SHARE:
-        return [] if off == 0 or reading.normalise else [f"{off:.3%} of the normals are not unit: normalised"]
+        return [] if off == 0 or reading.normalise else [f"{off:.3%} of the normals are not unit length: normalised"]
     components = stored[:, covered]
     low, high = (float(f(components)) for f in (np.min, np.max))
     remedy = next(_readings_that_fit(components, reading.curve, unpacked), None)
     if reading.normalise:
-        return [f"{complaint}, normalised; {remedy} would read them as unit"] if remedy else []
+        return [f"{complaint}, normalised; {remedy} would read them at unit length"] if remedy else []
     if remedy:
-        raise refused(path, f"{complaint}, all components are in [{low:.3g}, {high:.3g}]", f"{remedy} reads them")
+        raise refused(path, f"{complaint}, all components are in [{low:.3g}, {high:.3g}]", f"use {remedy}")
     median = float(np.median(length[covered]))
     raise refused(
         path,
         f"{complaint}: lengths {length[covered].min():.3g} to {length[covered].max():.3g}, median {median:.3g}, "
         f"components in [{low:.3g}, {high:.3g}]",
-        "--normalise takes them all the same; --channels names others",
+        "use --normalise to accept them, or --channels to choose others",
     )
 
 
@@ -328,8 +328,8 @@ def _readings_that_fit(found: np.ndarray, curve: str, unpacked: bool) -> Iterato
             # A grey background of packed normals has no length when unpacked.
             surface = lengths[lengths >= BACKGROUND]
             if len(surface) and np.mean(abs(surface - 1) <= UNIT_WITHIN) >= 1 - 10 * OFF_UNIT_SHARE:
-                packing = "" if unpack == unpacked else " --unpack" if unpack else " --no-unpack"
-                yield ("" if name == curve else f" --curve {name}").strip() + packing
+                packing = [] if unpack == unpacked else ["--unpack" if unpack else "--no-unpack"]
+                yield " ".join(([] if name == curve else [f"--curve {name}"]) + packing)
 
 
 # Where they point
@@ -362,10 +362,10 @@ def turns_of(reading: Reading) -> tuple[Turns, list[str]]:
         if (known is None) != is_world:
             raise _matrix_error(reading)
         if known is None and reading.fov is not None:
-            raise UsageError("--fov gives rays in view space; --view-matrix turns them to world space")
+            raise UsageError("--fov gives rays in view space; use --view-matrix to transform them to world space")
         return Turns(known, same if known is None else known, same), []
     if known is not None and not is_world:
-        raise UsageError(f"--view-matrix turns world space to view space; --space {reading.space} needs none")
+        raise UsageError(f"--view-matrix cannot be used with --space {reading.space}, unless --code-space is world")
     matrix, notes = _rotation_and_remarks(reading.view_matrix)
     if not is_world:
         return Turns(matrix, matrix, same), notes
@@ -375,12 +375,12 @@ def turns_of(reading: Reading) -> tuple[Turns, list[str]]:
 def _matrix_error(reading: Reading) -> UsageError:
     asked, other = f"--space {reading.space}", ""
     if SPACES[reading.space] is None:
-        other = "; or --code-space world, where the engine encodes world-space normals"
+        other = "; or use --code-space world if the engine encodes world-space normals"
     else:
         asked += f" --code-space {reading.code_space}"
     return UsageError(
-        f"{asked} needs --view-matrix, 9 or 16 numbers row by row or a text file of them, which turn world space to "
-        f"view space: x right, y up, z towards the viewer{other}"
+        f"{asked} needs --view-matrix, 9 or 16 numbers row by row or a text file of them, which transform world space "
+        f"to view space: x right, y up, z towards the viewer{other}"
     )
 
 
@@ -396,7 +396,7 @@ def _rotation_and_remarks(text: str) -> tuple[np.ndarray, list[str]]:
         raise UsageError(f"{option}: not a rotation: its rows are not at right angles, or of different lengths")
     size = math.sqrt(scale)
     is_scaled = abs(size - 1) > ROTATION_WITHIN
-    return linear / size, [f"the rows of --view-matrix are {size:.4g} long: the scale is left out"] * is_scaled
+    return linear / size, [f"the rows of --view-matrix are {size:.4g} long: the scale is ignored"] * is_scaled
 
 
 def _numbers_of(text: str, said: str) -> np.ndarray:
@@ -421,11 +421,9 @@ def _check_affine(matrix: np.ndarray, said: str) -> None:
     below, beside = matrix[3, :3], matrix[:3, 3]
     if below.any() and not beside.any():
         turned = typed(matrix[:3, :3].T)
-        raise UsageError(
-            f"{said}: its translation is in the last row, for row vectors; --view-matrix {turned} turns it"
-        )
+        raise UsageError(f"{said}: its translation is in the last row, for row vectors; use --view-matrix {turned}")
     if below.any():
-        raise UsageError(f"{said}: its last row is not 0, 0, 0, 1: is a projection in it? give the view matrix alone")
+        raise UsageError(f"{said}: its last row is not 0, 0, 0, 1, as with a projection; give only the view matrix")
 
 
 def typed(matrix: np.ndarray) -> str:
@@ -458,8 +456,8 @@ def _remedy_text(found: np.ndarray | float | None, is_world: bool, chosen: Seque
     if is_world:
         return "check --view-matrix"
     return (
-        "is it in world space? --space world --view-matrix turns it to view space; where the engine encodes "
-        "world-space normals, --space world --code-space world leaves it as it is"
+        "is it in world space? use --space world --view-matrix to transform it to view space; if the engine encodes "
+        "world-space normals, use --space world --code-space world"
     )
 
 

@@ -26,13 +26,13 @@ from .pixel_files import MAX_PIXELS, has_normals_alone
 from .pixel_files import READERS as IMAGES
 
 WORLD = CODE_SPACES[1]
-SEES_NOTHING = "its camera sees nothing; move it, or leave it out to have everything framed"
+SEES_NOTHING = "its camera sees nothing; move it, or remove it to frame everything"
 MAX_SIDE = 16384
 ENDINGS = (*IMAGES, *files.READERS, *vertices.ENDINGS)
-JPEG = "JPEG changes normals; save the frame as EXR or PNG"
+JPEG = "JPEG compression changes normals; save the frame as EXR or PNG"
 # By its ending, why a file of another kind is not read, and what is.
 OTHERS: Mapping[str, str] = MappingProxyType(
-    {".jpg": JPEG, ".jpeg": JPEG, ".npz": "an archive of arrays; save one array by np.save, as .npy"}
+    {".jpg": JPEG, ".jpeg": JPEG, ".npz": "an archive of arrays; save one array as .npy with np.save"}
 )
 
 
@@ -51,8 +51,8 @@ def normal_sets_named(
         _check_kind(word)
     is_read_so = any(has_normals_alone(Path(word)) for word in typed)
     if reading != Reading(size=reading.size) and not is_read_so:
-        reason = f"--normals {text_of(names)} names none ({', '.join(IMAGES)})"
-        raise UsageError(f"options of captures are given, but {reason}")
+        reason = f"--normals {text_of(names)} names no capture ({', '.join(IMAGES)})"
+        raise UsageError(f"options for captures are given, but {reason}")
 
     notes: dict[Path, list[str]] = {}
 
@@ -62,9 +62,9 @@ def normal_sets_named(
         elif has_normals_alone(path):
             normal_set, notes[path] = capture(path, reading)
             if needs_rays and reading.code_space == WORLD and reading.view_matrix is None:
-                raise UsageError("codes that need the view ray need --view-matrix where they are in world space")
+                raise UsageError("encodings that need the view ray require --view-matrix with --code-space world")
             if needs_rays and reading.fov is None and normal_set.has_rays:
-                notes[path].append("without --fov, rays are parallel for codes that need them")
+                notes[path].append("without --fov, encodings that need view rays get parallel ones")
         else:
             normal_set, notes[path] = mesh_set(path, reading.size)
         return given(normal_set)
@@ -78,7 +78,7 @@ def normal_sets_named(
 def lacking_rays(pairs: Iterable[tuple[Encoding, NormalSet]]) -> list[str]:
     """Return a line on each pair of an encoding and a set that cannot be measured, because the set has no rays."""
     return [
-        f"{encoding.name} of {normal_set.name}: {LACKS_RAYS}"
+        f"{encoding.name} on {normal_set.name}: {LACKS_RAYS}"
         for encoding, normal_set in pairs
         if not normal_set.serves(encoding)
     ]
@@ -87,7 +87,7 @@ def lacking_rays(pairs: Iterable[tuple[Encoding, NormalSet]]) -> list[str]:
 def check_rays(sets: Iterable[NormalSet], needs_rays: bool) -> None:
     """Raise UsageError if something to be measured needs rays and a set has none."""
     if needs_rays and (lacking := next((normal_set for normal_set in sets if not normal_set.has_rays), None)):
-        raise UsageError(f"--normals {lacking.name}: a code cannot be measured of it: {LACKS_RAYS}")
+        raise UsageError(f"--normals {lacking.name}: an encoding cannot be measured on it: {LACKS_RAYS}")
 
 
 def _check_kind(word: str) -> None:
@@ -96,7 +96,7 @@ def _check_kind(word: str) -> None:
     if (ending := Path(word).suffix.lower()) in OTHERS:
         raise UsageError(f"{word}: {OTHERS[ending]}")
     if names_a_folder(word) and word not in NORMAL_SETS and ending not in ENDINGS:
-        raise UsageError(f"{word}: it is a folder; name the files in it, separated by commas")
+        raise UsageError(f"{word}: it is a folder; name files in it, separated by commas")
 
 
 def say_count_is_unused(options: Any) -> None:
@@ -126,16 +126,16 @@ def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:
 
     Raises UsageError.
     """
-    sides = checked_sides(size, MAX_SIDE, "for the picture of a mesh")
+    sides = checked_sides(size, MAX_SIDE, "for the image of a mesh")
     if math.prod(sides) > MAX_PIXELS:
-        raise UsageError(f"--size {size}: {math.prod(sides)} pixels; the most is {MAX_PIXELS} (2^25)")
+        raise UsageError(f"--size {size}: {math.prod(sides)} pixels; the maximum is {MAX_PIXELS} (2^25)")
     file = mesh_file(path)
     seen = files.seen(file, sides)
     if not seen.covered.any():
         raise UsageError(f"{path}: {SEES_NOTHING}")
-    notes = [*file.notes, *([] if file.view else ["no camera in it: seen from aside, all of it in the picture"])]
+    notes = [*file.notes, *([] if file.view else ["no camera in it: viewed from one side, framed as a whole"])]
     if (own := seen.map_error_deg) is not None:
-        notes.append(own_error_note("its normal maps have 8 bits a channel and", own))
+        notes.append(own_error_note("its normal maps have 8 bits per channel and", own))
     of_vertices, vertex_notes = vertices.drawn_error(path)
     name = called(path.name)
     normal_set = from_arrays(name, f"the meshes of {name}", seen.normals, seen.positions, seen.covered, sides[::-1])

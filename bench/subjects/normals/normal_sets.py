@@ -24,7 +24,7 @@ from .fill import Fill
 
 # The space of vertices and points, which no camera sees.
 OBJECT = "object"
-LACKS_RAYS = "it needs the view ray, and normals in object space have none"
+LACKS_RAYS = "it needs the view ray, which normals in object space do not have"
 CHUNK_WIDTH = 512
 CHUNK = CHUNK_WIDTH * CHUNK_WIDTH
 # Larger sets are measured and kept in parts of so many normals, by several workers where there are some.

@@ -87,7 +87,7 @@ def _rounded_on_octahedron(n: np.ndarray, most: float) -> np.ndarray:
 
 def own_error_note(what: str, own: float) -> str:
     """Return a remark on a source's own error in degrees."""
-    finer = f"a code with a mean below {own * WASTED:.1g} spends bits that these normals do not have"
+    finer = f"encodings with a mean error below {own * WASTED:.1g} degrees waste bits on them"
     return f"{what} are off by about {own:.2g} degrees themselves: {finer}"
 
 

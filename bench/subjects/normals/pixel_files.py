@@ -32,7 +32,7 @@ from . import png
 MAX_PIXELS = 2**25
 MAX_NUMBERS = 2**29
 MAX_CHANNELS = 1024
-SMALLER = f"at most {MAX_PIXELS} pixels (2^25) are read: crop it"
+SMALLER = f"at most {MAX_PIXELS} pixels (2^25) are supported: crop it"
 SECONDS = 120
 EXR = "openexr"
 TIFF = rb"(II|MM)(\*\0|\0\*|\+\0|\0\+)"
@@ -56,8 +56,8 @@ STEPS, LOOKED_AT, DIFFERENT = (255, 1023), 2**16, 8
 # What a status of `pixel_process.py` says, and the remedy; any other is a damaged file.
 FAILURES: Mapping[int, tuple[str, str]] = MappingProxyType(
     {
-        2: ("a channel has fewer samples than pixels", "save it in full"),
-        3: ("its header says far more pixels than it can hold", SMALLER),
+        2: ("a channel is subsampled", "save it in full"),
+        3: ("its header claims far more pixels than the file can hold", SMALLER),
     }
 )
 
@@ -139,7 +139,7 @@ def check_sides(path: Path, sides: tuple[int, int], channels: int) -> None:
 def check_pixels(path: Path, pixels: int, channels: int) -> None:
     """Raises UsageError where an image is larger than is read."""
     if channels > MAX_CHANNELS:
-        raise refused(path, f"{channels} channels", f"at most {MAX_CHANNELS} are read")
+        raise refused(path, f"{channels} channels", f"at most {MAX_CHANNELS} are supported")
     if pixels > MAX_PIXELS or pixels * channels > MAX_NUMBERS:
         raise refused(path, f"{pixels} pixels of {channels} channels", SMALLER)
 
@@ -156,10 +156,10 @@ def read_image(path: Path, choose: Choice, check: Check = check_sides) -> Pixels
     kind, start = FORMATS[path.suffix.lower()]
     data = _bytes(path)
     if not re.match(start, data, re.DOTALL):
-        raise refused(path, f"no {path.suffix[1:].upper()} file, by its first bytes")
+        raise refused(path, f"not in {path.suffix[1:].upper()} format, by its first bytes")
     if kind == "png" and max(png.sides(data)) > png.MAX_SIDE:
         width, height = png.sides(data)
-        raise refused(path, f"{width} x {height} pixels", f"at most {png.MAX_SIDE} a side are read")
+        raise refused(path, f"{width} x {height} pixels", f"at most {png.MAX_SIDE} per side are supported")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "out"
         _in_a_process(path, kind, out, "header")
@@ -169,7 +169,7 @@ def read_image(path: Path, choose: Choice, check: Check = check_sides) -> Pixels
         _in_a_process(path, kind, out, "pixels", *chosen)
         planes = np.load(out, allow_pickle=False)
     if kind == "png" and png.has_surplus(data):
-        raise refused(path, "it holds more rows than its header says: it is damaged")
+        raise refused(path, "it has more rows than its header says: it is damaged")
     # Whole numbers of an EXR file are identities and counts.
     full = np.iinfo(planes.dtype).max if planes.dtype.kind == "u" and kind != EXR else None
     return Pixels(_planes(np.moveaxis(planes, 0, -1), range(len(planes))), full)
@@ -195,14 +195,14 @@ def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]], check: Ch
             raise refused(path, f"{where}deep samples", "flatten it")
         width, height, depth = part["sides"]
         if depth != 1 or min(width, height) < 1:
-            raise refused(path, f"{where}an image of {width} x {height} x {depth}", "one of width x height is read")
+            raise refused(path, f"{where}an image of {width} x {height} x {depth}", "save it with a depth of 1")
         check(path, (width, height), len(part["names"]))
         other = [word for word in part["types"] if word not in (*TYPES, *(["uint"] if kind == EXR else []))]
         if other:
             raise refused(path, f"{where}numbers of type {other[0]}", f"{', '.join(TYPES)} are read")
     names = [name for part in parts for name in part["names"]]
     if not names or len(set(names)) < len(names):
-        raise refused(path, "no channels, or two of one name")
+        raise refused(path, "no channels, or two with the same name")
     return names
 
 
@@ -211,7 +211,7 @@ def _check_alike(path: Path, kind: str, parts: list[dict[str, Any]], chosen: Seq
     used = [part for part in parts if set(chosen) & set(part["names"])]
     layouts = [(part["place"], part["sides"], kind == EXR or part["types"]) for part in used]
     if any(layout != layouts[0] for layout in layouts):
-        raise refused(path, f"{', '.join(chosen)} lie in parts of different sizes or types")
+        raise refused(path, f"{', '.join(chosen)} are in parts of different sizes or types")
 
 
 def _planes(found: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
@@ -291,7 +291,7 @@ def _npy_header(path: Path, stream: io.BytesIO) -> tuple[tuple[int, ...], bool, 
             version = np.lib.format.read_magic(stream)
             shape, in_columns, kind = readers[version](stream)
     except Exception as error:  # numpy, ast and tokenize raise a dozen kinds
-        raise refused(path, "no NPY header that can be read", "save it with np.save") from error
+        raise refused(path, "its NPY header cannot be read", "save it with np.save") from error
     if not all(type(side) is int for side in shape):
         raise refused(path, f"an array of shape {shape}")
     return shape, in_columns, kind

@@ -170,7 +170,7 @@ def _own_rounding(used: Sequence[np.ndarray], meshes: Sequence[Stored]) -> OwnRo
 
 
 def _left_out(zero: int, not_finite: int, without: int) -> list[str]:
-    parts = [f"{zero} vertex normals of no length"] * bool(zero)
+    parts = [f"{zero} vertex normals of zero length"] * bool(zero)
     parts += [f"{not_finite} that are NaN or infinite"] * bool(not_finite)
     notes = [f"{' and '.join(parts)} are left out"] if parts else []
     return notes + [f"{without} of its meshes have no normals and are left out"] * bool(without)

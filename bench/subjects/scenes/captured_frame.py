@@ -54,7 +54,7 @@ def captured_frame(frame: FrameFile) -> CapturedFrame:
     height, width = pixels.depth.shape
     notes = [*reader.notes]
     if every > 1:
-        notes.append(f"one row and one column in {every} is drawn, {width} x {height} pixels; none is averaged")
+        notes.append(f"one row and one column in {every} are drawn, {width} x {height} pixels, without averaging")
     scene = pixel_scene(pixels, _view(frame, fov, reader.to_world))
     return CapturedFrame(scene, (width, height), notes)
 
@@ -99,7 +99,7 @@ class _Reader:
         depth = self._depth()
         normal, covered = self._normals(depth > 0)
         if not covered.any():
-            raise self._frame.error("depth", "no pixel is surface by both its depth and its normal")
+            raise self._frame.error("depth", "no pixel has both a valid depth and a valid normal")
         depth = np.where(covered, depth, np.float32(0))
         quantities = {name: self._quantity(name, covered) for name in ENTRIES if name not in ("depth", "normal")}
         smooth, roughness = quantities.pop("smoothness"), quantities.pop("roughness")
@@ -129,7 +129,7 @@ class _Reader:
         if not surface.any():
             raise self._frame.error("depth", _out_of_reach(path, image, camera))
         missing = image.not_finite
-        self._note("depth", [*image.notes, *[f"{missing} numbers are NaN, which is background"] * bool(missing)])
+        self._note("depth", [*image.notes, *[f"{missing} values are NaN and count as background"] * bool(missing)])
         return surface
 
     def _normals(self, within: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -166,7 +166,7 @@ class _Reader:
         curve = choose_one("curve", said.get("curve", "linear"), CURVES)
         if name == "base_color" and "curve" not in said and pixels.full == READS_AS_COLOUR:
             self._note(
-                name, ['8 bits without "curve" are read as linear; "curve": "srgb" is what images for screens have']
+                name, ['8 bits without "curve" are read as linear; for images meant for screens use "curve": "srgb"']
             )
         image = CURVES[curve](np.where(covered, pixels.planes, 0) / np.float32(pixels.full or 1))
         image = np.moveaxis(image * np.float32(said.get("scale", 1.0)), 0, -1).astype(np.float32)
@@ -181,10 +181,10 @@ class _Reader:
     def _say_what_stands_in(self) -> None:
         lacking = [f"{name} ({value:g})" for name, value in STAND_INS.items() if name not in self._frame.entries]
         if lacking:
-            self.notes.append(f"it has no {', '.join(lacking)}: the number in brackets stands in everywhere")
+            self.notes.append(f"it has no {', '.join(lacking)}: the value in parentheses is used everywhere")
         for bits, names in self._coarse.items():
-            steps = f"{', '.join(names)}: steps of {bits} bits"
-            self.notes.append(f"{steps}; codes of the same steps look better than they are")
+            steps = f"{', '.join(names)}: {bits}-bit steps"
+            self.notes.append(f"{steps}; encodings with the same steps look better than they are")
 
 
 # What stands for 1 in images that programs write for screens.
@@ -218,7 +218,7 @@ def _out_of_reach(path: Path, image: DepthImage, camera: Camera) -> UsageError:
     depths = image.depths(camera)
     depths = depths[np.isfinite(depths)]
     reach = f"{depths.min():.4g} to {depths.max():.4g}" if len(depths) else "not finite"
-    return refused(path, f"no depth lies within near and far; they are {reach}", "see --depths-are and --depth-unit")
+    return refused(path, f"no depth is within near and far; depths are {reach}", "see --depths-are and --depth-unit")
 
 
 def _planes(path: Path, name: str, said: dict[str, Any]) -> Pixels:
@@ -235,7 +235,8 @@ def _colours(path: Path, names: Sequence[str], asked: str | None) -> list[str]:
     if not asked and set("012") <= set(names):
         return list("012")
     if len(words) != 3 or not set(words) <= set(names):
-        raise refused(path, f"no channels {','.join(words)}; it has {', '.join(names[:40])}", "--channels names three")
+        what = f"no channels {','.join(words)}; it has {', '.join(names[:40])}"
+        raise refused(path, what, "name three with --channels")
     return words
 
 
@@ -245,7 +246,7 @@ def _one(path: Path, names: Sequence[str], asked: str | None) -> str:
     if asked is not None and asked in names:
         return asked
     what = "no channel is named" if asked is None else f"no channel {asked!r}"
-    raise refused(path, f"{what}; it has {', '.join(names[:40])}", "--channel names one")
+    raise refused(path, f"{what}; it has {', '.join(names[:40])}", "name one with --channel")
 
 
 def _check_finite(path: Path, planes: np.ndarray, covered: np.ndarray) -> None:
@@ -253,7 +254,7 @@ def _check_finite(path: Path, planes: np.ndarray, covered: np.ndarray) -> None:
     if bad.any():
         row, column = map(int, np.argwhere(bad)[0])
         what = f"{bad.sum()} of {covered.sum()} pixels are NaN or infinite, the first at row {row}, column {column}"
-        raise refused(path, what, "a mask of the normals leaves them out")
+        raise refused(path, what, "exclude them with a mask of the normals")
 
 
 def _check_range(name: str, found: np.ndarray) -> None:
@@ -261,9 +262,9 @@ def _check_range(name: str, found: np.ndarray) -> None:
     low, high = float(found.min()), float(found.max())
     if name == "emissive":
         if not 0 <= low <= high <= MOST_LIGHT:
-            raise UsageError(f"its numbers are {low:.3g} to {high:.3g}; light is 0 to {MOST_LIGHT:g}")
+            raise UsageError(f"its numbers are {low:.3g} to {high:.3g}; light must be 0 to {MOST_LIGHT:g}")
     elif not -BEYOND <= low <= high <= 1 + BEYOND:
-        raise UsageError(f"its numbers are {low:.3g} to {high:.3g}, and it is 0 to 1; --scale multiplies them")
+        raise UsageError(f"its numbers are {low:.3g} to {high:.3g}, but must be 0 to 1; rescale them with --scale")
 
 
 def lines_of(frame: FrameFile, found: CapturedFrame) -> Iterator[str]:

@@ -94,7 +94,7 @@ def read_frame_file(path: Path) -> FrameFile:
     }
     _check_names(path, "", attributes, KNOWN)
     if {"roughness", "smoothness"} <= set(attributes):
-        raise UsageError(f"{path}: roughness and smoothness are one quantity; leave one out")
+        raise UsageError(f"{path}: roughness and smoothness are the same quantity; leave one out")
     lacking = [
         name for name in NEEDED if name not in attributes and not (name == "roughness" and "smoothness" in attributes)
     ]
@@ -129,7 +129,7 @@ def _document(path: Path) -> dict[str, Any]:
     except ValueError as error:
         raise UsageError(f"{path}: {error}") from error
     if not isinstance(document, dict):
-        raise UsageError(f'{path}: it describes no frame; write {{"depth": {{"file": "depth.exr"}}, ...}}')
+        raise UsageError(f'{path}: not a frame description; expected {{"depth": {{"file": "depth.exr"}}, ...}}')
     return document
 
 
@@ -156,10 +156,10 @@ def _number(path: Path, name: str, value: object) -> float:
 
 def _check_camera(path: Path, fov: float, near: float, far: float) -> None:
     if not 1 <= fov <= 175:
-        raise UsageError(f"{path}: fov is {fov:g}; an angle of view is 1 to 175 degrees")
+        raise UsageError(f"{path}: fov is {fov:g}; use 1 to 175 degrees")
     if not 0 < near < far < 1e15:
         raise UsageError(
-            f"{path}: near is {near:g} and far is {far:g}; near is more than 0, far more than near; reversed depth is "
+            f"{path}: near is {near:g} and far is {far:g}; use 0 < near < far; for reversed depth write "
             '"depths_are": "reversed_window"'
         )
 
@@ -216,5 +216,5 @@ def _beside(path: Path, name: str, address: str) -> Path:
     except OSError as error:
         raise UsageError(f"{path}: {name}: {address[:SHOWN]}...: {reason_of(error)}") from error
     if file is None or not is_there:
-        raise UsageError(f"{path}: {name}: no file {address}; files are named from the folder of {path.name}")
+        raise UsageError(f"{path}: {name}: no file {address}; file names are relative to the folder of {path.name}")
     return path.parent / os.path.relpath(file, path.parent.resolve())

@@ -97,9 +97,9 @@ def said(
         now[best] = theirs[best][1]
         parts.append(f"{best} as {theirs[best][0]}, {psnr_db(_worst(now, classes)):.1f} dB")
     if not parts:
-        return "no code of a proposal of as many bytes is better in the worst class"
+        return "no encoding of a proposal of the same size is better in the worst class"
     less = [f"{name} as {theirs[name][0]}" for name in now if name in theirs and _is_less(mine[name], theirs[name][1])]
-    in_return = f". It keeps less of {', '.join(less)}" if less else ""
+    in_return = f". It stores less of {', '.join(less)}" if less else ""
     return f"predicted from {psnr_db(start):.1f} dB: {'; then '.join(parts)}{in_return}"
 
 

@@ -45,10 +45,10 @@ def budget_chart(rows: Sequence[Row]) -> Chart:
     others = tuple(point for point in points if point["kind"] != PROPOSAL)
     tips = (
         ("layout", "layout"),
-        ("x", "bytes a pixel"),
+        ("x", "bytes per pixel"),
         ("y", "dB"),
-        ("worst", "worst class, dB"),
-        ("class", "that class"),
+        ("worst", "worst class (dB)"),
+        ("class", "class"),
         ("frame", "frame"),
     )
     first = rows[0]
@@ -56,9 +56,9 @@ def budget_chart(rows: Sequence[Row]) -> Chart:
         name="budget",
         title=_finding(ours, others),
         subtitle=f"{_judged(first['scene'])} at {first['size']}",
-        description="The displayed image's PSNR over the worst class of surfaces, the mean error over scenes, by bytes "
-        "per pixel of the G-buffer: a line for the proposed layouts, each chosen without the scene that judges it, a "
-        "point for each engine's. The figures are in the table.",
+        description="PSNR of the displayed image over the worst class of surfaces, from the mean error over scenes, "
+        "by bytes per pixel of the G-buffer: a line for the proposed layouts, each chosen without the "
+        "scene that judges it, and a point for each engine's layout. The figures are in the table.",
         x=Axis(title="bytes per pixel (excluding depth; missing attributes added)", ticks=_ticks(points)),
         y=Axis(title="PSNR of the worst class (dB)"),
         rows=points,
@@ -95,4 +95,4 @@ def _finding(ours: Sequence[Row], others: Sequence[Row]) -> str:
     ]
     if gains:
         return f"For the same bytes or fewer, {min(gains):.0f} to {max(gains):.0f} dB better"
-    return f"{ours[0]['x']} bytes have {ours[0]['y']:.0f} dB, {ours[-1]['x']} have {ours[-1]['y']:.0f}"
+    return f"{ours[0]['y']:.0f} dB with {ours[0]['x']} bytes, {ours[-1]['y']:.0f} dB with {ours[-1]['x']}"

@@ -90,5 +90,5 @@ def names_held(option: str, words: Names | None, held: Sequence[str]) -> list[st
     names = [str(word) for word in words or () if word != "depth"]
     for word in names:
         if word not in held:
-            raise UsageError(f"{option} {word}: not held; held: {', '.join(held)}")
+            raise UsageError(f"{option} {word}: not in --hold; in --hold: {', '.join(held)}")
     return names

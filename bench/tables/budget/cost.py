@@ -56,7 +56,7 @@ def check_compilers(families: Iterable[str]) -> None:
     """Raise MissingError if a family's compiler is not on this machine."""
     spirv.compiler()
     for reason in filter(None, (isa.missing(FAMILIES[family].library) for family in families)):
-        raise MissingError(f"--most-instructions counts by a compiler: {reason}")
+        raise MissingError(f"--most-instructions requires a compiler: {reason}")
 
 
 class Slots:

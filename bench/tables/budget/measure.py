@@ -93,7 +93,10 @@ class Judged:
         self._take(question.attributes, tick)
         if not self.classes:
             asked = ", ".join(question.judging)
-            raise UsageError(f"--size: no class of surfaces ({asked}) has {LEAST_PIXELS} pixels in {question.scenes}")
+            raise UsageError(
+                f"--size: no class of surfaces ({asked}) has {LEAST_PIXELS} pixels in {question.scenes}; "
+                "use a larger size"
+            )
         self.unseen = [
             attribute.name for attribute in question.attributes if not (attribute.is_seen and self._shows(attribute))
         ]
@@ -234,7 +237,7 @@ class Judged:
             middle = (low + high) // 2
             low, high = (low, middle) if self._keeps(replace(first, bytes=middle)) else (middle + 1, high)
         if low == last and not self._keeps(replace(first, bytes=last)):
-            reason = f"no layout of up to {last} bytes has FLIP of {q.threshold:g}"
+            reason = f"no layout of up to {last} bytes has FLIP of at most {q.threshold:g}"
             yield self._empty(PROPOSAL, f"{last} bytes") | {"limit": last, "skipped": reason}
             return
         yield from self.proposals(replace(first, bytes=low))
@@ -275,7 +278,7 @@ class Judged:
         """Yield the row of a user's layout, and of a proposal that holds the same in targets of the same formats."""
         row = self.row_of(MINE, layout)
         if changes.holds_other_quantities(layout):
-            note = "it keeps no metallic: its materials are other quantities than these codes are for"
+            note = "it has no metallic, and these encodings are for metallic-roughness materials"
             yield row | {"changes": note}
             return
         asked = own(layout, self._question.rules[0])
@@ -284,7 +287,7 @@ class Judged:
         best = self._best(f"{layout.name}_improved", asked, layout.depth)
         if best is None:
             within = " within WebGPU's bytes" if asked.rules.webgpu is not None else ""
-            yield row | {"changes": f"no codes of the floors' bits hold its attributes in its targets{within}"}
+            yield row | {"changes": f"no encodings with the required bits fit its attributes into its targets{within}"}
             return
         solution, _, improved = best
         yield row | {"changes": self._changes(layout, solution)}
@@ -316,7 +319,7 @@ class Judged:
             return self._why_too_dear(problem, q.most_instructions)
         bits = sum(min(code.total_bits for code in attribute.codes) for attribute in q.attributes)
         few = f"{rules.bytes} bytes are too few"
-        smallest = f"the attributes need {bits} bits, and by these rules the smallest layout has {least_bytes} bytes"
+        smallest = f"the attributes need {bits} bits, and the smallest layout under these rules has {least_bytes} bytes"
         return f"{few}: {smallest}{self._dropped(problem)}"
 
     def _dropped(self, problem: Problem) -> str:
@@ -355,9 +358,9 @@ class Judged:
             if not any(home.blends == is_blended and home.need(code) for home in q.bins for code in attribute.codes):
                 codes = ", ".join(code.name for code in attribute.codes)
                 into = " that decals blend into" if is_blended else ""
-                return f"no target{into} of these formats holds {attribute.name} ({codes}); --formats names others"
+                return f"no target{into} of these formats can hold {attribute.name} ({codes}); allow other --formats"
         more = "allow more --targets or --formats" + (", or --read-alone none" if rules.read else "")
-        return f"no targets hold this by these rules, in any number of bytes; {more}"
+        return f"no targets of any size hold these attributes under these rules; {more}"
 
     def _why_too_dear(self, problem: Problem, most: int) -> str:
         solution = least(problem, self._slots, partial(finalists, count=1))
@@ -516,7 +519,7 @@ def _constant(name: str, value: float, surfaces: Surfaces) -> Surfaces:
 def _loss_text(loss: float) -> str:
     if not loss:
         return "not measured"
-    return "does not show here" if loss <= HALF_STEP else f"the worst class falls to {psnr_db(loss):.0f} dB"
+    return "not visible here" if loss <= HALF_STEP else f"the worst class falls to {psnr_db(loss):.0f} dB"
 
 
 def _in_channels(problem: Problem) -> Problem:

@@ -156,7 +156,7 @@ def _webgpu_cost(light: str) -> int:
     """Return the bytes per sample of a light buffer in WebGPU. Raises UsageError if WebGPU does not render to it."""
     name = LIGHT_BUFFERS[light].storage.target.name
     if name not in WEBGPU:
-        raise UsageError(f"--light {light}: WebGPU does not render to it; it does to r11g11b10f and rgba16f")
+        raise UsageError(f"--light {light}: WebGPU does not render to this format; use r11g11b10f or rgba16f")
     return WEBGPU[name][0]
 
 
@@ -171,7 +171,9 @@ def _limits(options: BudgetOptions) -> tuple[bool, int | None]:
         elif name == TILE and size.isdigit() and int(size) in TILES:
             tile = int(size)
         else:
-            raise UsageError(f"--limit {word}: {WEB}, {', '.join(f'{TILE}:{tile_size}' for tile_size in TILES)}")
+            raise UsageError(
+                f"--limit {word}: unknown; use {WEB}, {', '.join(f'{TILE}:{tile_size}' for tile_size in TILES)}"
+            )
     return webgpu, tile
 
 
@@ -182,7 +184,9 @@ def _stages(options: BudgetOptions, size: tuple[int, int]) -> list[Stage]:
     ]
     for stage in stages:
         if not stage.maker.is_metal_rough:
-            raise UsageError(f"{stage.maker.name} has no metal/rough materials, which a budget is of; studio has")
+            raise UsageError(
+                f"{stage.maker.name}: no metallic-roughness materials, which budget requires; use for example studio"
+            )
     return stages
 
 
@@ -200,6 +204,6 @@ def _bins(options: BudgetOptions, webgpu: bool) -> list[Bin]:
         bins = [replace(target_bin, shares=False) for target_bin in bins]
     if not bins:
         raise UsageError(
-            f"--formats {text_of(options.formats)}: no target is left of what --limit and --no-integers allow"
+            f"--formats {text_of(options.formats)}: --limit and --no-integers allow none of these; name others"
         )
     return bins

@@ -78,9 +78,11 @@ def check_held(readers: Readers, held: Collection[str], stencil: Collection[str]
     """Raise UsageError if a pass reads an attribute that is not held, or that is in the stencil."""
     for name in (name for part in readers.parts for name in part):
         if name in stencil:
-            raise UsageError(f"--readers {name}: it lies in the stencil, whose bytes are not counted")
+            raise UsageError(f"--readers {name}: stored in the stencil, whose bytes are not counted; leave it out")
         if name not in held:
-            raise UsageError(f"--readers {name}: not held; held: {', '.join(name for name in held if name in WORDS)}")
+            raise UsageError(
+                f"--readers {name}: not in --hold; in --hold: {', '.join(name for name in held if name in WORDS)}"
+            )
 
 
 def _count(word: str) -> float | None:

@@ -376,7 +376,7 @@ def _least(
     if solution.status != TIMED_OUT:
         cache.write(key, {"values": [] if solution.x is None else solution.x.tolist()})
     elif solution.x is None:
-        raise UsageError(f"no layout was found within {MOST_SECONDS:g} s; name fewer --formats or fewer --targets")
+        raise UsageError(f"no layout found within {MOST_SECONDS:g} s; use fewer --formats or --targets")
     return solution.x
 
 

@@ -21,7 +21,7 @@ PROPOSAL, ENGINE, MINE, IMPROVED = "proposal", "engine", "mine", "improved"
 class BudgetOptions(Options):
     """Options for what `budget` measures. Names and numbers are comma-separated."""
 
-    bytes: Annotated[Names, Option("--bytes", "Bytes a pixel without native depth, comma-separated.")] = (
+    bytes: Annotated[Names, Option("--bytes", "Bytes per pixel without native depth, comma-separated.")] = (
         "12",
         "16",
         "20",
@@ -30,7 +30,7 @@ class BudgetOptions(Options):
         Names,
         Option(
             "--scene",
-            "Metal/rough scenes that judge: ramps, studio, glTF files, and captured frames (gbuffer.json); "
+            "Metallic-roughness scenes to judge by: ramps, studio, glTF files and captured frames (gbuffer.json); "
             "comma-separated.",
             files=True,
             in_run=True,
@@ -38,15 +38,19 @@ class BudgetOptions(Options):
     ] = ("ramps", "studio")
     environment: Annotated[
         str | None,
-        Option("--environment", "What they reflect: studio, sky, strips, lamp, or an .hdr or .exr file.", files=True),
+        Option(
+            "--environment",
+            "Environment that scenes reflect: studio, sky, strips, lamp, or an .hdr or .exr file.",
+            files=True,
+        ),
     ] = None
     hold: Annotated[
         Names,
         Option(
             "--hold",
-            "What is stored: normal, base_color, roughness, metallic, f0, ao, tangent; motion in a target "
-            "of its own, or motion:packed; shading_model:BITS, flags:BITS, either in the stencil as flags:stencil; "
-            "shadow:BITS, custom:BITS, other:BITS; emissive, or emissive:light where the light buffer has it.",
+            "Attributes to store: normal, base_color, roughness, metallic, f0, ao, tangent; motion in a target of "
+            "its own, or motion:packed; shading_model:BITS, flags:BITS, either in the stencil as flags:stencil; "
+            "shadow:BITS, custom:BITS, other:BITS; emissive, or emissive:light if the light buffer holds it.",
         ),
     ] = (
         "normal",
@@ -62,10 +66,15 @@ class BudgetOptions(Options):
     )
     speed: Annotated[
         float,
-        Option("--speed", "Pixels a frame at 1920 x 1080 up to which motion must be within 1/16 pixel, 0 to 500."),
+        Option(
+            "--speed",
+            "Fastest motion that is stored to within 1/16 pixel, in pixels per frame at 1920 x 1080, 0 to 500.",
+        ),
     ] = 64.0
-    targets: Annotated[int, Option("--targets", "The most render targets that there may be.")] = 6
-    formats: Annotated[Names, Option("--formats", "Formats that targets may have, comma-separated, or all.")] = ("all",)
+    targets: Annotated[int, Option("--targets", "Maximum number of render targets.")] = 6
+    formats: Annotated[Names, Option("--formats", "Formats of render targets to use, comma-separated, or all.")] = (
+        "all",
+    )
     fields: Annotated[
         bool, Option("--fields/--no-fields", "Allow several numbers to share a channel as bit fields.")
     ] = True
@@ -74,54 +83,58 @@ class BudgetOptions(Options):
         Names | None,
         Option(
             "--limit",
-            "webgpu: its 32 bytes a sample and its formats; tile:16, tile:32, tile:64: a GPU's bytes a pixel in tiles.",
+            "Limits of a device. webgpu: its 32 bytes per sample and its formats; tile:16, tile:32, tile:64: bytes "
+            "per pixel of a GPU's tiles.",
         ),
     ] = None
     light: Annotated[
-        str, Option("--light", "Format of the light buffer, which is drawn with the G-buffer: it counts for --limit.")
+        str, Option("--light", "Format of the light buffer; it is drawn with the G-buffer and counts for --limit.")
     ] = "r11g11b10f"
     threshold: Annotated[
         float | None,
-        Option("--threshold", "The fewest bytes whose FLIP (99th percentile) is at most this, in place of --bytes."),
+        Option("--threshold", "Find the fewest bytes with FLIP (99th percentile) of at most this, instead of --bytes."),
     ] = None
-    blend: Annotated[Names | None, Option("--blend", "What decals blend into: base_color,roughness,normal.")] = None
+    blend: Annotated[
+        Names | None, Option("--blend", "Attributes that decals blend into, such as base_color,roughness,normal.")
+    ] = None
     read_alone: Annotated[
         Names,
         Option(
             "--read-alone",
-            "What a pass reads by itself: at most 4 bytes for each, in targets with nothing else of 16 bits; or none.",
+            "Attributes that some passes read without the rest; their targets total at most 4 bytes per attribute. "
+            "Or none.",
         ),
     ] = ("normal", "roughness")
     classes: Annotated[
-        Names, Option("--classes", "Classes of surfaces that judge: mirror, glossy, rough, emissive; or all.")
+        Names, Option("--classes", "Classes of surfaces to judge by: mirror, glossy, rough, emissive; or all.")
     ] = ("all",)
-    overdraw: Annotated[float, Option("--overdraw", "How often a pixel is written.")] = 1.5
+    overdraw: Annotated[float, Option("--overdraw", "Number of times that each pixel is written.")] = 1.5
     readers: Annotated[
         Names,
         Option(
             "--readers",
-            "The passes that read the G-buffer, comma-separated: a number of passes that read all of it, or all for "
-            "one of them, and for each other pass its attributes, such as 1,normal+roughness.",
+            "Decoding passes, comma-separated: the number that read everything, or all for one such pass; for each "
+            "other pass its attributes, such as 1,normal+roughness.",
             repeats=True,
         ),
     ] = ("1", "normal+roughness")
     family: Families = ("navi21",)
     most_instructions: Annotated[
-        int | None, Option("--most-instructions", "The most issue slots that packing and unpacking once may execute.")
+        int | None, Option("--most-instructions", "Maximum number of issue slots for packing and unpacking once.")
     ] = None
     size: Size = "320x240"
     against: Annotated[
         Names | None,
-        Option("--against", "Layouts to compare with: presets, or TOML files of yours; comma-separated.", files=True),
+        Option("--against", "Layouts to compare with: presets or your own TOML files; comma-separated.", files=True),
     ] = None
-    engines: Annotated[bool, Option("--engines/--no-engines", "Whether engines' layouts are measured as well.")] = False
+    engines: Annotated[bool, Option("--engines/--no-engines", "Measure engines' layouts as well.")] = False
 
 
 @dataclass(frozen=True, kw_only=True)
 class BudgetOutputs:
     """Files that `budget` writes besides its rows."""
 
-    layouts: Annotated[Path | None, Option("--layouts", "Folder for the layouts, as TOML files.")] = None
+    layouts: Annotated[Path | None, Option("--layouts", "Write the layouts to this folder, as TOML files.")] = None
     plot: Plot = None
     verbose: Verbose = False
 
@@ -133,55 +146,60 @@ COLUMNS = (
         KEY,
     ),
     Column("layout", "The layout's name.", KEY),
-    Column("limit", "The bytes a pixel that were asked for.", KEY, "bytes"),
-    Column("scene", "The scenes that judged; each figure is of the worst of them.", KEY, drops=3),
-    Column("bytes_per_pixel", "Of the targets, without native depth.", unit="bytes", better="less"),
+    Column("limit", "The requested bytes per pixel.", KEY, "bytes"),
+    Column("scene", "The scenes that judge; each figure is for the worst of them.", KEY, drops=3),
+    Column("bytes_per_pixel", "Bytes per pixel of the targets, without native depth.", unit="bytes", better="less"),
     Column(
         "contract_bytes",
-        "The same with the motion, shading model, F0 and AO of --hold added where it lacks them, and less "
-        "emissive that nobody asked for: layouts are compared by it.",
+        "The same, plus the motion, shading model, F0 and AO of --hold if the layout lacks them, and minus emissive "
+        "if it was not requested. Layouts are compared by this size.",
         unit="bytes",
         better="less",
     ),
     Column(
         "worst_db",
-        "The displayed image over the pixels of the class of surfaces that it is worst for: mirror (roughness up to "
-        "0.2), glossy (up to 0.5), rough, emissive.",
+        "PSNR of the displayed image over its worst class of surfaces: mirror (roughness up to 0.2), glossy (up to "
+        "0.5), rough, emissive.",
         unit="dB",
         better="more",
     ),
-    Column("worst_class", "That class, and its scene.", HOW),
+    Column("worst_class", "The worst class and its scene.", HOW),
     Column(
         "held_back_db",
-        "The worst class of each scene, as the mean error over scenes. A proposal is chosen anew for each of them, on "
-        "the other scenes alone.",
+        "PSNR of the worst class of each scene, from the mean error over scenes. For each scene the proposal is "
+        "chosen again, with only the other scenes.",
         unit="dB",
         better="more",
     ),
-    Column("psnr_db", "The displayed image over all covered pixels.", unit="dB", better="more"),
-    Column("flip_p99", "FLIP's 99th percentile over the covered pixels.", better="less", drops=6),
-    Column("predicted_worst_db", "`worst_db` as the sum of the codes' own errors.", unit="dB", drops=7),
-    Column("predicted_db", "`psnr_db` likewise.", unit="dB", drops=8),
-    Column("error_from", "Where the error of the worst class comes from.", HOW, drops=5),
+    Column("psnr_db", "PSNR of the displayed image over all covered pixels.", unit="dB", better="more"),
+    Column("flip_p99", "FLIP (99th percentile) over the covered pixels.", better="less", drops=6),
     Column(
-        "next_bytes", "Of 1, 2 and 4 bytes more the fewest that gain half a decibel in the worst class.", unit="bytes"
+        "predicted_worst_db", "`worst_db`, predicted as the sum of the attributes' separate errors.", unit="dB", drops=7
     ),
-    Column("next_db", "What these bytes gain there.", unit="dB"),
-    Column("blends", "The attributes whose targets are kept for decals that hardware blends, as --blend asks.", HOW),
-    Column("codes", "The code of each attribute.", HOW, drops=9),
-    Column("by_contract", "What no scene showed: its bits are by contract, not measured.", HOW, drops=9),
+    Column("predicted_db", "`psnr_db`, predicted likewise.", unit="dB", drops=8),
+    Column("error_from", "The attributes that cause the error of the worst class.", HOW, drops=5),
+    Column(
+        "next_bytes",
+        "The smallest of 1, 2 and 4 more bytes that gains at least half a decibel in the worst class.",
+        unit="bytes",
+    ),
+    Column("next_db", "The gain of these bytes in the worst class.", unit="dB"),
+    Column("blends", "Attributes whose targets are kept for decals that hardware blends, as --blend requires.", HOW),
+    Column("codes", "The encoding of each attribute.", HOW, drops=9),
+    Column("by_contract", "Attributes that no scene shows: their bits are given, not measured.", HOW, drops=9),
     Column(
         "changes",
-        "Of a layout of yours: the changes to a proposal's codes that bring most, and the worst class after each.",
+        "For your own layout: the changes to a proposal's encodings that gain most, and the worst class after each "
+        "change.",
         HOW,
         drops=9,
     ),
-    Column("targets", "The render targets, as a layout file says them.", HOW, drops=10),
-    Column("holds", "What says how much a surface reflects, of an engine's layout.", HOW, drops=10),
+    Column("targets", "The render targets, as in a layout file.", HOW, drops=10),
+    Column("holds", "For an engine's layout: the quantity that sets how much a surface reflects.", HOW, drops=10),
     Column(
         "mb_1080p",
-        "Bytes written and read a frame at 1920 x 1080: pixels x (overdraw x bytes + the bytes that each of `readers` "
-        "fetches). Compression is not modelled.",
+        "Megabytes written and read per frame at 1920 x 1080: pixels x (overdraw x bytes + the bytes that each of "
+        "`readers` fetches). Compression is not modelled.",
         unit="MB",
         better="less",
         drops=4,
@@ -189,31 +207,36 @@ COLUMNS = (
     Column("mb_4k", "The same at 3840 x 2160.", unit="MB", better="less", drops=4),
     Column(
         "pack_slots",
-        "Issue slots to pack a surface into the targets, in a compute shader. What formats convert costs nothing.",
+        "Issue slots to pack a surface into the targets, in a compute shader. Conversion by the formats costs nothing.",
         unit="slots",
         better="less",
         drops=6,
     ),
-    Column("unpack_slots", "Issue slots to unpack all of it.", unit="slots", better="less", drops=6),
+    Column("unpack_slots", "Issue slots to unpack all attributes.", unit="slots", better="less", drops=6),
     Column(
         "slots",
-        "Issue slots a pixel: overdraw x pack_slots + unpack_slots for each of `readers` that reads all.",
+        "Issue slots per pixel: overdraw x pack_slots, plus unpack_slots for each of `readers` that reads everything.",
         unit="slots",
         better="less",
         drops=7,
     ),
-    Column("dearest_family", "The GPU family of --family where that is most, which the slots are of.", HOW, drops=10),
+    Column(
+        "dearest_family",
+        "The GPU family of --family with the highest cost; the slots are for this family.",
+        HOW,
+        drops=10,
+    ),
     Column(
         "webgpu_bytes",
-        "What the targets cost of WebGPU's 32 bytes a sample; empty where it does not render to one of them.",
+        "Bytes of the targets, of WebGPU's 32 bytes per sample; empty if WebGPU does not render to one of the formats.",
         unit="bytes",
         better="less",
         drops=10,
     ),
-    Column("in_tile", "Whether targets and light buffer fit the tile of --limit tile:BYTES.", HOW, drops=2),
-    Column("tile_bytes", "Bytes a pixel of targets and light buffer in a tile, where --limit names one.", HOW, drops=2),
-    Column("overdraw", "How often a pixel is written.", HOW, drops=11),
-    Column("readers", "How many passes read all of it, and what others read of it.", HOW, drops=11),
+    Column("in_tile", "Whether targets and light buffer fit in the tile of --limit tile:BYTES.", HOW, drops=2),
+    Column("tile_bytes", "Bytes per pixel of targets and light buffer in a tile, if --limit names one.", HOW, drops=2),
+    Column("overdraw", "Number of times that each pixel is written.", HOW, drops=11),
+    Column("readers", "How many passes read everything, and what other passes read.", HOW, drops=11),
     Column("size", "Width and height of the image in pixels.", HOW, drops=11),
     shared.DEVICE,
     shared.SKIPPED,
@@ -221,10 +244,10 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="Find the smallest layout for a quality, or the best for a size.\n\nEach code of each attribute "
-    "is measured by itself, by what it does to the displayed image of mirrors, glossy and rough surfaces. An "
-    "integer program then finds the codes and targets whose worst class is best, and the layout is drawn "
-    "whole.",
+    help="Find the smallest layout for a quality, or the best for a size.\n\nEach encoding of "
+    "each attribute is measured separately, by its effect on the displayed image of mirrors, glossy and rough "
+    "surfaces. An integer program then finds the encodings and targets with the best worst class, and the whole "
+    "layout is drawn.",
     example="normalbench budget --bytes 12,16 --read-alone normal,roughness",
     is_kept=True,
     step_s=0.2,
@@ -237,13 +260,13 @@ TABLE = Table(
     single={"bytes": "12"},
     group=Group.ANSWER,
     section=Section(
-        title="How few bytes does the whole G-buffer need?",
+        title="G-buffer layout",
         short="Budget",
         view=View.LAYOUTS,
-        intro="How few bytes a pixel does an image bear, and what lies in them?",
-        method="Each code of each attribute is measured by itself: the error of the displayed image, by class of "
-        "surfaces. An integer program finds the layout whose worst class is best in a number of bytes, and the "
-        "plainest one within 0.2 dB. That is drawn whole. Other bytes, next to engines' layouts, are by "
-        "`normalbench budget --bytes 12,14,16,20 --engines`.",
+        intro="What is the smallest G-buffer that still looks right?",
+        method="Each encoding of each attribute is measured separately: the error of the displayed image, by class "
+        "of surfaces. An integer program finds the layout with the best worst class in a number of bytes, and "
+        "takes the simplest layout within 0.2 dB. This layout is drawn whole. For other sizes, and engines' "
+        "layouts, run `normalbench budget --bytes 12,14,16,20 --engines`.",
     ),
 )

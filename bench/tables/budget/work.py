@@ -50,7 +50,7 @@ def _write(done: Measured, _: Tick) -> None:
         if row["kind"] in WRITTEN and not row["skipped"]:
             path = folder / f"{row['layout']}.toml"
             write_text(lambda row=row: file_of(row), path)
-            tell(f"{path}: {row['bytes_per_pixel']} bytes a pixel")
+            tell(f"{path}: {row['bytes_per_pixel']} bytes per pixel")
 
 
 def _key(options: BudgetOptions) -> Row:

@@ -98,7 +98,7 @@ def file_of(row: Mapping[str, Any]) -> str:
     """The layout of a row as a file that `--layout` reads, with what it is worth in its comment."""
     normal = next(code for code in row["codes"].split("; ") if code.startswith(f"{NORMAL} "))
     lines = [
-        f"# {row['bytes_per_pixel']} bytes a pixel; {row['scene']} at {row['size']}: {row['worst_class']} "
+        f"# {row['bytes_per_pixel']} bytes per pixel; {row['scene']} at {row['size']}: {row['worst_class']} "
         f"{row['worst_db']:.1f} dB, frame {row['psnr_db']:.1f} dB",
         f"# {row['codes']}",
         f'title = "normalbench budget, {row["bytes_per_pixel"]} bytes"',

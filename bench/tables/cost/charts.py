@@ -9,9 +9,9 @@ from ....reports.charts.chart import INK, Axis, Chart, Kind, Mark, Names, Scale,
 from ....reports.charts.pareto import Panel, Point, pareto_front
 from ..table import Row
 
-GREY = "grey: another is no dearer, no worse and takes no more bits"
+GREY = "grey: another codec costs no more, is no less accurate and takes no more bits"
 BRANCHES = "* counts both sides of a branch"
-UNIT = "instructions, with its storage's"
+UNIT = "instructions, including packing"
 HEIGHT = 420
 
 
@@ -35,10 +35,11 @@ def front_chart(name: str, label: str, panels: Sequence[Panel]) -> Chart:
         name=name,
         title=_finding_sentence(panels),
         subtitle="; ".join([f"Instructions against {label}", GREY, *([BRANCHES] if is_starred else [])]),
-        description="Each codec by the cost of encoding or decoding it and its storage, and by its error; grey where "
-        "another is no dearer, no worse and takes no more bits. The figures are in the tables.",
+        description="Each codec by the cost of encoding or decoding it, including packing, and by its error; grey "
+        "where another codec costs no more, is no less accurate and takes no more bits. The figures are "
+        "in the tables.",
         x=Axis(title=UNIT, scale=Scale.COUNT, is_shared=False),
-        y=Axis(title=f"{label}, dB", scale=Scale.LINEAR, is_shared=False),
+        y=Axis(title=f"{label} (dB)", scale=Scale.LINEAR, is_shared=False),
         rows=tuple(rows),
         colour=bits,
         shape=bits,
@@ -80,4 +81,4 @@ def _finding_sentence(panels: Sequence[Panel]) -> str:
         front = pareto_front(panel.points)
         parts.append(f"{len(front)} of {len(panel.points)} codecs to {panel.kind}")
     machine = next((panel.machine for panel in panels if panel.is_usual and panel.machine), "")
-    return f"No other beats {', '.join(parts)}{f', on {machine}' if machine else ''}"
+    return f"Pareto-optimal: {', '.join(parts)}{f', on {machine}' if machine else ''}"

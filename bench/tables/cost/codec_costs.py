@@ -54,7 +54,7 @@ class Costs:
         """The keys of the rows that add up to it, each with its sign."""
         kind, packed = (where.measure, where.family, where.stage), PACKING_OPERATIONS[operation]
         if codec.misfit:
-            raise LeftOutError(f"{codec.storage.name} does not hold it: {codec.misfit}")
+            raise LeftOutError(f"does not fit in {codec.storage.name}: {codec.misfit}")
         name = codec.encoding.name
         parts = [(1, (*kind, operation, name, None)), (1, (*kind, packed, None, packing_of(codec).name))]
         if codec.encoding.sign_bits:
@@ -65,7 +65,7 @@ class Costs:
         *_, operation, encoding, storage = key
         row = self._rows.get(key)
         if row is None or row.get(column) is None:
-            raise LeftOutError("what it costs is not known" if encoding else f"what {storage} costs is not known")
+            raise LeftOutError("its cost is not known" if encoding else f"the cost of {storage} is not known")
         if row.get("loops"):
             raise LeftOutError(f"{encoding or storage} {operation} contains a loop, which counts once")
         return row

@@ -66,7 +66,7 @@ def _fronts(tables: Mapping[str, Sequence[Row]], usual: str, remarks: list[str])
         if panels:
             yield Front(f"PSNR of {what} {as_text(where)}", panels)
     if costs:
-        remarks += [f"No place in cost against error, for {why}: {', '.join(names)}." for why, names in lost.items()]
+        remarks += [f"Not in cost against error, because {why}: {', '.join(names)}." for why, names in lost.items()]
 
 
 def _errors(rows: Sequence[Row], lost: dict[str, dict[str, None]]) -> dict[Codec, float]:
@@ -77,9 +77,9 @@ def _errors(rows: Sequence[Row], lost: dict[str, dict[str, None]]) -> dict[Codec
         if not is_number(row.get(LEADING)):
             why = f"its error is not known ({row.get('skipped') or 'it was not measured'})"
         elif not math.isfinite(row[LEADING]):
-            why = "nothing is lost"
+            why = "it has no error"
         elif not codec:
-            why = "how its code is stored is not known"
+            why = "its storage is not known"
         else:
             errors[codec] = row[LEADING]
             continue

@@ -216,7 +216,7 @@ def _no_stage(family: str, stages: Sequence[str]) -> str:
     if set(known) & set(stages):
         return ""
     title = FAMILIES[family].title
-    return f"{title}: {' and '.join(stages)} shaders are not counted; ask for --stage {', '.join(known)}"
+    return f"{title}: {' and '.join(stages)} shaders are not counted; use --stage {', '.join(known)}"
 
 
 def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str) -> str:
@@ -264,7 +264,7 @@ def alike(kernels: Sequence[Kernel], empties: Sequence[Kernel]) -> tuple[Kernel,
 
 def _width_mismatch(kernels: Iterable[Kernel], empties: Iterable[Kernel]) -> str:
     ours, theirs = (" and ".join(str(k.simd_width) for k in some) for some in (kernels, empties))
-    return f"compiled for {ours} lanes, where the empty kernel is compiled for {theirs}: their counts do not compare"
+    return f"compiled for {ours} lanes, but the empty kernel for {theirs}; these counts cannot be compared"
 
 
 def _total(kernel: Kernel, names: Iterable[tuple[str, ...]]) -> float | None:
@@ -354,8 +354,8 @@ def nobody(_: str) -> None:
 def static_notes(rows: Iterable[Row]) -> list[str]:
     """Why counts of some rows are not what a lane runs: a line for loops and one for branches."""
     notes = {
-        "loops": "contains a loop, whose body counts once, however often it runs",
-        "branches": "contains a branch, both of whose sides count",
+        "loops": "contains a loop; its body counts once, however often it runs",
+        "branches": "contains a branch; both sides count",
     }
     by_column: dict[str, dict[str, None]] = {column: {} for column in notes}
     for row in rows:

@@ -23,9 +23,11 @@ class CostOptions(SourceOptions):
     """Options for what `cost` measures. Names are comma-separated."""
 
     encoding: Encodings = ("all",)
-    isa: Annotated[bool, Option("--isa", "Instructions that compilers make of the GLSL; needs no GPU.")] = False
-    time: Annotated[bool, Option("--time", "Nanoseconds a megapixel on the GL device.")] = False
-    article: Annotated[bool, Option("--article", "The figures of Pranckevicius' article next to them.")] = False
+    isa: Annotated[bool, Option("--isa", "Count the instructions that compilers make of the GLSL; needs no GPU.")] = (
+        False
+    )
+    time: Annotated[bool, Option("--time", "Measure nanoseconds per megapixel on the OpenGL device.")] = False
+    article: Annotated[bool, Option("--article", "Show the figures of Pranckevicius' article as well.")] = False
     family: Annotated[
         Names,
         Option(
@@ -43,13 +45,13 @@ class CostOptions(SourceOptions):
     arithmetic: Arithmetics = ("declared",)
     storage: Annotated[
         Names,
-        Option("--storage", "Storages and packings whose own cost is shown, comma-separated, or all.", in_run=True),
+        Option("--storage", "Storages and packings to show the cost of, comma-separated, or all.", in_run=True),
     ] = ("rgba8", "rgba8_snorm", "11:11", "12:12", "16:16", "11:10:11", "depth16", "depth24", "depth24_sign")
     size: Annotated[
         str | None,
-        Option("--size", "WIDTHxHEIGHT of the target that is timed. Default: 64x64 in software, or 1024x1024."),
+        Option("--size", "WIDTHxHEIGHT of the target to time. Default: 64x64 in software, or 1024x1024."),
     ] = None
-    repeats: Annotated[int, Option("--repeats", "Repetitions that medians are taken over.")] = 9
+    repeats: Annotated[int, Option("--repeats", "Number of repetitions to take medians over.")] = 9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +59,7 @@ class CostOutputs:
     """Files that `cost` writes besides its rows."""
 
     disassembly: Annotated[
-        Path | None, Option("--disassembly", "Write what each family's compiler made into this folder.")
+        Path | None, Option("--disassembly", "Write the output of each family's compiler to this folder.")
     ] = None
 
 
@@ -66,35 +68,36 @@ def _count_column(name: str, says: str, drops: int = 0) -> Column:
 
 
 COLUMNS = (
-    Column("measure", "isa: instructions; time: on the GL device; article: published figures.", KEY),
-    Column("encoding", "How a normal becomes a few numbers; empty in the rows of storages.", KEY),
+    Column("measure", "isa: instructions; time: on the OpenGL device; article: published figures.", KEY),
+    Column("encoding", "How a normal is turned into numbers; empty in the rows of storages.", KEY),
     Column("storage", "A storage's packing of bit fields into channels; empty in the rows of encodings.", KEY),
     Column("operation", "encode or decode; pack or unpack.", KEY),
     Column("stage", "The kind of shader.", KEY),
-    Column("family", "The GPU family that it was compiled for.", KEY),
+    Column("family", "The GPU family that the shader was compiled for.", KEY),
     _count_column(
         "instructions",
-        "Instructions of one lane, less those of an empty kernel that moves the same numbers. The columns full_rate, "
-        "conversion, quarter_rate, transcendental, scalar, memory, waiting, control_flow and other_alu add up to it "
-        "where there is a disassembly.",
+        "Instructions of one lane, minus those of an empty kernel that moves the same numbers. The columns "
+        "full_rate, conversion, quarter_rate, transcendental, scalar, memory, waiting, control_flow and other_alu "
+        "add up to this count if there is a disassembly.",
     ),
     _count_column(
         "issue_slots",
-        "How long they keep the vector unit busy, in full-rate instructions: on GCN slow ones count 4, on RDNA a "
-        "transcendental one issues once and runs in another unit. Empty for Intel and NVIDIA.",
+        "How long the instructions keep the vector unit busy, in full-rate instructions: on GCN slow instructions "
+        "count 4; on RDNA a transcendental instruction issues once and runs in another unit. Empty for Intel and "
+        "NVIDIA.",
     ),
     _count_column(
         "executed_slots",
-        "Issue slots that one lane takes: each loop as often as it runs in the mean over the sphere, counted on the GL "
-        "device. A transcendental instruction takes what the vendor's compiler or documents say: 4 on GCN, 2 on Intel "
-        "from Broadwell on, 4 on Turing, 8 on later GPUs of NVIDIA, 1 elsewhere. Empty where the turns of a loop are "
-        "not known.",
+        "Issue slots that one lane takes, with each loop counted as often as it runs on average over the sphere, "
+        "measured on the OpenGL device. A transcendental instruction counts as the vendor's compiler or documents "
+        "state: 4 on GCN, 2 on Intel from Broadwell on, 4 on Turing, 8 on later GPUs of NVIDIA, 1 elsewhere. Empty "
+        "if the number of loop iterations is not known.",
     ),
     _count_column("full_rate", "Radeon: instructions at the full rate.", 17),
     _count_column(
         "conversion",
-        "Between floats and integers: at a quarter of the rate on Polaris and Vega. Intel: also between two "
-        "sizes of floats. NVIDIA: also rounding to whole numbers, in the same unit.",
+        "Conversions between floats and integers: at a quarter of the rate on Polaris and Vega. Intel: also between "
+        "two sizes of floats. NVIDIA: also rounding to whole numbers, in the same unit.",
         13,
     ),
     _count_column(
@@ -104,32 +107,32 @@ COLUMNS = (
     ),
     _count_column(
         "transcendental",
-        "Reciprocal, root, logarithm, sine: at a quarter of the rate, from Navi on in a unit of their own. Intel: "
+        "Reciprocal, root, logarithm, sine: at a quarter of the rate; from Navi on in a separate unit. Intel: "
         "`math`, which also divides integers. NVIDIA: `MUFU`.",
     ),
-    _count_column("scalar", "Radeon, Intel, NVIDIA: instructions once for all lanes.", 14),
+    _count_column("scalar", "Radeon, Intel, NVIDIA: instructions that run once for all lanes.", 14),
     _count_column(
         "memory",
-        "Loads, stores, export; Radeon: interpolation, too; Intel: messages (`send`); NVIDIA: reads of constants, too.",
+        "Loads, stores, export; Radeon: also interpolation; Intel: messages (`send`); NVIDIA: also reads of constants.",
         15,
     ),
     _count_column(
         "waiting",
-        "Waits and hints about order; NVIDIA: without the padding behind a kernel's end.",
+        "Waits and hints about order; NVIDIA: without the padding after a kernel's end.",
         10,
     ),
-    _count_column("control_flow", "Jumps and what ends a branch or a program. Radeon: in `scalar`.", 18),
+    _count_column("control_flow", "Jumps and the ends of branches and programs. Radeon: in `scalar`.", 18),
     _count_column(
-        "other_alu", "All other arithmetic, moves, compares and selections; interpolation, too. Radeon: empty.", 19
+        "other_alu", "All other arithmetic, moves, compares and selections; also interpolation. Radeon: empty.", 19
     ),
-    _count_column("packed", "Radeon: of full_rate those on two numbers of 16 bits at once.", 20),
+    _count_column("packed", "Radeon: the part of full_rate that works on two 16-bit numbers at once.", 20),
     _count_column("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
     _count_column("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
-    _count_column("looped", "Of instructions those in loops, which run again at each turn.", 21),
+    _count_column("looped", "Instructions in loops, which run again in each iteration.", 21),
     _count_column(
         "spirv_instructions",
-        "SPIR-V instructions after spirv-opt, loops unrolled: portable, and of vectors; they depend on the spelling. "
-        "Empty where a loop is left.",
+        "SPIR-V instructions after spirv-opt, with loops unrolled: portable, count vectors, and depend on the "
+        "spelling. Empty if a loop remains.",
     ),
     _count_column(
         "vgprs",
@@ -143,14 +146,14 @@ COLUMNS = (
     _count_column("code_bytes", "Bytes of code, more than the empty kernel's.", 7),
     _count_column(
         "stall_cycles",
-        "NVIDIA: cycles that the compiler has a warp wait after its instructions, added up along the code, more than "
-        "the empty kernel's. Results that a warp waits for at barriers, such as memory's, are not in it.",
+        "NVIDIA: cycles that a warp waits after its instructions, as set by the compiler and added up along the "
+        "code, minus the empty kernel's. Waits at barriers, such as for memory, are not included.",
         6,
     ),
     Column(
         "simd_width",
-        "Lanes that an instruction works on. Of Intel's kernels for 8, 16 and 32 lanes: the widest that does not spill "
-        "and that the empty kernel has, too.",
+        "Lanes that an instruction works on. For Intel's kernels with 8, 16 and 32 lanes: the widest that does not "
+        "spill and that the empty kernel also has.",
         HOW,
         drops=5,
     ),
@@ -158,53 +161,54 @@ COLUMNS = (
     Column("kernel_sgprs", "All scalar registers of the kernel.", HOW, drops=5),
     Column(
         "kernel_waves",
-        "How many waves of 64 lanes a Radeon's SIMD holds of the whole kernel, by its vector registers. Intel: threads "
-        "of an execution unit, each of which has its own registers. NVIDIA: warps of 32 lanes in a quarter of a "
-        "multiprocessor. More hide more latency.",
+        "How many waves of 64 lanes of the whole kernel fit on a Radeon's SIMD, by its vector registers. Intel: "
+        "threads of an execution unit, each with its own registers. NVIDIA: warps of 32 lanes in a quarter of a "
+        "multiprocessor. More of them hide more latency.",
         HOW,
         drops=6,
     ),
     Column(
         "kernel_latency",
-        "Cycles of the whole kernel by the driver's own model: a maximum over units, so not a sum of parts. The "
-        "models of two vendors do not compare.",
+        "Cycles of the whole kernel by the driver's own model: a maximum over units, so not a sum of parts. Models "
+        "of different vendors cannot be compared.",
         HOW,
         drops=3,
     ),
     Column(
         "kernel_inverse_throughput",
-        "Cycles of the whole kernel by the driver's own model where much runs at once.",
+        "Cycles of the whole kernel by the driver's own model, if many instances run at once.",
         HOW,
         drops=4,
     ),
-    Column("cycles", "Cycles a pixel that the article gives.", HOW),
+    Column("cycles", "Cycles per pixel, from the article.", HOW),
     Column(
         "ns_per_megapixel",
-        "On the GL device: median of the differences to the empty pass, the operation `turns` times in the shader.",
+        "On the OpenGL device: median of the differences from the empty pass, with the operation run `turns` times "
+        "in the shader.",
         TIME,
         "ns",
         "less",
     ),
-    Column("spread", "Width of the median's 95 % interval.", TIME),
+    Column("spread", "Width of the median's 95% interval.", TIME),
     Column("turns", "How often the operation runs in the timed shader.", HOW),
     Column("size", "Width and height of the target in pixels.", HOW),
-    Column("repeats", "Repetitions that the median is of.", HOW),
-    Column("software", "Whether the GL device is a software rasteriser.", HOW),
-    Column("clock", "What timed it.", HOW, drops=15),
+    Column("repeats", "Number of repetitions that the median is taken over.", HOW),
+    Column("software", "Whether the OpenGL device is a software rasteriser.", HOW),
+    Column("clock", "What measured the time.", HOW, drops=15),
     shared.DEVICE,
     Column("driver", "The compiler of the counts.", HOW, drops=1),
-    Column("compiler", "What made SPIR-V of the GLSL.", HOW, drops=1),
+    Column("compiler", "The compiler from GLSL to SPIR-V.", HOW, drops=1),
     shared.SKIPPED,
 )
 ALSO = (
     Column("what", "An encoding, or a storage's packing of bit fields into channels.", KEY),
     Column("article", "The article's instruction slots: ps_3_0, up to four numbers each, scale and bias included."),
     Column("spirv", "SPIR-V instructions after spirv-opt."),
-    Column("polaris*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
-    Column("vega*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
-    Column("navi*", "Instructions that Mesa's RADV makes of it for that GPU family.", better="less"),
+    Column("polaris*", "Instructions that Mesa's RADV compiles it to, for that GPU family.", better="less"),
+    Column("vega*", "Instructions that Mesa's RADV compiles it to, for that GPU family.", better="less"),
+    Column("navi*", "Instructions that Mesa's RADV compiles it to, for that GPU family.", better="less"),
     *(
-        Column(name, f"Instructions that Mesa's {driver} makes of it for that GPU family.", better="less")
+        Column(name, f"Instructions that Mesa's {driver} compiles it to, for that GPU family.", better="less")
         for driver, names in (
             ("hasvk", ("hsw", "bdw")),
             ("anv", ("skl", "tgl", "adl", "dg2")),
@@ -214,7 +218,7 @@ ALSO = (
     *(
         Column(
             name,
-            "Instructions that NVIDIA's NVRTC makes of it for that GPU family, in a compute shader.",
+            "Instructions that NVIDIA's NVRTC compiles it to, for that GPU family, in a compute shader.",
             better="less",
         )
         for name in CHOICES["nvidia"]
@@ -227,8 +231,9 @@ PACKED = "rgba8,rg8,rgb10a2,rg16f,rg16,12:12,16:16,11:10:11,depth16,depth24,dept
 
 TABLE = Table(
     package=__package__ or "",
-    help="Count instructions on GPUs of three vendors, and measure time.\n\nCounts are by Mesa's compilers, and by "
-    "NVIDIA's of CUDA, for GPUs that need not be there, less an empty kernel that moves the same numbers.",
+    help="Count instructions on GPUs of three vendors, and measure time.\n\nCounts are from Mesa's compilers, and "
+    "for NVIDIA from its CUDA compiler, minus an empty kernel that moves the same numbers. The GPUs are not "
+    "needed.",
     example="normalbench cost --isa --family navi31 --encoding octahedral,spheremap",
     is_kept=True,
     step_s=8.0,
@@ -243,13 +248,14 @@ TABLE = Table(
     partial=True,
     compilers=("driver", "compiler"),
     section=Section(
-        title="What it costs",
+        title="Encoding cost",
         short="Cost",
         view=View.CODECS,
-        intro="What a current compiler makes of each encoder and decoder, and whether it is worth it.",
-        method="A kernel around the encoding's own GLSL is compiled by Mesa's drivers for GPUs that need not be there, "
-        "less an empty kernel that moves the same numbers, so that doing nothing costs exactly 0. Counts hold for one "
-        "Mesa.",
+        intro="The instructions that a current compiler makes of each encoder and decoder, and whether they are "
+        "worth it.",
+        method="A kernel with the encoding's own GLSL is compiled by Mesa's drivers, minus an empty kernel that "
+        "moves the same numbers, so that doing nothing costs exactly 0. The GPUs are not needed. Counts hold "
+        "for one version of Mesa.",
         extras=("disassembly",),
     ),
 )

@@ -49,7 +49,9 @@ def packings(names: Names) -> list[Packing]:
     storages = storages_said(map(str, names), PACKINGS)
     known = {**PACKINGS, **{word: packings_of(storage) for word, storage in storages.items() if storage}}
     if few := next((word for word, several in known.items() if not several), None):
-        raise UsageError(f"--storage {few}: a code of a normal has two numbers or three")
+        raise UsageError(
+            f"--storage {few}: a normal's code has two or three numbers; use a storage of two or more channels"
+        )
     chosen = choose("storage", storages, known)
     return list(dict.fromkeys(packing for several in chosen for packing in several))
 
@@ -139,7 +141,7 @@ def _check(asked: Costing, outputs: CostOutputs) -> None:
     if outputs.disassembly:
         check_folder(outputs.disassembly)
         if "isa" not in chosen:
-            raise UsageError("--disassembly is of what compilers make; ask for --isa")
+            raise UsageError("--disassembly requires --isa")
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,12 +31,13 @@ def curves_chart(rows: Sequence[Row]) -> Chart:
     best = min((row for row in rows if row["bits"] == least), key=lambda row: row["display_max"])
     return Chart(
         name="curves",
-        title=f"In {least} bits {_called(best)} is least wrong to a viewer: {best['display_max']:.3g} steps of 255",
-        subtitle="Largest distance of a colour's channel on the sRGB curve, over the bits of its code",
-        description="The largest distance of a channel from its decode on the sRGB curve, in 255ths, logarithmic, over "
-        "the bits of the code; a line for each curve and way to round. The figures are in the table.",
+        title=f"Smallest displayed error at {least} bits: {_called(best)}, {best['display_max']:.3g} steps of 255",
+        subtitle="Largest difference in a colour's channel on the sRGB curve, by bits",
+        description="The largest difference between a channel and its decode on the sRGB curve, in 255ths, on a "
+        "logarithmic scale, by the bits of the code: a line for each curve and rounding. The figures are "
+        "in the table.",
         x=Axis(title="bits", ticks=tuple((float(bits), str(bits)) for bits in distinct(rows, "bits"))),
-        y=Axis(title="largest distance, steps of 8-bit sRGB", scale=Scale.LOG),
+        y=Axis(title="largest difference (steps of 8-bit sRGB)", scale=Scale.LOG),
         rows=tuple(points),
         colour=Names("curve", distinct(points, "curve")),
         dash=Names("how", ways) if len(ways) > 1 else None,

@@ -19,42 +19,48 @@ class CurvesOptions(SourceOptions):
     """Options for what `curves` measures. Names and numbers are comma-separated; without a storage, each curve uses
     its usual one."""
 
-    encoding: Annotated[Names, Option("--encoding", f"Curves or files of yours, {NAMED}.", files=True)] = ("all",)
-    storage: Annotated[Names | None, Option("--storage", f"Storages, {NAMED}. Default: each curve's usual.")] = None
+    encoding: Annotated[Names, Option("--encoding", f"Curves or your own files, {NAMED}.", files=True)] = ("all",)
+    storage: Annotated[
+        Names | None, Option("--storage", f"Storages, {NAMED}. Default: each curve's usual storage.")
+    ] = None
     rounding: RoundingsAndDithered = ("nearest",)
     backend: Backends = ("jax", "glsl")
     range: Annotated[
         Names | None,
-        Option("--range", "Largest quantities that are kept, comma-separated. Default: each curve's usual."),
+        Option("--range", "Largest values to store, comma-separated. Default: each curve's usual range."),
     ] = None
-    count: Annotated[int, Option("--count", "Quantities, one at random in each of as many steps to the range.")] = 2**16
+    count: Annotated[
+        int, Option("--count", "Number of values, spread at random in equal steps from 0 to the range.")
+    ] = 2**16
     seed: Seed = 0
 
 
-DISPLAY = "on the sRGB curve, in steps of 8 bits, of quantities that are evenly spread there"
-NO_COLOURS = "Empty for curves on which no colours are stored, such as smoothness."
+DISPLAY = "on the sRGB curve, in 8-bit steps, over values that are evenly spread there"
+NO_COLOURS = "Empty for curves that do not store colours, such as smoothness."
 COLUMNS = (
-    Column("encoding", "How a quantity becomes a number.", KEY),
+    Column("encoding", "How a value is turned into a stored number.", KEY),
     shared.STORAGE,
     shared.ROUNDING_OR_DITHERED,
     shared.BACKEND,
-    Column("range", "The largest quantity that is kept.", KEY),
-    Column("bits", "Bits of the code: those of a channel."),
-    Column("error_mean", "Mean distance of the decoded quantity from the true one.", better="less"),
-    Column("error_max", "Largest distance of the decoded quantity from the true one.", better="less"),
-    Column("bias", "Mean of the decoded quantity minus the true one: what dithering and averaging leave."),
+    Column("range", "The largest value that can be stored.", KEY),
+    Column("bits", "Bits of the code, in one channel."),
+    Column("error_mean", "Mean difference between decoded and true value.", better="less"),
+    Column("error_max", "Largest difference between decoded and true value.", better="less"),
+    Column(
+        "bias", "Mean of the decoded value minus the true value: the error that remains after dithering and averaging."
+    ),
     Column(
         "relative_max",
-        "Largest distance over the true quantity, of quantities from a hundredth of the range on.",
+        "Largest difference divided by the true value, for values from a hundredth of the range upwards.",
         unit="%",
         better="less",
     ),
-    Column("display_mean", f"Mean distance {DISPLAY}. {NO_COLOURS}", better="less", drops=2),
-    Column("display_max", f"Largest distance {DISPLAY}. {NO_COLOURS}", better="less"),
-    Column("least", "The smallest quantity that does not decode to what 0 decodes to.", better="less", drops=3),
+    Column("display_mean", f"Mean difference {DISPLAY}. {NO_COLOURS}", better="less", drops=2),
+    Column("display_max", f"Largest difference {DISPLAY}. {NO_COLOURS}", better="less"),
+    Column("least", "The smallest value that does not decode to the same result as 0.", better="less", drops=3),
     Column("zero", "What 0 decodes to.", drops=1),
-    Column("one", "What the range decodes to, as a share of the range.", drops=1),
-    Column("count", "How many quantities were measured.", HOW, drops=6),
+    Column("one", "What the largest value decodes to, as a fraction of the range.", drops=1),
+    Column("count", "How many values were measured.", HOW, drops=6),
     shared.DEVICE,
     shared.ROUNDED_BY,
     shared.SEED,
@@ -63,18 +69,19 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="Measure curves of roughness, metallic, AO and colours in few bits.\n\nA curve lies in the first channel "
-    "of a storage. `unorm:5` is five bits.",
+    help="Measure curves of roughness, metallic, AO and colours in few bits.\n\nA curve is stored in the first "
+    "channel of a storage. `unorm:5` is five bits.",
     example="normalbench curves --encoding linear,square_root,srgb --storage unorm:4..8 --backend jax",
     options=CurvesOptions,
     columns=COLUMNS,
     in_all=False,
     single={"encoding": "linear", "storage": "r8", "backend": "jax"},
     section=Section(
-        title="What roughness and colours lose",
+        title="Accuracy of roughness, AO and colours",
         short="Curves",
-        intro="A number of a material in few bits: how far is it off, in itself and as a viewer sees a colour of it?",
-        method="Quantities that are evenly spread from 0 to the range are put on the curve, stored and read back. The "
-        "distances of colours are on the sRGB curve, in 255ths, of quantities that are evenly spread there.",
+        intro="Material values in few bits: how large is the error in the value itself, and in the colour that a "
+        "viewer sees?",
+        method="Values that are evenly spread from 0 to the range are put on the curve, stored and decoded. Colour "
+        "differences are on the sRGB curve, in 255ths, over values that are evenly spread there.",
     ),
 )

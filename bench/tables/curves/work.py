@@ -77,7 +77,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     measured = one_backend([row for row in rows if row["error_mean"] is not None])
     names = ("encoding", "storage", "rounding", "range", "bits", "error_mean", "error_max", "display_max", "least")
     if measured:
-        yield Sheet("numbers of materials, by bits", [{name: row[name] for name in names} for row in measured])
+        yield Sheet("material values, by bits", [{name: row[name] for name in names} for row in measured])
 
 
 WORK = Work(

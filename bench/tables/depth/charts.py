@@ -36,12 +36,13 @@ def depth_chart(rows: Sequence[Row]) -> Chart:
     return Chart(
         name="depth",
         title=_finding_sentence(points),
-        subtitle=f"Position error over distance; field of view {first['fov']:g} degrees; "
+        subtitle=f"Position error by distance; field of view {first['fov']:g} degrees; "
         f"{first['backend']}, {first['device']}",
-        description="The largest distance between true and rebuilt position over the distance from the eye, both on "
-        "logarithmic scales, a line for each depth code in its storage. The figures are in the table.",
+        description="The largest distance between true and rebuilt position by the distance from the eye, on "
+        "logarithmic scales, with a line for each depth encoding in its storage. The figures are in the "
+        "table.",
         x=Axis(title="distance", scale=Scale.LOG, is_shared=False),
-        y=Axis(title="worst position error, same unit", scale=Scale.LOG),
+        y=Axis(title="largest position error (same unit)", scale=Scale.LOG),
         rows=tuple(points),
         colour=Names("depth", distinct(rows, "depth")),
         dash=Names("storage", distinct(rows, "storage")),
@@ -69,11 +70,10 @@ def _line_name(row: Row, rows: Sequence[Row]) -> str:
 def _finding_sentence(points: Sequence[Row]) -> str:
     """Return which line is the best and which the worst at the greatest distance."""
     if not points:
-        return "Nothing is lost"
+        return "No error"
     farthest = max(point["x"] for point in points)
     last = sorted((point for point in points if point["x"] == farthest), key=lambda point: point["y"])
     best, worst = last[0], last[-1]
     return (
-        f"At a distance of {farthest:g} {best['line']} is off by {best['y']:.2g} at most, {worst['line']} by "
-        f"{worst['y']:.2g}"
+        f"Largest error at a distance of {farthest:g}: {best['line']} {best['y']:.2g}, {worst['line']} {worst['y']:.2g}"
     )

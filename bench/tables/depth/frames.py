@@ -76,16 +76,21 @@ def _checked(words: Names, options: DepthOptions) -> DepthOptions:
     """The options with what the numbers are by its known name. Raises UsageError."""
     names = [Path(str(word)).name for word in words]
     if not words:
-        raise UsageError("--depths names no file")
+        raise UsageError("--depths: no file named; name at least one, such as depth.exr")
     if twice := next((name for name in names if names.count(name) > 1), None):
-        raise UsageError(f"two files are called {twice}, which is how rows name them; rename one")
+        raise UsageError(f"--depths: two files are called {twice}, which rows could not tell apart; rename one")
     if options.distance is not None:
-        raise UsageError("--distance is of points that are made; --depths has depths of its own")
+        raise UsageError("--distance applies only to generated points; it cannot be used with --depths")
     code = choose_one("code of --depths-are", options.depths_are, (VIEW, *CODES))
     if not LEAST_UNIT <= abs(options.depth_unit) <= MOST_UNIT:
-        raise UsageError(f"--depth-unit {options.depth_unit:g}: {LEAST_UNIT:g} to {MOST_UNIT:g}, or less than 0")
+        raise UsageError(
+            f"--depth-unit {options.depth_unit:g}: out of range; use {LEAST_UNIT:g} to {MOST_UNIT:g}, or "
+            "the same below 0"
+        )
     if code != VIEW and options.depth_unit != DepthOptions.depth_unit:
-        raise UsageError(f"--depth-unit is of view depths; --depths-are {code} has the unit of --near and --far")
+        raise UsageError(
+            f"--depth-unit cannot be used with --depths-are {code}, whose unit is that of --near and --far"
+        )
     if options.count != DepthOptions.count:
         tell("--count has no effect on depth images: every pixel between near and far is measured")
     return replace(options, depths_are=code)
@@ -96,7 +101,7 @@ def _check_unused(options: DepthOptions) -> None:
     usual = DepthOptions()
     for flag, name in (("--channel", "channel"), ("--depths-are", "depths_are"), ("--depth-unit", "depth_unit")):
         if getattr(options, name) != getattr(usual, name):
-            raise UsageError(f"{flag} is of depth images, and --depths names none")
+            raise UsageError(f"{flag} requires --depths")
 
 
 def _pixels_of(array: np.ndarray) -> Pixels:
@@ -118,9 +123,9 @@ def _left_out(frame: DepthImage, camera: Camera) -> list[str]:
     finite = depths[np.isfinite(depths)]
     reach = f"{finite.min():.4g} to {finite.max():.4g}" if len(finite) else "not finite"
     if not len(sample.points.depths):
-        remedy = "--depth-unit -1 turns them around" if len(finite) and finite.max() <= 0 else "see --depths-are"
-        raise UsageError(f"{frame.name}: no depth lies within {planes}; they are {reach}: {remedy}")
+        remedy = "--depth-unit -1 inverts them" if len(finite) and finite.max() <= 0 else "see --depths-are"
+        raise UsageError(f"{frame.name}: no depth is within {planes}; depths are {reach}; {remedy}")
     notes = [f"1 pixel in {sample.every} is measured"] * (sample.every > 1)
     if sample.background:
-        notes.append(f"{sample.background / depths.size:.1%} of its pixels are not within {planes}; it has {reach}")
-    return notes + [f"{frame.not_finite} numbers are NaN and left out"] * bool(frame.not_finite)
+        notes.append(f"{sample.background / depths.size:.1%} of the pixels are not within {planes}; depths are {reach}")
+    return notes + [f"{frame.not_finite} values are NaN and left out"] * bool(frame.not_finite)

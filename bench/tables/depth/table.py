@@ -18,16 +18,17 @@ KEY, HOW = Role.KEY, Role.HOW
 class DepthOptions(SourceOptions):
     """Options for what `depth` measures. Names and numbers are comma-separated; None stands for the usual value."""
 
-    depth: Annotated[Names, Option("--depth", f"Depth codes or files of yours, {NAMED}.", files=True)] = ("all",)
-    storage: Annotated[Names | None, Option("--storage", f"Depth storages, {NAMED}. Default: each code's usual.")] = (
-        None
-    )
+    depth: Annotated[Names, Option("--depth", f"Depth encodings or your own files, {NAMED}.", files=True)] = ("all",)
+    storage: Annotated[
+        Names | None, Option("--storage", f"Depth storages, {NAMED}. Default: each encoding's usual storage.")
+    ] = None
     rounding: RoundingsAndDithered = ("nearest",)
     rebuild: Annotated[
         Names | None,
         Option(
             "--rebuild",
-            "inverse_projection, projection_terms, eye_ray; comma-separated, or all. Default: each code's usual.",
+            "inverse_projection, projection_terms, eye_ray; comma-separated, or all. Default: each encoding's usual "
+            "method.",
         ),
     ] = None
     near: Annotated[Names, Option("--near", "Near planes, comma-separated.")] = ("0.1", "1")
@@ -39,31 +40,30 @@ class DepthOptions(SourceOptions):
         float | None,
         Option(
             "--fov",
-            "Vertical field of view in degrees. Default: 60, of a 16:9 image; of --depths none, points lie on the view "
+            "Vertical field of view in degrees. Default: 60 (16:9 image); with --depths none, points are on the view "
             "axis.",
         ),
     ] = None
     depths: Annotated[
         Names | None,
-        Option("--depths", "Images of depths to measure, in place of made ones: EXR, TIFF, PNG, NPY.", files=True),
+        Option("--depths", "Depth images to measure instead of generated points: EXR, TIFF, PNG, NPY.", files=True),
     ] = None
     channel: Annotated[
         str | None,
-        Option("--channel", "Depth images: the channel. Default: the one called so, or the only one."),
+        Option("--channel", "Depth images: the channel. Default: the channel named for depth, or the only one."),
     ] = None
     depths_are: Annotated[
         str,
         Option(
             "--depths-are",
-            "Depth images: view (along the view axis), or the depth code that they are in: window, reversed_window, "
-            "linear.",
+            "Depth images: view (along the view axis), or their depth encoding: window, reversed_window, linear.",
         ),
     ] = "view"
     depth_unit: Annotated[
-        float, Option("--depth-unit", "Depth images: what 1 is in the unit of --near; 0.001 for millimetres.")
+        float, Option("--depth-unit", "Depth images: length of 1 in the unit of --near; 0.001 for millimetres.")
     ] = 1.0
     backend: Backends = ("jax", "glsl")
-    count: Annotated[int, Option("--count", "Points at each distance.")] = 2**14
+    count: Annotated[int, Option("--count", "Number of points at each distance.")] = 2**14
     seed: Seed = 0
 
 
@@ -76,14 +76,15 @@ class DepthOutputs:
 
 
 COLUMNS = (
-    Column("depth", "How a distance becomes a number.", KEY),
+    Column("depth", "How a distance is turned into a number.", KEY),
     Column("storage", "The format that the number is stored in.", KEY),
     shared.ROUNDING_NOW_SAID,
     Column("bits", "Bits of the stored depth.", drops=4),
     Column(
         "rebuilt",
-        "How the position is found. inverse_projection: by the inverse matrix in float32; projection_terms: by the "
-        "projection's two terms, z = B / (ndc + A), and the eye's ray; eye_ray: by the code's decoder and that ray.",
+        "How the position is rebuilt. inverse_projection: with the inverse matrix in float32; projection_terms: with "
+        "the projection's two terms, z = B / (ndc + A), and the eye ray; eye_ray: with the encoding's decoder and "
+        "the eye ray.",
         KEY,
         drops=6,
     ),
@@ -91,15 +92,20 @@ COLUMNS = (
     Column("near", "The near plane.", KEY),
     Column("far", "The far plane.", KEY, drops=7),
     Column("ratio", "Far over near.", HOW),
-    Column("fov", "Vertical field of view; empty where points lie on the view axis.", HOW, "degrees"),
-    Column("depths", "The image whose depths were measured; empty: points were made.", KEY),
-    Column("distance", "Depths within a sixteenth of it; empty: spread evenly over the range, or an image's.", KEY),
+    Column("fov", "Vertical field of view; empty if points are on the view axis.", HOW, "degrees"),
+    Column("depths", "The image whose depths were measured; empty for generated points.", KEY),
+    Column(
+        "distance",
+        "Depths within a sixteenth of this distance; empty: depths spread evenly over the range, or the depths of an "
+        "image.",
+        KEY,
+    ),
     Column("count", "How many points were measured.", HOW),
-    Column("background", "Pixels of the image that are not between near and far; they do not count.", HOW, drops=8),
-    Column("not_finite", "Pixels of the image that are NaN; they do not count.", HOW, drops=8),
+    Column("background", "Pixels of the image outside near and far; these are not counted.", HOW, drops=8),
+    Column("not_finite", "Pixels of the image that are NaN; these are not counted.", HOW, drops=8),
     Column(
         "relative_mean",
-        "Mean error of the depth along the view axis, as a share of the depth.",
+        "Mean error of the depth along the view axis, as a fraction of the depth.",
         better="less",
     ),
     Column("relative_max", "The largest such error.", better="less"),
@@ -109,11 +115,12 @@ COLUMNS = (
     Column("error_max", "The largest distance between true and rebuilt position.", better="less"),
     Column(
         "half_step",
-        "How far rounding moves the position at worst: half a step of the storage to the nearest, otherwise a step.",
+        "How far rounding can move the position: half a step of the storage with rounding to nearest, otherwise one "
+        "step.",
         HOW,
     ),
-    Column("bound", "How far rounding and float32 arithmetic can move the position at worst.", HOW),
-    Column("signs_lost", "Signs stored with the depth that came back wrong.", better="less", drops=3),
+    Column("bound", "How far rounding and float32 arithmetic together can move the position.", HOW),
+    Column("signs_lost", "Signs stored with the depth that decoded wrongly.", better="less", drops=3),
     shared.DEVICE,
     shared.ROUNDED_BY,
     shared.SEED,
@@ -128,9 +135,9 @@ ALSO = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="Measure positions rebuilt from stored depth.\n\nErrors are distances in the unit of --near and --far, of "
-    "points anywhere on the screen; a distance stands for depths up to a sixteenth of it nearer or farther. "
-    "--depths measures the depths of your own image.",
+    help="Measure positions rebuilt from stored depth.\n\nErrors are distances in the unit of --near and --far, for "
+    "points anywhere on the screen. A distance stands for depths up to a sixteenth of it nearer or farther. "
+    "--depths measures your own depth image.",
     example="normalbench depth --depth reversed_window,logarithmic --near 0.1 --far 1000",
     step_s=0.04,
     options=DepthOptions,
@@ -140,10 +147,11 @@ TABLE = Table(
     usual=({"near": "0.1"},),
     single={"depth": "linear", "backend": "jax", "near": "0.1"},
     section=Section(
-        title="What depth loses",
+        title="Depth accuracy",
         short="Depth",
-        intro="A view-space position is rebuilt from the stored depth: how far off is it, at which distance?",
-        method="Points anywhere on the screen at each distance, within a sixteenth of it, and spread evenly over the "
-        "range. Errors are distances in the unit of the planes. z/w and reversed z/w go through real depth buffers.",
+        intro="A view-space position is rebuilt from the stored depth: how large is its error at each distance?",
+        method="Points are anywhere on the screen: at each distance, within a sixteenth of it, and spread evenly "
+        "over the range. Errors are distances in the unit of the planes. z/w and reversed z/w go through real "
+        "depth buffers.",
     ),
 )

@@ -67,7 +67,7 @@ def cases(options: DepthOptions) -> list[measure.DepthCase]:
     check_seed(options.seed)
     fov = USUAL_FOV if options.fov is None else options.fov
     if not 1 <= fov <= 170:
-        raise UsageError(f"--fov {fov:g}: degrees from 1 to 170")
+        raise UsageError(f"--fov {fov:g}: out of range; use 1 to 170 degrees")
     cameras = [Camera(near, far, fov, measure.ASPECT) for near, far in _ranges(options)]
     distances = {camera: _distances(options, camera) for camera in cameras}
     in_range("--count", options.count, 2, MAX_POINTS // max(map(len, distances.values())))
@@ -104,7 +104,7 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
         pairs += [(codec, way) for way in chosen]
         if not chosen:
             ways = ", ".join(asked or ())
-            complaints.append(f"{codec.name}: {ways}: only for codes stored in a depth buffer")
+            complaints.append(f"{codec.name}: {ways}: only for encodings stored in a depth buffer")
     return what_is_left(pairs, complaints)
 
 
@@ -114,7 +114,7 @@ def _ranges(options: DepthOptions) -> list[tuple[float, float]]:
     for far in fars:
         for near in nears:
             if far < LEAST_RATIO * near:
-                raise UsageError(f"--near {near:g} --far {far:g}: far is at least {LEAST_RATIO:g} times near")
+                raise UsageError(f"--near {near:g} --far {far:g}: far must be at least {LEAST_RATIO:g} times near")
     return [(near, far) for far in fars for near in nears]
 
 
@@ -136,9 +136,11 @@ def _numbers(option: str, words: Names) -> tuple[float, ...]:
 
 def _steps(options: DepthOptions, outputs: DepthOutputs) -> list[Step]:
     if options.depths is not None and outputs.plot:
-        raise UsageError("--plot draws errors over distances, and depths of an image have none; leave one out")
+        raise UsageError(
+            "--plot cannot be used with --depths, because depth images have no distances to plot; leave one out"
+        )
     if options.depths is not None and outputs.images and options.fov is None:
-        raise UsageError("--images of depth images needs --fov, the vertical angle, which gives surfaces their slope")
+        raise UsageError("--images requires --fov for depth images, to compute the slope of surfaces")
     chosen = cases(options)
     if outputs.images:
         _pictured(outputs.images, chosen)
@@ -202,7 +204,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
                 entry = lines.setdefault(tuple(line.values()), line)
                 entry[f"at_{row['distance']:g}"] = row["error_max"]
         if lines:
-            yield Sheet(f"the worst position error, near {near:g}, far {far:g}", list(lines.values()))
+            yield Sheet(f"largest position error, near {near:g}, far {far:g}", list(lines.values()))
 
 
 def _is_at(row: Row, near: float, far: float) -> bool:
@@ -327,8 +329,8 @@ def _scene(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface:
     for camera in dict.fromkeys(case.camera for case in cases):
         if not seen.within(camera).any():
             raise UsageError(
-                f"--near {camera.near:g} --far {camera.far:g}: nothing of the pictures' scene, {SCENE.name}, lies "
-                f"there; its depths are {there.min():.3g} to {there.max():.3g}"
+                f"--near {camera.near:g} --far {camera.far:g}: nothing in the scene of the images, {SCENE.name}, is "
+                f"in this range; its depths are {there.min():.3g} to {there.max():.3g}"
             )
     return seen
 

@@ -63,7 +63,7 @@ def _other_runs(rows: Sequence[Row]) -> Iterator[str]:
     """Yield a warning if devices were compared with codes of several versions, which may differ themselves."""
     versions = len({row.get("sources") for row in rows})
     if versions > 1:
-        yield f"The pages that were measured on came from {versions} versions of the program, whose codes may differ."
+        yield f"The pages come from {versions} versions of the program, whose codes may differ."
 
 
 def _agreement_sentence(names: Sequence[str], rows: Sequence[Row]) -> str:
@@ -90,7 +90,7 @@ def difference(rows: Sequence[Row]) -> str:
 def share_of(row: Row) -> str:
     """The share of a row's codes that differ, so that it never reads as none."""
     share = SAME - row["same_percent"]
-    return f"{share:.3g} %" if share >= 0.001 else "less than 0.001 %"
+    return f"{share:.3g}%" if share >= 0.001 else "less than 0.001%"
 
 
 def _distance_text(row: Row) -> str:

@@ -23,10 +23,10 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
         yield Chart(
             name="devices",
             title=_finding_sentence(drawn),
-            subtitle="How long codecs take on readers' devices",
+            subtitle="Encoding and decoding time on readers' devices",
             description="Milliseconds per megapixel to encode and to decode, a dot for each device. The fastest codec "
             f"is on top. At most {MOST_DRAWN} codecs are drawn. The figures are in the table.",
-            x=Axis(title="milliseconds per megapixel, to encode and to decode", scale=Scale.LOG),
+            x=Axis(title="milliseconds per megapixel to encode and decode", scale=Scale.LOG),
             y=Axis(title="", scale=Scale.NAMES, names=distinct(drawn, "codec")),
             rows=tuple(drawn),
             colour=devices,
@@ -54,4 +54,6 @@ def _finding_sentence(drawn: Sequence[Row]) -> str:
     first, last = drawn[0]["codec"], drawn[-1]["codec"]
     least, most = (min(row["ms"] for row in drawn if row["codec"] == codec) for codec in (first, last))
     devices = many(len(distinct(drawn, "device")), "device")
-    return f"On {devices}, {first} is the fastest, {least:.3g} ms per megapixel at best; {last} takes {most:.3g}"
+    return (
+        f"Fastest on {devices}: {first}, {least:.3g} ms per megapixel at best; slowest: {last}, {most:.3g} ms at best"
+    )

@@ -59,7 +59,7 @@ def _utc_time(text: str) -> str:
         raise ValueError("is not a time such as 2026-11-23T15:00:00Z") from None
     # It would count as newer than every honest file.
     if moment > datetime.now(UTC) + AHEAD:
-        raise ValueError("lies in the future")
+        raise ValueError("is in the future")
     return moment.strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
@@ -79,7 +79,7 @@ def _checked_fact(value: Any) -> Any:
 def _checked_facts(facts: dict[str, Any]) -> dict[str, Any]:
     plain = {_plain_line(name): value for name, value in facts.items()}
     if len(plain) < len(facts) or "" in plain:
-        raise ValueError("has two names that read alike, or one without letters")
+        raise ValueError("has two names that look the same, or one without letters")
     return plain
 
 
@@ -206,13 +206,13 @@ def file_of_rows(codecs: Sequence[Mapping[str, Any]], facts: Mapping[str, Any]) 
 def _parsed(data: bytes) -> Any:
     """Return the contents of JSON data. Raises ValueError if the data is not JSON, repeats a name or contains NaN."""
     if data.startswith(BOM):
-        raise ValueError("it begins with a byte-order mark; save it as UTF-8 without one")
+        raise ValueError("it starts with a byte-order mark; save it as UTF-8 without one")
     if not data.strip():
         raise ValueError("it is empty")
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
-        raise ValueError(f"byte {error.start + 1}: it is not text in UTF-8") from None
+        raise ValueError(f"byte {error.start + 1}: not UTF-8 text") from None
     return parsed_json(text, _object_without_repeats)
 
 
@@ -227,11 +227,11 @@ def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 def _checked_file(found: Any) -> DeviceFile:
     """Return the checked file. Raises ValueError if it is not a device file, or has another version."""
     if not isinstance(found, dict) or "normalbench_device" not in found:
-        raise ValueError('it is not a device file, which the live section of a page saves by "Save this device"')
+        raise ValueError('not a device file; use one that "Save this device" saved in the live section of a page')
     version = found["normalbench_device"]
     if type(version) is not int or version != FORMAT:
         raise ValueError(
-            f"normalbench_device: {_short_text(version)} is not {FORMAT}, the version that this program reads"
+            f"normalbench_device: {_short_text(version)} is not supported; this program reads version {FORMAT}"
         )
     try:
         return DeviceFile.model_validate(found)
@@ -266,9 +266,9 @@ def _first_fault(error: ValidationError) -> str:
     if first["type"] == "missing":
         return f"{where} is missing"
     if first["type"] == "too_long":
-        return f"{where}: it has more than {context['max_length']} entries"
+        return f"{where}: more than {context['max_length']} entries"
     if first["type"] == "too_short":
-        return f"{where}: it has no entries"
+        return f"{where}: no entries"
     if "error" in context and isinstance(first["input"], dict):
         return ": ".join(filter(None, (where, str(context["error"]))))
     reason = context.get("error") or WRONG.get(first["type"], first["msg"]).format(**context)

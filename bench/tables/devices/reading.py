@@ -57,7 +57,7 @@ def files_named(words: Names) -> list[Path]:
     for word in map(str, words):
         paths |= dict.fromkeys(_folder_files(Path(word)) if names_a_folder(word) else [Path(word)])
     if not paths:
-        raise UsageError(f"no device file named; --devices FILE,FILE names them, and {SAVED}")
+        raise UsageError(f"--devices: no device file named; name files, or a folder of them; {SAVED}")
     return checked_number(list(paths))
 
 
@@ -65,16 +65,16 @@ def _folder_files(folder: Path) -> list[Path]:
     try:
         paths = sorted(folder.glob("*.json"))
     except OSError as error:
-        raise UsageError(f"{folder} cannot be read: {error.strerror or error}") from None
+        raise UsageError(f"{folder}: cannot be read: {error.strerror or error}") from None
     if not paths:
-        raise UsageError(f"{folder}: there is no *.json in it; {SAVED}")
+        raise UsageError(f"{folder}: no *.json files here; {SAVED}")
     return paths
 
 
 def checked_number(paths: list[Path]) -> list[Path]:
     """The paths. Raises UsageError where they are more than a page can show."""
     if len(paths) > MOST_FILES:
-        raise UsageError(f"{len(paths)} device files; at most {MOST_FILES} are read at once")
+        raise UsageError(f"--devices: {len(paths)} device files are too many; name at most {MOST_FILES}")
     return paths
 
 
@@ -86,7 +86,7 @@ def devices(found: Iterable[Read]) -> list[Device]:
         if other is not read:
             kept, dropped = (read, other) if read.file.made > other.file.made else (other, read)
             newest[read.file.identity] = kept
-            tell(f"left out: {dropped.path}: {kept.path} is of the same device and browser, and not older")
+            tell(f"left out: {dropped.path}: {kept.path} is from the same device and browser and at least as recent")
     return named([read.file for read in newest.values()])
 
 

@@ -24,12 +24,12 @@ class DevicesOptions(Options):
         Option("--devices", "Device files, or folders of them, comma-separated.", files=True, in_run=True),
     ] = ()
     facts: Annotated[
-        bool, Option("--facts", "Show how each device rounds, filters, resolves and computes, in place of its codecs.")
+        bool, Option("--facts", "Show how each device rounds, filters, resolves and computes, instead of its codecs.")
     ] = False
 
 
 COLUMNS = (
-    Column("device", "The GPU, by a short name of what the browser calls it.", KEY),
+    Column("device", "A short name of the GPU, from the browser's name for it.", KEY),
     Column("browser", "The browser and its major version.", KEY),
     Column("row_of", f"What the row is of: a {CODEC}, or a {FACT}.", Role.RAW, shown=False),
     shared.ENCODING,
@@ -38,15 +38,15 @@ COLUMNS = (
     Column("target", "The format that the browser rendered to.", KEY),
     Column(
         "same_percent",
-        "The share of the codes that equal the run's in every bit of the texel.",
+        "The share of the codes that equal the run's codes in every bit of the texel.",
         unit="%",
         better="more",
     ),
-    Column("one_step", "Codes with one number that is one step away from the run's.", better="less"),
-    Column("further", "Codes that differ from the run's by more than that.", better="less"),
+    Column("one_step", "Codes with one number that is one step away from the run's code.", better="less"),
+    Column("further", "Codes that differ from the run's codes by more than that.", better="less"),
     Column(
         "mean_deg",
-        "Mean angle between the normal and what the device encodes, stores, reads and decodes.",
+        "Mean angle between the normal and the device's decode, encoded and stored on the device.",
         unit="degrees",
         better="less",
     ),
@@ -54,23 +54,23 @@ COLUMNS = (
     Column("run_mean_deg", "Mean angle of the run's own codes, on the same normals.", unit="degrees", drops=7),
     Column(
         "encode_ms",
-        "Milliseconds per megapixel to encode and store, less an empty pass.",
+        "Milliseconds per megapixel to encode and store, minus an empty pass.",
         TIME,
         "ms",
         "less",
         drops=9,
     ),
     Column(
-        "decode_ms", "Milliseconds per megapixel to read and decode, less an empty pass.", TIME, "ms", "less", drops=8
+        "decode_ms", "Milliseconds per megapixel to read and decode, minus an empty pass.", TIME, "ms", "less", drops=8
     ),
-    Column("timer", "What timed it.", HOW, drops=2),
+    Column("timer", "What measured the time.", HOW, drops=2),
     Column("normals", "How many normals the device encoded.", HOW, drops=10),
-    Column("name", "What the fact is about.", KEY, option="facts"),
+    Column("name", "The subject of the fact.", KEY, option="facts"),
     Column("value", "What the device does, as text.", HOW, option="facts"),
-    Column("number", "The same where it is a number, for gates and comparisons.", option="facts"),
+    Column("number", "The same as a number, if it is one, for gates and comparisons.", option="facts"),
     Column("made", "When the device was saved, in UTC.", HOW, drops=5),
-    Column("program", "The version of normalbench whose page measured it.", HOW, drops=6),
-    Column("sources", "The fingerprint of the run that the page showed.", HOW, drops=3),
+    Column("program", "The version of normalbench that made the page.", HOW, drops=6),
+    Column("sources", "The fingerprint of the run on the page.", HOW, drops=3),
     Column("renderer", "The GPU as the browser calls it.", HOW, drops=1),
     Column("vendor", "The vendor as the browser calls it.", HOW, drops=4),
 )
@@ -78,8 +78,8 @@ COLUMNS = (
 TABLE = Table(
     package=__package__ or "",
     group=Group.KEEP,
-    help="Show what readers' devices make of each codec.\n\nWith --facts it shows how they round, filter, resolve "
-    'and compute.\n\nA device file is what the live section of a page saves by "Save this device".',
+    help="Show how readers' devices encode and decode each codec.\n\nWith --facts it shows how devices round, "
+    'filter, resolve and compute.\n\nA device file is saved by "Save this device" in the live section of a page.',
     example="normalbench devices --devices phone.json",
     options=DevicesOptions,
     columns=COLUMNS,
@@ -88,15 +88,15 @@ TABLE = Table(
     in_all=False,
     asked_by="devices",
     section=Section(
-        title="Do readers' devices store the same codes?",
+        title="Agreement of devices",
         short="Devices",
-        intro="Which GPUs store the same codes as this program, which do not, and what else do they do otherwise?",
-        method="The live section of a page encoded the same normals on each device, into the formats that the browser "
-        "renders to, and compared every code with the run's own, bit for bit. The angles are of what the device "
-        "encodes, stores, reads and decodes itself. Times are per megapixel, less an empty pass; the column timer "
-        "names the clock. The section also tried how the device rounds, filters, resolves and computes: a fact is what "
-        "came out there, not what a specification promises. A file that a reader saved is all that is known of a "
-        "device: nothing is measured here.",
+        intro="Which GPUs store the same codes as this program, which do not, and how else do they differ?",
+        method="The live section of a page encoded the same normals on each device, into the formats that the "
+        "browser renders to, and compared every code with the run's code, bit for bit. The device itself "
+        "encoded, stored, read and decoded the normals for the angles. Times are per megapixel, minus an "
+        "empty pass; the column timer names the clock. The section also tested how the device rounds, "
+        "filters, resolves and computes: a fact is the result of such a test, not what a specification "
+        "promises. All figures are from the files that readers saved; nothing is measured here.",
         parts="row_of",
     ),
 )

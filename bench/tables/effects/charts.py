@@ -23,16 +23,16 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
         for row in usable
         if row["normal_mean_deg"] > 0
     ]
-    tips = (("codec", "codec"), ("x", "normals, degrees"), ("y", "the effect, dB"), ("effect", "effect"))
+    tips = (("codec", "codec"), ("x", "normals (degrees)"), ("y", "the effect (dB)"), ("effect", "effect"))
     if points:
         yield Chart(
             name="effects",
             title=_finding_sentence(points),
-            subtitle="What effects make of an error in the normals",
-            description="PSNR in dB of each effect's own image over the mean angle of the normals that it read. The "
+            subtitle="Effect of errors in the normals",
+            description="PSNR in dB of each effect's own image by the mean angle of the normals that it reads. The "
             "figures are in the table below.",
-            x=Axis(title="mean angle of the normals that it read, degrees", scale=Scale.LOG),
-            y=Axis(title="PSNR of the effect's own image, dB"),
+            x=Axis(title="mean angle of the normals (degrees)", scale=Scale.LOG),
+            y=Axis(title="PSNR of the effect's own image (dB)"),
             rows=tuple(points),
             colour=Names("effect", distinct(points, "effect")),
             shape=Names("codec", distinct(points, "codec")),
@@ -45,6 +45,6 @@ def _finding_sentence(points: Sequence[Row]) -> str:
     worst = min(points, key=lambda point: point["y"])
     best = max(points, key=lambda point: point["y"])
     return (
-        f"{worst['effect']} is worst, at {worst['y']:.1f} dB with {worst['codec']}; "
-        f"{best['effect']} is best, at {best['y']:.1f} dB with {best['codec']}"
+        f"Worst: {worst['effect']}, {worst['y']:.1f} dB with {worst['codec']}; "
+        f"best: {best['effect']}, {best['y']:.1f} dB with {best['codec']}"
     )

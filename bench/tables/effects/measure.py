@@ -108,7 +108,7 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
     def figures(self, case: EffectsCase, frames: list[Drawn], exact: list[Drawn]) -> Row:
         (drawn,), (other,) = frames, exact
         if not np.any(other.covered):
-            return {"skipped": f"{case.effect.effect.name} shows nothing in this picture"}
+            return {"skipped": f"{case.effect.effect.name} shows nothing in this image"}
         image = image_figures(frames, exact)
         lost = np.count_nonzero(~np.isfinite(drawn.own[other.covered]).all(axis=-1))
         row = _distance_columns(drawn, other) | {"psnr_db": image["psnr_db"]}
@@ -127,7 +127,7 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
         try:
             errors = method_error(self.device, case.effect, scene, case.plan.size, rays=self._rays)
         except MissingError as error:
-            tell(f"method_rms stays empty: {error}")
+            tell(f"method_rms is empty: {error}")
             return {}
         return {"method_rms": errors.rms, "method_mean": errors.mean}
 

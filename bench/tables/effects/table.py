@@ -37,39 +37,47 @@ class EffectsOptions(SourceOptions):
         Names,
         Option(
             "--effect",
-            "Effects to measure, each alone, with settings: gtao:size=half; comma-separated, or all.",
+            "Effects to measure one by one, with settings such as gtao:size=half; comma-separated, or all.",
             in_run=True,
         ),
     ] = ("all",)
     pipeline: Pipelines = ("hybrid",)
     encoding: Annotated[
         Names | None,
-        Option("--encoding", "Encodings or files, each in an exact layout; comma-separated, or all.", True, True),
+        Option(
+            "--encoding", "Encodings or files, each in an otherwise exact layout; comma-separated, or all.", True, True
+        ),
     ] = None
-    storage: Annotated[Names, Option("--storage", f"Storages of the codes, {NAMED}.", in_run=True)] = ("rgba8",)
+    storage: Annotated[Names, Option("--storage", f"Storages for the encodings, {NAMED}.", in_run=True)] = ("rgba8",)
     rounding: RoundingsAndDithered = ("nearest",)
     depth: Annotated[
         Names | None,
         Option(
-            "--depth", f"Depth codes as CODE/STORAGE, each in an exact layout, or none. Default: {','.join(DEPTHS)}."
+            "--depth",
+            f"Depth encodings as ENCODING/STORAGE, each in an exact layout, or none. Default: {','.join(DEPTHS)}.",
         ),
     ] = None
     layout: Layouts = None
     scene: Annotated[
         Names | None,
-        Option("--scene", "Scenes, mesh or frame files. Default: what shows the effect.", files=True, in_run=True),
+        Option(
+            "--scene",
+            "Scenes, mesh files or frame files. Default: a scene that shows the effect.",
+            files=True,
+            in_run=True,
+        ),
     ] = None
     size: Size = "320x240"
     objects: Objects = 200
     lights: Lights = 16
-    rays: Annotated[int, Option("--rays", "Rays for each of 4096 pixels, for the method's own error; 0 for none.")] = (
-        256
-    )
+    rays: Annotated[
+        int, Option("--rays", "Rays for each of 4096 pixels, to measure the method's own error; 0 for none.")
+    ] = 256
     repeats: Repeats = 0
     seed: Seed = 0
-    flip: Annotated[bool, Option("--flip", "FLIP as well, a perceptual difference; a second a row.", in_run=True)] = (
-        False
-    )
+    flip: Annotated[
+        bool, Option("--flip", "Measure FLIP as well, a perceptual difference; takes a second per row.", in_run=True)
+    ] = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,47 +88,50 @@ class EffectsOutputs:
 
 
 COLUMNS = (
-    Column("effect", "What reads the G-buffer, with the settings that are not as usual.", KEY),
+    Column("effect", "The effect, with the settings that differ from its defaults.", KEY),
     shared.PIPELINE,
     shared.SCENE,
-    Column("layout", "Which bits of which targets hold what.", KEY, drops=11),
+    Column("layout", "The layout of the G-buffer.", KEY, drops=11),
     shared.ENCODING,
     shared.STORAGE,
     replace(shared.ROUNDING_OR_DITHERED, drops=4),
-    Column("depth", "The depth code in an exact layout; empty: 32-bit floats, or the layout's own.", KEY),
+    Column("depth", "The depth encoding in an exact layout; empty: 32-bit floats, or the layout's own.", KEY),
     Column("normal_bits", "Bits of the normal's code.", drops=9),
     Column(
         "effect_psnr_db",
-        "The effect's own image against that from a G-buffer in 32-bit floats, with the same noise and the same taps; "
-        "where the effect is (skin, water, pixels whose rays meet something, else every surface). Peak 1: full "
-        "visibility, or the display's white.",
+        "PSNR of the effect's own image, against the image from a G-buffer in 32-bit floats with the same noise and "
+        "the same taps. It covers the pixels with the effect (skin, water, pixels whose rays meet something; for "
+        "other effects every surface). Peak 1: full visibility, or the display's white.",
         unit="dB",
         better="more",
     ),
-    Column("effect_rms", "Root of the mean squared difference of the two, in the effect's own unit.", better="less"),
+    Column("effect_rms", "Root mean square difference of the two images, in the effect's own unit.", better="less"),
     Column("effect_mean", "Their mean absolute difference.", better="less", drops=6),
-    Column("effect_max", "Their largest difference, of any channel.", better="less"),
+    Column("effect_max", "Their largest difference in any channel.", better="less"),
     Column(
         "moved_percent",
-        "Of the pixels whose ray meets something where the G-buffer is exact, the share whose ray meets nothing, or "
-        "something more than a pixel away. Each pixel's first ray counts. Empty for effects without rays.",
+        "Of the pixels whose ray meets something with an exact G-buffer: the share whose ray now meets nothing, or "
+        "something more than a pixel away. Only each pixel's first ray counts. Empty for effects without rays.",
         unit="%",
         better="less",
         drops=5,
     ),
     Column(
         "method_rms",
-        "How far the effect is from ray casting where the G-buffer is exact, RMS. A code whose effect_rms is far below "
-        "it does not matter. Empty where no rays can say.",
+        "RMS difference between the effect and ray casting, with an exact G-buffer. An encoding whose effect_rms is "
+        "far below this does not matter. Empty if no rays can be cast.",
         better="less",
     ),
     Column("method_mean", "The mean of that difference; above 0 the method is too bright.", HOW, drops=12),
-    Column("slope", "Mean change of the effect for each degree that normals are off.", unit="1/degree", drops=8),
-    Column("normal_mean_deg", "Mean angle of the G-buffer's normals to the exact ones.", HOW, "degrees", drops=7),
+    Column("slope", "Mean change of the effect per degree of error in the normals.", unit="1/degree", drops=8),
+    Column(
+        "normal_mean_deg", "Mean angle between the G-buffer's normals and the exact normals.", HOW, "degrees", drops=7
+    ),
     Column("normal_max_deg", "The largest of those angles.", HOW, "degrees", drops=10),
     Column(
         "psnr_db",
-        "The displayed image with the effect against the same from a G-buffer in 32-bit floats; every pixel, peak 1.",
+        "PSNR of the displayed image with the effect, against the same image from a G-buffer in 32-bit floats; every "
+        "pixel, peak 1.",
         unit="dB",
         better="more",
     ),
@@ -128,11 +139,16 @@ COLUMNS = (
     Column("invalid", "Pixels of the image that are NaN or infinite.", better="less", shown=False),
     Column("size", "Width and height in pixels.", HOW, drops=13),
     Column("lights", "Point lights.", HOW, drops=14),
-    Column("objects", "Objects that the scene `objects` is made with.", HOW, drops=15),
-    Column("ms_effect", "Milliseconds of the effect's passes together, median.", TIME, "ms", "less"),
-    Column("ms_frame", "Milliseconds a frame, median over the repeats.", TIME, "ms", "less"),
-    Column("ms_*", "Milliseconds of that pass, median.", TIME, "ms", "less"),
-    Column("clock", "What timed it. A software rasteriser's times compare passes and are not a GPU's.", HOW, drops=2),
+    Column("objects", "Number of objects in the scene `objects`.", HOW, drops=15),
+    Column("ms_effect", "Median milliseconds of the effect's passes together.", TIME, "ms", "less"),
+    Column("ms_frame", "Median milliseconds per frame over the repeats.", TIME, "ms", "less"),
+    Column("ms_*", "Median milliseconds of that pass.", TIME, "ms", "less"),
+    Column(
+        "clock",
+        "What measured the time. Times of a software rasteriser compare passes; they are not GPU times.",
+        HOW,
+        drops=2,
+    ),
     shared.DEVICE,
     shared.SCENE_SEED,
     shared.EXACT,
@@ -141,8 +157,8 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="Measure how much of the error reaches AO and other effects.\n\nEvery normal code lies in an otherwise "
-    "exact layout, and every depth code in one with exact normals. A layout is measured as it is.",
+    help="Measure how much of the error reaches AO and other effects.\n\nEvery encoding of normals is measured in an "
+    "otherwise exact layout, and every depth encoding with exact normals. A layout is measured as it is.",
     example="normalbench effects --effect gtao --encoding octahedral,spheremap --storage rg8,rgb10a2",
     step_s=0.8,
     options=EffectsOptions,
@@ -153,13 +169,13 @@ TABLE = Table(
     files={"images": "effects"},
     by="effect",
     section=Section(
-        title="What reads the G-buffer",
+        title="Accuracy of effects",
         short="Effects",
-        intro="Ambient occlusion, indirect light, reflections, skin and water read normals and depths as lights do. "
-        "How much of a code's error arrives in them?",
-        method="Each effect's own image from a G-buffer with one code against the same effect from a G-buffer in "
-        "32-bit floats, with the same noise and the same taps. The method's own error is measured against rays "
-        "through the scene, where there is an oracle.",
+        intro="Ambient occlusion, indirect light, reflections, skin and water read normals and depths, as lights do. "
+        "How much of an encoding's error reaches them?",
+        method="Each effect's own image from a G-buffer with one encoding is compared with the same effect from a "
+        "G-buffer in 32-bit floats, with the same noise and the same taps. The method's own error is measured "
+        "against rays through the scene, if there is an oracle.",
         parts="effect",
     ),
 )

@@ -40,7 +40,7 @@ from .table import DEPTHS, EffectsOptions, EffectsOutputs
 
 MAX_RAYS = 2**16
 NO_DEPTH = "none"
-NO_GBUFFER = "has no G-buffer that an effect could read a code from"
+NO_GBUFFER = "has no G-buffer for an effect to read"
 
 
 def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
@@ -53,7 +53,7 @@ def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
     layouts = [(layout, None) for layout in layouts_named(options.layout)] if options.layout else []
     asked = (options.encoding, options.depth)
     if asked[0] is None and asked[1] == (NO_DEPTH,) and not options.layout:
-        raise UsageError("--depth none leaves nothing to measure: name --encoding or --layout")
+        raise UsageError("--depth none leaves nothing to measure; name --encoding or --layout")
     if options.layout and asked == (None, None):
         return list(layouts)
     normals = _with_normals(options, complaints) if options.encoding or not any(asked) else []
@@ -80,7 +80,9 @@ def _with_depths(options: EffectsOptions, complaints: list[str]) -> list[tuple[L
 def _depth_codec(name: str) -> DepthCodec:
     code, is_there, storage = name.partition("/")
     if not is_there:
-        raise UsageError(f"--depth {name}: write a code and its storage, such as linear/packed16, or none")
+        raise UsageError(
+            f"--depth {name}: not an encoding with its storage; write for example linear/packed16, or none"
+        )
     encoding = DEPTH_ENCODINGS[choose_one("depth", code, DEPTH_ENCODINGS)]
     return DepthCodec(encoding, DEPTH_STORAGES[choose_one("depth storage", storage, DEPTH_STORAGES)])
 
@@ -159,7 +161,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         ends = [f"{form.format(row[figure])} ({codec_name(row)})" for row in (ranked[0], ranked[-1])]
         phrases.append(f"{effect} in {scene} {' to '.join(dict.fromkeys(ends))}{' of the rays moved' * bool(moved)}")
     if phrases:
-        yield f"Effects against those of exact normals: {'; '.join(phrases)}."
+        yield f"Effects, compared with exact normals: {'; '.join(phrases)}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -19,21 +19,24 @@ class FramesOptions(SourceOptions):
     """Options for what `frames` measures. Names are comma-separated; by default each encoding uses its usual
     storage."""
 
-    encoding: Annotated[Names, Option("--encoding", f"Tangent frame codes or files of yours, {NAMED}.", files=True)] = (
-        "all",
-    )
+    encoding: Annotated[
+        Names, Option("--encoding", f"Tangent frame encodings or your own files, {NAMED}.", files=True)
+    ] = ("all",)
     storage: Annotated[
-        Names | None, Option("--storage", f"Tangent frame storages, {NAMED}. Default: each code's usual.")
+        Names | None, Option("--storage", f"Tangent frame storages, {NAMED}. Default: each encoding's usual storage.")
     ] = None
     rounding: RoundingsAndDithered = ("nearest",)
     frames: Annotated[
-        Names, Option("--frames", f"Tangent frame sets or mesh files, whose vertices are taken, {NAMED}.", files=True)
+        Names, Option("--frames", f"Tangent frame sets, or mesh files for their vertices, {NAMED}.", files=True)
     ] = ("rotations",)
     backend: Backends = ("jax", "glsl")
-    count: Annotated[int, Option("--count", "Tangent frames in a uniform set.")] = 2**16
+    count: Annotated[int, Option("--count", "Number of tangent frames in a uniform set.")] = 2**16
     seed: Seed = 0
     worst_case: Annotated[
-        bool, Option("--worst-case", "The true largest rotation, by search in float64; seconds a code.", in_run=True)
+        bool,
+        Option(
+            "--worst-case", "The true largest rotation, by search in float64; takes seconds per encoding.", in_run=True
+        ),
     ] = False
 
 
@@ -46,17 +49,17 @@ def _angle_columns(what: str, says: str, *drops: int) -> tuple[Column, ...]:
 
 
 COLUMNS = (
-    Column("encoding", "How a tangent frame becomes a few numbers.", KEY),
+    Column("encoding", "How a tangent frame is turned into numbers.", KEY),
     shared.STORAGE,
     shared.ROUNDING_NOW_SAID,
-    Column("frame_set", "The set of tangent frames that was measured on.", KEY),
+    Column("frame_set", "The set of tangent frames that was measured.", KEY),
     shared.BACKEND,
     shared.BITS,
     Column("count", "How many tangent frames were measured.", HOW, drops=13),
     Column("invalid", "Decodes that were NaN or infinite; each counts as 180 degrees.", better="less", drops=17),
     Column(
         "hands_lost",
-        "Tangent frames that came back with the other handedness. Empty for codes of rotations, which have none.",
+        "Tangent frames decoded with the wrong handedness. Empty for encodings of rotations, which have none.",
         better="less",
     ),
     *_angle_columns("normal", "angle between a tangent frame's normal and its decode.", 11, 9, 16),
@@ -64,7 +67,7 @@ COLUMNS = (
     *_angle_columns("rotation", "angle of the rotation from the true tangent frame to the decoded one.", 12, 0, 0),
     Column(
         "rotation_sup_deg",
-        "The largest rotation over all tangent frames of exact arithmetic, by search; no sample can be above it.",
+        "The largest rotation over all tangent frames in exact arithmetic, by search; no sample can exceed it.",
         unit="degrees",
         better="less",
         drops=18,
@@ -72,7 +75,7 @@ COLUMNS = (
     ),
     Column(
         "sup_moved_deg",
-        "How much the last round of the search still raised it.",
+        "How much the last round of the search still raised this rotation.",
         HOW,
         "degrees",
         drops=2,
@@ -85,9 +88,15 @@ COLUMNS = (
         better="more",
     ),
     shared.CODES,
-    Column("limit_mean_deg", "The least mean rotation that this many codes can have.", HOW, "degrees", drops=7),
-    Column("limit_rms_deg", "The least RMS rotation that this many codes can have.", HOW, "degrees", drops=14),
-    Column("limit_max_deg", "The least maximum that this many codes can have.", HOW, "degrees", drops=7),
+    Column(
+        "limit_mean_deg",
+        "Bound on the mean rotation for this number of codes.",
+        HOW,
+        "degrees",
+        drops=7,
+    ),
+    Column("limit_rms_deg", "Bound on the RMS rotation for this number of codes.", HOW, "degrees", drops=14),
+    Column("limit_max_deg", "Bound on the largest rotation for this number of codes.", HOW, "degrees", drops=7),
     *shared.REACHED,
     shared.BELOW_LIMIT,
     shared.DEVICE,
@@ -106,13 +115,12 @@ TABLE = Table(
     columns=COLUMNS,
     single={"encoding": "smallest_three", "backend": "jax"},
     section=Section(
-        title="What tangent frames lose",
+        title="Tangent frame accuracy",
         short="Frames",
         intro="A normal, a tangent and the handedness of the bitangent in one texel: how far is the decoded tangent "
-        "frame "
-        "turned?",
-        method="Rotations spread evenly by Haar's measure, half of them mirrored, through each code in its storage as "
-        "normals go. The angle is that of the rotation from the true tangent frame to the decoded one; lost handedness "
-        "is counted. The bound is the ball of rotations that is one code's share.",
+        "frame rotated?",
+        method="Rotations spread evenly by Haar's measure, half of them mirrored, are encoded, stored and decoded as "
+        "normals are. The angle is the rotation from the true tangent frame to the decoded one; lost "
+        "handedness is counted. The bound assumes that each code covers a ball of rotations.",
     ),
 )

@@ -61,7 +61,7 @@ def _key(case: measure.FrameCase) -> Row:
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
     for row in rows:
         if row["below_limit"]:
-            wrong = f"{row['codes']} codes cannot do that: the measurement is wrong"
+            wrong = f"{row['codes']} codes cannot be that accurate: the measurement is wrong"
             yield f"{row['encoding']}/{row['storage']}: {row['below_limit']}; {wrong}"
 
 
@@ -94,7 +94,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     names = ("encoding", "storage", "rounding", "bits", "rotation_mean_deg", "rotation_rms_deg", "rotation_max_deg")
     names += ("effective_bits", "limit_rms_deg", "hands_lost")
     if chosen:
-        title = f"tangent frames, degrees between the true and the decoded one, by {chosen[0]['backend']}"
+        title = f"tangent frames, degrees between true and decoded, by {chosen[0]['backend']}"
         yield Sheet(title, [{name: row[name] for name in names} for row in chosen])
 
 

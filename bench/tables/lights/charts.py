@@ -26,17 +26,17 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
     """A line for each light buffer, a panel of equal lights and one of coloured ones; dotted: the most it can be."""
     looks: dict[str, Any] = {"by": ("light_buffer", "panel"), "colour": "light_buffer"}
-    tips = (("light_buffer", "light buffer"), ("x", "lights"), ("error", "error"), ("bound", "the most it can be"))
+    tips = (("light_buffer", "light buffer"), ("x", "lights"), ("error", "error"), ("bound", "bound"))
     counts = sorted({point["x"] for point in points})
     return Chart(
         name="lights",
         title=_finding_sentence(points),
-        subtitle="Error over the number of lights; dotted: blends times half a step; errors below 1e-6 are drawn at "
-        "1e-6",
-        description="What is lost of the sum over the number of lights, by the model, a line for each light buffer; "
-        "dotted: the most it can be. The figures are in the rows of the experiments equal and random.",
+        subtitle="Error by number of lights; dotted: number of blends times half a step; errors below 1e-6 are drawn "
+        "at 1e-6",
+        description="Error of the sum by the number of lights, by the model, with a line for each light buffer; "
+        "dotted: the bound on the error. The figures are in the rows of the experiments equal and random.",
         x=Axis(title="lights", scale=Scale.LOG, ticks=tuple((count, str(count)) for count in counts)),
-        y=Axis(title="error in light, by the model", scale=Scale.LOG),
+        y=Axis(title="error in light (model)", scale=Scale.LOG),
         rows=tuple(points),
         colour=Names("light_buffer", buffers),
         panels=Names("panel", distinct(points, "panel")),
@@ -78,5 +78,5 @@ def _finding_sentence(points: Sequence[Row]) -> str:
     panel, most = points[-1]["panel"], max(point["x"] for point in points)
     last = sorted((p for p in points if (p["panel"], p["x"]) == (panel, most)), key=lambda p: p["y"])
     best, worst = last[0], last[-1]
-    sentence = f"Of {most} lights {best['light_buffer']} loses the least, {best['error']:.2g}"
-    return f"{sentence}, and {worst['light_buffer']} the most, {worst['error']:.2g}"
+    sentence = f"Smallest error with {most} lights: {best['light_buffer']}, {best['error']:.2g}"
+    return f"{sentence}; largest: {worst['light_buffer']}, {worst['error']:.2g}"

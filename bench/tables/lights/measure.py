@@ -72,7 +72,7 @@ def check_light_twin(encoding: LightCodec) -> None:
     try:
         decoded = jax.eval_shape(lambda light: encoding.decode(encoding.encode(light)), light)
         if len(decoded) != 4:
-            raise TypeError(f"{len(decoded)} numbers of light, not 4")
+            raise TypeError(f"{len(decoded)} components of light, not 4")
     except NoTwinError:
         return
     except Exception as error:  # whatever a user's own file raises
@@ -120,5 +120,5 @@ def banded(encoding: LightCodec, peak: float, device: Device | None) -> np.ndarr
         light = gradient(peak)[None]
         stored = adder.model(light) or adder.device(light)
     if not stored:
-        raise MissingError(f"{encoding.name} is written for shaders alone, and there is no GL device")
+        raise MissingError(f"{encoding.name}: exists only as shader code, and there is no OpenGL device")
     return stored.light[:, :3]

@@ -26,7 +26,7 @@ class LightsOptions(SourceOptions):
 
     experiment: Annotated[Names, Option("--experiment", "equal, random, banding, chromaticity; or all.")] = ("all",)
     light_buffer: LightBuffers = ("all",)
-    sums: Annotated[Names, Option("--sum", "equal: what the lights sum to; random: the least.")] = ("1", "4")
+    sums: Annotated[Names, Option("--sum", "equal: the sum of the lights; random: the smallest sum.")] = ("1", "4")
     counts: Annotated[Names, Option("--counts", "equal, random: numbers of lights.")] = ("8", "64", "256")
     peaks: Annotated[Names, Option("--peak", "banding: the light at a lamp's centre.")] = ("0.1", "1", "2", "3")
     seed: Seed = 0
@@ -41,50 +41,50 @@ class LightsOutputs:
 
 
 COLUMNS = (
-    Column("experiment", "What was added up.", KEY),
-    Column("light_buffer", "The code that light is added up in.", KEY),
-    Column("sum", "What the lights add up to.", KEY),
-    Column("lights", "How many lights.", KEY),
-    Column("channel", "The channels of the light's colour that the row is of.", KEY),
-    Column("order", "In which order lights are added.", KEY),
+    Column("experiment", "The experiment.", KEY),
+    Column("light_buffer", "The encoding of the light buffer.", KEY),
+    Column("sum", "The sum of the lights.", KEY),
+    Column("lights", "Number of lights.", KEY),
+    Column("channel", "The channels of the light's colour that the row is for.", KEY),
+    Column("order", "The order in which lights are added.", KEY),
     Column("peak", "The light at a lamp's centre.", KEY),
     Column("colour", "The lamp's colour.", KEY),
-    Column("model", "What is left of the sum by the model in JAX."),
-    Column("gl", "What is left of the sum on the GL device."),
-    Column("error", "What the model has too much or too little."),
-    Column("gl_error", "What the device has too much or too little."),
-    Column("model_rms", "Error over the pixels by the model, root mean square.", better="less"),
-    Column("gl_rms", "Error over the pixels on the device, root mean square.", better="less"),
-    Column("model_max", "Largest error over the pixels by the model.", better="less"),
-    Column("gl_max", "Largest error over the pixels on the device.", better="less"),
-    Column("bound", "What the error can be at most.", HOW),
-    Column("levels", "Different levels of a falloff that are left, by the model.", better="more"),
-    Column("gl_levels", "Different levels of a falloff that are left on the device.", better="more"),
+    Column("model", "The sum in the light buffer, by the model in JAX."),
+    Column("gl", "The sum in the light buffer, on the OpenGL device."),
+    Column("error", "Error of the model's sum; negative if it is too small."),
+    Column("gl_error", "Error of the device's sum; negative if it is too small."),
+    Column("model_rms", "RMS error over the pixels, by the model.", better="less"),
+    Column("gl_rms", "RMS error over the pixels, on the device.", better="less"),
+    Column("model_max", "Largest error over the pixels, by the model.", better="less"),
+    Column("gl_max", "Largest error over the pixels, on the device.", better="less"),
+    Column("bound", "The bound on the error.", HOW),
+    Column("levels", "Distinct levels of a falloff that remain, by the model.", better="more"),
+    Column("gl_levels", "Distinct levels of a falloff that remain, on the device.", better="more"),
     Column("exact_step", "The largest step of the falloff itself.", HOW, drops=5),
-    Column("largest_step", "The largest step that is left, by the model.", better="less"),
-    Column("gl_largest_step", "The largest step that is left on the device.", better="less"),
+    Column("largest_step", "The largest step that remains, by the model.", better="less"),
+    Column("gl_largest_step", "The largest step that remains, on the device.", better="less"),
     Column("shown_step", "The largest step as displayed, by the model.", unit="1/255", better="less"),
     Column("gl_shown_step", "The largest step as displayed, on the device.", unit="1/255", better="less"),
-    Column("stored_error", "Error of what was stored, by the model.", better="less"),
-    Column("gl_stored_error", "Error of what was stored, on the device.", better="less", drops=4),
+    Column("stored_error", "Error of the stored values, by the model.", better="less"),
+    Column("gl_stored_error", "Error of the stored values, on the device.", better="less", drops=4),
     Column(
         "amplification",
-        "How far the error of a rebuilt highlight exceeds that of what was stored, by the model.",
+        "Ratio of the error of a rebuilt highlight to the error of the stored values, by the model.",
         better="less",
     ),
     Column("gl_amplification", "The same on the device.", better="less"),
     Column("rounds", "How this device rounds when it blends.", HOW),
-    Column("agree_percent", "Pixels that equal the model that rounds so.", HOW, "%", drops=7),
+    Column("agree_percent", "Pixels that equal the model with this rounding.", HOW, "%", drops=7),
     shared.DEVICE,
     shared.SEED,
     shared.SKIPPED,
 )
-ALSO = (Column("*_lights", "What is left of the sum of that many lights."),)
+ALSO = (Column("*_lights", "The sum of that many lights in the light buffer."),)
 
 TABLE = Table(
     package=__package__ or "",
-    help="Measure light buffers: sums, banding and rebuilt colour.\n\nThe model, in JAX, stands next to what the "
-    "GL device does. Without a GL device the model is measured alone.",
+    help="Measure light buffers: sums, banding and rebuilt colour.\n\nThe model, in JAX, is compared with the OpenGL "
+    "device. Without an OpenGL device only the model is measured.",
     example="normalbench lights --experiment equal,banding --light-buffer rgbm,r11g11b10f",
     step_s=0.4,
     options=LightsOptions,
@@ -96,13 +96,12 @@ TABLE = Table(
     by="experiment",
     partial=True,
     section=Section(
-        title="What a light buffer loses",
+        title="Light buffer accuracy",
         short="Light",
-        intro="Lights are added up one by one, and every sum is rounded: what is left of them in each light buffer?",
-        method="The model, in JAX, stands next to what the GL device does when it blends. equal: N equal lights of a "
-        "known "
-        "sum. random: coloured lights with falloff in three orders. banding: one lamp's falloff. chromaticity: a "
-        "highlight's colour rebuilt from one target.",
+        intro="Lights are added one by one, and every sum is rounded: how accurate is the sum in each light buffer?",
+        method="The model, in JAX, is compared with blending on the OpenGL device. equal: N equal lights of a known "
+        "sum. random: coloured lights with falloff in three orders. banding: one lamp's falloff. "
+        "chromaticity: a highlight's colour rebuilt from one target.",
         parts="experiment",
     ),
 )

@@ -60,11 +60,11 @@ def added(options: LightsOptions) -> measure.Sums:
 def _check(outputs: LightsOutputs, names: Sequence[str]) -> None:
     """Raise UsageError for output that cannot be written."""
     if outputs.plot and not PLOTTED & set(names):
-        raise UsageError("--plot draws the experiments equal and random; ask for one of them")
+        raise UsageError("--plot: plots only the experiments equal and random; add one of them to --experiment")
     if outputs.images:
         check_folder(outputs.images)
         if "banding" not in names:
-            raise UsageError("--images draws the experiment banding; ask for it")
+            raise UsageError("--images: shows only the experiment banding; add banding to --experiment")
 
 
 def _steps(options: LightsOptions, outputs: LightsOutputs) -> list[Step]:
@@ -98,7 +98,7 @@ def _bands(encoding: LightCodec, peaks: tuple[float, ...], gl: Device | None) ->
 
 def _finish(rows: Sequence[Row]) -> list[Row]:
     if not rows:
-        raise UsageError("nothing to measure: chromaticity needs a code with a fourth number")
+        raise UsageError("nothing to measure: chromaticity needs an encoding with a fourth component")
     return measure.sorted_rows(list(rows))
 
 
@@ -137,10 +137,10 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
             line = {"light_buffer": row["light_buffer"], "channel": row["channel"]}
             equal.setdefault((row["light_buffer"], row["channel"]), line)[f"{row['lights']}_lights"] = row["model"]
     if equal:
-        yield Sheet("lights that sum to 1, what is left of it by the model", list(equal.values()))
+        yield Sheet("lights that sum to 1: sum in the light buffer, by the model", list(equal.values()))
     names = ("light_buffer", "sum", "lights", "model_rms", "gl_rms", "model_max", "gl_max", "rounds")
     if sums := [{name: row[name] for name in names} for row in _random(rows)]:
-        yield Sheet("random lights in the order in which they were drawn, relative errors", sums)
+        yield Sheet("random lights in drawing order, relative errors", sums)
 
 
 WORK = Work(

@@ -12,7 +12,7 @@ from .order import group_of, in_order
 # What is marked of each line: the column, what it is called, and its shape.
 MARKED = (
     ("angle_mean_deg", "mean", "circle"),
-    ("angle_p99_deg", "99 %", "diamond"),
+    ("angle_p99_deg", "99%", "diamond"),
     ("angle_max_deg", "largest", "square"),
 )
 COLUMNS = [column for column, *_ in MARKED]
@@ -38,10 +38,10 @@ def _chart(at: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
     return Chart(
         name=f"maps-{at}",
         title=_finding_sentence(group[0], rows),
-        subtitle=f"What blocks lose of {group[0]}, decoded by {group[1]}",
-        description="The mean angle, the angle that 99 % are below, and the largest, in degrees, for each code and "
+        subtitle=f"Error of block compression on {group[0]}, decoded by {group[1]}",
+        description="The mean angle, the 99th percentile and the largest angle, in degrees, for each encoding and "
         "format. The figures are in the table below.",
-        x=Axis(title="angle between normal and decode, degrees", scale=Scale.LOG),
+        x=Axis(title="angle between normal and decode (degrees)", scale=Scale.LOG),
         y=Axis(title="", scale=Scale.NAMES, names=distinct(lines, "line")),
         rows=points,
         colour=Names("what", names),
@@ -59,7 +59,7 @@ def _finding_sentence(name: str, rows: Sequence[Row]) -> str:
     for row in sorted(rows, key=lambda row: (row["bits_per_texel"], row["angle_mean_deg"])):
         best.setdefault(row["bits_per_texel"], row)
     parts = [f"{_line_name(row)} ({row['angle_mean_deg']:.2g})" for row in best.values()]
-    return f"The smallest mean angles on {name}, in degrees, have {'; '.join(parts)}"
+    return f"Smallest mean angles on {name}, in degrees: {'; '.join(parts)}"
 
 
 def _line_name(row: Row) -> str:

@@ -66,7 +66,7 @@ class Encoder:
         try:
             self._modules()
         except ImportError as error:
-            return f"it needs {self.package} ({error}); pip install {self.package}"
+            return f"requires {self.package} ({error}); run: pip install {self.package}"
         return ""
 
     def encoded(self, given: Texels) -> bytes:

@@ -17,11 +17,11 @@ KEY, HOW = Role.KEY, Role.HOW
 # By format, what it is.
 BLOCKS: Mapping[str, str] = MappingProxyType(
     {
-        "none": "8 bits a channel, uncompressed: RG8 or RGBA8",
+        "none": "8 bits per channel, uncompressed: RG8 or RGBA8",
         "bc5": "two channels of BC4, also called RGTC2, ATI2 and 3Dc",
-        "bc3": "RGB of 5:6:5 bits and alpha of 8, also called DXT5: `dxt5nm`",
+        "bc3": "RGB with 5:6:5 bits and alpha with 8, also called DXT5: `dxt5nm`",
         "bc7": "RGBA in one of eight modes, also called BPTC",
-        "eac_rg11": "two channels of EAC, of 11 bits",
+        "eac_rg11": "two channels of EAC, 11 bits each",
         "astc_4x4": "RGBA in one of many modes, LDR",
     }
 )
@@ -29,15 +29,15 @@ BLOCKS: Mapping[str, str] = MappingProxyType(
 SWIZZLES: Mapping[str, str] = MappingProxyType(
     {
         "rg": "red and green",
-        "rrrg": "all of red, green and blue, and alpha: what astcenc does with normal maps",
-        "dxt5nm": "alpha and green, the others 1: Unity's",
+        "rrrg": "red, green and blue together, and alpha: what astcenc does with normal maps",
+        "dxt5nm": "alpha and green, the others 1: Unity's layout",
         "rgb": "three numbers in red, green and blue",
     }
 )
 DECODERS: Mapping[str, str] = MappingProxyType(
     {
-        "model": "as the specification says; ASTC by astcenc",
-        "device": "the GL device, from a texture of the blocks",
+        "model": "as the specification defines; ASTC by astcenc",
+        "device": "the OpenGL driver, from a texture of the blocks",
     }
 )
 
@@ -55,7 +55,7 @@ class MapsOptions(Reading, SourceOptions):
     swizzle: Annotated[
         Names,
         Option(
-            "--swizzle", f"{', '.join(SWIZZLES)}; comma-separated, or all. Default: those that a format is used with."
+            "--swizzle", f"{', '.join(SWIZZLES)}; comma-separated, or all. Default: the usual ones for each format."
         ),
     ] = ()
     normals: Annotated[
@@ -87,10 +87,10 @@ COLUMNS = (
     Column("swizzle", f"The channels that hold the code. {_listed_text(SWIZZLES)}.", KEY),
     Column("normals", "The image of normals that was measured.", KEY),
     Column("decoder", f"What decoded the blocks. {_listed_text(DECODERS)}.", KEY, drops=5),
-    Column("bits_per_texel", "Bits that a texel takes in memory.", unit="bits", better="less"),
+    Column("bits_per_texel", "Bits per texel in memory.", unit="bits", better="less"),
     _angle_column("angle_mean_deg", "Mean angle between normal and decode."),
-    _angle_column("angle_rms_deg", "Root of the mean squared angle."),
-    _angle_column("angle_p99_deg", "99 % of the angles are below it."),
+    _angle_column("angle_rms_deg", "Root mean square of the angle."),
+    _angle_column("angle_p99_deg", "99th percentile of the angles."),
     _angle_column("angle_max_deg", "The largest angle."),
     Column(
         "psnr_db",
@@ -100,8 +100,8 @@ COLUMNS = (
     ),
     Column(
         "code_psnr_db",
-        "Peak signal-to-noise ratio of the channels that hold the code, peak 1, against the 8 bits that were given to "
-        "the encoder; over every texel of the image. It is what texture tools report.",
+        "Peak signal-to-noise ratio of the channels that hold the code, peak 1, against the 8-bit values given to "
+        "the encoder; over every texel of the image. This is what texture tools report.",
         unit="dB",
         better="more",
         drops=3,
@@ -119,7 +119,7 @@ COLUMNS = (
     ),
     Column("count", "How many normals were measured.", HOW, drops=6),
     shared.CODE_SPACE,
-    Column("background", "Texels without a surface. They hold (0, 0, 1) and do not count.", HOW, drops=7),
+    Column("background", "Texels without a surface. They hold (0, 0, 1) and are not counted.", HOW, drops=7),
     Column("encoder", "The package that encoded the blocks, and its effort.", HOW, drops=1),
     Column("device", "What decoded the blocks.", HOW, drops=1),
     shared.EXACT,
@@ -141,12 +141,14 @@ TABLE = Table(
     ),
     single={"encoding": "xy", "block": "bc5", "swizzle": "rg", "normals": "bumps"},
     section=Section(
-        title="What block compression loses of normal maps",
+        title="Normal map compression",
         short="Normal maps",
-        intro="BC5, BC7, EAC or ASTC: which format keeps a normal map best, with which code in which channels?",
-        method="Each normal is encoded in 8 bits a channel, the image is compressed by an encoder package, decoded as "
-        "the specification of the format says, and each decoded normal is compared with the one that went in. Images "
-        "whose sides are no multiples of 4 are padded with their edge; only real texels count. Blocks are 4 x 4 "
-        "texels, and a block that crosses the fold of an octahedral code holds both sides of it.",
+        intro="BC5, BC7, EAC or ASTC: which format is the most accurate for a normal map, with which encoding in "
+        "which channels?",
+        method="Each normal is encoded in 8 bits per channel, the image is compressed by an encoder package and "
+        "decoded as the specification of the format defines, and each decoded normal is compared with the "
+        "original. Images whose sides are not multiples of 4 are padded with their edge; only real texels "
+        "count. Blocks are 4 x 4 texels, and a block that crosses the fold of an octahedral encoding holds "
+        "both sides of the fold.",
     ),
 )

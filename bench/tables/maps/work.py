@@ -75,9 +75,9 @@ def _is_possible(encoding: Encoding, complaints: list[str]) -> bool:
     check_twin(encoding)
     why = ""
     if encoding.sign_bits:
-        why = "its sign bit has no channel in a normal map"
+        why = "the sign bit has no channel in a normal map"
     elif encoding.components == 1 or any(map(encoding.levels_of, range(encoding.components))):
-        why = "compression changes its numbers a little, and it needs them exact"
+        why = "compression changes numbers slightly, and this encoding needs them exact"
     if why:
         complaints.append(f"{encoding.name}: {why}")
     return not why
@@ -91,7 +91,7 @@ def _swizzles(encoding: Encoding, block: BlockFormat, asked: list[Any], complain
         )
     elif not swizzles:
         names = ", ".join(swizzle.name for swizzle in asked)
-        complaints.append(f"{encoding.name} in {block.title}: {encoding.components} components do not lie in {names}")
+        complaints.append(f"{encoding.name} in {block.title}: {encoding.components} components do not fit in {names}")
     return swizzles
 
 
@@ -104,7 +104,7 @@ def _images(options: MapsOptions, needs_rays: bool) -> list[NormalSet]:
     others = [normals.name for normals in sets if not normals.shape]
     if others:
         known = ", ".join((*MAPS, published.NORMALS))
-        raise UsageError(f"--normals {', '.join(others)}: not an image; name {known}, or an image file")
+        raise UsageError(f"--normals {', '.join(others)}: not an image; use {known}, or an image file")
     return sets
 
 
@@ -140,7 +140,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         part = [row for row in known if group_of(row) == (normals, decoder)]
         if part:
             shown = [{name: row[name] for name in names} for row in part]
-            yield Sheet(f"{normals} in blocks, decoded by {decoder}", shown, keys={"normals": normals})
+            yield Sheet(f"{normals}, block-compressed, decoded by {decoder}", shown, keys={"normals": normals})
 
 
 def _write(done: Measured, _: Any) -> None:
@@ -152,7 +152,7 @@ def _missing() -> str:
     """Why a run leaves the table out: none of the encoders is installed."""
     compressed = [block for block in FORMATS.values() if block.is_compressed]
     if all(block.encoder.missing for block in compressed):
-        return "compressed normal maps need encoders; pip install normalbench[maps]"
+        return "compressed normal maps require encoders; run: pip install normalbench[maps]"
     return ""
 
 

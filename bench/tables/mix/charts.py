@@ -22,22 +22,22 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
         rows: rows of the mix table; the worst of those that decide are drawn, or of all rows if none decides.
     """
     cells = _cells(_deciding_rows(rows))
-    tips = (("codec", "codec"), ("operation", "operation"), ("angle", "largest error, degrees"))
+    tips = (("codec", "codec"), ("operation", "operation"), ("angle", "largest error (degrees)"))
     if cells:
         place: dict[str, Any] = {"x": "operation", "y": "codec"}
         yield Chart(
             name="mix",
             title=_finding_sentence(cells),
-            subtitle=f"What mixing makes of each code, by {backends_of(rows)}; "
-            "in a cell: the share of results that are garbage",
-            description="The largest error of each operation and the share of garbage, of the rows that decide the "
+            subtitle=f"Result of mixing for each codec, by {backends_of(rows)}; "
+            "in each cell: the share of garbage results",
+            description="The largest error of each operation and the share of garbage, from the rows that decide the "
             "verdicts. The figures are in the tables below.",
             x=Axis(title="", scale=Scale.NAMES, names=tuple(dict.fromkeys(_operation_text(row) for row in rows))),
             y=Axis(title="", scale=Scale.NAMES, names=distinct(cells, "codec")),
             rows=tuple(cells),
-            colour=Shades("angle", "largest error, degrees", LEAST, MOST),
+            colour=Shades("angle", "largest error (degrees)", LEAST, MOST),
             marks=(
-                Mark(kind=Kind.CELLS, **place, colour="angle", tips=(*tips, ("garbage", "garbage, %"))),
+                Mark(kind=Kind.CELLS, **place, colour="angle", tips=(*tips, ("garbage", "garbage (%)"))),
                 Mark(kind=Kind.TEXTS, **place, text="said", colour="on"),
             ),
         )
@@ -73,7 +73,7 @@ def _operation_text(row: Row) -> str:
 
 
 def _garbage_text(percent: float) -> str:
-    return "" if not percent else f"{percent:.0f} %" if percent >= 1 else "< 1 %"
+    return "" if not percent else f"{percent:.0f}%" if percent >= 1 else "< 1%"
 
 
 def _finding_sentence(cells: Sequence[Row]) -> str:
@@ -81,5 +81,7 @@ def _finding_sentence(cells: Sequence[Row]) -> str:
     codecs = distinct(cells, "codec")
     bad = {cell["codec"] for cell in cells if cell["garbage"]}
     worst = max(cells, key=lambda cell: (cell["garbage"], cell["angle"]))
-    sentence = f"{len(codecs) - len(bad)} of {len(codecs)} codes give no garbage"
-    return f"{sentence}; {worst['codec']} the most, {worst['said']} by {worst['operation']}" if bad else sentence
+    sentence = f"{len(codecs) - len(bad)} of {len(codecs)} codecs give no garbage"
+    return (
+        f"{sentence}; {worst['codec']} gives the most, {worst['said']} with {worst['operation']}" if bad else sentence
+    )

@@ -96,7 +96,7 @@ def _lengths(v: np.ndarray) -> np.ndarray:
 
 def outside(name: str, domain: str) -> str:
     """Why a set has nothing for an encoding."""
-    return f"no patch of {name} lies whole in the normals that the encoding is made for ({domain})"
+    return f"no patch of {name} is entirely in the domain of the encoding ({domain})"
 
 
 def error_of_percent(which: np.ndarray) -> float:

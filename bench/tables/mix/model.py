@@ -55,7 +55,7 @@ class Way:
 
 CUT = "cut"
 WRITTEN: Mapping[str, str] = MappingProxyType(
-    {"truncate": "cut off when written", CUT: "rounded to 16 bits and cut off when written"}
+    {"truncate": "truncated when written", CUT: "rounded to 16 bits and truncated when written"}
 )
 MODEL = Way()
 # How devices have been found to mix, the plainest first: a filter, a blend, and whatever else is written.

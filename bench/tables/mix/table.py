@@ -20,13 +20,13 @@ OPERATIONS: Mapping[str, str] = MappingProxyType(
     {
         "filter": "bilinear filtering of stored codes at random fractions",
         "mip_2x2": "a mip level: the mean of 2 x 2 codes, stored",
-        "mip_4x4": "the next mip level: the mean of four of those, stored",
+        "mip_4x4": "the next mip level: the mean of four codes of the first, stored",
         "resolve": "the mean of the codes of a pixel's samples, stored: a hardware resolve",
         "resolve_decoded": "the mean of the same samples, each decoded first",
         "blend": "the code of a second normal blended over the first by the target's alpha blending",
         "blend_decoded": "both decoded, the normals blended by a shader, and the result stored",
         "detail": "the code of a detail's normal blended over its base's",
-        "upsample": "texels of half the size decoded, then weighed by distance and by how close their normals are",
+        "upsample": "half-resolution texels decoded, then weighted by distance and by how close their normals are",
     }
 )
 # Why a code that is an integer has no figures of the operations on stored codes.
@@ -75,20 +75,22 @@ class MixOptions(Reading, SourceOptions):
     operation: Annotated[Names, Option("--operation", f"{', '.join(OPERATIONS)}; comma-separated, or all.")] = ("all",)
     normals: Normals = ("sphere", "axes")
     angle: Annotated[
-        Names, Option("--angle", "Degrees between neighbours, comma-separated. Images have their own neighbours.")
+        Names,
+        Option(
+            "--angle",
+            "Degrees between neighbours, comma-separated. Not used for images, which have their own neighbours.",
+        ),
     ] = ("1", "5", "20")
     edge: Annotated[
         Names,
-        Option(
-            "--edge", "Degrees across an edge through a patch, comma-separated, or none. Images have their own edges."
-        ),
+        Option("--edge", "Degrees across an edge through a patch, comma-separated, or none. Not used for images."),
     ] = ("60",)
     backend: Backends = ("jax", "glsl")
-    samples: Annotated[int, Option("--samples", "Samples per pixel that are resolved; the device may give more.")] = 4
-    power: Annotated[float, Option("--power", "The specular power that Toksvig's formula starts from.")] = 64.0
-    count: Annotated[int, Option("--count", "Mixes of each set and angle.")] = COUNT
+    samples: Annotated[int, Option("--samples", "Samples per pixel to resolve; the device may use more.")] = 4
+    power: Annotated[float, Option("--power", "Specular power that Toksvig's formula starts from.")] = 64.0
+    count: Annotated[int, Option("--count", "Number of mixes per set and angle.")] = COUNT
     worst_case: Annotated[
-        bool, Option("--worst-case", "The worst mix of each operation, by search; seconds a codec.")
+        bool, Option("--worst-case", "Search for the worst mix of each operation; takes seconds per codec.")
     ] = False
     seed: Seed = 0
 
@@ -106,13 +108,13 @@ def _degrees_column(name: str, says: str, drops: int = 0) -> Column:
 
 def _verdict_column(use: str) -> Column:
     decides = ", ".join(USES[use])
-    text = f"The verdict, yes or no, by all rows of {decides} of this codec and back end "
+    text = f"The verdict, yes or no, from all rows of {decides} for this codec and backend "
     inside = f"inside a surface: those without an edge, with angle_deg of at most {MOST_JUDGED_DEG:g}."
     return Column(VERDICTS[use], f"{text}{inside}", HOW)
 
 
 def _across_column(use: str) -> Column:
-    text = f"The same across an edge: by rows of {', '.join(USES[use])} with an edge."
+    text = f"The same across an edge: from rows of {', '.join(USES[use])} with an edge."
     return Column(f"{VERDICTS[use]}{ACROSS}", text, HOW, drops=3)
 
 
@@ -129,27 +131,30 @@ COLUMNS = (
         "whose tilt is scaled by alpha.",
         KEY,
     ),
-    Column("backend", "jax: a model in JAX and 32-bit floats; glsl: the GL device's own filtering and blending.", KEY),
+    Column(
+        "backend", "jax: a model in JAX and 32-bit floats; glsl: the OpenGL driver's own filtering and blending.", KEY
+    ),
     shared.BITS,
-    Column("count", "How many mixes were measured: those whose texels all lie in the encoding's domain.", HOW, drops=9),
+    Column("count", "Number of mixes measured: those with all texels in the encoding's domain.", HOW, drops=9),
     Column("invalid", "Results that are NaN or infinite; each counts as 180 degrees.", better="less", drops=8),
     _degrees_column("alone_mean_deg", "Mean error of the texels without any mixing.", 7),
     _degrees_column("alone_max_deg", "Largest error of the texels without any mixing."),
     _degrees_column("angle_mean_deg", "Mean angle between the result, decoded, and the right normal."),
-    _degrees_column("angle_p99_deg", "99 % of these angles are below it.", 6),
-    _degrees_column("angle_max_deg", "The largest of these angles, of the mixes that were sampled: not a bound."),
+    _degrees_column("angle_p99_deg", "99th percentile of these angles.", 6),
+    _degrees_column("angle_max_deg", "The largest of these angles among the sampled mixes: not a bound."),
     Column(
         "angle_worst_deg",
-        "The largest angle that a search finds, which climbs from the worst of the sample by the model. Patches of the "
-        "whole sphere are turned and weighed in any way; of other sets only the weights are changed. In rows of jax.",
+        "The largest angle found by a search that climbs from the worst sampled mix, with the model. For the whole "
+        "sphere, patches are rotated and weighted freely; for other sets only the weights change. Only in rows of "
+        "jax.",
         unit="degrees",
         better="less",
         option="worst_case",
     ),
-    _degrees_column("added_max_deg", "What mixing adds: angle_max_deg less alone_max_deg.", 5),
+    _degrees_column("added_max_deg", "What mixing adds: angle_max_deg minus alone_max_deg.", 5),
     Column(
         "geometry_max_deg",
-        "Largest error that exact normals would have: 0 but for detail, as blending follows a straight line.",
+        "Largest error with exact normals: 0 except for detail, because blending follows a straight line.",
         HOW,
         "degrees",
         drops=4,
@@ -157,65 +162,65 @@ COLUMNS = (
     Column("reach_max_deg", "Largest angle between a right normal and a texel of its mix.", HOW, "degrees", drops=4),
     Column(
         "garbage_percent",
-        f"Results that are off by more than {GARBAGE_DEG:g} degrees, or by more than the angle between the right "
-        "normal and the farthest texel of the mix: those lie across a seam. Twice alone_max_deg and the error of the "
-        f"geometry come on top; where stored codes are mixed, at most {MOST_ALONE_DEG:g} degree of it counts.",
+        f"Results with an error above {GARBAGE_DEG:g} degrees, or above the angle between the right normal and the "
+        "farthest texel of the mix, because the texels are across a seam. Twice alone_max_deg and the error of the "
+        f"geometry are added to these limits; for mixes of stored codes, at most {MOST_ALONE_DEG:g} degree counts.",
         unit="%",
         better="less",
     ),
     Column(
         "garbage_error_percent",
-        "Standard error of garbage_percent, by the rule of succession: not 0 where no garbage was met.",
+        "Standard error of garbage_percent, by the rule of succession: not 0 even if no garbage was found.",
         HOW,
         "%",
         drops=4,
     ),
     Column(
         "worst_first",
-        "Of the mix that is farthest off, sampled or found, one of the two texels farthest apart.",
+        "For the mix with the largest error, sampled or found: one of its two texels that are farthest apart.",
         RAW,
         drops=1,
     ),
-    Column("worst_second", "The other one.", RAW, drops=1),
+    Column("worst_second", "The other texel.", RAW, drops=1),
     Column("worst_right", "The right normal of that mix.", RAW, drops=1),
-    Column("worst_result", "What came back.", RAW, drops=1),
+    Column("worst_result", "The result of that mix.", RAW, drops=1),
     Column(
         "power_error_percent",
-        "Mean error of the specular power that Toksvig's formula gives for the length of what comes back, before it is "
-        "renormalised, against the length of the exact mean.",
+        "Mean error of the specular power that Toksvig's formula gives for the length of the result, before it is "
+        "renormalised, compared with the length of the exact mean.",
         unit="%",
         better="less",
         drops=3,
     ),
     Column(
         "power_decoded_percent",
-        "The same for the mean of the decoded texels, which a tool takes that packs mip levels.",
+        "The same for the mean of the decoded texels, as in a tool that packs mip levels.",
         unit="%",
         better="less",
         drops=3,
     ),
     *map(_verdict_column, USES),
     *map(_across_column, USES),
-    Column("why", "What decided a verdict of no.", HOW, drops=2),
+    Column("why", "The reason for a verdict of no.", HOW, drops=2),
     Column(
         "mixed_by",
-        "The arithmetic in which the model gives the device's numbers; `its own arithmetic` where none of those known "
-        "does, and how far one of its numbers is off. `fractions of 8 bits` are those of a filter's place between two "
+        "The arithmetic with which the model reproduces the device's numbers; `its own arithmetic`, with the largest "
+        "difference, if no known arithmetic does. `fractions of 8 bits` refers to a filter's position between two "
         "texels.",
         HOW,
         drops=2,
     ),
     Column(
         "agree_percent",
-        f"Results that the model gives too, to {AGREE_DEG} degrees, where it mixes the codes that the device stored in "
-        "that arithmetic.",
+        f"Share of the results that the model reproduces to {AGREE_DEG} degrees when it mixes the codes stored by the "
+        "device in that arithmetic.",
         HOW,
         "%",
         drops=2,
     ),
     shared.CODE_SPACE,
     Column("samples", "Samples per pixel that were resolved.", HOW, drops=2),
-    Column("power", "The specular power that Toksvig's formula started from.", HOW, drops=2),
+    Column("power", "Specular power that Toksvig's formula started from.", HOW, drops=2),
     shared.DEVICE,
     shared.SEED,
     shared.SKIPPED,
@@ -223,8 +228,8 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="Measure filtering, mip levels, MSAA resolve and blending of codes.\n\nThe verdict of each codec: "
-    "filterable, blendable, resolvable, or why not. `pick --needs filter,blend,resolve` leaves out codecs "
+    help="Measure filtering, mip levels, MSAA resolve and blending of codes.\n\nThe verdict for each codec is "
+    "filterable, blendable and resolvable, or why not. `pick --needs filter,blend,resolve` leaves out codecs "
     "that are not.",
     example="normalbench mix --encoding octahedral,xyz --storage rgba8 --angle 5",
     step_s=0.05,
@@ -247,14 +252,14 @@ TABLE = Table(
         "backend": "jax",
     },
     section=Section(
-        title="Can a code be filtered, blended or resolved?",
+        title="Filtering, blending and resolve",
         short="Mixing",
         view=View.CODECS,
-        intro="Texture filters, mip levels, multisample resolves and alpha blending average stored codes: what do they "
-        "decode to?",
-        method="Patches of 4 x 4 normals lie about the directions of a set, turned at random, so that seams pass "
-        "between their texels. Each is encoded and stored, its codes are mixed, and the result is decoded and compared "
-        "with the same mix of the exact normals. GLSL mixes by the GL device's own filtering, resolve and blending; "
-        "the model computes the same in 32-bit floats.",
+        intro="Texture filters, mip levels, multisample resolves and alpha blending average stored codes. What do "
+        "these averages decode to?",
+        method="Patches of 4 x 4 normals are placed about the directions of a set, rotated at random, so that seams "
+        "pass between their texels. The normals are encoded and stored, their codes are mixed, and the result "
+        "is decoded and compared with the same mix of the exact normals. GLSL mixes with the OpenGL driver's "
+        "own filtering, resolve and blending; the model computes the same in 32-bit floats.",
     ),
 )

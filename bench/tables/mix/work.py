@@ -43,7 +43,7 @@ def cases(options: MixOptions) -> list[MixCase]:
     in_range("--samples", options.samples, 2, MOST_SAMPLES)
     check_seed(options.seed)
     if not 1 <= options.power <= MOST_POWER:
-        raise UsageError(f"--power {options.power:g}: from 1 to {MOST_POWER}")
+        raise UsageError(f"--power {options.power:g}: out of range; use 1 to {MOST_POWER}")
     angles = checked_numbers("--angle", options.angle, float, 0.01, MOST_ANGLE)
     edges = () if options.edge == ("none",) else checked_numbers("--edge", options.edge, float, 1, MOST_EDGE)
     operations = tuple(choose("operation", options.operation, {name: name for name in OPERATIONS}))
@@ -82,7 +82,9 @@ def _patches(
     for normals in sets:
         patches = list(patches_of(normals, angles, options.count, options.seed, edges))
         if not patches:
-            raise UsageError(f"--normals {normals.name}: no square of 4 x 4 pixels of it is covered")
+            raise UsageError(
+                f"--normals {normals.name}: no square of 4 x 4 pixels is covered; use an image with larger surfaces"
+            )
         all_patches += patches
     return all_patches
 
@@ -129,11 +131,11 @@ def _shown(done: Measured) -> Iterator[Sheet]:
     shown += ("power_error_percent", "power_decoded_percent")
     inside = [row for row in one_backend(done.rows) if not row["edge_deg"]]
     across = [row for row in one_backend(done.rows) if row["edge_deg"]]
-    for title, rows in (("inside a surface, of all sets and angles", inside), ("across an edge", across)):
+    for title, rows in (("inside a surface, over all sets and angles", inside), ("across an edge", across)):
         if worst := [{name: row[name] for name in shown} for row in worst_of_each(rows)]:
             yield Sheet(f"The worst {title}, by operation", worst, TABLE.drops(worst))
     if ways := _ways(done.rows):
-        yield Sheet("How the device mixes, and the least agreement with the model", ways)
+        yield Sheet("How the device mixes, and its lowest agreement with the model", ways)
 
 
 def _ways(rows: Sequence[Row]) -> list[Row]:
@@ -158,7 +160,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
             by_codecs.setdefault(_surviving(verdict_lines, column), []).append(use)
     if by_codecs:
         yield (
-            "Codes that survive inside a surface "
+            "Encodings that survive (inside a surface unless stated): "
             + "; ".join(f"{listed(survived)}: {names}" for names, survived in by_codecs.items())
             + "."
         )
@@ -169,7 +171,7 @@ def _surviving(made: Sequence[Row], column: str) -> str:
     failing = {codec_name(line) for line in made if line[column] != "yes"}
     surviving = {codec_name(line): line for line in made if codec_name(line) not in failing}
     halves = [line["encoding"] for line in surviving.values() if _is_of_half(line["encoding"])]
-    of_half = f" ({listed(halves)} for z >= 0 alone)" if halves else ""
+    of_half = f" ({listed(halves)} only for z >= 0)" if halves else ""
     return codecs(list(surviving.values()), listed) + of_half if surviving else "none of them"
 
 
@@ -185,7 +187,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
             f"{line['encoding']}/{line['storage']}: {line['why']}" for line in one_backend(verdict_lines) if line["why"]
         )
         shown = [{name: value for name, value in line.items() if name != "why"} for line in verdict_lines]
-        title = f"What each code can be used for: inside a surface, by neighbours up to {MOST_JUDGED_DEG:g} degrees "
+        title = f"What each codec can be used for: inside a surface, with neighbours up to {MOST_JUDGED_DEG:g} degrees "
         title += "apart or an image's own; and filtered across an edge"
         yield Sheet(title, shown, SUMMARY_DROPS, notes=notes)
 

@@ -26,17 +26,17 @@ def wobble_chart(rows: Sequence[Row]) -> Chart:
         if row["wobble_deg"] > 0
     ]
     looks: dict[str, Any] = {"by": ("line",), "colour": "codec"}
-    tips = (("line", "code"), ("x", "turn, degrees a frame"), ("y", "wobble, degrees"), ("ratio", "ratio"))
+    tips = (("line", "code"), ("x", "turn (degrees per frame)"), ("y", "wobble (degrees)"), ("ratio", "ratio"))
     ways = distinct(sorted(points, key=lambda point: point["how"]), "how")
     return Chart(
         name="motion",
         title=_finding_sentence(points),
-        subtitle="How much codes wobble",
-        description="RMS change of a code's error from one frame to the next over the degrees that the camera or the "
-        "object turns, a line for each code. Codes that stay, with a ratio of 0.01 or less, are not drawn. The figures "
-        "are in the table below.",
-        x=Axis(title="turn, degrees a frame", scale=Scale.LOG),
-        y=Axis(title="wobble, degrees", scale=Scale.LOG),
+        subtitle="Wobble by speed of the turn",
+        description="RMS change of the error from one frame to the next by the degrees that the camera or the object "
+        "turns, with a line for each codec. Codecs with a ratio of 0.01 or less are not drawn. The "
+        "figures are in the table below.",
+        x=Axis(title="turn (degrees per frame)", scale=Scale.LOG),
+        y=Axis(title="wobble (degrees)", scale=Scale.LOG),
         rows=tuple(points),
         colour=Names("codec", distinct(sorted(points, key=lambda point: point["codec"]), "codec")),
         dash=Names("how", ways, looks=DASHES) if len(ways) > 1 else None,
@@ -60,6 +60,6 @@ def _conditions_text(row: Row, rows: Sequence[Row]) -> str:
 def _finding_sentence(points: Sequence[Row]) -> str:
     """Return which codec wobbles the most."""
     if not points:
-        return "No code wobbles"
+        return "No codec wobbles"
     worst = max(points, key=lambda point: point["y"])
-    return f"{worst['line']} wobbles the most: {worst['y']:.2g} degrees at {worst['x']:g} degrees a frame"
+    return f"Largest wobble: {worst['line']}, {worst['y']:.2g} degrees at {worst['x']:g} degrees per frame"

@@ -49,6 +49,6 @@ def films(folder: Path, rows: Sequence[Row]) -> Iterator[Film]:
     for row in usable[:1]:
         if path := there.get(f"{_file_stem(row)}.png"):
             code = f"{row['encoding']} {row['storage']} in {row['space']} space"
-            caption = f"The highlight that moves the most, of {code}, at {row['turn_deg']:g} degrees a frame of "
-            caption += f"{row['axis']}: the code, exact normals, and {chart.GAIN:g} times their difference."
+            caption = f"The highlight that moves the most: {code}, at {row['turn_deg']:g} degrees per frame of "
+            caption += f"{row['axis']}. Decoded normals, exact normals and {chart.GAIN:g} times their difference."
             yield Film(caption, path)

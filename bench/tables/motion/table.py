@@ -28,15 +28,15 @@ class MotionOptions(SourceOptions):
         Names,
         Option(
             "--space",
-            "view, world: the space that normals are encoded in; comma-separated, or all. Of several spaces a code "
-            "is measured in those that it is made for.",
+            "view, world: the space that normals are encoded in; comma-separated, or all. With several spaces, an "
+            "encoding is measured in those it supports.",
         ),
     ] = ("view", "world")
     moves: Annotated[Names, Option("--moves", "camera, object: what turns; comma-separated, or all.", in_run=True)] = (
         "camera",
     )
     axis: Annotated[Names, Option("--axis", "yaw, pitch, roll; comma-separated, or all.", in_run=True)] = ("yaw",)
-    turn: Annotated[Names, Option("--turn", "Degrees a frame, comma-separated.", in_run=True)] = (
+    turn: Annotated[Names, Option("--turn", "Degrees per frame, comma-separated.", in_run=True)] = (
         "0.01",
         "0.05",
         "0.25",
@@ -47,13 +47,16 @@ class MotionOptions(SourceOptions):
         Names | None,
         Option(
             "--picture-turn",
-            "Those of --turn that frames are rendered of as well; none: no frames. Default: the one nearest to 0.25.",
+            "Values of --turn to render frames for as well; none: no frames. Default: the value nearest to 0.25.",
         ),
     ] = None
-    frames: Annotated[int, Option("--frames", "Frames of a sequence.")] = 32
+    frames: Annotated[int, Option("--frames", "Number of frames in a sequence.")] = 32
     count: Annotated[
         int,
-        Option("--count", "Normals whose codes are followed. Frames take longer; --picture-turn none leaves them out."),
+        Option(
+            "--count",
+            "Number of normals whose codes are followed. Frames take longer; --picture-turn none leaves them out.",
+        ),
     ] = 2**16
     size: Size = "320x240"
     lights: Lights = 16
@@ -73,101 +76,106 @@ COLUMNS = (
     shared.STORAGE,
     Column("rounding", "How the storage rounds.", KEY, drops=5),
     Column("space", "The space that normals are encoded in: view or world.", KEY),
-    Column("moves", "What turns: the camera, or the surface under a still camera.", KEY, drops=6),
-    Column("axis", "What it turns about: yaw is about the camera's up, pitch its right, roll its line of sight.", KEY),
-    Column("turn_deg", "How far it turns from one frame to the next.", KEY, "degrees"),
+    Column("moves", "What turns: the camera, or the surface in front of a still camera.", KEY, drops=6),
+    Column("axis", "The axis of the turn: yaw is about the camera's up, pitch its right, roll its line of sight.", KEY),
+    Column("turn_deg", "Angle of the turn from one frame to the next.", KEY, "degrees"),
     Column("bits", shared.BITS.says, drops=9),
     Column("static_rms_deg", "RMS angle between normal and decode, over all frames.", unit="degrees", better="less"),
     Column(
         "wobble_deg",
-        "RMS change of the error from one frame to the next, where the error is decoded less true normal on the "
-        "surface. 0: the error stays where it is.",
+        "RMS change of the error from one frame to the next; the error is the decoded minus the true normal on the "
+        "surface. 0: the error does not change.",
         unit="degrees",
         better="less",
     ),
     Column(
         "ratio",
-        "wobble_deg over sqrt(2) static_rms_deg. 1: the error of each frame has nothing to do with that of the frame "
-        "before, as noise; near 0: it creeps.",
+        "wobble_deg divided by sqrt(2) static_rms_deg. 1: the errors of successive frames are unrelated, like noise; "
+        "near 0: the error changes slowly.",
         better="less",
     ),
     Column("jumps_percent", "Normals whose code changes from one frame to the next.", unit="%", better="less"),
     Column("jump_deg", "Mean change of the error where the code changes.", unit="degrees", better="less", drops=8),
     Column(
         "highlight_px",
-        "RMS change of a highlight's centroid from one frame to the next, on the surface: the picture turns with the "
+        "RMS change of a highlight's centroid from one frame to the next, on the surface: the image turns with the "
         "camera. Three lights on nine spheres of specular power 4 to 1024.",
         unit="pixels",
         better="less",
     ),
     Column(
         "peak_percent",
-        "RMS change of a highlight's brightest pixel from one frame to the next, over that of exact normals.",
+        "RMS change of a highlight's brightest pixel from one frame to the next, relative to the pixel with exact "
+        "normals.",
         unit="%",
         better="less",
     ),
-    Column("highlight_px_*", "highlight_px of that specular power.", unit="pixels", better="less", drops=11),
-    Column("peak_percent_*", "peak_percent of that specular power.", unit="%", better="less", drops=10),
+    Column("highlight_px_*", "highlight_px at that specular power.", unit="pixels", better="less", drops=11),
+    Column("peak_percent_*", "peak_percent at that specular power.", unit="%", better="less", drops=10),
     Column(
         "static_psnr_db",
-        "The displayed image of scene gloss against that of exact normals; covered pixels of all frames, peak 1.",
+        "PSNR of the displayed image of scene gloss against the image with exact normals; covered pixels of all "
+        "frames, peak 1.",
         unit="dB",
         better="more",
         drops=7,
     ),
     Column(
         "wobble_psnr_db",
-        "The same of the change of their difference from one frame to the next, pixel by pixel while surfaces move "
-        "across them. 3 dB below static_psnr_db where the errors of two frames have nothing to do with each other.",
+        "The same for the change of that difference from one frame to the next, pixel by pixel while surfaces move "
+        "across the pixels. 3 dB below static_psnr_db if the errors of two frames are unrelated.",
         unit="dB",
         better="more",
     ),
     Column(
         "reprojected_psnr_db",
-        "The same of a picture that turns with the camera, every surface at its pixel, as frames are after exact "
-        "reprojection: what is left is the code's doing. Infinite where codes stay.",
+        "The same for an image that turns with the camera, with every surface at its pixel, as after exact "
+        "reprojection: the remaining change is due to the encoding. Infinite if codes do not change.",
         unit="dB",
         better="more",
     ),
     Column(
         "panel_psnr_db",
-        "The displayed image of a panel whose normal turns by 4 degrees across the picture, of a metal of roughness "
-        "0.1, under thin strips, against that of exact normals; all frames of a camera that goes around it, peak 1.",
+        "PSNR of the displayed image of a metal panel of roughness 0.1 whose normal turns by 4 degrees across the "
+        "image, under thin strips, against the image with exact normals; all frames of a camera that goes around it, "
+        "peak 1.",
         unit="dB",
         better="more",
     ),
     Column(
         "crawl_psnr_db",
-        "The same of the change of their difference from one frame to the next: steps that crawl.",
+        "The same for the change of that difference from one frame to the next: steps that crawl.",
         unit="dB",
         better="more",
     ),
     Column("invalid", "Decodes that were NaN or infinite; each counts as the opposite direction.", shown=False),
-    Column("frames", "Frames of a sequence.", HOW, drops=13),
+    Column("frames", "Number of frames in a sequence.", HOW, drops=13),
     Column(
         "count",
-        "Normals whose codes were followed; where no frame changes a code, more, in two frames.",
+        "Number of normals whose codes were followed; if no frame changes a code, more normals in two frames.",
         HOW,
         drops=14,
     ),
-    Column("size", "Width and height in pixels of rendered frames.", HOW, drops=12),
-    Column("lights", "Point lights of the displayed image.", HOW, drops=15),
-    Column("backend", "jax emulates the storage; glsl, where the encoding has no Python half.", HOW, drops=3),
-    Column("device", "What it was measured on; the renderer's where frames were rendered.", HOW, drops=1),
+    Column("size", "Width and height of rendered frames in pixels.", HOW, drops=12),
+    Column("lights", "Number of point lights in the displayed image.", HOW, drops=15),
+    Column(
+        "backend", "jax emulates the storage; glsl is used if the encoding has no Python implementation.", HOW, drops=3
+    ),
+    Column("device", "The device that was measured on; the renderer's if frames were rendered.", HOW, drops=1),
     Column("seed", "The random seed of the normals and of the scene's lights.", HOW, drops=4),
     shared.EXACT,
     shared.SKIPPED,
 )
 ALSO = (
-    Column("worst_turn_deg", "Of the turns measured, the one with the largest wobble; empty for none.", unit="degrees"),
-    Column("worst_wobble_deg", "wobble_deg of that turn.", unit="degrees", better="less"),
+    Column("worst_turn_deg", "The measured turn with the largest wobble; empty for none.", unit="degrees"),
+    Column("worst_wobble_deg", "wobble_deg at that turn.", unit="degrees", better="less"),
 )
 
 TABLE = Table(
     package=__package__ or "",
-    help="Measure how errors change while the camera or an object turns.\n\nA code in view space is another one in "
-    "each frame of a turning camera, so highlights wobble; a code in world space stays. Measured of the "
-    "normals, of highlights and of the displayed image.",
+    help="Measure how errors change while the camera or an object turns.\n\nIn view space a normal's code changes in "
+    "each frame of a turning camera, so highlights wobble; in world space it stays the same. Normals, "
+    "highlights and the displayed image are measured.",
     example="normalbench motion --encoding octahedral,spheremap --storage rg8,rgb10a2 --axis yaw,roll",
     step_s=0.5,
     options=MotionOptions,
@@ -178,14 +186,14 @@ TABLE = Table(
     single={"encoding": "octahedral", "space": "view", "turn": "0.25", "picture_turn": "none"},
     files={"images": "motion"},
     section=Section(
-        title="What wobbles when the camera turns",
+        title="Temporal stability",
         short="Motion",
         view=View.CODECS,
-        intro="A code in view space changes while the camera turns, and highlights wobble. How much, and how much "
-        "less in world space?",
-        method="Normals that are fixed on surfaces are encoded in each frame of a turn, stored and decoded; the error "
-        "is followed on the surface. Highlights and images are rendered with these decodes in place of exact normals. "
-        "Highlights are those of a picture that turns with the camera, so that what changes is the code's doing; "
-        "the image is that of a camera that turns, where the raster of pixels has a share.",
+        intro="In view space codes change while the camera turns, and highlights wobble. How much, and how much less "
+        "in world space?",
+        method="Normals fixed on surfaces are encoded in each frame of a turn, stored and decoded; the error is "
+        "followed on the surface. Highlights and images are rendered with these decodes instead of exact "
+        "normals. Highlights are taken from an image that turns with the camera, so that only the encoding "
+        "changes them. The image is from a turning camera, so the pixel grid also has an effect.",
     ),
 )

@@ -33,7 +33,7 @@ MAX_FRAMES, MAX_POINTS = 1000, 2**24
 # A code that wobbles by less of its static error stays but for float32's rounding.
 LEAST_PLOTTED = 0.01
 NO_PICTURES = "none"
-OTHER_DOMAIN = "in world space normals have all directions, and it is made for those that face the camera"
+OTHER_DOMAIN = "in world space normals have all directions, and this encoding is only for normals that face the camera"
 
 
 def motions(options: MotionOptions) -> list[Motion]:
@@ -76,7 +76,7 @@ def picture_turns(options: MotionOptions) -> tuple[float, ...]:
     asked = checked_numbers("--picture-turn", options.picture_turn, float, LEAST_TURN_DEG, PICTURE_SWING_DEG)
     if missing := [turn for turn in asked if turn not in turns]:
         raise UsageError(
-            f"--picture-turn {missing[0]:g}: not among --turn {text_of(options.turn)}; name it there, or none"
+            f"--picture-turn {missing[0]:g}: not among --turn {text_of(options.turn)}; add it there, or use none"
         )
     return asked
 
@@ -115,13 +115,13 @@ def _steps(options: MotionOptions, outputs: MotionOutputs) -> list[Step]:
     device, missing = found_device()
     chosen = cases(options, device)
     if not device and picture_turns(options):
-        tell(f"no frames are rendered, so columns of highlights and images stay empty: {missing}")
+        tell(f"no frames are rendered, so the columns of highlights and images are empty: {missing}")
     return shot_steps(Bench(device, outputs.images is not None), chosen, outputs.images, _key)
 
 
 def _check(outputs: MotionOutputs, made: Sequence[Step]) -> None:
     if outputs.images and not any(step.case.case.pictures for step in made):
-        raise UsageError("--images needs rendered frames: a moving camera, a --picture-turn, and a GL device")
+        raise UsageError("--images requires rendered frames: a moving camera, a --picture-turn and an OpenGL device")
 
 
 def _key(case: MotionCase) -> Row:
@@ -175,7 +175,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
                 names = ("turn_deg", "highlight_px", "peak_percent", *IMAGE)
                 images.append(named | {name: row[name] for name in names})
     if codes:
-        yield Sheet("the code alone, at the turn where it wobbles most", codes)
+        yield Sheet("normals alone, at the turn with the largest wobble", codes)
     if images:
         yield Sheet("highlights and the displayed image", images)
 

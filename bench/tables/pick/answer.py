@@ -52,9 +52,9 @@ NO_FIGURE = "no figure for --aim"
 # Why codes are left out that an option may take.
 # An error from which on a direction is lost, even where no other encoding was measured.
 LOST_DEG = 90.0
-HOLE_SAID = f"a hole: the largest error is over {HOLE:g} times the smallest, or {LOST_DEG:g}°; --accept-holes takes it"
-LENGTH_SAID = "decodes are not of length 1, and light needs a normalise; --accept-lengths takes them"
-TABLE_SAID = "reads a look-up table; --look-ups takes it"
+HOLE_SAID = f"a hole: the largest error is over {HOLE:g} times the smallest, or {LOST_DEG:g}°; --accept-holes allows it"
+LENGTH_SAID = "decodes are not unit length, and lighting needs a normalise; --accept-lengths allows them"
+TABLE_SAID = "reads a lookup table; --look-ups allows it"
 LOOPS_SAID = "how often its loops run is not known"
 EDGE_SAID = "does not survive an edge"
 # A code has no use for a storage that has so many more bits than it has codes for.
@@ -233,13 +233,13 @@ def why_unfit(row: Row) -> str:
     if row["invalid"]:
         return f"{row['invalid']} decodes that are NaN or infinite"
     if row["needs"] and row["domain"] not in HOLDS[row["needs"]]:
-        return f"made for {MADE_FOR[row['domain']]} alone"
+        return f"only for {MADE_FOR[row['domain']]}"
     if not row["needs"] and row["lost_percent"]:
         return lost(row)
     if (row["length_share"] or 0) > LENGTH and not row["accept_lengths"]:
         return LENGTH_SAID
     if row["bits"] and row["code_bits"] and row["bits"] - row["code_bits"] > WASTED_BITS:
-        return f"its codes are of {row['code_bits']:.0f} bits in any storage"
+        return f"it has {row['code_bits']:.0f} bits in any storage"
     return ""
 
 
@@ -271,12 +271,12 @@ def edges_decide(needs: str | None) -> bool:
 def lost(row: Row) -> str:
     """Return which normals an encoding loses because they are outside its domain; empty if it loses none."""
     share = row["lost_percent"]
-    return f"loss of normals that {BEYOND[row['domain']]}: {shown_share(share)} of these" if share else ""
+    return f"cannot represent normals that {BEYOND[row['domain']]}: {shown_share(share)} of the set" if share else ""
 
 
 def shown_share(percent: float) -> str:
     """A share that is not 0, as a sentence has it."""
-    return f"{percent:.2g} %" if percent >= 0.01 else "less than 0.01 %"
+    return f"{percent:.2g}%" if percent >= 0.01 else "less than 0.01%"
 
 
 def groups(rows: Sequence[Row]) -> dict[tuple[str, str, str], list[Row]]:

@@ -15,7 +15,7 @@ from .sentences import called, question
 
 HEIGHT = 300
 # What the title of a chart finds; the page's script fills it in for a reader's own constraints.
-FOUND = "{where}: no other code beats {front} of {all} in both slots and mean error"
+FOUND = "{where}: {front} of {all} eligible encodings are Pareto-optimal in slots and mean error"
 # The angles of a spread begin where so many percent of some code's normals are below, and are at most so many.
 LOWEST_SHARE, MOST_ANGLES = 1.0, 96
 
@@ -66,15 +66,15 @@ def _front(points: Sequence[Row]) -> list[Row]:
 
 def _chart(name: str, group: Sequence[Row], points: Sequence[Row]) -> Chart:
     asked, front, left = question(group[0]), tuple(_front(points)), [point for point in points if not point["rest"]]
-    tips = (("codec", "codec"), ("x", "issue slots"), ("y", "mean error, degrees"), ("why", "left out"))
+    tips = (("codec", "codec"), ("x", "issue slots"), ("y", "mean error (degrees)"), ("why", "excluded because"))
     return Chart(
         name=name,
         title=FOUND.format(where=asked, front=len(front), all=len(left)),
-        subtitle="The line joins these; grey: left out",
-        description="Each code by the issue slots that it takes to encode and to decode once, and by its mean error. "
-        "The figures are in the table.",
-        x=Axis(title=f"issue slots to encode and decode once, {group[0]['family']}", scale=Scale.COUNT),
-        y=Axis(title="mean error, degrees", scale=Scale.LOG),
+        subtitle="Line: Pareto front; grey: excluded by a constraint",
+        description="Each encoding by the issue slots to encode and decode once, and by its mean error. The figures "
+        "are in the table.",
+        x=Axis(title=f"issue slots to encode and decode once ({group[0]['family']})", scale=Scale.COUNT),
+        y=Axis(title="mean error (degrees)", scale=Scale.LOG),
         rows=tuple(points),
         height=HEIGHT,
         marks=(
@@ -101,14 +101,14 @@ def _spread(name: str, counted: Sequence[tuple[Row, Bins]]) -> Chart:
         for x, percents in zip(angles, zip(*lines.values(), strict=True), strict=True)
     )
     first = counted[0][0]
-    tips = (("codec", "codec"), ("x", "angle, degrees"), ("y", "% of normals below it"))
+    tips = (("codec", "codec"), ("x", "angle (degrees)"), ("y", "% of normals below it"))
     return Chart(
         name=name,
         title=f"{question(first)}: {_median_sentence(first, *next(iter(shares.values())))}",
-        subtitle="The share of normals that are off by less than an angle; the area has all codes",
-        description="The share of normals over the angle that they are off by less than, on a scale of logarithms. The "
-        "area has all codes that could be the answer, each of which is a thin line in it.",
-        x=Axis(title="angle between normal and decode, degrees", scale=Scale.LOG),
+        subtitle="The share of normals with an error below an angle; the area covers all encodings",
+        description="The share of normals with an error below an angle, by angle, on a logarithmic scale. The area "
+        "covers all encodings that could be the answer; each is a thin line in the area.",
+        x=Axis(title="angle between normal and decode (degrees)", scale=Scale.LOG),
         y=Axis(title="% of normals", domain=(0.0, 100.0)),
         rows=points,
         height=HEIGHT,
@@ -141,4 +141,6 @@ def _angles(shares: Iterable[tuple[Sequence[float], Sequence[float]]]) -> list[f
 
 def _median_sentence(row: Row, edges: Sequence[float], below: Sequence[float]) -> str:
     half, most = (next(edge for edge, share in zip(edges, below, strict=True) if share >= part) for part in (50, 99))
-    return f"half of {called(row)}'s normals are off by less than {half:.2g} degrees, 99 % by less than {most:.2g}"
+    return (
+        f"with {called(row)} half of the normals are off by less than {half:.2g} degrees, 99% by less than {most:.2g}"
+    )

@@ -148,7 +148,7 @@ class Images:
     def _view_angles_text(self, case: PickCase, maker: SceneMaker) -> str:
         whole = next(iter(self._images(case, maker).values()))
         common, rare = np.percentile(whole.view_angles(), (99.0, 99.9))
-        within = f"99 % of visible normals lie within {common:.0f}° of the line of sight, 99.9 % within {rare:.0f}°"
+        within = f"99% of visible normals are within {common:.0f}° of the line of sight, 99.9% within {rare:.0f}°"
         return f"In {maker.name} {within}"
 
     def shown(self, case: PickCase, maker: SceneMaker, pole: str) -> dict[float | None, tuple[np.ndarray, np.ndarray]]:

@@ -45,8 +45,8 @@ SETS = {None: "sphere", "sphere": "sphere", "hemisphere": "hemisphere", "view": 
 # Where normals have all directions, z >= 0, or face the viewer.
 SPACES = {"sphere": "sphere", "tangent": "hemisphere", "terrain": "hemisphere", "map": "hemisphere", "view": "view"}
 WHICH_SPACE = (
-    "--domain hemisphere: of which space? tangent, terrain or map, where z >= 0; a G-buffer's normals in view space "
-    "are of view, and those in world space of sphere"
+    "--domain hemisphere: ambiguous; use tangent, terrain or map for normals with z >= 0, view for a G-buffer's "
+    "normals in view space, and sphere in world space"
 )
 # Below so many random normals, chance decides between codes.
 FEW = 4096
@@ -99,7 +99,8 @@ def questions(options: PickOptions) -> list[list[measure.PickCase]]:
     for codec in (packed_codec for packed_codec in fit if packed_codec.encoding.is_packed):
         for name in (name for name, storages in asked.items() if not _is_held(codec, storages, codec.rounding)):
             leave_out(
-                f"{codec.encoding.name} is an integer of {codec.storage.texel_bytes} bytes, not of those of {name}"
+                f"{codec.encoding.name} packs into a {codec.storage.texel_bytes}-byte integer; "
+                f"texels of {name} have another size"
             )
     for line in misfits if "all" not in options.encoding else ():
         leave_out(line)
@@ -205,7 +206,7 @@ def _question(options: PickOptions) -> Row:
         in_range("--most-instructions", options.most_instructions, 0, MOST_INSTRUCTIONS)
     in_range("--readers", options.readers, 0, MOST_READERS)
     if not 0 < options.worth <= MOST_WORTH:
-        raise UsageError(f"--worth {options.worth:g}: above 0 to {MOST_WORTH:g} decibels")
+        raise UsageError(f"--worth {options.worth:g}: out of range; use more than 0, up to {MOST_WORTH:g} dB")
     if options.domain and spelled("domain", options.domain, ["hemisphere"]):
         raise UsageError(WHICH_SPACE)
     needs = None if options.domain is None else SPACES[choose_one("domain", options.domain, SPACES)]
@@ -216,7 +217,7 @@ def _question(options: PickOptions) -> Row:
     uses = None if options.needs is None else choose("use", options.needs, {use: use for use in USES})
     shared = {"aim": aim, "family": family, "needs": needs, "most_instructions": options.most_instructions}
     if not 0 <= options.enough <= MOST_ENOUGH:
-        raise UsageError(f"--enough {options.enough:g}: 0 to {MOST_ENOUGH:g} degrees")
+        raise UsageError(f"--enough {options.enough:g}: out of range; use 0 to {MOST_ENOUGH:g} degrees")
     shared |= {"readers": options.readers, "worth": options.worth, "enough": options.enough}
     shared |= {"accept_holes": options.accept_holes, "accept_lengths": options.accept_lengths}
     shared |= {"look_ups": options.look_ups}
@@ -280,7 +281,7 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     """Yield for each question the answer in sentences, and the codecs that no other codec beats."""
     for (asked, normals, scene), group in groups(rows).items():
         front = [_short(row) for row in group if row["front"] or row["place"]]
-        title = f"{asked}, on {normals}: the codes that no other one beats in error, price and bits"
+        title = f"{asked}, on {normals}: Pareto-optimal encodings in error, cost and bits"
         lines, aside = tuple(told(group)), tuple(left_out(group))
         keys = {"storage": group[0]["asked"], "rounding": group[0]["rounding"], "normals": normals}
         keys["scene"] = scene.split(",")[0]

@@ -16,7 +16,7 @@ from ..table import Row
 HIGHEST, MARKED = 0.85, 0.12
 FIGURES = (
     ("angle_mean_deg", "mean", "tick"),
-    ("angle_p99_deg", "99 %", "diamond"),
+    ("angle_p99_deg", "99%", "diamond"),
     ("angle_max_deg", "largest", "circle"),
 )
 MOST_DEG = 200.0
@@ -52,14 +52,14 @@ def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
         if is_number(row.get(column))
     ]
     all_bits = tuple(sorted({row["bits"] for row in rows}))
-    tips = (("codec", "codec"), ("bits", "bits"), ("mean", "mean, degrees"), ("largest", "largest, degrees"))
+    tips = (("codec", "codec"), ("bits", "bits"), ("mean", "mean (degrees)"), ("largest", "largest (degrees)"))
     return Chart(
         name=f"angles-{at}",
         title=_finding_sentence(rows),
         subtitle=f"Angles on {rows[0]['normals']}, by {backends_of(rows)}",
-        description="The share of normals over their angle in degrees, on a logarithmic scale. The figures are in the "
-        "tables of what normals lose.",
-        x=Axis(title="angle between normal and decode, degrees", scale=Scale.LOG, domain=(LEAST_DEG, MOST_DEG)),
+        description="The share of normals by angle in degrees, on a logarithmic scale. The figures are in the tables "
+        "of normal accuracy.",
+        x=Axis(title="angle between normal and decode (degrees)", scale=Scale.LOG, domain=(LEAST_DEG, MOST_DEG)),
         y=Axis(title="", domain=(-0.3, len(rows) + 0.2), ticks=tuple(zip(feet, lines, strict=True))),
         rows=tuple(outlines),
         colour=Names("bits", all_bits, "bits", is_ordered=True),
@@ -108,5 +108,5 @@ def _finding_sentence(rows: Sequence[Row]) -> str:
         alike.setdefault(row["bits"], []).append(row)
     compared = {bits: part[0] for bits, part in sorted(alike.items()) if len(part) > 1 or len(alike) == 1}
     best = compared or {row["bits"]: row for row in rows[:1]}
-    phrases = [f"{CodecKey.of(row).label} of {bits} bits ({row['angle_mean_deg']:.2g})" for bits, row in best.items()]
-    return f"The smallest mean angles, in degrees, have {', '.join(phrases)}"
+    phrases = [f"{CodecKey.of(row).label}, {bits} bits ({row['angle_mean_deg']:.2g})" for bits, row in best.items()]
+    return f"Smallest mean angles, in degrees: {', '.join(phrases)}"

@@ -29,9 +29,9 @@ def _loss_lines(rows: Sequence[Row]) -> Iterator[str]:
         part = [row for row in rows if (row["storage"], row["normals"]) == (storage, normals)]
         losses = {_base_name(row): row["half_loss_percent"] for row in part}
         kept = [name for name, loss in losses.items() if loss <= SURVIVES]
-        lost = [f"{name} (+{loss:.3g} %)" for name, loss in losses.items() if loss > SURVIVES]
-        sentence = f"In half arithmetic, {storage} on {normals}: the RMS angle of {{}} grows by at most {SURVIVES:g} %"
-        yield sentence.format(", ".join(kept) or "no code") + (f"; of {', '.join(lost)} by more" if lost else "")
+        lost = [f"{name} (+{loss:.3g}%)" for name, loss in losses.items() if loss > SURVIVES]
+        sentence = f"In half arithmetic, {storage} on {normals}: the RMS angle of {{}} grows by at most {SURVIVES:g}%"
+        yield sentence.format(", ".join(kept) or "no encoding") + (f"; of {', '.join(lost)} by more" if lost else "")
 
 
 def _is_half(row: Row) -> bool:

@@ -42,7 +42,7 @@ class QualityOptions(Reading, SourceOptions):
         Names,
         Option(
             "--normals",
-            f"Normal sets or files, {NAMED}. `domain` is all that a code is made for: sphere and axes, or hemisphere.",
+            f"Normal sets or files, {NAMED}. `domain`: all directions of the encoding (sphere, axes; or hemisphere).",
             files=True,
             in_run=True,
         ),
@@ -51,11 +51,15 @@ class QualityOptions(Reading, SourceOptions):
     count: Count = DEFAULT_COUNT
     seed: Seed = 0
     worst_case: Annotated[
-        bool, Option("--worst-case", "The true supremum and where it is, in float64; seconds a codec.", in_run=True)
+        bool, Option("--worst-case", "The supremum and where it is, in float64; takes seconds per codec.", in_run=True)
     ] = False
     codes: Annotated[
         bool,
-        Option("--codes", "Codes unused, duplicate, unstable, of up to 2^24; seconds a codec.", in_run=True),
+        Option(
+            "--codes",
+            "Count unused, duplicate and unstable codes, up to 2^24 codes; takes seconds per codec.",
+            in_run=True,
+        ),
     ] = False
 
 
@@ -65,7 +69,7 @@ class QualityOutputs:
 
     images: Images = None
     maps: Annotated[
-        Path | None, Option("--maps", "Write the angle in each direction, an array for each codec, into this folder.")
+        Path | None, Option("--maps", "Write the angle in each direction to this folder, one array per codec.")
     ] = None
     live: Live = None
 
@@ -82,22 +86,22 @@ COLUMNS = (
     shared.ENCODING,
     shared.STORAGE,
     shared.ROUNDING_OR_DITHERED,
-    Column("normals", "The set of normals that was measured on.", KEY),
+    Column("normals", "The set of normals that was measured.", KEY),
     shared.BACKEND,
     shared.BITS,
     Column("count", "How many normals were measured.", HOW, drops=13),
     Column(
-        "background", "Pixels without a surface, and vertices without a direction; they do not count.", HOW, drops=3
+        "background", "Pixels without a surface and vertices without a direction; these are not counted.", HOW, drops=3
     ),
     Column(
         "own_error_deg",
-        "Mean angle by which the normals of a file are off themselves, where its vertices, maps or pixels are rounded: "
-        "as far as the same normals with steps four times as wide are off from them, over 4.",
+        "Estimated mean error of the file's own normals, if its vertices, maps or pixels are rounded: the mean angle "
+        "to the same normals with steps four times as wide, divided by 4.",
         HOW,
         "degrees",
         drops=12,
     ),
-    Column("not_finite", "Normals of the set that were NaN or infinite; they do not count.", HOW, drops=4),
+    Column("not_finite", "Normals of the set that were NaN or infinite; these are not counted.", HOW, drops=4),
     shared.CODE_SPACE,
     Column(
         "invalid",
@@ -120,14 +124,15 @@ COLUMNS = (
     ),
     _angle_column("angle_mean_deg", "Mean angle between normal and decode."),
     _angle_column("angle_rms_deg", "Root of the mean squared angle.", drops=12),
-    _angle_column("angle_p99_deg", "99 % of the angles are below it.", drops=14),
-    _angle_column("angle_max_deg", "The largest angle that was met; the supremum is angle_sup_deg."),
-    Column("worst_normal", "The normal that came back farthest off: x, y and z.", RAW, drops=1),
-    Column("worst_decode", "What it came back as.", RAW, drops=1),
+    _angle_column("angle_p99_deg", "99th percentile of the angles.", drops=14),
+    _angle_column("angle_max_deg", "The largest sampled angle; the supremum is angle_sup_deg."),
+    Column("worst_normal", "The normal with the largest error: x, y and z.", RAW, drops=1),
+    Column("worst_decode", "The decode of that normal.", RAW, drops=1),
     _supremum_column(
         "angle_sup_deg",
-        "The supremum: the largest angle of exact arithmetic, searched for in float64. Of a finite set it is the set's "
-        "maximum; it is empty where the set is larger than `domain`. float32's own error is in angle_max_deg only.",
+        "The supremum: the largest angle in exact arithmetic, searched for in float64. For a finite set it is the "
+        "maximum over the set; it is empty where the set is larger than `domain`. The error of float32 is in "
+        "angle_max_deg only.",
         unit="degrees",
     ),
     _supremum_column("sup_x", "The normal at the supremum, x.", RAW, drops=11),
@@ -135,17 +140,16 @@ COLUMNS = (
     _supremum_column("sup_z", "The normal at the supremum, z.", RAW, drops=9),
     _supremum_column(
         "sup_found_by",
-        "How the supremum was found: `all corners` of all cells, `corners` of cells climbed over where there are more "
-        "than 2^24, `nearest codes` between points that are looked up, or `climbing` from the worst of many "
-        "directions.",
+        "How the supremum was found: `all corners` of all cells, `corners` of selected cells if there are more than "
+        "2^24, `nearest codes` between points of a lookup, or `climbing` from the worst of many directions.",
         HOW,
     ),
     _supremum_column(
-        "sup_moved_deg", "How much the last round of that search still raised the supremum.", HOW, "degrees"
+        "sup_moved_deg", "How much the last round of the search still raised the supremum.", HOW, "degrees"
     ),
     Column(
         "half_loss_percent",
-        "How much larger the RMS angle is than that of the same code computed in float32; of half arithmetic.",
+        "For half arithmetic: how much larger the RMS angle is than with the same encoding in float32.",
         unit="percent",
         better="less",
     ),
@@ -158,47 +162,53 @@ COLUMNS = (
     ),
     Column(
         "domain",
-        "What bounds and suprema are over: sphere, or hemisphere (z >= 0); empty where the set is not uniform.",
+        "Directions that bounds and suprema are for: sphere, or hemisphere (z >= 0); empty if the set is not uniform.",
         HOW,
         drops=7,
     ),
     shared.CODES,
     Column(
         "code_range",
-        "[0, 1], where that is what an encoder's numbers fill: every storage holds them as they are. Else empty.",
+        "[0, 1] if the encoder's numbers fill that range, so that every storage holds them unchanged. Otherwise empty.",
         HOW,
         drops=7,
     ),
     Column(
         "best_codec",
-        "The catalogue's code of as many bits, or of the most below, whose mean angle is the smallest; of a code that "
-        "packs itself.",
+        "For an encoding that packs itself: the codec of the catalogue with the smallest mean angle at the same bit "
+        "count, or at the next lower one.",
         HOW,
         drops=2,
     ),
     Column("best_mean_deg", "The mean angle of best_codec on 16384 random normals.", HOW, "degrees", drops=2),
-    Column("limit_mean_deg", "The least mean angle that this many codes can have.", HOW, "degrees"),
-    Column("limit_rms_deg", "The least RMS angle that this many codes can have.", HOW, "degrees"),
-    Column("limit_max_deg", "The least maximum that this many codes can have.", HOW, "degrees"),
+    Column(
+        "limit_mean_deg",
+        "Bound on the mean angle for this number of codes.",
+        HOW,
+        "degrees",
+    ),
+    Column("limit_rms_deg", "Bound on the RMS angle for this number of codes.", HOW, "degrees"),
+    Column("limit_max_deg", "Bound on the largest angle for this number of codes.", HOW, "degrees"),
     *shared.REACHED,
     shared.BELOW_LIMIT,
     Column(
         "codes_unused",
-        "Codes that no normal of `domain` is given, as far as was tried: the middle, edges and corners of each cell, "
-        "and "
-        "64 directions per code (4 for 24 bits, where three numbers and look-ups make it an upper bound).",
+        "Codes that no normal of `domain` was encoded to. Tried are the middle, edges and corners of each cell, and "
+        "64 directions per code (4 for 24 bits, where this is an upper bound for three components and for lookup "
+        "tables).",
         better="less",
         option="codes",
     ),
     Column(
         "codes_duplicate",
-        "All codes, used or not, less the distinct directions they decode to: how many could be saved.",
+        "All codes, used or not, minus the distinct directions that they decode to: the number of codes that could "
+        "be saved.",
         better="less",
         option="codes",
     ),
     Column(
         "codes_unstable",
-        "Used codes whose decoded normal, in float32, has another code.",
+        "Used codes whose decoded normal, in float32, encodes to a different code.",
         better="less",
         option="codes",
     ),
@@ -214,11 +224,11 @@ ALSO = (
         "The article's figure: A. Pranckevicius, Compact Normal Storage for Small G-Buffers, 2010.",
         unit="dB",
     ),
-    Column("psnr_article_db_*", "PSNR as the article measures it, by that back end.", unit="dB", better="more"),
-    Column("psnr_db_*", "PSNR over covered pixels, peak 1, by that back end.", unit="dB", better="more"),
+    Column("psnr_article_db_*", "PSNR as the article measures it, for that backend.", unit="dB", better="more"),
+    Column("psnr_db_*", "PSNR over covered pixels, peak 1, for that backend.", unit="dB", better="more"),
     Column("mean", "Mean angle between normal and decode.", unit="degrees", better="less"),
-    Column("p99", "99 % of the angles are below it.", unit="degrees", better="less"),
-    Column("max", "The largest angle that was met; not the supremum.", unit="degrees", better="less"),
+    Column("p99", "99th percentile of the angles.", unit="degrees", better="less"),
+    Column("max", "The largest sampled angle; not the supremum.", unit="degrees", better="less"),
 )
 # The article's methods, what engines ship, and what stands on the ladder of the default answer.
 COMMON = (
@@ -259,14 +269,15 @@ TABLE = Table(
     single={"encoding": "octahedral", "backend": "jax"},
     files={"images": "images", "maps": "sphere", "live": "live"},
     section=Section(
-        title="What normals lose",
+        title="Normal accuracy",
         short="Normals",
         view=View.CODECS,
-        intro="Every encoding in its storage, on a scene and on uniform directions: how far is the decoded normal from "
-        "the one that went in?",
-        method="Each normal is encoded, stored as the render target stores it, decoded, and compared with itself. JAX "
-        "emulates the storage bit for bit; GLSL encodes in a fragment shader into the real target and decodes from it. "
-        "Sums are in 64 bits; an angle is atan2 of cross and dot product. Decodes are not renormalised for the PSNR.",
+        intro="Every encoding in its storage, on a scene and on uniform directions: how far is the decoded normal "
+        "from the original?",
+        method="Each normal is encoded, stored as the render target stores it, decoded and compared with the "
+        "original. JAX emulates the storage bit for bit; GLSL encodes in a fragment shader into the real "
+        "target and decodes from it. Sums are in 64 bits; an angle is the atan2 of cross and dot product. "
+        "Decodes are not renormalised for the PSNR.",
         extras=("angles", "sphere"),
     ),
 )

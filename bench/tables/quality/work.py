@@ -43,7 +43,7 @@ BY_BACKEND = ("psnr_article_db", "psnr_db")
 ARTICLE = "psnr_article"
 # How many rows without figures a line names.
 MOST_NAMED = 4
-AGREED = "dB, the same by JAX and GLSL"
+AGREED = "dB, the same with JAX and GLSL"
 # The word among normal sets that stands for those of a code's domain.
 DOMAIN = "domain"
 EXACT = ("--worst-case", "--codes")
@@ -90,7 +90,7 @@ def cases(options: QualityOptions) -> list[measure.QualityCase]:
 def _as_wgsl(backends: Sequence[str]) -> list[str]:
     """Back ends where no device compiles GLSL."""
     if "glsl" in backends:
-        tell(f"the shaders run as WGSL in place of GLSL: OpenGL ends at {LAST_OPENGL} on this system")
+        tell(f"shaders run as WGSL instead of GLSL, because this system supports OpenGL only up to {LAST_OPENGL}")
     return list(dict.fromkeys("wgsl" if name == "glsl" else name for name in backends))
 
 
@@ -99,7 +99,7 @@ def _not_of_noise(options: QualityOptions, backends: Sequence[str]) -> str:
     exact = [option for option, is_asked in zip(EXACT, (options.worst_case, options.codes), strict=True) if is_asked]
     if exact:
         return not_with_noise(exact[0])
-    return f"--rounding {DITHERED} is measured by --backend jax,glsl; WGSL adds no noise" if "wgsl" in backends else ""
+    return f"--rounding {DITHERED} cannot be used with WGSL; use --backend jax,glsl" if "wgsl" in backends else ""
 
 
 def _set_names(said: Sequence[str], codec: Codec) -> Iterator[str]:
@@ -130,7 +130,7 @@ def _step(case: measure.QualityCase, key: Row) -> Step:
 
 def _check(outputs: QualityOutputs, made: Sequence[Step]) -> None:
     if outputs.images and not any(step.case.normal_set.shape for step in made):
-        raise UsageError(f"--images needs a normal set that is an image: {published.NORMALS}, or a file of one")
+        raise UsageError(f"--images requires a normal set that is an image; use {published.NORMALS} or an image file")
 
 
 def _key(case: measure.QualityCase, options: QualityOptions) -> Row:
@@ -156,16 +156,16 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
     for row in rows:
         if row["angle_sup_deg"] is not None and row["angle_max_deg"] > BY_ARITHMETIC * row["angle_sup_deg"]:
             comparison = (
-                f"{row['angle_max_deg']:.3g} degrees were met, {row['angle_sup_deg']:.3g} are the supremum of exact"
+                f"{row['angle_max_deg']:.3g} degrees sampled; the supremum is {row['angle_sup_deg']:.3g} in exact"
             )
-            yield f"{_named(row)}: {comparison} arithmetic; float32 loses the rest, at {row['worst_normal']}"
+            yield f"{_named(row)}: {comparison} arithmetic; the rest is the error of float32, at {row['worst_normal']}"
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
     """Rows whose errors are smaller than this many codes can have: then the measurement is wrong."""
     for row in rows:
         if row["below_limit"]:
-            wrong = f"{row['codes']} codes cannot do that: the measurement is wrong, or the set is not uniform"
+            wrong = f"{row['codes']} codes cannot be that accurate: the measurement is wrong, or the set is not uniform"
             yield f"{_named(row)}: {row['below_limit']}; {wrong}"
 
 
@@ -206,7 +206,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         groups.get(_sheet_of(row, measured), []).append(row)
     for (normals, storage), part in groups.items():
         lines = beside(part)
-        agreement = "dB by back end" if any(f"psnr_db_{part[0]['backend']}" in line for line in lines) else AGREED
+        agreement = "dB by backend" if any(f"psnr_db_{part[0]['backend']}" in line for line in lines) else AGREED
         measured = backends_of(one_backend([row for row in part if row["angle_mean_deg"] is not None]))
         title = f"{normals}, {storage}: {agreement}; angles in degrees" + (f", by {measured}" if measured else "")
         yield Sheet(title, lines, SUMMARY_DROPS, keys={"storage": storage, "normals": normals})

@@ -33,15 +33,15 @@ def image_chart(at: int, scene: str, rows: Sequence[Row]) -> Chart:
         for row, line in zip(rows, lines_of(rows), strict=True)
     ]
     points = [line | {"what": what, "x": line[field]} for line in lines for what, field in FIELDS]
-    tips = (("line", "codec"), ("image", "the image, dB"), ("normals", "the normals, dB"))
+    tips = (("line", "codec"), ("image", "the image (dB)"), ("normals", "the normals (dB)"))
     what = Names("what", (IMAGE, NORMALS))
     return Chart(
         name=f"image-{at}",
         title=_finding_sentence(lines),
         subtitle=f"The image of {scene} and the normals it was lit by",
-        description="PSNR in dB of the final image of each codec, next to that of the normals in its G-buffer. The "
-        "figures are in the table below.",
-        x=Axis(title="PSNR, dB"),
+        description="PSNR in dB of the final image for each codec, next to the PSNR of the normals in its G-buffer. "
+        "The figures are in the table below.",
+        x=Axis(title="PSNR (dB)"),
         y=Axis(title="", scale=Scale.NAMES, names=distinct(lines, "line")),
         rows=tuple(points),
         colour=what,
@@ -59,7 +59,7 @@ FIELDS = ((IMAGE, "image"), (NORMALS, "normals"))
 def _finding_sentence(lines: Sequence[Row]) -> str:
     """Return which codec has the best image, and whether it also has the best normals."""
     best, normals = lines[0], max(lines, key=lambda line: line["normals"])
-    sentence = f"{best['line']} has the best image, {best['image']:.1f} dB"
+    sentence = f"Best image: {best['line']}, {best['image']:.1f} dB"
     if best["normals"] == normals["normals"]:
-        return f"{sentence}, and the best normals"
-    return f"{sentence}; {normals['line']} has the best normals, {normals['normals']:.1f} dB"
+        return f"{sentence}, also with the best normals"
+    return f"{sentence}; best normals: {normals['line']}, {normals['normals']:.1f} dB"

@@ -41,7 +41,9 @@ MAX_FRAMES = 1000
 MOSTLY_BLACK = 95.0
 MUCH_CLIPPED = 5.0
 # What `pick` measures of studio: an encoding's figures with each axis up, over many orientations.
-ONE_ORIENTATION = " in one orientation; others move an encoding by several dB, so compare encodings with pick"
+ONE_ORIENTATION = (
+    " in one orientation; other orientations change an encoding by several dB, so compare encodings with pick"
+)
 
 
 def layouts(options: RenderOptions) -> list[Layout]:
@@ -105,7 +107,7 @@ def cases(options: RenderOptions, device: Device) -> list[RenderCase]:
                 )
                 all_cases += [replace(case, power=power) for power in ([None] if scene.is_metal_rough else powers)]
         if scene.is_metal_rough and options.power is not None:
-            tell(f"{maker.name}: --power is not used: metal/rough materials have a roughness of their own")
+            tell(f"{maker.name}: --power is not used, because metallic-roughness materials have their own roughness")
     return what_is_left(all_cases, complaints)
 
 
@@ -141,9 +143,9 @@ def _exposure(asked: str | None, maker: SceneMaker) -> float | None:
     try:
         stops = float(asked)
     except ValueError:
-        raise UsageError(f"--exposure {asked}: a number of stops, such as -1.5, or auto") from None
+        raise UsageError(f"--exposure {asked}: not a number; use stops such as -1.5, or auto") from None
     if not abs(stops) <= MAX_EXPOSURE:
-        raise UsageError(f"--exposure {asked}: {-MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops")
+        raise UsageError(f"--exposure {asked}: out of range; use {-MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops")
     return stops
 
 
@@ -167,12 +169,12 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
         yield from says_little(scene, covered)
     for scene, black in _most(rows, "black_percent").items():
         if black > MOSTLY_BLACK:
-            remedy = "it has no light that reaches what is seen, or needs --exposure auto"
-            yield f"{scene}: {black:.0f} % of the covered pixels are black, where errors cannot be seen; {remedy}"
+            remedy = "no light reaches the visible surfaces, or it needs --exposure auto"
+            yield f"{scene}: {black:.0f}% of the covered pixels are black; errors there are not visible; {remedy}"
     for scene, clipped in _most(rows, "clipped_percent").items():
         if clipped > MUCH_CLIPPED:
-            remedy = "--exposure auto or --tone-mapping reinhard shows them"
-            yield f"{scene}: {clipped:.0f} % of the covered pixels are clipped, where errors cannot be seen; {remedy}"
+            remedy = "--exposure auto or --tone-mapping reinhard makes them visible"
+            yield f"{scene}: {clipped:.0f}% of the covered pixels are clipped; errors there are not visible; {remedy}"
 
 
 def _most(rows: Sequence[Row], column: str) -> dict[str, float]:

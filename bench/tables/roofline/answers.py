@@ -17,7 +17,7 @@ def answers(rows: Sequence[Row]) -> tuple[str, ...]:
         rows: those of the table, ranked.
     """
     sentences = list(_answers_by_gpu(rows))
-    return tuple(["The fastest codes on each GPU:", *sentences] if len(sentences) > 1 else sentences)
+    return tuple(["The fastest encodings on each GPU:", *sentences] if len(sentences) > 1 else sentences)
 
 
 def _answers_by_gpu(rows: Sequence[Row]) -> Iterator[str]:

@@ -9,7 +9,7 @@ from ..charts import having
 from ..table import Row
 
 STEPS = 40
-MEMORY, CACHE = "where bytes take as long as instructions", "the same in the cache"
+MEMORY, CACHE = "where bytes take as long as instructions", "the same, from the cache"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
@@ -74,11 +74,12 @@ def roofline_chart(rows: Sequence[Row]) -> Chart:
         name="roofline",
         title=_finding_sentence(drawn_points),
         subtitle=f"Bytes against instructions, {drawn_points[0]['size']}, {reads} {'read' if reads == 1 else 'reads'}",
-        description="Each code by the instructions and the bytes of a pixel and frame, of the fewest reads and the "
-        "first size. Above the GPU's line a code's bytes take longer than its instructions, below it the instructions "
-        "do. The dashed line is for codes that the cache holds. The figures are in the table.",
-        x=Axis(title="instructions of a pixel and frame", scale=Scale.COUNT, domain=(-1.0, _axis_end(drawn_points))),
-        y=Axis(title="bytes written and read", scale=Scale.LOG, domain=_bytes_axis(drawn_points)),
+        description="Each encoding by its instructions and bytes per pixel and frame, at the fewest reads and the "
+        "first size. Above the GPU's line an encoding's bytes take longer than its instructions, below "
+        "it the instructions do. The dashed line is for encodings that fit in the cache. The figures are "
+        "in the table.",
+        x=Axis(title="instructions per pixel and frame", scale=Scale.COUNT, domain=(-1.0, _axis_end(drawn_points))),
+        y=Axis(title="bytes written and read per pixel and frame", scale=Scale.LOG, domain=_bytes_axis(drawn_points)),
         rows=tuple(drawn_points),
         colour=Names("encoding", distinct(drawn_points, "encoding")),
         shape=Names("storage", distinct(drawn_points, "storage")),
@@ -100,5 +101,5 @@ def _finding_sentence(found: Sequence[Row]) -> str:
     """Return a sentence on how often bytes take longer than instructions."""
     bound = [point for point in found if point["y"] * point["ridge"] > point["x"]]
     gpus, codecs = (len(distinct(found, name)) for name in ("gpu", "codec"))
-    shown = f"{codecs} codes on {gpus} {'GPU' if gpus == 1 else 'GPUs'}"
+    shown = f"{codecs} codecs on {gpus} {'GPU' if gpus == 1 else 'GPUs'}"
     return f"Bytes take longer than instructions in {len(bound)} of {len(found)} cases: {shown}"

@@ -97,19 +97,19 @@ def _named_rates(word: str) -> tuple[str, Rates]:
     pairs = [_setting(word, setting) for setting in settings]
     changed = dict(pairs)
     if len(changed) < len(pairs):
-        raise UsageError(f"--gpu {word}: a setting is given twice")
+        raise UsageError(f"--gpu {word}: a rate is given twice; give each rate once")
     if name in GPUS:
         rates = replace(GPUS[name], **changed)
     elif name in FAMILIES:
         if missing := [key for key in ("lanes", "clock", "memory") if key not in changed]:
             such = ":".join([word, *(f"{key}={SUCH[key]}" for key in missing)])
-            raise UsageError(f"--gpu {word}: a GPU of a family needs {', '.join(missing)}, such as {such}")
+            raise UsageError(f"--gpu {word}: a family requires {', '.join(missing)}; write for example {such}")
         rates = Rates(FAMILIES[name].title, name, **changed)
     else:
         listed = f"all, {', '.join(GPUS)}, or a family with its rates"
         raise UsageError(f"--gpu {word}: {unknown_name('GPU', [name], GPUS, listed)}")
     if bool(rates.cache) != bool(rates.cached):
-        raise UsageError(f"--gpu {word}: cache, in MB, and cached, in GB/s, go together")
+        raise UsageError(f"--gpu {word}: cache (MB) and cached (GB/s) require each other; give both or neither")
     return word, rates
 
 
@@ -124,5 +124,5 @@ def _setting(word: str, setting: str) -> tuple[str, float]:
         number = math.nan
     low, high = RANGES[name]
     if not low <= number <= high:
-        raise UsageError(f"--gpu {word}: {name} is {value!r}; from {low:g} to {high:g}")
+        raise UsageError(f"--gpu {word}: {name} is {value!r}; use {low:g} to {high:g}")
     return name, number

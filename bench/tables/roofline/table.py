@@ -27,8 +27,8 @@ class RooflineOptions(SourceOptions):
         Option(
             "--gpu",
             f"GPUs, comma-separated, or all: {', '.join(f'{name} ({gpu.title})' for name, gpu in GPUS.items())}. "
-            "NAME:memory=400 changes a rate; known: lanes, clock (GHz), memory (GB/s), cache (MB), cached (GB/s). "
-            "A family with these is a GPU of that family.",
+            "NAME:memory=400 changes a rate; rates: lanes, clock (GHz), memory (GB/s), cache (MB), cached (GB/s). "
+            "A family with these rates also works.",
             in_run=True,
         ),
     ] = USUAL
@@ -36,17 +36,19 @@ class RooflineOptions(SourceOptions):
         "1920x1080",
         "3840x2160",
     )
-    reads: Annotated[Names, Option("--reads", "Passes that read and decode each pixel's normal, comma-separated.")] = (
+    reads: Annotated[
+        Names, Option("--reads", "Numbers of passes that read and decode each pixel's normal, comma-separated.")
+    ] = (
         "1",
         "4",
     )
     overdraw: Annotated[float, Option("--overdraw", "How often each pixel's normal is encoded and written.")] = 1.0
     cache_share: Annotated[
-        float, Option("--cache-share", "The share of the last-level cache that normals may have, 0 to 1.")
+        float, Option("--cache-share", "Share of the last-level cache that normals may use, 0 to 1.")
     ] = 0.25
     shared: Annotated[
         bool,
-        Option("--shared", "Something else uses the rest of each texel: bytes are those of a code's own bits."),
+        Option("--shared", "Share texels with other data: count only the encoding's own bits as traffic."),
     ] = False
 
 
@@ -60,25 +62,32 @@ class RooflineOutputs:
 COLUMNS = (
     shared.ENCODING,
     shared.STORAGE,
-    Column("gpu", "The GPU, with the rates that were changed.", KEY),
+    Column("gpu", "The GPU, with changed rates.", KEY),
     Column("size", "Width and height of the G-buffer in pixels.", KEY),
-    Column("reads", "Passes that read and decode each pixel's normal.", KEY),
+    Column("reads", "Number of passes that read and decode each pixel's normal.", KEY),
     shared.BITS,
-    Column("bytes_per_pixel", "Of the texel; with --shared of the code's own bits.", better="less"),
+    Column("bytes_per_pixel", "Bits of the texel; with --shared, the encoding's own bits.", better="less"),
     Column(
-        "encode", "Instructions to encode and pack, in full-rate ones where they are known.", better="less", drops=5
+        "encode",
+        "Instructions to encode and pack; in full-rate instructions if these are known.",
+        better="less",
+        drops=5,
     ),
     Column("decode", "Instructions to unpack and decode.", better="less", drops=5),
-    Column("instructions", "Instructions a pixel and frame: `overdraw` encodes and `reads` decodes.", better="less"),
-    Column("megabytes", "Megabytes that are written and read in a frame.", better="less", drops=8),
-    Column("memory_us", "How long the bytes take.", unit="us", better="less", drops=4),
-    Column("alu_us", "How long the instructions take.", unit="us", better="less", drops=4),
-    Column("frame_us", "The longer of the two: they run at the same time.", unit="us", better="less"),
+    Column("instructions", "Instructions per pixel and frame: `overdraw` encodes and `reads` decodes.", better="less"),
+    Column("megabytes", "Megabytes written and read per frame.", better="less", drops=8),
+    Column("memory_us", "Time for the bytes.", unit="us", better="less", drops=4),
+    Column("alu_us", "Time for the instructions.", unit="us", better="less", drops=4),
+    Column("frame_us", "The longer of the two times, because both run at once.", unit="us", better="less"),
     Column("bound", "Which of the two is longer: memory or alu.", HOW),
-    Column("rank", "The place by frame_us among the codes on this GPU, size and reads; equal ones share it.", HOW),
+    Column(
+        "rank",
+        "Rank by frame_us among the codecs on this GPU, at this size and these reads; equal times share a rank.",
+        HOW,
+    ),
     Column("in_cache", "Whether the normals fit into their share of the last-level cache.", HOW, drops=7),
-    Column("ridge", "Instructions that take as long as one byte does, at the bandwidth of the row.", HOW, drops=6),
-    Column("shared", "Whether something else uses the rest of the texel.", HOW, drops=10),
+    Column("ridge", "Instructions that take as long as one byte, at the bandwidth of the row.", HOW, drops=6),
+    Column("shared", "Whether other data uses the rest of the texel.", HOW, drops=10),
     Column("overdraw", "How often each pixel's normal is encoded and written.", HOW, drops=10),
     Column("family", "The GPU family that instructions are counted for.", HOW, drops=9),
     Column("driver", "The compiler of the counts.", HOW, drops=11),
@@ -91,9 +100,9 @@ ALSO = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="Estimate which encoding is faster on which GPU, by a model.\n\nA code's bytes take memory bandwidth. Its "
-    "instructions, as `cost --isa` counts them, take arithmetic. The longer of the two is its time. Nothing "
-    "is timed, and the GPUs need not be there.",
+    help="Estimate which encoding is faster on which GPU, with a model.\n\nBytes take memory bandwidth. "
+    "Instructions, as `cost --isa` counts them, take arithmetic. The longer of the two times counts. Nothing is "
+    "timed, and no GPU is needed.",
     example="normalbench roofline --encoding xyz,octahedral --storage rgba16f,rg8 --gpu rx6800xt,iris_xe",
     options=RooflineOptions,
     outputs=RooflineOutputs,
@@ -105,15 +114,15 @@ TABLE = Table(
     in_all=False,
     compilers=("driver",),
     section=Section(
-        title="Are fewer bytes worth their instructions?",
+        title="Memory traffic and instructions",
         short="Roofline",
         view=View.CODECS,
         of_texels=True,
-        intro="Is a smaller code worth its instructions?",
-        method="Instructions are counted for the GPU's family: of encoding with packing, of unpacking with decoding. A "
-        "frame encodes and writes each pixel's normal `overdraw` times. Each pass reads and decodes it once. Bytes "
-        "over bandwidth is one time, instructions over the rate of full-rate ones another. The longer counts. Where "
-        "the normals fit into their share of the last-level cache, the bandwidth is the cache's. Compression of "
-        "targets, latency and what else the passes do are left out.",
+        intro="Is a smaller encoding worth its instructions?",
+        method="Instructions are counted for the GPU's family: encoding with packing, and unpacking with decoding. A "
+        "frame encodes and writes each pixel's normal `overdraw` times. Each pass reads and decodes it once. "
+        "One time is bytes over bandwidth, the other is instructions over the full rate. The longer counts. "
+        "If the normals fit into their share of the last-level cache, the cache's bandwidth is used. "
+        "Compression of targets, latency and the other work of the passes are left out.",
     ),
 )

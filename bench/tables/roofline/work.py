@@ -26,9 +26,9 @@ MOST_PAIRS = 6
 def cases(options: RooflineOptions) -> list[RooflineCase]:
     """Return a case for each GPU. Raises UsageError for a name that is unknown or a value out of range."""
     if not 0.01 <= options.overdraw <= 1000:
-        raise UsageError(f"--overdraw {options.overdraw}: from 0.01 to 1000")
+        raise UsageError(f"--overdraw {options.overdraw}: out of range; use 0.01 to 1000")
     if not 0 <= options.cache_share <= 1:
-        raise UsageError(f"--cache-share {options.cache_share}: a share is 0 to 1")
+        raise UsageError(f"--cache-share {options.cache_share}: out of range; use 0 to 1")
     sizes = [checked_sides(word, MOST_SIDE, "here") for word in map(str, options.size)]
     reads = checked_numbers("--reads", options.reads, int, 1, MOST_READS)
     gpus = gpus_named(options.gpu)
@@ -86,12 +86,12 @@ def _duels(case: RooflineCase) -> Iterator[str]:
         duels if len(duels) <= MOST_PAIRS else {pair: sizes for pair, sizes in duels.items() if [*sizes] != ["always"]}
     )
     if len(few) < len(duels):
-        yield f"{case.gpu}: the smaller code is always faster in {len(duels) - len(few)} of {len(duels)} pairs"
+        yield f"{case.gpu}: the smaller encoding is always faster in {len(duels) - len(few)} of {len(duels)} pairs"
     for (small, large), sizes in list(few.items())[:MOST_PAIRS]:
         answers = (_said(answer, answer_sizes if len(sizes) > 1 else []) for answer, answer_sizes in sizes.items())
         yield f"{case.gpu}: {small} is faster than {large}: {'; '.join(answers)}"
     if len(few) > MOST_PAIRS:
-        yield f"{case.gpu}: {len(few) - MOST_PAIRS} more pairs; name fewer codes to see them"
+        yield f"{case.gpu}: {len(few) - MOST_PAIRS} more pairs; name fewer encodings to see them"
 
 
 def _by_size(case: RooflineCase, one: measure.Work, other: measure.Work) -> dict[str, list[str]]:
@@ -120,7 +120,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
             line = lines.setdefault(code, {"code": code, "bits": row["bits"]})
             line[f"{row['gpu']} {row['size']}"] = row["frame_us"]
         times = "1 read" if reads == 1 else f"{reads} reads"
-        title = f"microseconds that a code takes of a frame, {times} of the G-buffer"
+        title = f"microseconds per frame, with {times} of the G-buffer"
         yield Sheet(title, list(lines.values()), said=sentences)
         sentences = ()
 

@@ -43,16 +43,16 @@ def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
     ends = (min(point["x"] for point in points), max(point["x"] for point in points))
     lines = tuple({"line": f"{threshold:g}", "x": x, "y": threshold} for threshold in thresholds for x in ends)
     codecs = tuple(dict.fromkeys(map(_called, rows)))
-    tips = (("codec", "codec"), ("x", "roughness"), ("y", "FLIP, 99th percentile"), ("what", "worst on"))
+    tips = (("codec", "codec"), ("x", "roughness"), ("y", "FLIP (99th percentile)"), ("what", "worst on"))
     return Chart(
         name="roughness",
-        title="A mirror shows each step of a code; a dull surface hides it",
-        subtitle="FLIP's 99th percentile over roughness, the worst of objects and environments",
-        description="FLIP's 99th percentile over the pixels of an object that reflects its environment, on a scale of "
-        "logarithms, over perceptual roughness: a line for each code, the worst of objects and environments. Dotted "
-        "lines are the thresholds. The figures are in the table.",
+        title="A mirror shows each step between codes; a rough surface hides it",
+        subtitle="FLIP (99th percentile) by roughness, for the worst object and environment",
+        description="FLIP (99th percentile) over the pixels of an object that reflects its environment, on a "
+        "logarithmic scale, by perceptual roughness: a line for each encoding, for the worst object and "
+        "environment. Dotted lines are the thresholds. The figures are in the table.",
         x=Axis(title="perceptual roughness"),
-        y=Axis(title="FLIP, 99th percentile", scale=Scale.LOG),
+        y=Axis(title="FLIP (99th percentile)", scale=Scale.LOG),
         rows=points,
         colour=Names("codec", codecs),
         marks=(

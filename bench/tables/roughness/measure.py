@@ -119,7 +119,7 @@ def _rows_of(pictures: Pictures, codec: Codec, seen: Accumulation, thresholds: S
     about: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": codec.rounding}
     about |= {"dither": seen.dither, "frames": seen.frames, "bits": codec.bits}
     if seen.dither != NONE and codec.undithered:
-        return [about | {"skipped": f"{codec.name} is not dithered: {codec.undithered}"}]
+        return [about | {"skipped": f"{codec.name} cannot be dithered: {codec.undithered}"}]
     with ExitStack() as stack:
         try:
             frames = pictures.opened(stack, codec, seen)

@@ -29,16 +29,18 @@ class RoughnessOptions(SourceOptions):
         Names,
         Option("--environment", "studio, strips, lamp, sky, or .hdr and .exr files; comma-separated.", files=True),
     ] = ("studio", "strips", "lamp")
-    threshold: Annotated[
-        Names, Option("--threshold", "FLIP's 99th percentile that a code may have, comma-separated.")
-    ] = ("0.1", "0.05")
+    threshold: Annotated[Names, Option("--threshold", "Thresholds for FLIP (99th percentile), comma-separated.")] = (
+        "0.1",
+        "0.05",
+    )
     size: Size = "256x256"
     dither: Annotated[
-        Names, Option("--dither", "Noise before rounding, besides none: still, moving; comma-separated, or all.")
+        Names,
+        Option("--dither", "Noise added before rounding, in addition to none: still, moving; comma-separated, or all."),
     ] = ("none",)
     frames: Annotated[
         Names | None,
-        Option("--frames", "Frames whose mean a picture is, comma-separated. Default: 1; with --dither 1,8."),
+        Option("--frames", "Number of frames to average per image, comma-separated. Default: 1; with --dither 1,8."),
     ] = None
 
 
@@ -55,54 +57,56 @@ COLUMNS = (
     Column("rounding", "How the storage rounds.", KEY, drops=5),
     Column(
         "dither",
-        "Noise of a whole step that is added to a code before it is rounded: none; still, the same in each frame; "
-        "moving, another one in each.",
+        "Noise of one step, added to the code before rounding: none; still, the same in each frame; moving, "
+        "different in each frame.",
         KEY,
         drops=5,
     ),
     Column(
         "frames",
-        "How many frames a picture is the mean of, each seen from its own place within a pixel; 1: from the middle.",
+        "Number of frames averaged per image, each sampled at its own place within the pixel; 1: at the centre.",
         KEY,
         drops=5,
     ),
     Column(
         "threshold",
-        "In a row of a least roughness: FLIP's 99th percentile that is kept from there on. Empty in the rows of single "
-        "pictures.",
+        "The threshold for FLIP (99th percentile), in a row that gives a lowest roughness. Empty in the rows of "
+        "single images.",
         KEY,
     ),
     Column(
         "object",
-        "What fills the picture: a metal sphere; metal panels whose normal turns by 20 or by 4 degrees across it; a "
-        "sphere of white plaster.",
+        "The object that fills the image: a metal sphere; a metal panel whose normal turns by 20 or by 4 degrees "
+        "across it; a white plaster sphere.",
         KEY,
     ),
-    Column("environment", "What it reflects; plaster lies in the light of a sun.", KEY),
+    Column("environment", "What the object reflects. Plaster is lit by a sun.", KEY),
     Column(
         "roughness",
-        "Perceptual roughness, 0 for a mirror; of a least roughness, to 0.01. Empty there: none is enough.",
+        "Perceptual roughness, 0 for a mirror. In a row with a threshold: the lowest acceptable roughness, to 0.01; "
+        "empty if there is none.",
         KEY,
     ),
     Column(
         "decides",
-        "Set in a row of a least roughness whose object and environment need the most of its code.",
+        "Set in a row with a threshold if its object and environment are the most demanding for the encoding.",
         Role.RAW,
         shown=False,
     ),
     Column("bits", shared.BITS.says, drops=9),
-    Column("psnr_db", "Of the displayed image, over the object's pixels.", unit="dB", better="more"),
-    Column("flip", "FLIP's mean over the object's pixels, at 67 pixels a degree.", better="less", drops=6),
+    Column("psnr_db", "PSNR of the displayed image, over the object's pixels.", unit="dB", better="more"),
+    Column("flip", "Mean FLIP over the object's pixels, at 67 pixels per degree.", better="less", drops=6),
     Column(
         "flip_p99",
-        "FLIP's 99th percentile over the object's pixels: 0.1 is a grey off by 5 to 6 of 255, 0.05 one off by 2.",
+        "FLIP (99th percentile) over the object's pixels: 0.1 is a grey that is off by 5 to 6 of 255, 0.05 one that "
+        "is off by 2.",
         better="less",
     ),
     Column("off_percent", "Share of the object's pixels that are off by more than 1 of 255.", unit="%", better="less"),
-    Column("largest", "Largest difference of a channel, of 255.", better="less", drops=7),
-    Column("exposure", "Light is multiplied by 2 to this power before it is shown.", HOW, "stops", drops=4),
-    Column("tone_mapping", "How light beyond 1 is shown.", HOW, drops=4),
-    Column("environment_size", "Texels of the environment, and what was done to it.", HOW, drops=4),
+    Column("largest", "Largest difference in any channel, out of 255.", better="less", drops=7),
+    Column("exposure", "Exposure: light is multiplied by 2 to this power before display.", HOW, "stops", drops=4),
+    Column("tone_mapping", "How light above 1 is displayed.", HOW, drops=4),
+    Column("environment_size", "Size of the environment in texels, and how it was changed.", HOW, drops=4),
     Column("size", "Width and height of the image in pixels.", HOW, drops=4),
     shared.DEVICE,
     shared.SKIPPED,
@@ -110,11 +114,11 @@ COLUMNS = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="Find the lowest roughness at which banding is acceptable.\n\nA sphere and two panels of a metal that "
-    "reflects all light fill the picture one by one, under three environments, and a sphere of white plaster "
-    "in the sun. A code carries a roughness where FLIP's 99th percentile is at most --threshold there and at "
-    "every greater roughness, on the worst of objects and environments. 0.1 is what we call acceptable and "
-    "0.05 invisible: both are conventions.",
+    help="Find the lowest roughness at which banding is acceptable.\n\nAn encoding is acceptable at a roughness if "
+    "FLIP (99th percentile) is at most --threshold there and at every higher roughness measured, on the worst "
+    "object and environment. The objects are a sphere and two panels of perfectly reflecting metal, under three "
+    "environments, and a white plaster sphere in the sun. We call 0.1 acceptable and 0.05 invisible; both are "
+    "conventions.",
     example="normalbench roughness --storage rg8,rgb10a2 --environment studio",
     step_s=2.5,
     options=RoughnessOptions,
@@ -125,14 +129,14 @@ TABLE = Table(
     # Of metals and environments those that decide, and plaster: each other one needs less of every code.
     usual=({"object": "panel20,panel4,plaster", "environment": "studio,lamp"},),
     section=Section(
-        title="What reflections need",
+        title="Banding in reflections",
         short="Roughness",
         view=View.CHOOSE,
-        intro="A mirror shows each step of a normal's code as a band; a dull surface hides them. From which roughness "
-        "on does a code carry reflections?",
-        method="A sphere and two slowly turning panels of a perfect metal fill the picture one by one, under each "
-        "environment, and a sphere of white plaster (F0 0.04) in the light of one sun. The picture with the code's "
-        "normals is compared with the one of exact normals, as displayed, at 24 roughnesses. The least roughness of a "
-        "code is found to 0.01 by drawing at the crossing.",
+        intro="A mirror shows each step between codes as a band; a rough surface hides the bands. From which "
+        "roughness are reflections acceptable?",
+        method="A sphere and two slowly turning panels of perfectly reflecting metal fill the image in turn, under "
+        "each environment; so does a white plaster sphere (F0 0.04) under one sun. The image with decoded "
+        "normals is compared with the image with exact normals, as displayed, at 24 roughnesses. The lowest "
+        "acceptable roughness is found to 0.01 by drawing more images near it.",
     ),
 )

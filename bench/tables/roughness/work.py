@@ -58,7 +58,7 @@ def _environments(words: Names) -> tuple[Environment, ...]:
     environments = tuple(environment_named(str(word)) for word in words)
     names = [environment.name for environment in environments]
     if not environments:
-        raise UsageError("--environment: name at least one, such as studio")
+        raise UsageError("--environment: no environment given; name at least one, such as studio")
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise UsageError(f"--environment: {twice} is named twice")
     return environments
@@ -72,7 +72,7 @@ def _key(case: RoughnessCase) -> Row:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    notes = ("Below these, bands are visible. The rows of -o FILE have FLIP and PSNR of each picture.",)
+    notes = ("Below these, bands are visible. The rows of -o FILE have FLIP and PSNR of each image.",)
     yield from (replace(sheet, notes=notes) for sheet in _summary(done.rows))
 
 
@@ -107,7 +107,10 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         line[f"from, at {threshold}"] = "none" if row["roughness"] is None else f"{row['roughness']:.2f}"
         line[f"decided by, at {threshold}"] = f"{row['object']} in {row['environment']}"
     if lines:
-        yield Sheet("the least roughness from which on each code carries reflections", list(lines.values()))
+        yield Sheet(
+            "lowest roughness at which each encoding's reflections are acceptable, by FLIP threshold",
+            list(lines.values()),
+        )
 
 
 def _measured(case: RoughnessCase) -> list[Row]:

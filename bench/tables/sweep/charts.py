@@ -49,12 +49,12 @@ def passes_chart(at: int, objects: object, rows: Sequence[Row]) -> Chart:
     fastest = min(totals, key=lambda total: total["x"])
     return Chart(
         name=f"passes-{at}",
-        title=f"{fastest['pipeline']} is the fastest, {fastest['x']:.3g} ms a frame",
-        subtitle=f"What the milliseconds of a frame of {objects} objects go into",
-        description="A bar for each pipeline, divided by pass: milliseconds a frame, medians. The figures are in the "
+        title=f"{fastest['pipeline']} is the fastest, {fastest['x']:.3g} ms per frame",
+        subtitle=f"Time per pass, for a frame of {objects} objects",
+        description="A bar for each pipeline, divided by pass: median milliseconds per frame. The figures are in the "
         "table.",
         x=Axis(
-            title=f"milliseconds, the medians of a frame's passes, {rows[0].get('clock')}",
+            title=f"median milliseconds of a frame's passes ({rows[0].get('clock')})",
             domain=(0.0, (1 + ROOM) * longest),
         ),
         y=Axis(title="", scale=Scale.NAMES, names=distinct(totals, "pipeline")),
@@ -114,11 +114,11 @@ def frames_chart(rows: Sequence[Row]) -> Chart:
     tips = (("line", "pipeline"), ("x", "objects"), ("y", "ms"))
     return Chart(
         name="frames",
-        title=f"At {counts[-1]} objects {fastest['line']} is the fastest, {fastest['y']:.3g} ms a frame",
+        title=f"Fastest at {counts[-1]} objects: {fastest['line']}, {fastest['y']:.3g} ms per frame",
         subtitle=f"{first['size']}, {first['lights']} point lights and a sun; {first['device']}, {first['clock']}",
-        description="Milliseconds a frame over the number of objects, a line for each pipeline.",
+        description="Milliseconds per frame by the number of objects, with a line for each pipeline.",
         x=Axis(title="objects", scale=Scale.LOG, ticks=tuple((count, str(count)) for count in counts)),
-        y=Axis(title="ms a frame, median and quartiles", scale=Scale.LOG),
+        y=Axis(title="ms per frame (median and quartiles)", scale=Scale.LOG),
         rows=tuple(points),
         colour=Names("line", distinct(points, "line")),
         panels=Names("shadow", tuple(sorted(distinct(points, "shadow")))),

@@ -63,36 +63,44 @@ class SweepOutputs:
 
 COLUMNS = (
     shared.PIPELINE,
-    Column("layout", "Which bits of which targets hold what.", KEY, drops=6),
-    Column("holds", "What the layout's targets hold.", HOW, drops=3),
-    Column("light_buffer", "The code that light is added up in.", KEY, drops=5),
+    Column("layout", "The layout of the G-buffer.", KEY, drops=6),
+    Column("holds", "Contents of the layout's targets.", HOW, drops=3),
+    Column("light_buffer", "The encoding of the light buffer.", KEY, drops=5),
     shared.LIGHT_TARGETS,
     shared.SCALE,
     shared.SCENE,
-    Column("objects", "Objects in the scene.", KEY),
-    Column("lights", "Point lights.", KEY),
+    Column("objects", "Number of objects in the scene.", KEY),
+    Column("lights", "Number of point lights.", KEY),
     shared.SHADOW,
     Column("size", "Width and height in pixels.", KEY),
-    Column("samples", "Samples per pixel that the device gave.", KEY),
+    Column("samples", "Samples per pixel that the device used.", KEY),
     shared.SAMPLES_ASKED,
-    Column("repeats", "Frames that the median is of.", HOW, drops=8),
+    Column("repeats", "Number of frames that the median is taken over.", HOW, drops=8),
     shared.SCENE_SEED,
     shared.DEVICE,
-    Column("ms_frame", "Milliseconds a frame, median.", TIME, "ms", "less"),
-    Column("ms_frame_spread", "Distance of the frame times' quartiles.", TIME, "ms"),
-    Column("ms_frame_each", "Every frame's milliseconds.", Role.RAW, "ms", shown=False),
-    Column("ms_*", "Milliseconds of that pass, median.", TIME, "ms", "less", drops=9),
-    Column("ms_*_spread", "Distance of that pass's quartiles.", TIME, "ms"),
-    Column("triangles", "Triangles of a frame that reach the rasteriser; light volumes count twice.", better="less"),
+    Column("ms_frame", "Median milliseconds per frame.", TIME, "ms", "less"),
+    Column("ms_frame_spread", "Interquartile range of the frame times.", TIME, "ms"),
+    Column("ms_frame_each", "Milliseconds of each frame.", Role.RAW, "ms", shown=False),
+    Column("ms_*", "Median milliseconds of that pass.", TIME, "ms", "less", drops=9),
+    Column("ms_*_spread", "Interquartile range of that pass.", TIME, "ms"),
+    Column("triangles", "Triangles per frame that reach the rasteriser; light volumes count twice.", better="less"),
     Column(
-        "triangles_*", "Triangles of that pass; light volumes count twice, marked and shaded.", better="less", drops=10
+        "triangles_*",
+        "Triangles of that pass; light volumes count twice, once marked and once shaded.",
+        better="less",
+        drops=10,
     ),
-    Column("clock", "What timed it. A software rasteriser's times compare passes and are not a GPU's.", HOW, drops=2),
+    Column(
+        "clock",
+        "What measured the time. Times of a software rasteriser compare passes; they are not GPU times.",
+        HOW,
+        drops=2,
+    ),
 )
 
 TABLE = Table(
     package=__package__ or "",
-    help="Measure the passes of each pipeline over the number of objects.",
+    help="Measure the passes of each pipeline by number of objects.",
     example="normalbench sweep --objects 100,200 --size 320x240 --repeats 1 -o sweep.csv",
     options=SweepOptions,
     outputs=SweepOutputs,
@@ -101,13 +109,11 @@ TABLE = Table(
     usual=({"pipeline": "all", "objects": "200", "shadow": "on", "size": "auto", "scale": 1.0, "repeats": 9},),
     single={"pipeline": "deferred", "objects": "100", "shadow": "on", "size": "320x240", "repeats": 1},
     section=Section(
-        title="What the passes take",
+        title="Pass times",
         short="Passes",
-        intro="A frame of each pipeline in the layout that it is published with: where do its milliseconds go?",
-        method="Medians over repeated frames after a warm-up; the spread is the distance of the quartiles. Timer "
-        "queries "
-        "on a GPU; on a software rasteriser a clock around each finished pass, which compares passes with each other "
-        "and "
-        "is not a GPU's time. The clock is named below.",
+        intro="A frame of each pipeline in the layout that it was published with: where do its milliseconds go?",
+        method="Medians over repeated frames after a warm-up; the spread is the interquartile range. On a GPU, timer "
+        "queries; on a software rasteriser, a clock around each finished pass, which compares passes with "
+        "each other and is not GPU time. The clock is named below.",
     ),
 )

@@ -59,7 +59,9 @@ def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
         UsageError: too many or too few of them, or all of them are one.
     """
     if chosen.count > MAX_COUNT:
-        raise UsageError(f"{chosen.name} has {chosen.count} normals; tune keeps them in memory: at most {MAX_COUNT}")
+        raise UsageError(
+            f"{chosen.name}: {chosen.count} normals are too many; tune holds at most {MAX_COUNT} in memory"
+        )
     loaded = [load() for load in chosen.loads()]
     n, view, covered = jax.tree.map(lambda *parts: np.concatenate(parts)[: chosen.count], *loaded)
     n, view = (np.stack([np.asarray(c) for c in planes], axis=1) for planes in (n, view))
@@ -68,9 +70,11 @@ def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
     is_fitting = (random.permutation(group.max() + 1) % 2 == 0)[group]
     fitting, others = (np.flatnonzero(covered & side) for side in (is_fitting, ~is_fitting))
     if min(len(fitting), len(others)) < LEAST:
-        raise UsageError(f"{chosen.name}: {int(covered.sum())} normals are too few for two halves of {LEAST} or more")
+        raise UsageError(
+            f"{chosen.name}: {int(covered.sum())} normals are too few; two halves need at least {LEAST} each"
+        )
     if np.ptp(n[fitting], axis=0).max() == 0:
-        raise UsageError(f"{chosen.name}: every normal to fit to is the same; take a set of several directions")
+        raise UsageError(f"{chosen.name}: all normals to fit are the same; use a set with several directions")
     held = from_arrays(chosen.name, chosen.title, n[others], view[others], np.ones(len(others), bool))
     return Halves(Normals(n[fitting], view[fitting]), replace(held, code_space=chosen.code_space))
 

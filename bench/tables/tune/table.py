@@ -23,10 +23,10 @@ class TuneOptions(Reading):
     normals: Annotated[Names, Option("--normals", "A normal set or a file of one.", files=True)] = ("playground",)
     storage: Annotated[Names, Option("--storage", "A storage.")] = ("rgba8",)
     parameter: Annotated[
-        Names, Option("--parameter", "An encoding's own; table; comma-separated. Default: all there are.")
+        Names, Option("--parameter", "The encoding's own parameters, or table; comma-separated. Default: all.")
     ] = ("all",)
-    error: Annotated[str, Option("--error", "psnr, rms, mean or max, the largest angle.")] = "psnr"
-    count: Annotated[int, Option("--count", "Normals in a uniform set.")] = 2**20
+    error: Annotated[str, Option("--error", "Error to minimise: psnr, rms, mean or max (the largest angle).")] = "psnr"
+    count: Annotated[int, Option("--count", "Number of normals in a uniform set.")] = 2**20
     seed: Seed = 0
 
 
@@ -34,32 +34,33 @@ class TuneOptions(Reading):
 class TuneOutputs:
     """Outputs of `tune` other than its rows."""
 
-    table: Annotated[Path | None, Option("--table", "Write a tuned look-up into this file, a NumPy array.")] = None
+    table: Annotated[Path | None, Option("--table", "Write the tuned lookup table to this file, a NumPy array.")] = None
 
 
 COLUMNS = (
     Column("encoding", "The encoding as published.", KEY),
-    Column("storage", "The texel format that it was tuned in.", KEY),
-    Column("normals", "The set of normals that it was tuned to.", KEY),
-    Column("error", "What the tuning makes small, or in decibels large.", KEY),
-    Column("fitted_to", "Normals that it was fitted to.", HOW),
-    Column("held_out", "Normals that were held out and measured on.", HOW),
+    Column("storage", "The texel format that the encoding was tuned in.", KEY),
+    Column("normals", "The set of normals that the encoding was tuned to.", KEY),
+    Column("error", "The error that tuning minimised (or, for psnr, maximised).", KEY),
+    Column("fitted_to", "Number of normals used for fitting.", HOW),
+    Column("held_out", "Number of normals held out and measured.", HOW),
     shared.CODE_SPACE,
     Column("seed", "The random seed of uniform sets and of the hold-out.", HOW, drops=1),
-    Column("tuned_encoding", "What was found, by the name that --encoding takes.", HOW),
+    Column("tuned_encoding", "The tuned encoding, by a name that --encoding accepts.", HOW),
     Column("quantity", "A parameter, or a figure of the hold-out.", KEY),
     Column("published", "Its value as published."),
     Column("tuned", "Its value as tuned."),
     Column("gain", "What tuning gained on the hold-out.", better="more"),
-    Column("unit", "Of the gain: dB, or percent of an angle.", HOW),
+    Column("unit", "Unit of the gain: dB, or percent of an angle.", HOW),
     Column("glsl", "The macro that sets the parameter in GLSL.", HOW, drops=2),
 )
 
 TABLE = Table(
     package=__package__ or "",
     group=Group.OWN,
-    help="Fit an encoding's parameters to normals.\n\nWhat that gains is measured on a half that was held out.\n\n"
-    "What is found has a name that --encoding takes in every command, such as stereographic:scale=1.31.",
+    help="Fit an encoding's parameters to normals.\n\nThe gain is measured on a half of the normals that was held "
+    "out.\n\nThe tuned encoding has a name that --encoding accepts in every command, such as "
+    "stereographic:scale=1.31.",
     example="normalbench tune stereographic --normals playground --storage rg8",
     options=TuneOptions,
     outputs=TuneOutputs,
@@ -68,12 +69,12 @@ TABLE = Table(
     single={"encoding": "stereographic"},
     in_all=False,
     section=Section(
-        title="What tuning gains",
+        title="Gain from tuning",
         short="Tuning",
         view=View.CODECS,
-        intro="Parameters fitted to one half of a set: what do they gain on the other half?",
-        method="Tuning is a search on the measured error, from the published values and from random ones. "
-        "Images are split into two halves at random, by pixel; for look-up tables, by tiles of 16 x 16. Figures are of "
-        "the half that was held out.",
+        intro="Parameters are fitted to one half of a set: how much do they gain on the other half?",
+        method="Tuning is a search on the measured error, from the published values and from random values. Images "
+        "are split into two halves at random, by pixel; for lookup tables, by tiles of 16 x 16. Figures are "
+        "for the half that was held out.",
     ),
 )

@@ -85,13 +85,13 @@ def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
     """Return one step. Raises UsageError for a target that cannot be tuned."""
     encoding, table = options.encoding, outputs.table
     if MARK in encoding and encoding.partition(MARK)[0] in NAMES:
-        raise UsageError(f"{encoding}: tune begins with what was published; name {encoding.partition(MARK)[0]}")
+        raise UsageError(f"{encoding}: tune starts from the published encoding; name {encoding.partition(MARK)[0]}")
     chosen = chosen_of(encoding, options)
     options = replace(options, error=choose_one("error", options.error, FIGURES))
     if table and not chosen.has_table:
-        raise UsageError(f"--table: {chosen.codec.name} has no look-up that is tuned")
+        raise UsageError(f"--table: {chosen.codec.name} has no lookup table to tune; leave --table out")
     if table and set(str(table)) & {MARK, ","}:
-        raise UsageError(f"--table: {table} could not be named after best_fit:table=; a name without {MARK} and comma")
+        raise UsageError(f"--table: {table} cannot be used in best_fit:table=FILE; use a name without {MARK} and comma")
     if table:
         check_writable(table, mark=ARRAY)
     require_jax()
@@ -121,7 +121,7 @@ def chosen_of(name: str, options: TuneOptions) -> Chosen:
     check_twin(encoding)
     known = {p: p for p in (*encoding.published, *([LOOK_UP] if _has_table(codec) else []))}
     if not known:
-        raise UsageError(f"{codec.name}: nothing to tune: no parameter and no look-up")
+        raise UsageError(f"{codec.name}: nothing to tune; it has no parameter and no lookup table")
     chosen = choose("parameter", options.parameter, known)
     numbers = [name for name in chosen if name in encoding.published]
     return Chosen(codec, numbers, LOOK_UP in chosen)
@@ -141,7 +141,7 @@ def _one(what: str, named: Callable[[Names], list[Any]], words: Names) -> Any:
     except UsageError as error:
         raise UsageError(str(error).replace("known: all, ", "known: ")) from None
     if len(choices) != 1:
-        raise UsageError(f"one {what} at a time is tuned, not {len(choices)}")
+        raise UsageError(f"tune takes one {what}, not {len(choices)}; name one")
     return choices[0]
 
 
@@ -214,14 +214,14 @@ def _gain(figure: str, published: float, tuned: float) -> Row:
 def _say_use(before: Side, after: Side, figure: str, table: Path | None, normals: Names) -> None:
     gain = _gain(figure, *(side.row[figure] for side in (before, after)))
     if gain["gain"] <= NOTHING_DB:
-        advice = (
-            f"nothing is gained on the held-out half ({gain['gain']:.2g} {gain['unit']}): stay with what is published"
-        )
+        advice = f"no gain on the held-out half ({gain['gain']:.2g} {gain['unit']}); keep the published encoding"
     elif after.codec.encoding.look_up and not table and after.codec.encoding.tables != before.codec.encoding.tables:
-        advice = "keep the look-up with --table FILE.npy to measure it elsewhere"
+        advice = "save the lookup table with --table FILE.npy to measure it elsewhere"
     else:
         names = ["--encoding", after.codec.encoding.name, "--storage", after.codec.storage.name]
-        advice = f"elsewhere: normalbench quality {command_line([*names, '--normals', text_of(normals)])}"
+        advice = (
+            f"to measure it elsewhere, run: normalbench quality {command_line([*names, '--normals', text_of(normals)])}"
+        )
     tell(f"{advice}")
 
 

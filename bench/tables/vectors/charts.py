@@ -12,7 +12,7 @@ from ..table import Row
 from .order import place
 
 # What an error as large as the motion is called.
-LOST = "as large as the motion"
+LOST = "error equal to the motion"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
@@ -38,17 +38,17 @@ def vectors_chart(rows: Sequence[Row]) -> Chart:
     speeds = sorted({(row["bits"], row["speed"]) for row in rows})
     lost = tuple({"line": LOST, "bits": _bits_text(bits), "x": speed, "y": speed} for bits, speed in speeds)
     looks: dict[str, Any] = {"by": ("line", "bits"), "colour": "encoding"}
-    tips = (("line", "code"), ("x", "pixels a frame"), ("y", "mean error, pixels"))
+    tips = (("line", "code"), ("x", "speed (pixels per frame)"), ("y", "mean error (pixels)"))
     dotted: dict[str, Any] = {"rows": lost, "by": ("line", "bits"), "colour": MUTED}
     return Chart(
         name="vectors",
         title=_finding_sentence(rows),
-        subtitle="Error of motion vectors over speed",
-        description="The mean error of a motion vector in pixels over the speed in pixels a frame, both on logarithmic "
-        "scales, a line for each code in its storage. The dotted line is an error as large as the motion: what lies on "
-        "it is lost. The figures are in the table.",
-        x=Axis(title="pixels a frame", scale=Scale.LOG),
-        y=Axis(title="mean error, pixels", scale=Scale.LOG),
+        subtitle="Error of motion vectors by speed",
+        description="The mean error of a motion vector in pixels by its speed in pixels per frame, on logarithmic "
+        "scales, with a line for each encoding in its storage. The dotted line is an error equal to the "
+        "motion: anything on it is lost. The figures are in the table.",
+        x=Axis(title="speed (pixels per frame)", scale=Scale.LOG),
+        y=Axis(title="mean error (pixels)", scale=Scale.LOG),
         rows=tuple(points),
         # An encoding has one colour in all panels.
         colour=Names("encoding", distinct(rows, "encoding")),
@@ -86,5 +86,5 @@ def _finding_sentence(rows: Sequence[Row]) -> str:
         part = [row for row in rows if (row["bits"], row["speed"]) == (bits, least)]
         if part:
             best = min(part, key=lambda row: row["error_mean_px"])
-            phrases.append(f"{CodecKey.of(best).label} of {bits} bits ({best['error_mean_px']:.2g})")
-    return f"At {least:g} pixels a frame these lose least, in pixels: {', '.join(phrases)}"
+            phrases.append(f"{CodecKey.of(best).label}, {bits} bits ({best['error_mean_px']:.2g})")
+    return f"Smallest mean error in pixels, at {least:g} pixels per frame: {', '.join(phrases)}"

@@ -104,9 +104,9 @@ def _shown(done: Measured) -> Iterator[Sheet]:
     rows = but_without_twins(done.rows)
     names = ("encoding", "storage", "rounding", "bits", "backend", "range")
     sheets = {
-        "error_mean_px": ("mean error in pixels, by speed in pixels a frame", ("still_px", "least_px")),
+        "error_mean_px": ("mean error in pixels, by speed in pixels per frame", ("still_px", "least_px")),
         "drift_px": ("drift in pixels after 16 frames, by speed", ()),
-        "lost_percent": ("percent of the motions that come back as no motion, by speed; codes that lose any", ()),
+        "lost_percent": ("percentage of motions decoded as no motion, by speed; encodings that lose any", ()),
     }
     for figure, (title, more) in sheets.items():
         losing = {_line(row) for row in rows if figure != "lost_percent" or row[figure]}
@@ -123,10 +123,10 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     seen = [row | {"at_least_px": max(row["error_mean_px"], UNNOTICED_PX)} for row in still]
     if seen:
         best = by_bits(seen, "at_least_px", lambda row: f"{row['error_mean_px']:.2g} px")
-        how = f"still pixels exact, up to {UNNOTICED_PX:g} px alike"
-        yield f"Most accurate at {speed:g} px per frame, {how}: {best}."
+        how = f"still pixels exact; errors up to {UNNOTICED_PX:g} px count as equal"
+        yield f"Most accurate at {speed:g} px per frame ({how}): {best}."
     elif measured:
-        yield "No encoding keeps still pixels still; use a storage whose code for 0 is exact (_centred or _snorm)."
+        yield "No encoding keeps still pixels still; use a storage with an exact code for 0 (_centred or _snorm)."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

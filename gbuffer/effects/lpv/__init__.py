@@ -50,7 +50,7 @@ def _passes(
 
 def _lack_text(scene: Scene) -> str | None:
     sends = any(light.kind in ("sun", "spot") for light in scene.lights)
-    return None if sends else "no sun or spot light here sends light into the volume"
+    return None if sends else "no sun or spot light lights the volume"
 
 
 EFFECT = Effect(

@@ -28,7 +28,7 @@ def _passes(steps: int, rays: int, thickness: float, misses: str, seed: int) -> 
 
 
 def _lack_text(scene: Scene) -> str | None:
-    return None if scene.is_metal_rough else "its materials have no roughness; studio and glTF files have one"
+    return None if scene.is_metal_rough else "its materials have no roughness; use studio or a glTF file"
 
 
 EFFECT = Effect(

@@ -56,7 +56,7 @@ def _passes(
 
 def _lack_text(scene: Scene) -> str | None:
     kinds = {scene.materials[i].kind for part in scene.parts for i in part.materials if scene.materials[i].alpha == 1}
-    return None if "skin" in kinds else "nothing here is skin"
+    return None if "skin" in kinds else "it has no skin"
 
 
 EFFECT = Effect(

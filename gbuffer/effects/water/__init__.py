@@ -66,8 +66,8 @@ def _passes(
 
 def _lack_text(scene: Scene) -> str | None:
     if scene.water is None:
-        return "there is no water here"
-    return None if scene.view.eye[1] > scene.water.level else "the eye is under water"
+        return "it has no water"
+    return None if scene.view.eye[1] > scene.water.level else "the camera is under water"
 
 
 EFFECT = Effect(

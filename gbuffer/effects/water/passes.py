@@ -49,7 +49,7 @@ class Look:
     def water(canvas: Canvas) -> Water:
         """The scene's. Raises ValueError where it has none."""
         if canvas.frame.scene.water is None:
-            raise ValueError("there is no water here")
+            raise ValueError("it has no water")
         return canvas.frame.scene.water
 
     def place(self, canvas: Canvas, program: Program) -> None:

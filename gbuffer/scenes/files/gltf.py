@@ -214,7 +214,7 @@ def _primitives(
 def _primitive(gltf: Gltf, primitive: Object, mode: int, material: MetalRough, where: str, notes: list[str]) -> Mesh:
     stored = _stored(gltf, primitive, mode, where)
     if len(stored.corners) > MAX_TRIANGLES:
-        many = f"has {len(stored.corners)} triangles; the most is {MAX_TRIANGLES}"
+        many = f"has {len(stored.corners)} triangles; the maximum is {MAX_TRIANGLES}"
         raise gltf.error(where, many, "export fewer objects")
     mesh, mesh_notes = mesh_of(gltf.path, stored)
     notes += mesh_notes
@@ -226,7 +226,7 @@ def _primitive(gltf: Gltf, primitive: Object, mode: int, material: MetalRough, w
 def _lacking_uv(material: MetalRough, *sets: np.ndarray | None) -> list[str]:
     """Return notes on the uv sets that a material's maps use and a mesh lacks."""
     lacking = {m.uv_set for m in material.maps if m is not None and sets[m.uv_set] is None}
-    remarks = ("their textures are looked up at one point", "TEXCOORD_0 stands in")
+    remarks = ("their textures are sampled at one point", "TEXCOORD_0 is used")
     return [f"there are meshes without TEXCOORD_{uv_set}: {remarks[uv_set]}" for uv_set in sorted(lacking)]
 
 
@@ -317,5 +317,6 @@ def _camera(gltf: Gltf, node: Object, model: np.ndarray, notes: list[str]) -> Vi
     back, up, eye = model[:3, 2], model[:3, 1], model[:3, 3]
     length = np.linalg.norm(back)
     if not (0.01 < fov < 3.1 and 0 < near < far) or length == 0 or np.linalg.norm(np.cross(up, back)) == 0:
-        raise gltf.error(place, "is no camera: an angle of 0.01 to 3.1, 0 < znear < zfar, and a scale that is not 0")
+        needs = "an angle of 0.01 to 3.1, 0 < znear < zfar and a nonzero scale"
+        raise gltf.error(place, f"is not a valid camera, which needs {needs}")
     return View(_colour(eye), _colour(eye - back / length), float(np.degrees(fov)), near, far, _colour(up))

@@ -141,7 +141,7 @@ class Gltf:
         """A whole number from 0 up."""
         value = holder.get(key, default)
         if type(value) is not int or not 0 <= value < 2**40:
-            raise self.error(f"{place}.{key}", f"is {_shown_text(value)}, no whole number")
+            raise self.error(f"{place}.{key}", f"is {_shown_text(value)}, not a whole number")
         return value
 
     def number(self, holder: Object, key: str, place: str, default: float) -> float:
@@ -277,7 +277,7 @@ class Gltf:
         meshes = _dicts(self.json.get("meshes"))
         primitives = [primitive for mesh in meshes for primitive in _dicts(mesh.get("primitives"))]
         if self.json.get("skins"):
-            notes.append("skins are not applied: meshes stand as they were bound")
+            notes.append("skins are not applied: meshes keep their bind pose")
         if any("targets" in p for p in primitives):
             notes.append("morph targets are not applied")
         if any("COLOR_0" in _dict(p.get("attributes")) for p in primitives):

@@ -17,7 +17,7 @@ KINDS: dict[str, Literal["sun", "point", "spot"]] = {"directional": "sun", "poin
 REACH = 4.0
 # The least angle, in degrees, between the two cones of a spot light.
 LEAST_RIM = 0.1
-ROUNDED_OFF = "its lights fall off by 1 / (d^2 + 1), and not by 1 / d^2"
+ROUNDED_OFF = "its lights fall off with 1 / (d^2 + 1), not 1 / d^2"
 
 
 def lights_of(
@@ -42,7 +42,7 @@ def lights_of(
         notes.append(ROUNDED_OFF)
     suns = sorted((light for light in lights if light.kind == "sun"), key=lambda sun: -sum(sun.colour))
     if len(suns) > 1:
-        notes.append(f"of {len(suns)} directional lights the brightest is drawn")
+        notes.append(f"only the brightest of {len(suns)} directional lights is drawn")
     return (*suns[:1], *lamps)
 
 
@@ -67,7 +67,7 @@ def _light(gltf: Gltf, index: object, model: np.ndarray, corners: np.ndarray, no
         return None
     position, back = model[:3, 3], model[:3, 2]
     if kind != "point" and not back.any():
-        raise gltf.error(place, "is in a node scaled to nothing: it has no direction")
+        raise gltf.error(place, "is in a node with zero scale: it has no direction")
     direction = -back / (np.linalg.norm(back) or 1.0)
     reach = REACH * float(np.linalg.norm(corners - position, axis=1).max())
     radius = gltf.number(data, "range", place, reach) if kind != "sun" else 0.0
@@ -80,7 +80,7 @@ def _light(gltf: Gltf, index: object, model: np.ndarray, corners: np.ndarray, no
 def _data(gltf: Gltf, index: object) -> tuple[Object, str]:
     known = gltf.list_of(gltf.extension(gltf.json, PUNCTUAL, "the file"), "lights", PUNCTUAL)
     if type(index) is not int or not 0 <= index < len(known) or not isinstance(known[index], dict):
-        raise gltf.error(f"a node's {PUNCTUAL}", f"names a light that is not there; there are {len(known)}")
+        raise gltf.error(f"a node's {PUNCTUAL}", f"names a light that does not exist; there are {len(known)}")
     return known[index], f"{PUNCTUAL}.lights[{index}]"
 
 

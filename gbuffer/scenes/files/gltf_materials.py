@@ -132,8 +132,8 @@ class Materials:
         if isinstance(webp, dict) and "source" in webp:
             return webp["source"]
         if "source" not in texture:
-            what = "KTX2 textures are not read" if KTX2 in extensions else "there are textures without a picture"
-            self.notes.append(f"{what}: plain colours stand in")
+            what = "KTX2 textures are not supported" if KTX2 in extensions else "some textures have no image"
+            self.notes.append(f"{what}: plain colours are used")
         return texture.get("source")
 
     def _wrap(self, texture: Object, place: str) -> tuple[Wrap, Wrap]:
@@ -177,7 +177,7 @@ class Materials:
             width, height = sides(data)
             self._texels_in_all += width * height
             if self._texels_in_all > MAX_TEXELS:
-                what = f"has {width} x {height} pixels; all pictures together have at most {MAX_TEXELS} (2^28)"
+                what = f"has {width} x {height} pixels; the maximum for all images together is {MAX_TEXELS} (2^28)"
                 raise self._gltf.error(place, what, "save them smaller")
             return texels(data)
         except PictureError as error:

@@ -150,14 +150,14 @@ def mesh_of(path: Path, stored: Stored) -> tuple[Mesh, list[str]]:
     triangles = triangles[np.any(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) != 0, axis=1)]
     if not len(triangles):
         raise SceneFileError(f"{path}: {place}: no triangle with an area; export it as triangles")
-    notes = [] if normals is not None else ["there are meshes without normals: smooth ones were made"]
+    notes = [] if normals is not None else ["meshes without normals: smooth normals were generated"]
     given = np.zeros_like(positions) if normals is None else np.asarray(normals, np.float64)
     has_normals = normals is not None
     normals, smooth_count = _completed_normals(
         checked_numbers(path, given, f"{place}: the normal"), positions, triangles
     )
     if smooth_count and has_normals:
-        notes.append("there are normals of no length: smooth ones stand in")
+        notes.append("normals of zero length: replaced by smooth normals")
     uv, second_uv = (
         None if given is None else checked_numbers(path, np.asarray(given, np.float64), f"{place}: the uv")
         for given in (stored.uv, stored.second_uv)
@@ -200,7 +200,7 @@ def checked_pieces(path: Path, pieces: Iterable[Piece], notes: list[str]) -> tup
         linear = piece.model[:3, :3]
         size = np.abs(linear).max()
         if size == 0 or abs(np.linalg.det(linear / size)) < 1e-9:
-            notes.append("a node scaled to nothing was left out")
+            notes.append("a node with zero scale was skipped")
             continue
         kept.append(piece)
         reach = np.abs(piece.mesh.positions).max() * size * 3 + np.abs(piece.model[:3, 3]).max()

@@ -123,12 +123,12 @@ def _take(obj: _Obj, words: list[str]) -> None:
     elif kind == "mtllib":
         obj.libraries.append(" ".join(rest))
     elif kind not in PASSED_OVER:
-        raise ValueError("no line of an OBJ file")
+        raise ValueError("not a line of an OBJ file")
 
 
 def _take_face(obj: _Obj, corners: list[int]) -> None:
     if len(corners) < 3:
-        raise ValueError("a face has three corners or more")
+        raise ValueError("a face must have at least three corners")
     obj.triangles += len(corners) - 2
     if obj.triangles > MAX_TRIANGLES:
         raise ValueError(f"more than {MAX_TRIANGLES} (2^22) triangles")
@@ -142,7 +142,7 @@ def _new_corner(obj: _Obj, text: str) -> int:
     the end."""
     words = text.split("/")
     if len(words) > len(KINDS) or not words[0]:
-        raise ValueError("a corner is position/uv/normal")
+        raise ValueError("a corner must be position/uv/normal")
     indices = [_checked_index(word, len(obj.data[kind])) for word, kind in zip(words, KINDS, strict=False)]
     position, uv, normal = indices + [-1] * (len(KINDS) - len(indices))
     obj.vertices.append((position, uv, normal))
@@ -185,7 +185,7 @@ def _materials(path: Path, libraries: list[str], notes: list[str]) -> dict[str, 
         except SceneFileError as error:
             if "no such file" not in str(error):
                 raise
-            notes.append(f"{name} is not there; its materials are grey")
+            notes.append(f"{name} does not exist; its materials are grey")
             continue
         materials |= _read_mtl(path, name, data, notes)
     return materials
@@ -211,7 +211,7 @@ def _read_mtl(path: Path, name: str, data: bytes, notes: list[str]) -> dict[str,
                         materials[current], **{NUMBERS[word]: min(max(_checked_number(value), low), high)}
                     )
                 case [word, *_] if word.lower().startswith(("map_", "bump", "norm", "disp", "decal", "refl")):
-                    notes.append("textures are not read: colours alone")
+                    notes.append("textures are not read: only colours")
         except ValueError as error:
             raise SceneFileError(f"{path}: {name}, line {number}: {error}; export it again") from error
     return materials

@@ -78,7 +78,7 @@ def read_cloud(path: Path) -> Stored:
     tables, types = _tables(path)
     normals, roundings = _normals(tables["vertex"], types["vertex"])
     if normals is None or not len(normals):
-        raise SceneFileError(f"{path}: points with the numbers nx, ny, nz are read; export it again")
+        raise SceneFileError(f"{path}: only points with nx, ny, nz are supported; export it again")
     positions = _columns(tables["vertex"], POSITION)
     # Points without places are told apart by their numbers.
     places = np.arange(3.0 * len(normals)).reshape(-1, 3) if positions is None else positions
@@ -104,7 +104,7 @@ def _tables(path: Path) -> tuple[dict[str, Table], dict[str, dict[str, str]]]:
     order, elements, start = _header(path, data)
     tables: dict[str, Table] = {}
     if not order and len(data) > MAX_TEXT_BYTES:
-        raise SceneFileError(f"{path}: {len(data)} bytes of text; the most is {MAX_TEXT_BYTES}: export it in binary")
+        raise SceneFileError(f"{path}: {len(data)} bytes of text; the maximum is {MAX_TEXT_BYTES}: export it in binary")
     tokens = data[start:].split() if not order else []
     offset = 0 if not order else start
     for element in elements:
@@ -130,7 +130,7 @@ def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
                 elements.append(Element(name, int(count), []))
             case ["property", "list", counted, kind, name] if counted in TYPES and kind in TYPES and elements:
                 if TYPES[counted][0] == "f":
-                    raise SceneFileError(f"{path}: line {number}: a list is counted by whole numbers; export it again")
+                    raise SceneFileError(f"{path}: line {number}: a list count must be an integer; export it again")
                 elements[-1].properties.append(Property(name, TYPES[kind], TYPES[counted]))
             case ["property", kind, name] if kind in TYPES and elements:
                 elements[-1].properties.append(Property(name, TYPES[kind], None))
@@ -149,7 +149,7 @@ def _check_count(path: Path, element: Element, left: int, least: int) -> None:
     """Raise SceneFileError if a table is not valid, or is larger than the rest of the file or than is read."""
     names = [p.name for p in element.properties]
     if not names or len(set(names)) < len(names):
-        raise SceneFileError(f"{path}: element {element.name}: no properties, or two of one name; export it again")
+        raise SceneFileError(f"{path}: element {element.name}: no properties, or two of the same name; export it again")
     if element.count * least > left:
         raise SceneFileError(
             f"{path}: element {element.name}: {element.count} rows are more than the file holds; it is cut off: "

@@ -41,7 +41,7 @@ def file_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
             raise SceneFileError(f"{path}: {files.why_no_file(path)}")
         size = path.stat().st_size
         if size > most:
-            raise SceneFileError(f"{path}: {size} bytes; the most is {most}: export fewer objects, or in binary")
+            raise SceneFileError(f"{path}: {size} bytes; the maximum is {most}: export fewer objects, or in binary")
         return files.file_bytes(path, most)
     except SceneFileError:
         raise
@@ -64,7 +64,7 @@ def checked_address(path: Path, address: object, place: str) -> Path | None:
     shown = address if len(address) <= 60 else f"{address[:57]}..."
     if re.match(r"[A-Za-z][A-Za-z0-9+.-]*:", address) or address.startswith("//"):
         raise SceneFileError(
-            f"{path}: {place}: {shown!r} is elsewhere, and nothing is fetched; save it next to the file"
+            f"{path}: {place}: {shown!r} is not in the file's folder; nothing is downloaded: save it next to the file"
         )
     outside = SceneFileError(f"{path}: {place}: {shown!r} leaves the file's folder; save it next to the file")
     words = re.split(r"[/\\]", unquote(address))
@@ -126,4 +126,4 @@ def checked_size(path: Path, vertices: int, triangles: int, place: str) -> None:
     """Raise SceneFileError if there is more than is read at once; called before anything is allocated."""
     for count, most, what in ((vertices, MAX_VERTICES, "vertices"), (triangles, MAX_TRIANGLES, "triangles")):
         if count > most:
-            raise SceneFileError(f"{path}: {place}: {count} {what}; the most is {most} (2^22): export fewer objects")
+            raise SceneFileError(f"{path}: {place}: {count} {what}; the maximum is {most} (2^22): export fewer objects")

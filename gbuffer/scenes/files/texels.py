@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FORMATS = ("PNG", "JPEG", "WEBP")
 MAX_SIDE = 8192
-SMALLER = f"at most {MAX_SIDE} pixels a side are read: save it smaller"
+SMALLER = f"the maximum is {MAX_SIDE} pixels per side: save it smaller"
 DAMAGED = "is cut off or damaged; save it again"
 PNG = b"\x89PNG\r\n\x1a\n"
 # Chunks of a PNG file that its texels are made of.
@@ -68,7 +68,7 @@ def _opened(data: bytes) -> Image:
         except Image.DecompressionBombError as error:
             raise PictureError(f"is too large; {SMALLER}") from error
         except Exception as error:
-            raise PictureError("is not a PNG, JPEG or WebP picture; save it as PNG") from error
+            raise PictureError("is not a PNG, JPEG or WebP image; save it as PNG") from error
     if max(picture.size) > MAX_SIDE:
         raise PictureError(f"has {picture.width} x {picture.height} pixels; {SMALLER}")
     return picture

@@ -17,7 +17,7 @@ function standing(value, values, better) {
   return { rank: 1 + known.filter((one) => sign * one < sign * value).length, of: known.length, share: value === best ? 1 : Math.max(0, Math.min(1, ratio || 0)) };
 }
 
-const placeText = ({ rank, of }, bits) => (of < 2 ? "no other to compare" : `${ordinal(rank)} of ${of}${bits ? ` at ${bits} bits` : ""}`);
+const placeText = ({ rank, of }, bits) => (of < 2 ? "no codec to compare with" : `${ordinal(rank)} of ${of}${bits ? ` at ${bits} bits` : ""}`);
 
 // A figure, its bar, and below it its place.
 function placedCell(text, place, said, attributes, isBest = false) {
@@ -87,7 +87,7 @@ function usersOf(used, storage) {
   const named = (some) => [...new Map(some.map(([engine, year]) => [engine, `${engine} (${year})`])).values()].join(", ");
   const here = used.filter(([, , kept]) => kept === storage), elsewhere = used.filter(([engine]) => !here.some(([other]) => other === engine));
   const said = [here.length && `In ${storage}: ${named(here)}.`, elsewhere.length && `In other storages: ${named(elsewhere)}.`].filter(Boolean);
-  return said.join(" ") || "No engine whose source is known here.";
+  return said.join(" ") || "No known engine.";
 }
 
 class Cards {
@@ -113,7 +113,7 @@ class Cards {
     });
     const cell = (value, text, of) => element("td", { class: "n", ...(value === undefined || value === null ? {} : { "data-v": String(value) }) }, of ? `${text}\n${of}` : text);
     const line = (name) => {
-      const { mean, largest, slots, of, domain, codes } = this.codecs[name], bits = this.bits(name), aside = [of === this.usual ? "" : of, { hemisphere: "z >= 0 alone", view: "facing alone" }[domain]].filter(Boolean).join(", ");
+      const { mean, largest, slots, of, domain, codes } = this.codecs[name], bits = this.bits(name), aside = [of === this.usual ? "" : of, { hemisphere: "only z >= 0", view: "only facing" }[domain]].filter(Boolean).join(", ");
       const figures = [cell(bits, bitsText({ bits }), codes ? `codes of ${codes}` : ""), cell(mean, mean === undefined ? "" : degrees(mean), mean === undefined ? "" : aside), cell(largest, largest === undefined ? "" : degrees(largest)), cell(slots, String(slots ?? ""))];
       return element("tr", { "data-codec": name }, element("th", { scope: "row" }, nameButton(name, name)), element("td", { class: "take" }, ...sideButtons(name)), ...figures);
     };
@@ -131,7 +131,7 @@ class Cards {
   async show({ a, b }) {
     const turn = ++this.turn, names = [a, b].filter(Boolean);
     delete this.card.dataset.ready;
-    if (!names.length) return this.card.replaceChildren(element("p", { class: "note" }, "Choose a codec in the list: everything about it is shown here."));
+    if (!names.length) return this.card.replaceChildren(element("p", { class: "note" }, "Choose a codec in the list to see everything about it."));
     const made = [this.head(a || b, a ? "a" : "b"), this.short(a, b), this.pictures(names), this.written(a || b)];
     for (const about of this.tables) {
       const part = this.figures(about, await cardTable(about), a, b);
@@ -160,17 +160,17 @@ class Cards {
     const facts = [], fact = (title, ...said) => said.some(Boolean) && facts.push(element("dt", {}, title), element("dd", {}, ...said.filter(Boolean)));
     const formula = ([says, ...lines]) => [says, ...lines.flatMap((line) => [element("br", {}), element("code", {}, line)])];
     if (about) {
-      fact("what", about.says, about.precise ? " Of the codes around, the one that decodes nearest is stored." : "");
+      fact("what", about.says, about.precise ? " Of the neighbouring codes, the one that decodes closest is stored." : "");
       fact("encode", ...formula(about.encode));
       fact("decode", ...formula(about.decode));
       fact("source", about.source);
       fact("made for", about.domain);
       fact("used by", usersOf(about.used, rest[0]));
-    } else fact("what", `An encoding of your own, ${encoding}: its formulas are in its file.`);
-    const more = about?.sign ? " The sign takes one bit elsewhere." : "", table = about?.tables ? " It comes with look-up tables." : "";
+    } else fact("what", `Your own encoding, ${encoding}: its formulas are in its file.`);
+    const more = about?.sign ? " The sign takes one bit elsewhere." : "", table = about?.tables ? " It uses lookup tables." : "";
     fact("stored in", storage ? `${storage}: ${about.components} numbers, ${bitsText(this.codecs[name], " bits")}.${more}${table}` : rest.join(" "));
     const same = numbers ? Object.keys(this.codecs).filter((other) => other !== name && other.split(" ")[0] === encoding && this.codecs[other].numbers === numbers) : [];
-    if (same.length) fact("the same numbers", ...same.flatMap((other) => [nameButton(other, other), " "]), "stores the same numbers of as many bits: what is lost is the same.");
+    if (same.length) fact("the same numbers", ...same.flatMap((other) => [nameButton(other, other), " "]), "stores the same numbers in the same bit count: the error is the same.");
     return element("div", {}, element("h3", { id: "card-h" }, element("b", { class: `side-${side}` }, `${side.toUpperCase()} `), name), element("dl", { class: "facts" }, ...facts));
   }
 
@@ -186,7 +186,7 @@ class Cards {
     const rows = figures.map(([key, title, text]) => element("tr", {}, element("th", { scope: "row" }, title), ...sides.map(([, name]) => cell(key, text, name))));
     const ofs = [...new Set(sides.map(([, name]) => this.codecs[name].of).filter(Boolean))];
     const table = element("table", { class: "short" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...sides.map(([side, name]) => element("th", { scope: "col", class: `side-${side}` }, `${side.toUpperCase()} ${name}`)))), element("tbody", {}, ...rows));
-    const note = `${ofs.length ? `Angles on ${ofs.join(" and ")}. ` : ""}A bar is as long as the figure is near the best of as many bits.`;
+    const note = `${ofs.length ? `Angles on ${ofs.join(" and ")}. ` : ""}Longer bars are closer to the best result at the same bit count.`;
     return element("div", {}, element("h4", {}, "In short"), element("div", { class: "scroll", role: "region", "aria-label": "In short", tabindex: "0" }, table), element("p", { class: "note" }, note));
   }
 
@@ -199,7 +199,7 @@ class Cards {
   // Where on the sphere it is off, and what it makes of a picture.
   pictures(names, level = "h4") {
     const made = names.flatMap((name) => [...this.globe(name), ...this.picture(name)]);
-    return made.length ? element("div", {}, element(level, {}, "What it looks like"), element("div", { class: "globes" }, ...made)) : null;
+    return made.length ? element("div", {}, element(level, {}, "Images"), element("div", { class: "globes" }, ...made)) : null;
   }
 
   // The map of a codec, or of one that stores the same numbers.
@@ -231,7 +231,7 @@ class Cards {
     const { languages, pieces, codecs } = this.code, one = codecs[name], [encoding, storage] = name.split(" ");
     const command = `normalbench code ${encoding} --storage ${storage}`;
     const title = element(level, {}, `Code to copy: ${name}`);
-    if (!one) return this.codecs[name].numbers ? element("div", {}, title, element("p", { class: "note" }, "This page keeps no code of it. ", element("code", {}, `${command} --to hlsl`), " writes it.")) : null;
+    if (!one) return this.codecs[name].numbers ? element("div", {}, title, element("p", { class: "note" }, "This page does not contain its code. To write it, run ", element("code", {}, `${command} --to hlsl`), ".")) : null;
     const select = element("select", { "data-language": "" }, ...Object.keys(one.texts).map((key) => element("option", { value: key }, languages[key])));
     const text = () => one.texts[select.value].map((at) => pieces[at]).join(""), said = element("span", { role: "status" });
     const shown = element("pre", { tabindex: "0", "data-code": "" }), fill = () => {
@@ -241,8 +241,8 @@ class Cards {
     select.addEventListener("change", fill);
     fill();
     const button = element("button", { type: "button", "data-copy": "code", onclick: () => copy(text(), said) }, "Copy");
-    const proof = one.proven ? "It was run in this run and compared with the catalogue: its head says how they agree." : "It was not run in this run. The command in its head runs it and compares it with the catalogue.";
-    const tables = one.tables ? [" It reads look-up tables, which ", element("code", {}, `${command} --to ${select.value} -o folder`), " writes next to it."] : [];
+    const proof = one.proven ? "It was run and compared with the catalogue: the comment at its top has the result." : "It was not run. The command in its top comment runs it and compares it with the catalogue.";
+    const tables = one.tables ? [" It reads lookup tables, which ", element("code", {}, `${command} --to ${select.value} -o folder`), " writes next to it."] : [];
     return element("div", {}, title, element("p", { class: "tools" }, element("label", {}, "Language ", select), button, said), element("p", { class: "note" }, proof, ...tables), shown);
   }
 
@@ -267,9 +267,9 @@ class Cards {
       made.tBodies[0].append(...body(CARD_ROWS));
       more.remove();
     });
-    const notes = [constant && `In every row: ${constant}.`, ...like.map((one) => `${one.name} has no figures here. Those of ${one.like} hold: it stores the same numbers of as many bits.`)].filter(Boolean);
+    const notes = [constant && `In every row: ${constant}.`, ...like.map((one) => `Not measured: ${one.name}. The figures are for ${one.like}, which stores identical values.`)].filter(Boolean);
     const finding = this.finding(table, figures, lines.filter(({ name }) => name === (a || b)));
-    const links = element("p", { class: "note" }, "Again by ", element("code", {}, this.command(about, sides[0].like || sides[0].name)), ". ", ...(about.view === "codecs" ? [element("a", { href: `#${about.key}` }, "All codecs in this table")] : []));
+    const links = element("p", { class: "note" }, "To repeat it: ", element("code", {}, this.command(about, sides[0].like || sides[0].name)), ". ", ...(about.view === "codecs" ? [element("a", { href: `#${about.key}` }, "All codecs in this table")] : []));
     return element("div", {}, element("h4", {}, about.title), element("p", { class: "note" }, [finding, ...notes].join(" ")), element("div", { class: "scroll", role: "region", "aria-label": about.title, tabindex: "0" }, made), ...(lines.length > CARD_ROWS ? [element("p", { class: "tools" }, more)] : []), links);
   }
 
@@ -301,10 +301,10 @@ class Cards {
   finding(table, figures, lines) {
     // Among a few, a place says nothing.
     const places = lines.flatMap(({ context, row }) => figures.filter((figure) => table.value(figure, row) !== null).map((figure) => ({ figure, ...table.place(context, row, figure, this.codecs) }))).filter(({ of }) => of > 3);
-    if (!places.length) return "Too few other codecs of as many bits are in this table to rank it.";
+    if (!places.length) return "Not ranked: too few codecs with the same bit count.";
     const by = (one) => (one.rank - 1) / (one.of - 1), best = places.reduce((x, y) => (by(y) < by(x) ? y : x)), worst = places.reduce((x, y) => (by(y) > by(x) ? y : x));
     const said = (one) => `${placeText(one, one.bits)} by ${table.columns[one.figure].title}`;
-    return best === worst ? `It is ${said(best)}.` : `At best it is ${said(best)}, at worst ${said(worst)}.`;
+    return best === worst ? `Rank: ${said(best)}.` : `Best rank: ${said(best)}. Worst rank: ${said(worst)}.`;
   }
 
   command({ key, takes }, name) {
@@ -336,7 +336,7 @@ if (cardsRoot) {
     const fill = async () => {
       const made = await once(), names = CODECS.map((side) => state[side]).filter((name) => made.codecs[name]);
       const part = names.length ? (details.dataset.ofCards === "code" ? made.written(names[0], "h3") : made.pictures(names, "h3")) : null;
-      details.replaceChildren(details.firstElementChild, ...(details.open ? [part ?? element("p", { class: "note" }, "This page has none of A and B.")] : []));
+      details.replaceChildren(details.firstElementChild, ...(details.open ? [part ?? element("p", { class: "note" }, "This page has nothing on A or B.")] : []));
     };
     details.addEventListener("toggle", fill);
     shows.push((now, before) => details.open && CODECS.some((side) => now[side] !== before[side]) && fill());

@@ -104,7 +104,7 @@ class View {
     const name = [panel.name, this.chosen !== spec.switch?.all && this.chosen].filter(Boolean).join(", ");
     svg.selectAll("*").remove();
     set(svg, { viewBox: `0 0 ${width} ${spec.top + spec.height + spec.bottom}`, "aria-label": (name && `${name}: `) + spec.label });
-    plot.setAttribute("aria-label", `${name || "Chart"}. Arrow keys go from mark to mark.`);
+    plot.setAttribute("aria-label", `${name || "Chart"}. Arrow keys move from mark to mark.`);
     this.hits = [];
     this.axes();
     const { left, right, top, bottom } = this;

@@ -186,7 +186,7 @@ class Choose {
     const own = this.root.querySelector("[data-own-reply]");
     own.hidden = !isOwn;
     own.replaceChildren(element("h2", { class: "lead" }, sentenceOf(question, asked, found)), element("ul", {}, ...this.said(found, asked, question).map((line) => element("li", {}, line))));
-    this.root.querySelector("[data-left]").textContent = `${found.fit.length} of ${found.fit.length + found.out.length} codes are left`;
+    this.root.querySelector("[data-left]").textContent = `${found.fit.length} of ${found.fit.length + found.out.length} encodings are left`;
     this.root.querySelector("[data-codes]").replaceChildren(...(found.fit.length ? [this.table(found, asked)] : []), this.leftOut(found));
   }
 
@@ -207,7 +207,7 @@ class Choose {
     const left = points.filter(({ rest }) => !rest).sort((one, other) => before([one.x, one.y], [other.x, other.y]));
     const front = left.reduce((kept, point) => (!kept.length || point.y < kept.at(-1).y ? [...kept, point] : kept), []);
     view.tables[tableOf("lines")] = front;
-    const figure = plot.closest("figure"), title = !left.length ? `${question.where}: no code is left` : this.title.replace("{where}", question.where).replace("{front}", front.length).replace("{all}", left.length);
+    const figure = plot.closest("figure"), title = !left.length ? `${question.where}: no encoding is left` : this.title.replace("{where}", question.where).replace("{front}", front.length).replace("{all}", left.length);
     figure.dataset.title = title;
     figure.querySelector("[data-finding]").textContent = title;
     view.draw();
@@ -257,27 +257,27 @@ class Choose {
 
   table({ fit, price }, { readers, mixing }) {
     const most = Math.max(...fit.map((code) => price(code))), least = fit.length ? price(fit[0]) : 1;
-    const heads = [element("th", { scope: "col" }, "code"), ...COMPARED.map(([title]) => element("th", { scope: "col", class: "n" }, titleUnder(title, mixing))), element("th", { scope: "col" }, `cost with ${readers} readers`)];
+    const heads = [element("th", { scope: "col" }, "code"), ...COMPARED.map(([title]) => element("th", { scope: "col", class: "n" }, titleUnder(title, mixing))), element("th", { scope: "col" }, `cost with ${readers} decoding passes`)];
     const rows = fit.map((code) => {
       const bar = element("span", { class: "bar", style: `--share: ${price(code) / most}` });
       const ratio = element("td", { class: "priced" }, bar, code.priced ? `${Number((price(code) / least).toPrecision(2))} ×` : "");
       return element("tr", { "data-codec": code.codec }, element("th", { scope: "row" }, nameButton(code.codec, code.name)), ...COMPARED.map(([, text]) => element("td", { class: "n" }, text(code))), ratio);
     });
-    const table = element("table", {}, element("caption", {}, element("span", {}, "All codes that are left, by what they lose and cost together")), element("thead", { class: "plain" }, element("tr", {}, ...heads)), element("tbody", {}, ...rows));
-    return element("div", { class: "scroll", role: "region", "aria-label": "All codes that are left", tabindex: "0" }, table);
+    const table = element("table", {}, element("caption", {}, element("span", {}, "Eligible encodings, ranked by error and cost")), element("thead", { class: "plain" }, element("tr", {}, ...heads)), element("tbody", {}, ...rows));
+    return element("div", { class: "scroll", role: "region", "aria-label": "Eligible encodings", tabindex: "0" }, table);
   }
 
   leftOut({ out, why }) {
     const reasons = new Map();
     for (const code of out) reasons.set(why.get(code), [...(reasons.get(why.get(code)) ?? []), code.name]);
     const lines = Array.from(reasons, ([reason, names]) => element("p", {}, `${names.join(", ")}: ${reason}.`));
-    return element("details", { class: "aside" }, element("summary", {}, `What does not qualify (${out.length})`), ...lines);
+    return element("details", { class: "aside" }, element("summary", {}, `Excluded (${out.length})`), ...lines);
   }
 
   // A and B in the figures of the question, the better one of each marked.
   pair({ codes }, { where }, state) {
     const [a, b] = CODECS.map((side) => codes.find(({ codec }) => codec === state[side]));
-    if (!a && !b) return [element("p", { class: "note" }, `Neither A nor B is of ${where}. Click a code below: it is A, with shift B.`)];
+    if (!a && !b) return [element("p", { class: "note" }, `Neither A nor B belongs to ${where}. Click an encoding below to make it A; Shift-click to make it B.`)];
     const cell = ([, text, value, better], one, other) => {
       const isBest = one && other && value(one) !== null && value(other) !== null && (better === "less" ? value(one) < value(other) : value(one) > value(other));
       return element("td", { class: isBest ? "n best" : "n" }, one ? text(one) : "");
@@ -285,7 +285,7 @@ class Choose {
     const heads = CODECS.map((side, at) => element("th", { scope: "col", class: `n side-${side}` }, `${side.toUpperCase()} ${[a, b][at]?.name ?? (state[side] ? `${state[side]}: see another question` : "none")}`));
     const rows = COMPARED.map((column) => element("tr", {}, element("th", { scope: "row" }, titleUnder(column[0], this.asked.mixing)), cell(column, a, b), cell(column, b, a)));
     const table = element("table", { class: "pair-figures" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...heads)), element("tbody", {}, ...rows));
-    return [element("div", { class: "scroll", role: "region", "aria-label": "A beside B", tabindex: "0" }, table)];
+    return [element("div", { class: "scroll", role: "region", "aria-label": "A next to B", tabindex: "0" }, table)];
   }
 }
 

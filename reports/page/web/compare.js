@@ -47,12 +47,12 @@ class Compare {
 
   async show({ a, b }) {
     const turn = ++this.turn, found = [], sides = { a, b }, notes = [], lacks = { a: [], b: [] };
-    if (!a || !b) return this.root.replaceChildren(element("p", { class: "note" }, "Choose A and B above, or click a codec's name anywhere: it is A, with shift B."));
+    if (!a || !b) return this.root.replaceChildren(element("p", { class: "note" }, "Choose A and B above, or click a codec to make it A; Shift-click to make it B."));
     for (const about of this.tables) {
       const table = await cardTable(about), of = CODECS.map((side) => table.rowsOf(sides[side], this.codecs));
       if (turn !== this.turn) return null;
       for (const [at, side] of CODECS.entries()) {
-        if (of[at]?.like) notes.push(`${side.toUpperCase()} has no figures in ${about.title}: those of ${of[at].like} hold, which stores the same numbers of as many bits.`);
+        if (of[at]?.like) notes.push(`${side.toUpperCase()} was not measured in ${about.title}; the figures are for ${of[at].like}, which stores identical values.`);
         if (!of[at] && of[1 - at]) lacks[side].push(about.title);
       }
       if (of.every(Boolean)) found.push(...comparedIn(table, of));
@@ -67,7 +67,7 @@ class Compare {
     const several = (number, word) => `${number} ${word}${number === 1 ? "" : "s"}`;
     const said = found.length ? `${several(found.length, "figure")} in ${several(tables.size, "table")} have rows of both; ${differs.length} of them differ.` : "No table of this run has rows of both A and B.";
     const count = element("p", { class: "note" }, said);
-    const aside = notes.length ? [element("details", { class: "aside" }, element("summary", {}, `What is compared with what (${notes.length})`), ...notes.map((note) => element("p", {}, note)))] : [];
+    const aside = notes.length ? [element("details", { class: "aside" }, element("summary", {}, `Notes on the comparison (${notes.length})`), ...notes.map((note) => element("p", {}, note)))] : [];
     this.root.replaceChildren(count, ...aside, ...(found.length ? [this.list()] : []));
     return null;
   }
@@ -78,7 +78,7 @@ class Compare {
     const body = element("tbody", {}, ...shown.map((one) => this.line(one, one.cases[0], true)));
     const table = element("table", {}, element("caption", {}, element("span", {}, "Each figure under the condition where A and B differ most")), element("thead", { class: "plain" }, element("tr", {}, ...head)), body);
     const more = element("button", { type: "button", onclick: () => { this.isWhole = true; this.root.lastChild.replaceWith(this.list()); } }, `Show all ${found.length} figures`);
-    return element("div", {}, element("div", { class: "scroll", role: "region", "aria-label": "A and B in every figure", tabindex: "0" }, table), element("p", { class: "tools" }, ...(shown.length < found.length ? [more] : [])));
+    return element("div", {}, element("div", { class: "scroll", role: "region", "aria-label": "A and B compared", tabindex: "0" }, table), element("p", { class: "tools" }, ...(shown.length < found.length ? [more] : [])));
   }
 
   line(one, { under, a, b, apart, said }, isFirst) {

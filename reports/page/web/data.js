@@ -64,12 +64,12 @@ class DataTable {
     const tools = element("p", { class: "tools" }, element("label", { for: id }, "Filter"), this.filter, this.count);
     if (this.part) tools.append(this.chooser());
     tools.append(button("markdown", "Copy as Markdown", () => copy(this.markdown(), this.said)), button("csv", "Save as CSV", () => saveText(`${table}.csv`, this.csv())), this.said);
-    if (this.data.digits) tools.append(element("span", {}, `Numbers have ${this.data.digits} digits here; ${table}.csv, which the run wrote, has all of them.`));
-    this.none = element("p", { class: "missing" }, "No row has all of these words.");
+    if (this.data.digits) tools.append(element("span", {}, `Rounded to ${this.data.digits} digits; ${table}.csv has full precision.`));
+    this.none = element("p", { class: "missing" }, "No row contains all of these words.");
     const scroll = element("div", { class: "scroll", role: "region", "aria-label": called, tabindex: "0" }, this.table, this.none);
     this.definitions = element("dl", {});
     this.root = element("div", { class: "sheet", "data-rows": table }, tools, scroll, element("p", { class: "tools" }, this.more),
-      element("details", { class: "columns" }, element("summary", {}, "What the columns say", element("span", { class: "visually-hidden" }, ` of ${table}`)), this.definitions));
+      element("details", { class: "columns" }, element("summary", {}, "Column definitions", element("span", { class: "visually-hidden" }, ` of ${table}`)), this.definitions));
     this.details.append(this.root);
   }
 

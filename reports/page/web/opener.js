@@ -17,11 +17,11 @@ const readLive = once(async () => {
 if (laboratory) {
   const say = (text) => (laboratory.querySelector("[data-live=said]").textContent = text);
   const open = once(() => readLive().then(() => openLaboratory(laboratory)).catch((error) => say(`The laboratory cannot be opened: ${error.message}.`)));
-  if (!hasGpu) say("This browser has no WebGL2, which the laboratory needs.");
+  if (!hasGpu) say("This browser does not support WebGL 2, which the laboratory needs.");
   else shows.push(({ view }) => view === laboratory.closest(".view").dataset.view && open());
 }
 if (laboratory && pair) {
-  const enliven = once(() => readLive().then(() => pair.enliven()).catch((error) => pair.say(`These pictures are stills: ${error.message}.`)));
+  const enliven = once(() => readLive().then(() => pair.enliven()).catch((error) => pair.say(`These images are stills: ${error.message}.`)));
   const whenIdle = window.requestIdleCallback ?? ((work) => setTimeout(work, IDLE_MS));
   let waiting = 0;
   const seen = new IntersectionObserver((entries) => {
@@ -31,7 +31,7 @@ if (laboratory && pair) {
   if (hasGpu) {
     seen.observe(pair.place);
     for (const touch of ["pointerdown", "focusin"]) pair.place.addEventListener(touch, enliven);
-  } else pair.say("These pictures are stills: this browser has no WebGL2.");
+  } else pair.say("These images are stills: this browser does not support WebGL 2.");
 }
 
 // Everything that follows the state is there.

@@ -40,7 +40,7 @@ function keepPicture(name, planes) {
 function besides(codec) {
   return new Promise((resolve, reject) => {
     beside[codec.name] = resolve;
-    const failed = () => reject(new Error(`${codec.file} is missing; it should lie in the folder next to this page`));
+    const failed = () => reject(new Error(`${codec.file} is missing; put it in the folder next to this page`));
     document.head.append(element("script", { src: codec.file, onerror: failed }));
   });
 }
@@ -202,7 +202,7 @@ class Planes {
     const angle = this.angle(i);
     if (Number.isNaN(angle)) return "background";
     const bits = this.bitsOf(i).join(" ");
-    if (!this.isNumber(i)) return `code ${bits}, decoded to what is not a number`;
+    if (!this.isNumber(i)) return `code ${bits}, decoded to a value that is not finite`;
     return `code ${bits}, decoded ${normalOf(this.decoded, i)}, off by ${Number(angle.toPrecision(2))}°`;
   }
 }
@@ -526,7 +526,7 @@ class Viewer {
   // A stands to the left and B to the right, where there are pictures of them.
   take(state) {
     const note = this.one("[data-lacking]"), missing = CODECS.filter((side) => state[side] && this.find(state[side]) < 0);
-    const lines = missing.map((side) => [`The page has no picture of ${side.toUpperCase()}, ${state[side]}. To see one, run: `, element("code", {}, this.commandFor(state[side], note.dataset.run)), element("br", {})]);
+    const lines = missing.map((side) => [`The page has no images of ${side.toUpperCase()}, ${state[side]}. To see one, run: `, element("code", {}, this.commandFor(state[side], note.dataset.run)), element("br", {})]);
     note.replaceChildren(...lines.flat());
     const shown = () => SIDES.map((side) => this.side(side).selectedOptions[0].textContent), before = shown();
     for (const [at, side] of SIDES.entries()) this.choose(this.side(side), state[CODECS[at]]);
@@ -624,7 +624,7 @@ class Pair {
     const buttons = views.flatMap(([view, said]) => planes.map((one, at) => this.button(subject, sides[at], one, view, most, said(one))));
     const missing = CODECS.filter((side) => state[side] && !sides.includes(side)).map((side) => `${side.toUpperCase()}, ${state[side]}`);
     const scene = subject ? subject.title.replace("the answer on ", "") : this.scene;
-    const note = missing.length ? `No picture on ${scene} is in this page of ${missing.join(" and of ")}.` : `On ${scene}; full colour at ${most} of 255.`;
+    const note = missing.length ? `This page has no image on ${scene} of ${missing.join(" or of ")}.` : `On ${scene}; full colour at ${most} of 255.`;
     this.note = element("p", { class: "note" }, `${note} `, element("span", { role: "status" }, this.said));
     this.place.replaceChildren(...buttons, this.note);
     this.stills = planes.map((one, at) => ({ name: state[sides[at]], canvas: buttons[at].querySelector("canvas") }));
@@ -640,9 +640,9 @@ class Pair {
 
   // The images are drawn by the reader's GPU, where the laboratory has their scene.
   enliven() {
-    if (!(this.scene in SCENES)) return this.say("These pictures are stills: the laboratory does not have their scene.");
+    if (!(this.scene in SCENES)) return this.say("These images are stills: the laboratory does not have their scene.");
     this.live = new Chosen(this);
-    this.say("Live: drag an image to turn it, press it for the wheel to come nearer. No shadows and few lights; the differences are the run's.");
+    this.say("Live: drag to rotate; click, then scroll to zoom. No shadows and few lights; the differences are from the run.");
   }
 
   async planes(subject, codec) {

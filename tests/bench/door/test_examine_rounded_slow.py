@@ -47,13 +47,13 @@ def findings(run, tmp_path, text: str, *words: str) -> list[str]:
 
 def test_rounded_codes_that_are_no_numbers_are_counted(run, tmp_path):
     (said,) = findings(run, tmp_path, ROOT, "--storage", "rg8")
-    assert "of 65536 rounded codes (3.3 %) decode to NaN or infinity" in said, said
+    assert "of 65536 rounded codes (3.3%) decode to NaN or infinity" in said, said
     assert findings(run, tmp_path, ROOT.replace("sqrt(1.0 - dot(p, p))", "sqrt(max(0.0, 1.0 - dot(p, p)))")) == []
 
 
 def test_a_signed_storage_whose_sign_is_not_used_is_a_finding(run, tmp_path):
     (said,) = findings(run, tmp_path, UNIT, "--storage", "rg8_snorm")
-    assert "this is octahedral, 100 % worse" in said and "use half of its range" in said, said
+    assert "this is octahedral, but 100% worse" in said and "use half of the range" in said, said
     assert findings(run, tmp_path, UNIT, "--storage", "rg8") == []
 
 

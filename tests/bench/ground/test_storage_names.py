@@ -67,16 +67,16 @@ def test_every_storage_is_said_by_its_bits(storage):
 @pytest.mark.parametrize(
     "said, message",
     [
-        ("unorm:0:8", "unorm:0:8: a code is one to four numbers of 1 to 20 bits each"),
-        ("unorm:33:2", "unorm:33:2: a code is one to four numbers of 1 to 20 bits each"),
-        ("unorm:20:20:20:20", "and of 64 together"),
-        ("unorm:8:8..6:6", "numbers grow by as many bits, or stay, as in unorm:4:4..16:16"),
-        ("unorm:8:8..10:12", "numbers grow by as many bits"),
-        ("unorm:8:8..10", "numbers grow by as many bits"),
-        ("centred:9:7", "centred numbers lie in a format of a GPU, such as centred:8:8, not 9:7"),
+        ("unorm:0:8", "unorm:0:8: expected one to four components of 1 to 20 bits"),
+        ("unorm:33:2", "unorm:33:2: expected one to four components of 1 to 20 bits"),
+        ("unorm:20:20:20:20", "64 bits in total"),
+        ("unorm:8:8..6:6", "bit counts of a range grow equally or stay, as in unorm:4:4..16:16"),
+        ("unorm:8:8..10:12", "bit counts of a range grow equally"),
+        ("unorm:8:8..10", "bit counts of a range grow equally"),
+        ("centred:9:7", "centred numbers need a GPU format, such as centred:8:8, not 9:7"),
         ("unorms:8:8", "unknown storage 'unorms:8:8'"),
-        ("snorm:1:8", "snorm:1:8: a signed number has at least 2 bits"),
-        ("unorm:8:8..", "bits are said as unorm:9:7"),
+        ("snorm:1:8", "snorm:1:8: a signed component needs at least 2 bits"),
+        ("unorm:8:8..", "write bits as unorm:9:7"),
         ("float:5", "float:EXPONENT:MANTISSA, of 2 to 8 and of 1 to 23 bits, such as float:5:10, not float:5"),
         ("float:9:10", "not float:9:10"),
         ("rg9", "unknown storage 'rg9'"),
@@ -122,5 +122,5 @@ def test_who_is_refused_noise_is_told_which_tables_add_it():
     for table in ("quality", "render"):
         assert DITHERED in fields_of(TABLES[table].options)["rounding"].option.help
     assert roundings_named("nearest,dithered", ROUNDINGS_AND_DITHERED) == ["nearest", DITHERED]
-    with pytest.raises(UsageError, match=r"^--rounding dithered: .* quality and render add it$"):
+    with pytest.raises(UsageError, match=r"^--rounding dithered: .* use quality or render$"):
         roundings_named("nearest, dithered")

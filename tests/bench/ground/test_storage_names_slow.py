@@ -10,4 +10,4 @@ def test_centred_numbers_are_measured_and_not_laid_out(run):
     assert status == 0 and {row["backend"] for row in json.loads(out)} == {"jax", "glsl"}, err
     assert all(row["angle_max_deg"] < 1e-4 and row["storage"] == "rg8_centred" for row in json.loads(out))
     status, _, err = run("render", "--scene", "gloss", *words)
-    assert status == 2 and err == "normalbench: layout fp32: RG8 centred: a layout does not keep centred numbers\n"
+    assert status == 2 and err == "normalbench: layout fp32: RG8 centred: a layout cannot store centred numbers\n"

@@ -40,7 +40,8 @@ def test_an_answer_is_given_again_as_it_was(asked, capsys):
     again = (asked(), *capsys.readouterr())
     assert first == (1, "the answer\n", "normalbench: a code is left out\n")
     assert again[:2] == first[:2] and len(asked.ran) == 1
-    assert again[2].startswith(f"{first[2]}normalbench: kept from 20") and "; --anew measures again\n" in again[2]
+    assert again[2].startswith(f"{first[2]}normalbench: cached on 20")
+    assert "; to measure again, use --anew\n" in again[2]
 
 
 @pytest.mark.parametrize("change", ["driver", "driver gone", "setting", "sources", "width", "anew", "packages"])

@@ -143,7 +143,7 @@ def test_rows_are_ordered_by_the_figure_that_they_show_and_small_changes_are_las
         ("mine rgba8", "psnr_db", "-0.0017", "slightly worse"),
     ]
     assert total(compared(*broken_fold())).endswith(
-        ": 3 rows worse, 1 row slightly worse (slightly: by less than 0.1 dB, about 1 %)"
+        ": 3 rows worse, 1 row slightly worse (slightly: by less than 0.1 dB, about 1%)"
     )
 
 
@@ -185,7 +185,7 @@ def test_runs_that_share_no_row_say_so_first(run, monkeypatch):
     runs = {"before": quality_of(xy=40.0), "after": quality_of(xyz=44.0)}
     monkeypatch.setattr(compare_command, "read_to_show", lambda folder, **_: runs[folder.name])
     for kind in ("table", "markdown"):
-        assert run("compare", "before", "after", "--format", kind)[1].startswith("the runs share no row\n")
+        assert run("compare", "before", "after", "--format", kind)[1].startswith("the runs have no row in common\n")
 
 
 def test_a_spreadsheet_gets_numbers_as_they_are(run, monkeypatch):
@@ -218,7 +218,7 @@ def test_settings_from_outside_are_facts_of_a_run_and_named_where_they_differ(ru
     monkeypatch.setattr(compare_command, "read_to_show", lambda folder, **_: runs[folder.name])
     status, _, err = run("compare", "one", "two")
     assert status == 0
-    assert f"figures may differ because settings do: XLA_FLAGS was not set and is {flags}" in err, err
+    assert f"figures may differ because settings changed: XLA_FLAGS was not set and is {flags}" in err, err
 
 
 def test_settings_from_outside_stand_in_a_row(run, monkeypatch):

@@ -86,7 +86,7 @@ def test_rows_of_other_counts_are_not_compared_and_a_line_says_so(run, tmp_path)
         histories.write_run(tmp_path / str(at), at, steps, request={"count": count})
     _, out, _ = run("history", str(tmp_path))
     counted = sum("count" in row for step in steps for row in step["rows"])
-    said = [f"rows of other counts of normals are not compared: {counted} rows", "no figure got worse"]
+    said = [f"not compared, because their counts of normals differ: {counted} rows", "no figure got worse"]
     assert counted and out.splitlines()[1:] == said
 
 
@@ -94,7 +94,7 @@ def test_a_name_that_no_row_has_is_answered_with_those_there_are(run, thirty, tm
     status, _, err = run("history", str(thirty), "--encoding", "octahedrul")
     assert status == 2 and "did you mean octahedral?" in err and "all, mine, octahedral" in err
     status, _, err = run("history", str(tmp_path / "nothing"))
-    assert status == 2 and "holds no run" in err and err.count("\n") == 1
+    assert status == 2 and "contains no run" in err and err.count("\n") == 1
 
 
 def test_a_table_of_one_time_has_times():
@@ -188,7 +188,7 @@ def test_what_else_changed_at_a_commit_is_said(run, tmp_path):
     histories.write_run(tmp_path / "two", 1, quality(45.0), machine={"GL": "two"}, sources="t")
     status, _, err = run("history", str(tmp_path / "two"), str(tmp_path / "one"))
     assert status == 0
-    assert err == f"normalbench: at {name_of(1)[:8]} something else changed too: normalbench, GL\n"
+    assert err == f"normalbench: at {name_of(1)[:8]} these changed too: normalbench, GL\n"
 
 
 def git(folder: Path, *words: str, at: int = FIRST) -> None:

@@ -71,14 +71,14 @@ def step(**row) -> str:
         ("run.json", '{"command": "run"}', "run.json, command: 'run' is not a list"),
         ("run.json", '{"machine": {"GL": [1]}}', "run.json, machine, GL: [1] is neither text nor a number"),
         ("run.json", "{}", "run.json: another version of normalbench measured this run; measure it again"),
-        (ROWS, "not a step", "rows.jsonl, line 1 was damaged"),
+        (ROWS, "not a step", "rows.jsonl, line 1 is damaged"),
         (ROWS, '{"table": "quality", "key": {}, "rows": 3}', "line 1: 3 is not a list"),
         (ROWS, '{"table": ["x"], "key": 3, "rows": []}', "line 1, table: ['x'] is not text"),
         (ROWS, '{"table": "quality", "key": {}}', "line 1 is missing"),
         (ROWS, '{"table": "quality", "key": {}, "rows": [1]}', "line 1, row 1: 1 is not an object"),
         (ROWS, step(psnr_db="47.5"), "line 1, row 1, psnr_db: '47.5' is not a number"),
         (ROWS, step(psnr_db=10**400), "line 1, row 1, psnr_db: 100000... (40 digits)… is too large"),
-        (ROWS, step(count="many").replace('"many"', "9" * 5000), "line 1 was damaged"),
+        (ROWS, step(count="many").replace('"many"', "9" * 5000), "line 1 is damaged"),
         (ROWS, step(psnr_db={"a": 1}), "row 1, psnr_db: {'a': 1} is neither text nor a number"),
         (ROWS, f"{step(storage='rg8')}\n{step(storage=8)}", "line 2, row 1, storage: 8 is a number; in "),
         (ROWS, step(encoding=["xyz"]), "row 1, encoding: ['xyz'] is neither text nor a number"),
@@ -96,7 +96,7 @@ def test_a_damaged_folder_is_one_line_and_no_failed_gate(run, tmp_path, file, te
 
 
 def test_two_processes_cannot_write_one_folder(tmp_path):
-    with opened(tmp_path / "run", FACTS), pytest.raises(UsageError, match="another process writes"):
+    with opened(tmp_path / "run", FACTS), pytest.raises(UsageError, match="another process is writing"):
         opened(tmp_path / "run", FACTS).__enter__()
 
 
@@ -106,10 +106,10 @@ LONG = "llvmpipe of a very long name that goes on and on, "
 @pytest.mark.parametrize(
     "other, said",
     [
-        ({"sources": "b"}, "of other sources (a there, b here); name"),
-        ({"machine": {"GL": "d"}}, "of another machine: GL (c there, d here); name"),
-        ({"machine": {}}, "of another machine: GL (c there, nothing here); name"),
-        ({"sources": "b", "machine": {"GL": "d"}}, "of other sources (a there, b here) and of another machine: GL"),
+        ({"sources": "b"}, "from other sources (a there, b here); name"),
+        ({"machine": {"GL": "d"}}, "from another machine: GL (c there, d here); name"),
+        ({"machine": {}}, "from another machine: GL (c there, nothing here); name"),
+        ({"sources": "b", "machine": {"GL": "d"}}, "from other sources (a there, b here) and from another machine: GL"),
         (
             {"machine": dict.fromkeys("ABCDE", "d") | {"GL": "c"}},
             "machine: A (nothing there, d here), B (nothing there, d here), C (nothing there, d here), 2 more; name",
@@ -176,7 +176,7 @@ def test_a_run_whose_earlier_request_was_stopped_is_not_finished_by_another(tmp_
 
 def test_a_folder_with_something_else_is_not_touched(tmp_path):
     (tmp_path / "notes.txt").write_text("mine")
-    with pytest.raises(UsageError, match="holds no run"), opened(tmp_path, FACTS):
+    with pytest.raises(UsageError, match="contains no run"), opened(tmp_path, FACTS):
         pass
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
     with pytest.raises(UsageError, match="not a results folder"):

@@ -60,7 +60,7 @@ def test_a_read_only_folder_is_one_line_and_keeps_its_rows(run, tmp_path, finish
             assert (status, out, err.count("\n")) == (2, "", 1) and "cannot write" in err, err
     assert {path: path.read_bytes() for path in folder.parent.rglob("*") if path.is_file()} == before
     status, _, err = run(*command)
-    assert status == 0 and f"2 of {len(lines)} steps are there" in err
+    assert status == 0 and f"2 of {len(lines)} steps are done" in err
     assert (folder / ROWS).read_bytes() == b"".join(lines)
 
 

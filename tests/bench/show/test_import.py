@@ -72,11 +72,11 @@ def test_the_sentences_name_who_agrees_and_where_the_others_differ():
             rows.append(about | row | {"same_percent": 100 * row["equal"] / row["normals"]})
     first, second = sentences(rows)
     assert first == "A, Chromium 156 and B, Chromium 156 agree with the run in every code of 35 codecs."
-    assert second.startswith("C, Chromium 156 differs in 8 of 35 codecs, most in xyz rgb10a2: 87.6 % of its codes, ")
+    assert second.startswith("C, Chromium 156 differs in 8 of 35 codecs, most in xyz rgb10a2: 87.6% of its codes, ")
     near = rows[0] | {"device": "D", "one_step": 1, "same_percent": 100 - 100 / 65536}
     said = sentences([near])
     assert said == [
-        "D, Chromium 156 differs in 1 of 1 codec, most in spheremap rgba8: 0.00153 % of its codes, by one step each."
+        "D, Chromium 156 differs in 1 of 1 codec, most in spheremap rgba8: 0.00153% of its codes, by one step each."
     ]
     assert "2 versions of the program" in sentences([*rows, rows[0] | {"sources": "y"}])[-1]
 

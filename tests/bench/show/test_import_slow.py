@@ -39,7 +39,7 @@ def content_of(folder: Path) -> dict[str, bytes]:
 
 def test_a_device_that_was_compared_with_another_runs_codes_is_named(run, tmp_path, folder):
     path = made.write(tmp_path / "a.json", sources="another")
-    for said in ("SwiftShader, Chromium 156: measured on the page of a run of other sources", ""):
+    for said in ("SwiftShader, Chromium 156: measured on a page from other sources", ""):
         status, _, err = run("import", str(path), "-o", str(folder))
         assert status == 0 and said in err and err.count("\n") == bool(said), err
 
@@ -59,7 +59,7 @@ def test_one_bad_file_of_several_leaves_the_run_as_it_was(run, tmp_path, folder)
     bad.write_text("{}")
     before = content_of(folder)
     status, out, err = run("import", str(good), str(bad), str(tmp_path / "none.json"), "-o", str(folder))
-    assert (status, out, err.count("\n")) == (2, "", 2) and "bad.json: it is not a device file" in err
+    assert (status, out, err.count("\n")) == (2, "", 2) and "bad.json: not a device file" in err
     assert "none.json: there is no such file" in err and content_of(folder) == before
 
 
@@ -67,7 +67,7 @@ def test_a_run_that_another_process_writes_or_that_was_changed_is_refused(run, t
     path = made.write(tmp_path / "a.json")
     with runs.amended(folder):
         status, _, err = run("import", str(path), "-o", str(folder))
-    assert status == 2 and "another process writes" in err, err
+    assert status == 2 and "another process is writing" in err, err
     with (folder / "rows.jsonl").open("a") as file:
         file.write((folder / "rows.jsonl").read_text())
     before = content_of(folder)
@@ -118,16 +118,17 @@ def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, fo
     assert len(json.loads((folder / "devices.json").read_text())) == 39
     before = content_of(folder)
     status, out, _ = run(*command, str(first))
-    assert status == 0 and "nothing added; the run has the file of 2026-11-23T15:00:00Z already\n" in out
+    assert status == 0 and "nothing added; the run already has the file from 2026-11-23T15:00:00Z\n" in out
     assert content_of(folder) == before
     newer = made.write(tmp_path / "b.json", made="2026-11-24T15:00:00Z", truncated=("RG8",))
-    assert "in place of those of 2026-11-23T15:00:00Z" in run(*command, str(newer))[1]
+    assert "replacing those from 2026-11-23T15:00:00Z" in run(*command, str(newer))[1]
     rows = read_run(folder).tables["devices"]
     assert len(rows) == 39 and {row["made"] for row in rows} == {"2026-11-24T15:00:00Z"}
     before = content_of(folder)
     assert "the run has a newer file" in run(*command, str(first))[1] and content_of(folder) == before
     changed = made.write(tmp_path / "c.json", made="2026-11-24T15:00:00Z", vendor="another")
-    assert "with other figures; the run's stay" in run(*command, str(changed))[1] and content_of(folder) == before
+    assert "with other figures; the run keeps its own" in run(*command, str(changed))[1]
+    assert content_of(folder) == before
 
 
 def test_a_run_goes_on_after_an_import(run, tmp_path, folder):

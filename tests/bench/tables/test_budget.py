@@ -342,17 +342,20 @@ def test_the_usual_reflectance_lies_on_a_code():
     [
         (
             ["--bytes", "8"],
-            "8 bytes are too few: the attributes need 96 bits, and by these rules the smallest layout has 12 bytes. It "
-            "fits without motion (not measured)",
+            "8 bytes are too few: the attributes need 96 bits, and the smallest layout under these rules has 12 bytes. "
+            "It fits without motion (not measured)",
         ),
         (
             ["--bytes", "12", "--hold", "normal,base_color,roughness,metallic,ao,emissive,motion"],
             "It fits with emissive in the light buffer (emissive:light)",
         ),
         (["--hold", "normal,base_color,roughness,metallic,f0,ao,id:17"], "takes 2 to 16 bits"),
-        (["--read-alone", "normal,colour"], "--read-alone colour: not held"),
-        (["--formats", "rgba16", "--limit", "webgpu"], "no target is left"),
-        (["--formats", "rgba8"], "no target of these formats holds motion (linear in halves); --formats names others"),
+        (["--read-alone", "normal,colour"], "--read-alone colour: not in --hold"),
+        (["--formats", "rgba16", "--limit", "webgpu"], "--limit and --no-integers allow none of these"),
+        (
+            ["--formats", "rgba8"],
+            "no target of these formats can hold motion (linear in halves); allow other --formats",
+        ),
         (["--targets", "8"], "--targets"),
         (["--bytes", "0"], "--bytes"),
         (["--hold", "base_color,roughness"], "--hold: normal is missing; name for example normal,roughness"),
@@ -360,15 +363,15 @@ def test_the_usual_reflectance_lies_on_a_code():
         (["--hold", "id:4,id:8"], "--hold: shading_model is named twice"),
         (["--hold", "colour"], f"--hold colour: unknown; known: {', '.join(KNOWN)}"),
         (["--hold", "id:65"], "--hold shading_model:65: shading_model takes 1 to 64 bits"),
-        (["--blend", "tangent"], "--blend tangent: not held"),
+        (["--blend", "tangent"], "--blend tangent: not in --hold"),
         (["--formats", "rgba7"], "rgba7"),
         (["--limit", "tile:17"], "--limit tile:17"),
         (
             ["--hold", f"{','.join(held.SEEN)},shading_model:stencil", "--readers", "shading_model"],
-            "it lies in the stencil, whose bytes",
+            "stored in the stencil, whose bytes",
         ),
-        (["--limit", "webgpu", "--light", "rgba32f"], "WebGPU does not render to it"),
-        (["--scene", "room"], "room has no metal/rough materials"),
+        (["--limit", "webgpu", "--light", "rgba32f"], "WebGPU does not render to this format"),
+        (["--scene", "room"], "room: no metallic-roughness materials"),
         (["--threshold", "7"], "--threshold"),
         (["--size", "32x24"], "--size: no class of surfaces (mirror, glossy, rough, emissive) has 256 pixels in ramps"),
     ],
@@ -399,6 +402,6 @@ def test_a_change_that_brings_nothing_is_not_named():
         return changes.said(given, found, lambda *key: errors.get(key, {}), ["class 0", "class 1"])
 
     nearly = {name: {k: e * 1.001 for k, e in one.items()} for name, one in mine.items()}
-    assert said(nearly).startswith("no code"), said(nearly)
+    assert said(nearly).startswith("no encoding of a proposal"), said(nearly)
     worse = {name: {k: e * (64 if name == "normal" else 1.001) for k, e in one.items()} for name, one in mine.items()}
     assert "normal as" in said(worse) and "; then" not in said(worse), said(worse)

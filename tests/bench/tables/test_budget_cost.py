@@ -68,7 +68,7 @@ def test_readers_that_are_none_are_one_line(readers, said):
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (["--readers", "emissive"], "--readers emissive: not held; held: normal, base_color, roughness"),
+        (["--readers", "emissive"], "--readers emissive: not in --hold; in --hold: normal, base_color, roughness"),
         (["--family", "cypress"], "unknown"),
         (["--family", "navi22"], "navi22"),
         (["--most-instructions", "-1"], "--most-instructions -1: from 0 to 1000000"),
@@ -84,7 +84,7 @@ def test_what_cannot_be_asked_is_one_line(run, asked, said):
 def test_without_a_compiler_a_limit_of_slots_says_what_is_missing(run, monkeypatch):
     monkeypatch.setattr(isa, "missing", lambda library: f"no {library}")
     status, _, err = run("budget", "--scene", "ramps", "--size", "64x48", "--most-instructions", "90")
-    assert status == 3 and "--most-instructions counts by a compiler: no libvulkan_radeon" in err, err
+    assert status == 3 and "--most-instructions requires a compiler: no libvulkan_radeon" in err, err
 
 
 def test_without_a_compiler_no_price_is_known(monkeypatch):

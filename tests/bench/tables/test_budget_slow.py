@@ -196,4 +196,4 @@ def test_wgpu_takes_the_targets_that_cost_32_bytes_and_refuses_more():
 def test_a_run_gives_its_scenes_to_the_budget(run, tmp_path):
     """Before it measures: room cannot be judged by."""
     status, _, err = run("run", "--tables", "budget", "--scene", "room", "--output", str(tmp_path / "run"))
-    assert status != 0 and "room has no metal/rough materials" in err, err
+    assert status != 0 and "room: no metallic-roughness materials" in err, err

@@ -93,8 +93,8 @@ def test_a_curve_lies_where_it_usually_does_over_its_usual_range():
     [
         (["--encoding", "cubed"], ["'cubed'", "squared", "fast_srgb"]),
         (["--storage", "r9"], ["'r9'", "rgb10a2"]),
-        (["--storage", "rg8_centred"], ["centred numbers have a sign"]),
-        (["--storage", "r16f", "--rounding", "dithered"], ["noise is for fixed point"]),
+        (["--storage", "rg8_centred"], ["centred numbers are signed"]),
+        (["--storage", "r16f", "--rounding", "dithered"], ["use noise only with fixed point"]),
         (["--rounding", "up"], ["'up'", "truncate", "dithered"]),
         (["--range", "0"], ["--range"]),
         (["--count", "1"], ["--count"]),

@@ -41,7 +41,7 @@ def test_quality_has_a_row_of_either_arithmetic(run, tmp_path):
         **dict.fromkeys(("half_literal.hlsl", "dir"), pytest.approx(0.00298, rel=0.01)),
         **dict.fromkeys(("half_literal.hlsl:arithmetic=half", "dir:arithmetic=half"), pytest.approx(0.0708, rel=0.1)),
     }
-    assert "it declares numbers of 16 bits" in err
+    assert "it declares 16-bit numbers" in err
     _, out, _ = run("quality", "--encoding", files, *asked, "--arithmetic", "float", "--format", "json")
     assert len(json.loads(out)) == 3
 
@@ -50,7 +50,7 @@ def test_quality_has_a_row_of_either_arithmetic(run, tmp_path):
 def test_the_answer_quotes_half_arithmetic(run):
     file = str(FORMS / "half_literal.hlsl")
     _, out, _ = run("doctor", file, "--storage", "rg16")
-    assert "in the half arithmetic that it declares, rg16 has 0.07" in out
+    assert "in rg16, with the half precision that the file declares: mean error 0.07" in out
     _, out, _ = run("pick", "--storage", "rg16", "--against", file, *SMALL_ANSWER)
     (row,) = [row for row in json.loads(out) if row["against"]]
     assert row["encoding"] == "half_literal.hlsl:arithmetic=half"
@@ -63,7 +63,7 @@ def test_without_a_device_for_halves_the_answer_is_of_32_bits(run, monkeypatch):
         raise MissingError("half arithmetic by glsl needs wgpu; pip install wgpu")
 
     monkeypatch.setattr("normalbench.bench.subjects.codecs.half.compute.half_device", missing)
-    said, file = "computed in 32 alone: half arithmetic by glsl needs wgpu", str(FORMS / "half_literal.hlsl")
+    said, file = "computed only in 32 bits: half arithmetic by glsl needs wgpu", str(FORMS / "half_literal.hlsl")
     _, out, err = run("pick", "--storage", "rg8", "--against", file, *SMALL_ANSWER)
     (row,) = [row for row in json.loads(out) if row["against"]]
     assert row["encoding"] == "half_literal.hlsl" and said in err

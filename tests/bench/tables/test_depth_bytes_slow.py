@@ -40,12 +40,12 @@ def test_nothing_is_wrong_with_powers_of_255(run, tmp_path, text):
 def test_the_number_that_is_no_whole_byte_is_named(run, tmp_path):
     """A first digit of 256 steps is off by half of 1/255 where a byte has 255: 32 897 steps of 2^-24."""
     (finding,) = doctor(run, tmp_path, OF_256)
-    assert "number 1 of the code alone by 32897, as it is no multiple of 1/255" in finding
+    assert "component 1 of the code alone by 32897, because it is not a multiple of 1/255" in finding
 
 
 def test_a_digit_that_is_missing_is_named(run, tmp_path):
     findings = doctor(run, tmp_path, LOST)
-    assert any("depths that differ by 1/256 have one code: its most significant byte is missing" in f for f in findings)
+    assert any("depths that differ by 1/256 share a code: its most significant byte is missing" in f for f in findings)
 
 
 def test_it_is_measured_of_linear_window_and_reversed_window_depth(run, tmp_path):
@@ -55,7 +55,7 @@ def test_it_is_measured_of_linear_window_and_reversed_window_depth(run, tmp_path
     path.write_text(THREE)
     words = ("--depth", f"{path},window", "--storage", "depth24", "--count", "4096", "--backend", "glsl")
     status, _, err = run("depth", *words)
-    assert status == 2 and "its code lies in bytes, as it makes them; leave out --storage" in err
+    assert status == 2 and "it packs its own bytes; leave out --storage" in err
     words = ("--depth", str(path), "--distance", "10", "--count", "4096", "--backend", "glsl", "--format", "json")
     _, out, _ = run("depth", *words)
     rows = {(row["depth"], row["rebuilt"]): row for row in json.loads(out) if row["distance"] == 10}

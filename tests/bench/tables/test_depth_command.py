@@ -79,7 +79,7 @@ BAD = {
     "a way to round": (["--rounding", "up"], ["'up'", "truncate", "dithered"]),
     "a depth buffer's rounding": (
         ["--depth", "window", "--storage", "depth24", "--rounding", "truncate"],
-        ["window/depth24/truncate", "the device rounds it, to the nearest"],
+        ["window/depth24/truncate", "the device always rounds it to nearest"],
     ),
     "noise of floats": (["--depth", "linear", "--storage", "r16f", "--rounding", "dithered"], ["R16F", "fixed point"]),
     "no projection": (["--depth", "linear", "--rebuild", "inverse_projection"], ["linear/packed16"]),

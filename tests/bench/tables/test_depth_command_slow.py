@@ -104,16 +104,19 @@ def test_without_a_gl_driver_the_jax_rows_are_there(run, tmp_path, monkeypatch):
     """The others say what to install; GLSL alone, and pictures, are status 3."""
 
     def no_device():
-        raise NoDeviceError("no GL 4.3 device: gone; install a GL driver")
+        raise NoDeviceError("no OpenGL 4.3 device: gone; install an OpenGL driver")
 
     for module in (depth, devices):
         monkeypatch.setattr(module, "device", no_device)
-    status, out, err = run(*QUICK[:-2], "--format", "json", "--plot", str(tmp_path / "plot.png"))
+    plot = tmp_path / "plot.png"
+    status, out, err = run(*QUICK[:-2], "--format", "json", "--plot", str(plot))
     rows = json.loads(out)
-    assert status == 0 and err.count("\n") == 2 and "install a GL driver" in err
+    missing, written = err.splitlines()
+    assert status == 0 and "install an OpenGL driver" in missing, err
+    assert written == f"normalbench: the chart is in {plot}"
     assert {row["backend"] for row in rows if row["error_max"] is None} == {"glsl"}
     assert {row["backend"] for row in rows if row["error_max"] is not None} == {"jax"}
-    assert (tmp_path / "plot.png").stat().st_size > 10_000
+    assert plot.stat().st_size > 10_000
     for arguments in (["--backend", "glsl"], ["--images", str(tmp_path / "pictures")]):
         status, _, err = run(*QUICK[:-2], *arguments)
-        assert status == 3 and err.count("\n") == 1 and "install a GL driver" in err
+        assert status == 3 and err.count("\n") == 1 and "install an OpenGL driver" in err

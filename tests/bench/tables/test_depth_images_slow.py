@@ -29,8 +29,8 @@ def test_a_code_is_measured_on_the_depths_of_an_image(run, tmp_path):
     assert row["error_max"] <= row["bound"] and row["half_step"] == pytest.approx(FAR / 65535 / 2)
     assert (row["depths"], row["distance"], row["count"]) == ("a.exr", None, 21 * 32)
     assert (row["background"], row["not_finite"], row["fov"], row["seed"]) == (3 * 32, 0, None, None)
-    assert "without --fov its points lie on the view axis" in err
-    assert "12.5% of its pixels are not within --near 0.5 --far 80; it has 8.38" in err
+    assert "without --fov its points are on the view axis" in err
+    assert "12.5% of the pixels are not within --near 0.5 --far 80; depths are 8.38" in err
 
 
 @pytest.mark.usefixtures("gl")
@@ -59,7 +59,7 @@ def test_whole_numbers_are_in_their_unit_or_shares_of_one(run, tmp_path):
     millimetres = np.round(SLOPE * 1000).astype(np.uint16)
     (tmp_path / "a.png").write_bytes(png_bytes(millimetres[..., None]))
     rows, err = rows_of(run, tmp_path / "a.png", "--depth-unit", "0.001")
-    assert {row["count"] for row in rows} == {24 * 32} and "whole numbers of 16 bits" in err
+    assert {row["count"] for row in rows} == {24 * 32} and "16-bit integers" in err
     stored = np.round(window(SLOPE.astype(float)) * 65535).astype(np.uint16)
     (tmp_path / "w.png").write_bytes(png_bytes(stored[..., None]))
     rows, _ = rows_of(run, tmp_path / "w.png", "--depths-are", "window", "--storage", "depth16,packed16")
@@ -69,15 +69,15 @@ def test_whole_numbers_are_in_their_unit_or_shares_of_one(run, tmp_path):
 
 def test_what_looks_wrong_or_favours_a_code_is_said(run, tmp_path):
     np.save(tmp_path / "half.npy", SLOPE.astype(np.float16))
-    assert "all its numbers are those of half floats" in rows_of(run, tmp_path / "half.npy")[1]
+    assert "all its values are half floats" in rows_of(run, tmp_path / "half.npy")[1]
     np.save(tmp_path / "share.npy", window(SLOPE.astype(float)))
     said = rows_of(run, tmp_path / "share.npy", "--near", "0.01")[1]
-    assert "in [0, 1]: --depths-are window, reversed_window or linear reads a depth buffer's" in said
+    assert "in [0, 1]; for a depth buffer use --depths-are window, reversed_window or linear" in said
     lost = SLOPE.copy()
     lost[0, :5] = np.nan
     np.save(tmp_path / "nan.npy", lost)
     rows, said = rows_of(run, tmp_path / "nan.npy", "--count", "5")
-    assert "5 numbers are NaN and left out" in said and "--count has no effect on depth images" in said
+    assert "5 values are NaN and left out" in said and "--count has no effect on depth images" in said
     assert {(row["count"], row["background"], row["not_finite"]) for row in rows} == {(24 * 32 - 5, 0, 5)}
 
 

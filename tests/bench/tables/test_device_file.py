@@ -96,9 +96,9 @@ NESTED = 100_000
 BAD = {
     "empty": (b"", "it is empty"),
     "blank": (b" \n\t", "it is empty"),
-    "byte-order mark": (b"\xef\xbb\xbf" + GOOD, "it begins with a byte-order mark"),
-    "UTF-16": ("{}".encode("utf-16"), "byte 1: it is not text in UTF-8"),
-    "Latin-1": (GOOD.replace(b"a vendor", b"a v\xe9ndor"), "it is not text in UTF-8"),
+    "byte-order mark": (b"\xef\xbb\xbf" + GOOD, "it starts with a byte-order mark"),
+    "UTF-16": ("{}".encode("utf-16"), "byte 1: not UTF-8 text"),
+    "Latin-1": (GOOD.replace(b"a vendor", b"a v\xe9ndor"), "not UTF-8 text"),
     "cut off": (GOOD[:-20], "this is not JSON"),
     "not JSON": (b"<html>", "line 1, column 1: this is not JSON"),
     "nested": (b"[" * NESTED, "it is nested too deep"),
@@ -114,10 +114,13 @@ BAD = {
     ),
     "too many digits": (GOOD.replace(b"65536", b"9" * 5000, 1), "codecs[0].normals is not a finite number"),
     "a key twice": (GOOD.replace(b'"vendor"', b'"browser"'), "browser is given twice in one object"),
-    "a run's rows": (json.dumps([{"encoding": "xy", "psnr_db": 3.0}]).encode(), "it is not a device file"),
-    "a run's facts": (json.dumps({"request": {"tables": "all"}, "finished": True}).encode(), "it is not a device file"),
-    "a later version": (edited(lambda c: c.update(normalbench_device=2)), "normalbench_device: 2 is not 1"),
-    "true as a version": (edited(lambda c: c.update(normalbench_device=True)), "normalbench_device: True is not 1"),
+    "a run's rows": (json.dumps([{"encoding": "xy", "psnr_db": 3.0}]).encode(), "not a device file"),
+    "a run's facts": (json.dumps({"request": {"tables": "all"}, "finished": True}).encode(), "not a device file"),
+    "a later version": (edited(lambda c: c.update(normalbench_device=2)), "normalbench_device: 2 is not supported"),
+    "true as a version": (
+        edited(lambda c: c.update(normalbench_device=True)),
+        "normalbench_device: True is not supported",
+    ),
     "no renderer": (edited(lambda c: c.pop("renderer")), "renderer is missing"),
     "a renderer of a number": (edited(lambda c: c.update(renderer=3)), "renderer: 3 is not text"),
     "a long renderer": (edited(lambda c: c.update(renderer="x" * 1025)), "is longer than 1024 letters"),
@@ -125,10 +128,10 @@ BAD = {
     "no time": (edited(lambda c: c.update(made="yesterday")), "made: yesterday is not a time such as"),
     "a time before all": (edited(lambda c: c.update(made="0001-01-01T00:00:00+10:00")), "is not a time such as"),
     "codecs of text": (edited(lambda c: c.update(codecs="xy")), "codecs: xy is not a list"),
-    "no codecs": (edited(lambda c: c.update(codecs=[])), "codecs: it has no entries"),
+    "no codecs": (edited(lambda c: c.update(codecs=[])), "codecs: no entries"),
     "many codecs": (
         edited(lambda c: c.update(codecs=[{}] * 4097)),
-        "codecs: it has more than 4096 entries",
+        "codecs: more than 4096 entries",
     ),
     "a codec of text": (edited(lambda c: c["codecs"].insert(0, "xy")), "codecs, row 1: xy is not an object"),
     "no target": (edited(lambda c: c["codecs"][2].pop("target")), "codecs, row 3, target is missing"),
@@ -146,14 +149,17 @@ BAD = {
     "facts in a list": (edited(lambda c: c.update(facts=[])), "facts: [] is not an object"),
     "many facts": (
         edited(lambda c: c.update(facts={str(i): 1 for i in range(513)})),
-        "facts: it has more than 512 entries",
+        "facts: more than 512 entries",
     ),
     "a fact in a list": (edited(lambda c: c["facts"].update(NaN=[1])), "facts, NaN: [1] is neither text nor a number"),
     "a fact of truth": (edited(lambda c: c["facts"].update(NaN=True)), "facts, NaN: True is neither text nor a number"),
     "a long fact": (edited(lambda c: c["facts"].update(NaN="x" * 2000)), "is longer than 1024 letters"),
     "a large fact": (edited(lambda c: c["facts"].update(NaN=10**400)), "facts.NaN is not a finite number"),
     "a long name": (edited(lambda c: c["facts"].update({"n" * 200: 1})), "is longer than 128 letters"),
-    "facts that read alike": (edited(lambda c: c.update(facts={"a b": 1, "a\nb": 2})), "has two names that read alike"),
+    "facts that read alike": (
+        edited(lambda c: c.update(facts={"a b": 1, "a\nb": 2})),
+        "has two names that look the same",
+    ),
 }
 
 
@@ -174,13 +180,13 @@ def test_what_is_no_file_is_one_line(run, tmp_path):
     expected = {
         "pipe": "it is not a plain file",
         "none.json": "there is no such file",
-        "empty": "there is no *.json in it",
+        "empty": "no *.json files here",
     }
     for name, said in expected.items():
         status, out, err = run("devices", "--devices", str(tmp_path / name))
         assert (status, out, err.count("\n")) == (2, "", 1) and said in err, err
     status, _, err = run("devices")
-    assert status == 2 and "no device file named; --devices FILE,FILE names them" in err
+    assert status == 2 and "--devices: no device file named" in err
 
 
 def test_an_enormous_file_is_refused_before_it_is_read(tmp_path):

@@ -52,9 +52,9 @@ def files_of(folder: Path) -> dict[str, bytes]:
 def test_the_page_says_who_agrees_and_what_to_take_on_each(site):
     text = Read(site / "index.html").text
     assert "5 devices agree with the run in every code of 35 codecs." in text
-    assert "Mali-G78, Chromium 156 differs in 8 of 35 codecs, most in xyz rgb10a2: 87.6 % of its codes" in text
+    assert "Mali-G78, Chromium 156 differs in 8 of 35 codecs, most in xyz rgb10a2: 87.6% of its codes" in text
     assert "rg8, 2 bytes: take octahedral." in text and "ms per megapixel to encode" in text
-    assert "stereographic, hemi_octahedral (made for normals with z >= 0 alone)" in " ".join(text.split())
+    assert "stereographic, hemi_octahedral (only for normals with z >= 0)" in " ".join(text.split())
     assert "This device has no times" in text
 
 
@@ -114,7 +114,7 @@ def test_damaged_files_are_named_and_left_out(run, tmp_path):
     (files / "good.json").unlink()
     shutil.rmtree(tmp_path / "site")
     status, out, err = run("site", str(files), "-o", str(tmp_path / "site"))
-    assert (status, out) == (2, "") and "there is no device file in it" in err.splitlines()[-1]
+    assert (status, out) == (2, "") and "no device file in it" in err.splitlines()[-1]
     assert not (tmp_path / "site").exists()
 
 
@@ -151,9 +151,9 @@ def test_a_page_that_no_longer_belongs_to_the_site_is_taken_away(tmp_path):
 @pytest.mark.parametrize(
     "name, text, said",
     [
-        ("index.html", "mine", "index.html is not of an earlier site"),
+        ("index.html", "mine", "index.html is not from an earlier site"),
         (MARKER, "{", "this is not JSON; delete it"),
-        (MARKER, '{"files": ["../outside.html"]}', "it lists what no site has"),
+        (MARKER, '{"files": ["../outside.html"]}', "it lists files that no site has"),
         (MARKER, '{"files": 3}', "delete it"),
         (MARKER, "[]", "delete it"),
     ],
@@ -174,7 +174,7 @@ def test_a_link_in_the_site_leads_nowhere_else(tmp_path):
     (tmp_path / "other").mkdir()
     (tmp_path / "site").mkdir()
     (tmp_path / "site/devices").symlink_to(tmp_path / "other")
-    with pytest.raises(UsageError, match="a link in the place of a site's files"):
+    with pytest.raises(UsageError, match="a link where the site's files go"):
         write_site(tmp_path / "site", {"devices/index.html": "text"})
     assert not list((tmp_path / "other").iterdir())
 
@@ -204,8 +204,8 @@ def test_two_files_of_one_device_are_one_section(run, tmp_path):
     status, out, err = run("site", str(tmp_path / "files"), "-o", str(tmp_path / "site"))
     assert status == 0 and "1 device\n" in out
     assert err == (
-        f"normalbench: left out: {tmp_path}/files/a.json: {tmp_path}/files/b.json is of the same device and browser, "
-        "and not older\n"
+        f"normalbench: skipped {tmp_path}/files/a.json: {tmp_path}/files/b.json is from the same device and browser "
+        "and at least as recent\n"
     )
 
 

@@ -41,29 +41,32 @@ def test_codes_stand_by_bits_the_best_first_and_depth_codes_after_them():
         (("--effect", ""), "no effect named; known: all, "),
         (
             ("--pipeline", "forward"),
-            "pipeline forward has no G-buffer that an effect could read a code from",
+            "pipeline forward has no G-buffer for an effect to read",
         ),
-        (("--depth", "linear"), "--depth linear: write a code and its storage, such as linear/packed16, or none"),
+        (
+            ("--depth", "linear"),
+            "--depth linear: not an encoding with its storage; write for example linear/packed16, or none",
+        ),
         (("--depth", "linear/packed9"), "unknown depth storage 'packed9'"),
         (("--depth", "metres/r32f"), "unknown depth 'metres'"),
-        (("--depth", "linear_sign/packed24"), "does not suit xyz"),
+        (("--depth", "linear_sign/packed24"), "cannot be used with xyz"),
         (("--encoding", "xyz", "--storage", "rg8", "--depth", "none"), "3 components, but RG8 has 2 channels"),
         (("--layout", "normal_depth", "--depth", "none"), "hybrid needs base_color.b"),
-        (("--depth", "none"), "--depth none leaves nothing to measure: name --encoding or --layout"),
+        (("--depth", "none"), "--depth none leaves nothing to measure; name --encoding or --layout"),
         (
             ("--effect", "subsurface", "--pipeline", "deferred"),
-            "subsurface does not go into pipeline deferred, but into prepass, inferred, hybrid",
+            "subsurface cannot be used in pipeline deferred; use prepass, inferred, hybrid",
         ),
         (
             ("--effect", "ssr", "--scene", "room"),
-            "ssr on room: its materials have no roughness; studio and glTF files have one",
+            "ssr on room: its materials have no roughness; use studio or a glTF file",
         ),
         (("--effect", "ssr:steps=0"), "effect ssr: steps=0 is not a whole number from 1 to 4096"),
         (("--effect", "ssr:rays=some"), "effect ssr: rays=some is not a whole number from 1 to 1024"),
         (("--effect", "ssr:misses=black"), "effect ssr: misses=black is not environment or nothing"),
         (
             ("--effect", "ssr", "--pipeline", "prepass"),
-            "ssr does not go into pipeline prepass, but into deferred, hybrid",
+            "ssr cannot be used in pipeline prepass; use deferred, hybrid",
         ),
         (("--effect", "ssr", "--layout", "normal_depth", "--depth", "none"), "hybrid needs base_color.b"),
         (("--rays", "-1"), "--rays -1: from 0"),
@@ -90,7 +93,7 @@ def test_an_effect_is_where_its_alpha_says():
 
 def test_two_effects_of_one_kind_are_refused(run):
     status, out, err = run("render", "--effects", "gtao,lpv,sao", "--encoding", "xy")
-    assert (status, out) == (2, "") and "gtao and sao both make visibility; name one of them" in err, err
+    assert (status, out) == (2, "") and "gtao and sao both produce visibility; name only one" in err, err
     assert err.count("\n") == 1
 
 

@@ -166,11 +166,11 @@ def test_a_method_is_judged_by_rays_where_there_are_any(run, monkeypatch):
         monkeypatch.setitem(sys.modules, name, None)
     status, out, err = run(*words, "--format", "json")
     assert status == 0 and [row["method_rms"] for row in json.loads(out)] == [None, None]
-    assert "method_rms stays empty: rays need embreex" in err and err.count("\n") == 1, err
+    assert "method_rms is empty: rays need embreex" in err and err.count("\n") == 1, err
 
 
 def test_an_effect_out_of_the_picture_has_no_figures(run):
     """One pixel of the head's scene shows no skin."""
     words = ("--effect", "subsurface", "--encoding", "octahedral", "--depth", "none", "--size", "1x1")
     status, out, err = run("effects", *words)
-    assert (status, out, err) == (2, "", "normalbench: subsurface shows nothing in this picture\n")
+    assert (status, out, err) == (2, "", "normalbench: subsurface shows nothing in this image\n")

@@ -120,8 +120,8 @@ def test_noise_of_a_frame_is_added_to_each_number_but_one_of_few_values():
 @pytest.mark.parametrize(
     "asked, said",
     [
-        (["--rounding", "dithered", "--worst-case"], "--worst-case is of codes without noise"),
-        (["--rounding", "dithered", "--storage", "rgba16f"], "noise is for fixed point"),
+        (["--rounding", "dithered", "--worst-case"], "--worst-case cannot be used with --rounding dithered"),
+        (["--rounding", "dithered", "--storage", "rgba16f"], "use noise only with fixed point"),
     ],
 )
 def test_what_noise_has_no_part_in_is_a_line(run, asked, said):
@@ -155,7 +155,7 @@ BAD = {
     "a back end": (["--backend", "vulkan"], ["'vulkan'", "jax", "glsl"]),
     "no frames": (["--count", "0"], ["--count 0"]),
     "a seed": (["--seed", "-1"], ["--seed -1"]),
-    "no room": (["--encoding", "qtangent", "--storage", "rgb10a2"], ["qtangent/rgb10a2", "number 4 has 2 bits"]),
+    "no room": (["--encoding", "qtangent", "--storage", "rgb10a2"], ["qtangent/rgb10a2", "4 has only 2 bits"]),
     "no room for an index": (["--storage", "rgba8_10_10_11_1", "--encoding", "smallest_three"], ["has 4 values"]),
     "no folder": (["-o", "/proc/nowhere/rows.csv"], ["/proc/nowhere"]),
 }
@@ -180,17 +180,17 @@ def test_a_row_below_its_limit_is_named_and_the_status_is_1(run, monkeypatch):
 
 def test_without_a_gl_driver_the_jax_rows_are_there(run, monkeypatch):
     def no_device():
-        raise NoDeviceError("no GL 4.3 device: gone; install a GL driver")
+        raise NoDeviceError("no OpenGL 4.3 device: gone; install an OpenGL driver")
 
     for module in (frames, devices):
         monkeypatch.setattr(module, "device", no_device)
     command = ["frames", "--count", "100", "--encoding", "qtangent", "--storage", "rgba8", "--format", "json"]
     status, out, err = run(*command)
     rows = {row["backend"]: row for row in json.loads(out)}
-    assert status == 0 and err.count("\n") == 1 and "install a GL driver" in err
+    assert status == 0 and err.count("\n") == 1 and "install an OpenGL driver" in err
     assert rows["jax"]["rotation_max_deg"] < 1 and rows["glsl"]["rotation_max_deg"] is None
     status, _, err = run(*command, "--backend", "glsl")
-    assert status == 3 and err.count("\n") == 1 and "install a GL driver" in err
+    assert status == 3 and err.count("\n") == 1 and "install an OpenGL driver" in err
 
 
 def test_a_lost_hand_counts_whichever_it_was():

@@ -116,12 +116,12 @@ def test_light_that_is_missing_is_drawn_as_far_off_as_light_that_is_too_much():
 
 def test_without_a_device_the_model_is_measured_alone(run, monkeypatch):
     def missing():
-        raise NoDeviceError("no GL 4.3 device: none; install a GL driver")
+        raise NoDeviceError("no OpenGL 4.3 device: none; install an OpenGL driver")
 
     monkeypatch.setattr(devices, "device", missing)
     status, out, err = run("lights", "--light-buffer", "log", "--counts", "8", "--format", "json")
     rows = json.loads(out)
-    assert status == 0 and err.count("\n") == 1 and "install a GL driver" in err
+    assert status == 0 and err.count("\n") == 1 and "install an OpenGL driver" in err
     equal = [row for row in rows if row["experiment"] == "equal"]
     assert equal and all(row["model"] is not None and row["gl"] is None for row in equal)
     assert {row["experiment"] for row in rows} == set(lights.EXPERIMENTS)
@@ -134,10 +134,10 @@ def test_without_a_device_the_model_is_measured_alone(run, monkeypatch):
         (["--light-buffer", "rgbe"], "unknown light buffer 'rgbe'; did you mean rgb9e5? known: all, rgba32f"),
         (
             ["--light-buffer", "log:2"],
-            "light buffer log:2: of linear, srgb, rgbm the range may be given, as in linear:1",
+            "light buffer log:2: only linear, srgb, rgbm take a range, as in linear:1",
         ),
-        (["--light-buffer", "linear:wide"], "light buffer linear:wide: a range is"),
-        (["--light-buffer", "linear:-1"], "light buffer linear:-1: a range is"),
+        (["--light-buffer", "linear:wide"], "light buffer linear:wide: the range must be"),
+        (["--light-buffer", "linear:-1"], "light buffer linear:-1: the range must be"),
         (["--counts", "0"], "--counts 0: whole numbers from 1 to 4096"),
         (["--counts", "8,many"], "--counts 8,many: whole numbers"),
         (["--counts", ""], "--counts : whole numbers"),
@@ -147,9 +147,9 @@ def test_without_a_device_the_model_is_measured_alone(run, monkeypatch):
         (["--peak", "inf"], "--peak inf: numbers from"),
         (["--seed", "-1"], "--seed -1"),
         (["--plot", "plot.gif"], "a plot's name ends in"),
-        (["--plot", "plot.png", "--experiment", "banding"], "--plot draws the experiments equal and random"),
+        (["--plot", "plot.png", "--experiment", "banding"], "--plot: plots only the experiments equal and random"),
         (["--images", "/proc/none"], "cannot write to /proc/none"),
-        (["--images", "pictures", "--experiment", "equal"], "--images draws the experiment banding"),
+        (["--images", "pictures", "--experiment", "equal"], "--images: shows only the experiment banding"),
         (["--experiment", "chromaticity", "--light-buffer", "rgbm"], "nothing to measure: chromaticity needs"),
         (["-o", "/proc/none/rows.csv"], "cannot write"),
     ],

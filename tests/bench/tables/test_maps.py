@@ -84,14 +84,17 @@ def test_what_a_named_format_has_no_room_for_is_said(run):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--normals", "sphere"), "--normals sphere: not an image; name bumps, grain, playground, or an image file"),
+        (("--normals", "sphere"), "--normals sphere: not an image; use bumps, grain, playground, or an image file"),
         (("--block", "bc6"), "unknown block format 'bc6'"),
         (("--swizzle", "bgr"), "unknown swizzle 'bgr'"),
         (("--decoder", "gpu"), "unknown decoder 'gpu'"),
-        (("--encoding", "xy_sign"), "xy_sign: its sign bit has no channel in a normal map"),
-        (("--encoding", "spherical_fibonacci"), "compression changes its numbers a little, and it needs them exact"),
+        (("--encoding", "xy_sign"), "xy_sign: the sign bit has no channel in a normal map"),
+        (
+            ("--encoding", "spherical_fibonacci"),
+            "compression changes numbers slightly, and this encoding needs them exact",
+        ),
         (("--encoding", "xyz", "--block", "bc5"), "xyz: 3 components, but BC5 has 2 channels"),
-        (("--encoding", "xy", "--block", "bc7", "--swizzle", "rgb"), "xy in BC7: 2 components do not lie in rgb"),
+        (("--encoding", "xy", "--block", "bc7", "--swizzle", "rgb"), "xy in BC7: 2 components do not fit in rgb"),
         (("--normals", "none.png"), "none.png: there is no such file"),
     ],
 )

@@ -181,7 +181,7 @@ def test_the_page_has_a_chart_and_the_summary_the_verdicts(rows):
     assert list(chart.x.names) == [name.replace("_", " ") for name in OPERATIONS]
     assert len(chart.rows) == 3 * len(OPERATIONS)
     assert sum("%" in cell["said"] for cell in chart.rows) >= 8
-    assert "of 3 codes give no garbage" in chart.title
+    assert "of 3 codecs give no garbage" in chart.title
     (sheet,) = work.summary(rows)
     assert {line["encoding"]: line["filterable"] for line in sheet.rows}["octahedral"] == "no"
     assert any("octahedral/rgba8: normals 5 degrees apart on axes" in note for note in sheet.notes)
@@ -229,7 +229,7 @@ def test_rows_have_the_columns_of_the_table(rows):
         (("--angle", "5,far"), "--angle 5,far: numbers from 0.01 to 60"),
         (("--samples", "1"), "--samples 1: from 2 to 64"),
         (("--count", "0"), "--count 0: from 1 to 65536"),
-        (("--power", "0"), "--power 0: from 1 to 65536"),
+        (("--power", "0"), "--power 0: out of range; use 1 to 65536"),
         (("--operation", "blur"), "unknown operation 'blur'; known: all, filter"),
         (("--backend", "cuda"), "unknown back end 'cuda'"),
         (("--normals", "cube"), "unknown normal set 'cube'"),
@@ -253,7 +253,7 @@ def test_an_image_without_a_square_of_texels_is_one_line(run, tmp_path):
     flat[..., 2] = 1.0
     np.save(tmp_path / "small.npy", flat)
     status, out, err = run("mix", "--normals", str(tmp_path / "small.npy"), "--backend", "jax")
-    assert (status, out) == (2, "") and "no square of 4 x 4 pixels of it is covered" in err, err
+    assert (status, out) == (2, "") and "no square of 4 x 4 pixels is covered" in err, err
 
 
 def test_a_set_of_few_normals_is_mixed_evenly_and_with_every_alpha():

@@ -17,9 +17,9 @@ def test_a_page_holds_its_charts_and_its_animation(run, tmp_path, monkeypatch):
     status, _, err = run(*words, "-o", str(one))
     assert status == 0, err
     page = (one / "report.html").read_text()
-    assert "What wobbles when the camera turns" in page and page.count("data:image/png;base64,") == 1
+    assert "Temporal stability" in page and page.count("data:image/png;base64,") == 1
     assert 'data-chart="motion"' in page and (one / "charts" / "motion.svg").exists()
-    assert "How much codes wobble" in page and "The highlight that moves the most, of spheremap rg8" in page
+    assert "Wobble by speed of the turn" in page and "The highlight that moves the most: spheremap rg8" in page
     status, _, err = run("compare", str(one), str(one))
     assert status == 0, err
 

@@ -57,7 +57,7 @@ targets = [{ format = "FORMAT", holds = "normal.x normal.y" },
     status, out, err = run("render", "--layout", str(tmp_path / "right.toml"), "--size", "160x120", "--format", "json")
     assert status == 0 and json.loads(out)[0]["storage"] == "bits32", err
     status, _, err = run("render", "--layout", str(tmp_path / "wrong.toml"), "--size", "160x120")
-    assert status == 2 and "packs 32 bits itself, which need the format bits32" in err
+    assert status == 2 and "packs 32 bits itself and needs the format bits32" in err
 
 
 def test_cost_counts_the_functions_alone(run):
@@ -92,7 +92,7 @@ def test_pick_ranks_it_among_codes_of_as_many_bytes(run):
     assert (row["place"], row["bits"], row["free_bits"], row["slots_once"]) == ("against", 24, 8, 25)
     (row,), err = rows(run, "pick", "--storage", "rg8,rgba8", "--encoding", f"{FILE},octahedral", *SMALL_ANSWER)
     assert row["asked"] == "rgba8"
-    assert "uint_only.hlsl is an integer of 4 bytes, not of those of rg8" in err
+    assert "uint_only.hlsl packs into a 4-byte integer; texels of rg8 have another size" in err
 
 
 def test_pick_leaves_an_integer_out_where_codes_are_filtered(run):

@@ -56,10 +56,10 @@ def test_a_command_with_a_file_goes_on_and_leaves_nothing_behind(run, tmp_path, 
 
     monkeypatch.setattr(quality, "rows", one)
     status, _, err = run(*arguments)
-    assert status == 130 and "1 of 4 steps are kept; the same command goes on" in err
+    assert status == 130 and "1 of 4 steps were saved; to resume, run the same command" in err
     monkeypatch.setattr(quality, "rows", run_rows)
     status, _, err = run(*arguments)
-    assert status == 0 and "1 of 4 steps were measured before" in err, err
+    assert status == 0 and "1 of 4 steps are already measured" in err, err
     (row,) = json.loads((tmp_path / "rows.json").read_text())
     # The file has bins as lists.
     assert row | {"angle_counts": ""} == whole[0] | {"angle_counts": ""}

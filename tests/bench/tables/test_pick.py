@@ -39,7 +39,7 @@ def test_angles_of_an_answer_are_shares_of_normals_below_each():
     _, spread = charts(rows)
     assert spread.name == "spread-0"
     assert spread.title == (
-        "rg8, on sphere: half of octahedral's normals are off by less than 0.31 degrees, 99 % by less than 0.56"
+        "rg8, on sphere: with octahedral half of the normals are off by less than 0.31 degrees, 99% by less than 0.56"
     )
     lines = [[(row["x"], row["y"]) for row in spread.rows if row["codec"] == f"{name} rg8"] for name in counts]
     assert lines[0] == [(0.28125, 25.0), (0.3125, 75.0), (0.5625, 100.0), (2.25, 100.0)]
@@ -60,19 +60,22 @@ def test_where_nothing_qualifies_it_is_said_with_status_1(run):
         (("--aim", "beauty"), "unknown aim 'beauty'; known: angle, worst, image, cost"),
         (("--family", "navi99"), "unknown family 'navi99'; known: all, polaris10"),
         (("--domain", "cube"), "unknown domain 'cube'; known: sphere, tangent, terrain, map, view"),
-        (("--domain", "hemisphere"), "--domain hemisphere: of which space? tangent, terrain or map, where z >= 0"),
+        (
+            ("--domain", "hemisphere"),
+            "--domain hemisphere: ambiguous; use tangent, terrain or map for normals with z >= 0",
+        ),
         (("--power", "47,none"), "--power 47,none: numbers from 1 to 2048"),
         (("--most-instructions", "-1"), "--most-instructions -1: from 0 to 1000000"),
         (("--readers", "65"), "--readers 65: from 0 to 64"),
-        (("--worth", "0"), "--worth 0: above 0 to 100 decibels"),
-        (("--enough", "-1"), "--enough -1: 0 to 360 degrees"),
+        (("--worth", "0"), "--worth 0: out of range; use more than 0, up to 100 dB"),
+        (("--enough", "-1"), "--enough -1: out of range; use 0 to 360 degrees"),
         (("--bytes", "3"), "unknown number of bytes '3'; known: all, 2, 4, 8, 16"),
         (("--encoding", "xyz", "--storage", "rg8"), "xyz: 3 components, but RG8 has 2 channels"),
         (("--rounding", "up"), "unknown rounding 'up'; known: all, nearest, truncate, truncate_half"),
-        (("--rounding", "dithered"), "--rounding dithered: no noise is added here"),
+        (("--rounding", "dithered"), "--rounding dithered: this command adds no noise"),
         (
             ("--encoding", "octahedral", "--storage", "rg16f", "--rounding", "truncate_half"),
-            "octahedral: RG16F is of floats, and truncate_half is for fixed point",
+            "octahedral: RG16F stores floats, but truncate_half is for fixed point",
         ),
     ],
 )

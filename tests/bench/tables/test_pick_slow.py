@@ -284,7 +284,7 @@ def test_the_sentences_say_the_rows_figures():
     assert "1.9 and 5.4 texels of a 1k" in first, first  # of 360 degrees, for twice each angle
     assert "Axis-aligned floors and walls are off by up to 0.32°" in first, first
     assert "14 issue slots to encode and 16 to decode on navi21" in second and "16 bits" in second, second
-    lost = "hemi_octahedral, xy (loss of normals that point away (z < 0): 50 % of these)"
+    lost = "hemi_octahedral, xy (cannot represent normals that point away (z < 0): 50% of the set)"
     assert any(lost in text for text in rest), rest
 
 
@@ -346,7 +346,9 @@ def test_an_encoder_in_glsl_alone_is_compared_and_said_to_lose_half(run, tmp_pat
     words = ("pick", "--encoding", "octahedral", "--storage", "rg8", "--count", "4096", "--scene", "studio")
     words = (*words, "--against", str(path))
     status, out, _ = run(*words)
-    assert status == 0 and "flat does not qualify: loss of normals that point away (z < 0): 50 % of these" in out, out
+    assert (
+        status == 0 and "flat does not qualify: cannot represent normals that point away (z < 0): 50% of the set" in out
+    ), out
     status, out, _ = run(*words, "--domain", "tangent", "--format", "json")
     rows = json.loads(out)
     assert status == 0 and {row["encoding"] for row in rows} == {"octahedral", "flat"}
@@ -364,7 +366,7 @@ def test_each_way_to_round_is_a_question(run, tmp_path):
     status, out, err = run("pick", *words, "--format", "json")
     asked = [row for row in json.loads(out) if not row["beside"]]
     found = {(row["encoding"], row["rounding"]): row for row in asked}
-    assert status == 0 and err.count("\n") == 2 and "octahedral_precise: it is rounded precisely, not otherwise" in err
+    assert status == 0 and err.count("\n") == 2 and "octahedral_precise: it supports only precise rounding" in err
     assert len(asked) == len(found) == 3 and ("octahedral_precise", "truncate") not in found
     nearest, cut = (found["octahedral", rounding] for rounding in ("nearest", "truncate"))
     for figure in ("angle_mean_deg", "angle_sup_deg"):

@@ -55,11 +55,13 @@ def test_what_has_no_even_steps_of_its_own_is_not_dithered():
     octahedral, rg8 = ENCODINGS["octahedral"], STORAGES["rg8"]
     misfits = {
         "an index": Codec(ENCODINGS["spherical_fibonacci"], rg8, "dithered"),
-        "steps of floats": Codec(octahedral, STORAGES["rg16f"], "dithered"),
-        "rounded to the nearest": Codec(ENCODINGS["octahedral_precise"], rg8, "dithered"),
+        "float steps": Codec(octahedral, STORAGES["rg16f"], "dithered"),
+        "only with rounding to nearest": Codec(ENCODINGS["octahedral_precise"], rg8, "dithered"),
         "float32": Codec(in_half(octahedral), rg8, "dithered"),
-        "whole numbers": Codec(replace(octahedral, packed_bits=32), rg8, "dithered"),
-        "one code": Codec(replace(octahedral, before=Codec(octahedral, rg8)), rg8, "dithered"),
+        "its code is an integer": Codec(replace(octahedral, packed_bits=32), rg8, "dithered"),
+        "only to a single encoding in float32": Codec(
+            replace(octahedral, before=Codec(octahedral, rg8)), rg8, "dithered"
+        ),
     }
     for said, codec in misfits.items():
         assert said in str(codec.misfit) and "\n" not in str(codec.misfit), codec.misfit
@@ -68,10 +70,10 @@ def test_what_has_no_even_steps_of_its_own_is_not_dithered():
 @pytest.mark.parametrize(
     "asked, said",
     [
-        (["--worst-case"], "--worst-case is of codes without noise"),
-        (["--codes"], "--codes is of codes without noise"),
+        (["--worst-case"], "--worst-case cannot be used with --rounding dithered"),
+        (["--codes"], "--codes cannot be used with --rounding dithered"),
         (["--backend", "wgsl"], "--backend jax,glsl"),
-        (["--storage", "rg16f", "--backend", "jax"], "noise is for fixed point"),
+        (["--storage", "rg16f", "--backend", "jax"], "use noise only with fixed point"),
     ],
 )
 def test_what_noise_has_no_part_in_is_refused_in_a_line(run, asked, said):

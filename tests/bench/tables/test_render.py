@@ -92,21 +92,24 @@ def test_a_scene_that_covers_little_of_its_picture_is_said(run, tmp_path, monkey
     # A ball of radius 1 at 5: pi tan(asin(1/5))^2 of a picture of 4/3 (2 tan(0.5))^2 is 8.2 %.
     for words in (["render", "--repeats", "0"], ["pick"]):
         _, _, err = run(*words, *code)
-        assert re.search(r"far.glb: surfaces cover (7|8|9) % of the picture; a camera in the file", err), (words, err)
+        assert re.search(r"far.glb: surfaces cover only (7|8|9)% of the image; move the camera in the file", err), (
+            words,
+            err,
+        )
 
 
 def test_a_black_image_is_said(run):
     _, out, err = run("render", *SMALL, "--encoding", "octahedral", "--exposure", "-20", "--format", "json")
-    assert "100 % of the covered pixels are black, where errors cannot be seen" in err
+    assert "100% of the covered pixels are black; errors there are not visible" in err
     assert all(row["black_percent"] == 100 for row in json.loads(out))
 
 
 @pytest.mark.parametrize(
     "words, said",
     [
-        (["--exposure", "bright"], "--exposure bright: a number of stops, such as -1.5, or auto"),
-        (["--exposure", "nan"], "--exposure nan: -20 to 20 stops"),
-        (["--exposure=-21"], "--exposure -21: -20 to 20 stops"),
+        (["--exposure", "bright"], "--exposure bright: not a number; use stops such as -1.5, or auto"),
+        (["--exposure", "nan"], "--exposure nan: out of range; use -20 to 20 stops"),
+        (["--exposure=-21"], "--exposure -21: out of range; use -20 to 20 stops"),
         (["--tone-mapping", "Filmic"], "unknown tone mapping 'Filmic'; known: none, reinhard, aces"),
     ],
 )
@@ -121,7 +124,7 @@ def test_what_does_not_fit_says_why(run):
     status, out, err = run("render", *SMALL, *codecs, "--format", "json")
     precise, xyz = err.splitlines()
     assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["octahedral"]
-    assert "octahedral_precise/rg16f: RG16F is of floats, and precise rounding is for fixed point" in precise
+    assert "octahedral_precise/rg16f: RG16F stores floats, but precise rounding is for fixed point" in precise
     assert "xyz/rg16f: 3 components, but RG16F has 2 channels" in xyz
 
 
@@ -255,10 +258,10 @@ def test_a_pixel_that_is_no_number_counts_in_full():
         (["--layout", ""], "no layout named"),
         (["--encoding", ""], "no encoding named"),
         (["--layout", "hybrid", "--rounding", "up"], "unknown rounding 'up'"),
-        (["--layout", "hybrid,hybrid.toml"], "two layouts are called hybrid"),
+        (["--layout", "hybrid,hybrid.toml"], "two layouts are named hybrid"),
         (["--samples", "0"], "--samples 0: from 1 to 64"),
-        (["--scale", "0"], "a scale is 0.05 to 1"),
-        (["--scale", "nan"], "a scale is 0.05 to 1"),
+        (["--scale", "0"], "from 0.05 to 1"),
+        (["--scale", "nan"], "from 0.05 to 1"),
         (["--lights", "-1"], "--lights -1: from 0"),
         (["--objects", "0"], "--objects 0: from 1"),
         (["--frames", "-1"], "--frames -1"),
@@ -267,8 +270,8 @@ def test_a_pixel_that_is_no_number_counts_in_full():
         (["--pipeline", "raytraced"], "unknown pipeline 'raytraced'; known: all, forward"),
         (["--layout", "mine"], "unknown layout 'mine'; known: all, fp32"),
         (["--layout", "missing.toml"], "missing.toml: there is no such file"),
-        (["--layout", "clash.toml"], "normal.x lies in two places"),
-        (["--layout", "hybrid", "--encoding", "xy_sign"], "keeps no depth"),
+        (["--layout", "clash.toml"], "normal.x is stored twice"),
+        (["--layout", "hybrid", "--encoding", "xy_sign"], "has no depth"),
         (["--layout", "normal_depth", "--pipeline", "deferred"], "deferred needs base_color.b"),
         (["--light-buffer", "rgba8"], "unknown light buffer 'rgba8'"),
         (["--light-buffer", "r11g11b10f", "--light-targets", "1"], "one light target needs an alpha channel"),

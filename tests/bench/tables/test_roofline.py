@@ -114,15 +114,15 @@ def test_a_users_own_rates():
     "words, said",
     [
         ("rx9999", "unknown GPU 'rx9999'; known: all, rx480"),
-        ("navi21:clock=2", "needs lanes, memory, such as navi21:clock=2:lanes=2304:memory=448"),
-        ("rx480:clock=1:clock=2", "a setting is given twice"),
+        ("navi21:clock=2", "requires lanes, memory; write for example navi21:clock=2:lanes=2304:memory=448"),
+        ("rx480:clock=1:clock=2", "a rate is given twice"),
         ("rx480:speed=3", "unknown setting 'speed=3'; known: lanes, clock, memory"),
         ("rx480:title=mine", "unknown setting"),
         ("rx480:clock", "unknown setting 'clock'"),
-        ("rx480:clock=fast", "clock is 'fast'; from 0.01 to 100"),
+        ("rx480:clock=fast", "clock is 'fast'; use 0.01 to 100"),
         ("rx480:clock=nan", "clock is 'nan'"),
         ("rx480:memory=0", "memory is '0'"),
-        ("rx480:cache=32", "cache, in MB, and cached, in GB/s, go together"),
+        ("rx480:cache=32", "cache (MB) and cached (GB/s) require each other"),
         (" , ", "no GPU named"),
     ],
 )
@@ -134,9 +134,9 @@ def test_what_is_no_gpu_is_refused_in_a_line(words, said):
 @pytest.mark.parametrize(
     "words, said",
     [
-        (["--overdraw", "0"], "--overdraw 0.0: from 0.01 to 1000"),
+        (["--overdraw", "0"], "--overdraw 0.0: out of range; use 0.01 to 1000"),
         (["--overdraw", "nan"], "--overdraw nan"),
-        (["--cache-share", "2"], "a share is 0 to 1"),
+        (["--cache-share", "2"], "out of range; use 0 to 1"),
         (["--reads", "-1"], "--reads"),
         (["--reads", "two"], "--reads"),
         (["--size", "0x1"], "--size 0x1"),
@@ -166,7 +166,7 @@ def test_the_first_sentences_say_the_fastest_codes_of_each_gpu():
     other = [ranked_row("b", "xyz rgba8", 1), ranked_row("b", "xyz rgba8", 2, 4), ranked_row("b", "xy rg8", 1, 4)]
     same = [row | {"gpu": "c"} for row in other]
     assert answers([*one, *other, *same, ranked_row("a", "spheremap rg8", 1, 4)]) == (
-        "The fastest codes on each GPU:",
+        "The fastest encodings on each GPU:",
         "a: spheremap and octahedral in rg8 are equally fast with 1 read; "
         "spheremap in rg8 is the fastest with 4 reads.",
         "b and c: xyz in rgba8 is the fastest with 1 read; xy in rg8 is the fastest with 4 reads.",

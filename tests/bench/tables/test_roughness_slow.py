@@ -82,7 +82,7 @@ def test_an_index_is_not_dithered_and_says_so_in_a_line(run):
     )  # fmt: skip
     rows = json.loads(out)
     assert status == 0, err
-    assert len(err.splitlines()) == 1 and "spherical_fibonacci/rg8 is not dithered" in err and "an index" in err, err
+    assert len(err.splitlines()) == 1 and "spherical_fibonacci/rg8 cannot be dithered" in err and "an index" in err, err
     skipped = [(row["dither"], row["frames"]) for row in rows if row["skipped"]]
     assert skipped == [("still", 1), ("still", 2)] and len(rows) == 2 + 2 * 25
 

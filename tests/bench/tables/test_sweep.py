@@ -67,7 +67,7 @@ def test_rows_of_another_sweep_are_not_taken_and_not_thrown_away(run, tmp_path, 
     kept = journal.read_text()
     (tmp_path / "mine.toml").write_text(layout.format("rg16f"))
     status, _, err = run(*command)
-    assert status == 2 and "keeps 1 steps of another sweep" in err and journal.read_text() == kept
+    assert status == 2 and "has 1 steps of another sweep command" in err and journal.read_text() == kept
     (tmp_path / "mine.toml").write_text(layout.format("rg8"))
     monkeypatch.setattr(sweep, "measure", measure)
     assert run(*command)[0] == 0 and not journal.exists()
@@ -76,7 +76,7 @@ def test_rows_of_another_sweep_are_not_taken_and_not_thrown_away(run, tmp_path, 
 def test_two_sweeps_do_not_share_an_output(run, tmp_path):
     with beside(tmp_path / "rows.csv", {}):
         status, _, err = run(*SWEEP, "-o", str(tmp_path / "rows.csv"))
-    assert status == 2 and "another process writes" in err and err.count("\n") == 1
+    assert status == 2 and "another process is writing" in err and err.count("\n") == 1
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_two_sweeps_do_not_share_an_output(run, tmp_path):
         (["--objects", "0"], "numbers from 1"),
         (["--objects", "9" * 5000], "numbers from 1"),
         (["--samples", "0"], "--samples 0: from 1 to 64"),
-        (["--scale", "2"], "a scale is 0.05 to 1"),
+        (["--scale", "2"], "from 0.05 to 1"),
         (["--layout", ""], "no layout named"),
         (["--objects", ""], "numbers from 1"),
         (["--size", "0x0"], "WIDTHxHEIGHT"),

@@ -65,7 +65,7 @@ def test_a_stopped_sweep_goes_on_where_it_was(run, tmp_path, monkeypatch):
 
     monkeypatch.setattr(sweep, "measure", stopping)
     status, out, err = run(*SWEEP, "--format", "json", "-o", str(output))
-    assert (status, out) == (130, "") and "3 of 8 steps are kept; the same command goes on" in err
+    assert (status, out) == (130, "") and "3 of 8 steps were saved; to resume, run the same command" in err
     journal = tmp_path / ".rows.json.rows"
     _, *lines = [json.loads(line) for line in journal.read_text().splitlines()]
     kept = [row for line in lines for row in line["rows"]]
@@ -73,7 +73,7 @@ def test_a_stopped_sweep_goes_on_where_it_was(run, tmp_path, monkeypatch):
         file.write('{"pipeline": "pre')
     monkeypatch.setattr(sweep, "measure", lambda device, point: measured.append(point) or measure(device, point))
     status, _, err = run(*SWEEP, "--format", "json", "-o", str(output))
-    assert status == 0 and "3 of 8 steps were measured before" in err and len(measured) == 8
+    assert status == 0 and "3 of 8 steps are already measured" in err and len(measured) == 8
     rows = json.loads(output.read_text())
     assert rows[:3] == kept and len(rows) == 8 and not journal.exists()
 
@@ -95,4 +95,4 @@ def test_ctrl_c_in_a_callback_that_swallows_it_still_ends_the_program(tmp_path):
     command = [sys.executable, "-c", program, *SWEEP, "-o", str(tmp_path / "rows.csv")]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert done.returncode in (130, -signal.SIGINT), done.stderr
-    assert "steps are kept" in done.stderr and "Traceback" not in done.stderr and "ignored" not in done.stderr
+    assert "steps were saved" in done.stderr and "Traceback" not in done.stderr and "ignored" not in done.stderr

@@ -41,21 +41,21 @@ def one_direction(tmp_path):
     [
         (["nope"], "unknown encoding 'nope'"),
         (["stereographic,spherical"], "unknown encoding 'stereographic,spherical'"),
-        (["octahedral", "--storage", "rg8"], "nothing to tune: no parameter and no look-up"),
+        (["octahedral", "--storage", "rg8"], "nothing to tune; it has no parameter and no lookup table"),
         (["xyz", "--storage", "rg8"], "3 components, but RG8 has 2 channels"),
-        (["spherical", "--storage", "rg8,rg16"], "one storage at a time"),
+        (["spherical", "--storage", "rg8,rg16"], "tune takes one storage, not 2"),
         (["spherical", "--parameter", "turn"], "unknown parameter 'turn'; known: all, bias, scale"),
         (["best_fit", "--storage", "rgba16f"], "nothing to tune"),
         (["stereographic", "--normals", "nope"], "unknown normal set 'nope'"),
-        (["stereographic", "--normals", "sphere,axes"], "one normal set at a time"),
+        (["stereographic", "--normals", "sphere,axes"], "tune takes one normal set, not 2"),
         (["stereographic", "--normals", "sphere", "--count", "200"], "200 normals are too few"),
         (["stereographic", "--normals", "sphere", "--count", "17000000"], "at most 16777216"),
         (["stereographic", "--error", "median"], "unknown error 'median'; did you mean mean? known: psnr"),
         (["stereographic", "--error", "psnr,rms"], "one error at a time"),
-        (["stereographic", "--table", "x.npy"], "no look-up"),
+        (["stereographic", "--table", "x.npy"], "no lookup table"),
         (["stereographic", "--seed", "-1"], "--seed -1"),
         (["stereographic", "--storage", "rg8", "--parameter", "scale", "-o", "."], "is a folder"),
-        (["stereographic", "--storage", "rg8_9_9"], "these bits are called rgb8_9_9"),
+        (["stereographic", "--storage", "rg8_9_9"], "these bits are named rgb8_9_9"),
     ],
 )
 def test_what_cannot_be_tuned_is_one_line(run, arguments, said):
@@ -66,7 +66,7 @@ def test_what_cannot_be_tuned_is_one_line(run, arguments, said):
 @pytest.mark.parametrize(
     "arguments, said",
     [
-        (["stereographic:scale=1.2"], "tune begins with what was published; name stereographic"),
+        (["stereographic:scale=1.2"], "tune starts from the published encoding; name stereographic"),
         (["best_fit", "--storage", "rgba8", "--table", "my,ta.npy"], "a name without : and comma"),
     ],
 )
@@ -79,7 +79,7 @@ def test_names_that_could_not_be_given_back_are_refused(run, arguments, said, tm
 
 def test_a_set_of_one_normal_is_refused(run, tmp_path):
     status, _, err = run("tune", "stereographic", "--normals", one_direction(tmp_path))
-    assert status == 2 and "every normal to fit to is the same" in err and err.count("\n") == 1, err
+    assert status == 2 and "all normals to fit are the same" in err and err.count("\n") == 1, err
 
 
 @pytest.mark.parametrize(
@@ -88,9 +88,9 @@ def test_a_set_of_one_normal_is_refused(run, tmp_path):
         ("stereographic:scale=0", "scale is a number from 0.0088 to 114"),
         ("stereographic:scale=nan", "scale is a number"),
         ("stereographic:bias=1", "no parameter 'bias'; known: scale"),
-        ("stereographic:scale", "each once, such as stereographic:scale=1.7777"),
-        ("stereographic:scale=1:scale=2", "each once"),
-        ("best_fit:table=", "each once, such as best_fit:table=FILE.npy"),
+        ("stereographic:scale", "such as stereographic:scale=1.7777"),
+        ("stereographic:scale=1:scale=2", "give each parameter once after stereographic"),
+        ("best_fit:table=", "such as best_fit:table=FILE.npy"),
         ("octahedral:scale=1", "octahedral has no parameter 'scale'; known: axis, sign"),
         ("all:scale=1", "unknown encoding 'all'"),
         ("best_fit:table=missing.npy", "missing.npy: there is no such file"),

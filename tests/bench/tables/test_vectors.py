@@ -313,7 +313,7 @@ def test_bad_input_is_one_line_that_says_what_would_be_right(run, what, tmp_path
 
 def test_without_a_gl_driver_the_jax_rows_are_there(run, monkeypatch):
     def no_device():
-        raise NoDeviceError("no GL 4.3 device: gone; install a GL driver")
+        raise NoDeviceError("no OpenGL 4.3 device: gone; install an OpenGL driver")
 
     for module in (vectors, devices):
         monkeypatch.setattr(module, "device", no_device)
@@ -332,7 +332,7 @@ def test_without_a_gl_driver_the_jax_rows_are_there(run, monkeypatch):
     ]
     status, out, err = run(*command)
     rows = {found["backend"]: found for found in json.loads(out)}
-    assert status == 0 and err.count("\n") == 1 and "install a GL driver" in err
+    assert status == 0 and err.count("\n") == 1 and "install an OpenGL driver" in err
     assert rows["jax"]["error_mean_px"] < 1 and rows["glsl"]["error_mean_px"] is None
     status, _, err = run(*command, "--backend", "glsl")
-    assert status == 3 and err.count("\n") == 1 and "install a GL driver" in err
+    assert status == 3 and err.count("\n") == 1 and "install an OpenGL driver" in err

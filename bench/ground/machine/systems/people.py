@@ -10,7 +10,7 @@ from collections.abc import Iterable
 # By Debian's name of what is missing.
 if sys.platform == "win32":
     SDK = "winget install KhronosGroup.VulkanSDK"
-    ELSEWHERE = "only Linux has it: WSL2 does"
+    ELSEWHERE = "only on Linux, WSL2 included"
     _WAYS = {
         "glslang-tools": SDK,
         "spirv-tools": SDK,
@@ -19,13 +19,13 @@ if sys.platform == "win32":
         "gcc": "MSYS2: pacman -S mingw-w64-ucrt-x86_64-gcc",
     }
 elif sys.platform == "darwin":
-    ELSEWHERE = "only Linux has it"
+    ELSEWHERE = "only on Linux"
     _WAYS = {
         "glslang-tools": "brew install glslang",
         "spirv-tools": "brew install spirv-tools",
         "spirv-cross": "brew install spirv-cross",
         "gcc": "xcode-select --install",
-        "mesa-vulkan-drivers": "it comes with macOS, where there is a GPU",
+        "mesa-vulkan-drivers": "part of macOS, if there is a GPU",
     }
 else:
     ELSEWHERE, _WAYS = "", {}

@@ -33,7 +33,7 @@ if sys.platform == "win32":
 
     # Of what Windows ends a process with, in words. Other statuses from 0xC0000000 on are said as they are.
     _ENDINGS = {
-        1816: "the limit of processor time",  # ERROR_NOT_ENOUGH_QUOTA of winerror.h
+        1816: "the processor time limit",  # ERROR_NOT_ENOUGH_QUOTA of winerror.h
         0xC0000005: "an access violation",
         0xC0000017: "a lack of memory",
         0xC000001D: "an illegal instruction",

@@ -91,8 +91,8 @@ KIND = CodeKind(
     errors=_errors,
     unit="degrees",
     held=lambda codec: (
-        "unit normals and tangents at right angles, and the hand, 1 or -1: the bitangent is hand (normal x tangent)"
-        + ("; the hand is not kept" if codec.encoding.hand_in is None else "")
+        "unit normals and perpendicular tangents, and the hand, 1 or -1: the bitangent is hand (normal x tangent)"
+        + ("; the hand is not stored" if codec.encoding.hand_in is None else "")
     ),
     bound=lambda codec: {"least": codec.least},
 )

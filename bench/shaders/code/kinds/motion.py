@@ -44,8 +44,8 @@ def _decoded(codec: MotionCodec, code: Vec2, view: Any) -> Vec2:
 
 
 def _held(codec: MotionCodec) -> str:
-    largest = "; `range` is the largest motion that is kept" if codec.needs_range else ""
-    return f"in screens a frame, 1 the image's width along x and its height along y{largest}"
+    largest = "; `range` is the largest motion stored" if codec.needs_range else ""
+    return f"in screens per frame: 1 is the image's width along x and its height along y{largest}"
 
 
 KIND = CodeKind(

@@ -28,7 +28,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 def how() -> str:
     """The GL device and its version. Raises MissingError, NoDeviceError."""
     if f"GL_{COMPATIBLE}" not in device().context.extensions:
-        raise MissingError(f"{opengl.device_name()} takes no GLSL of OpenGL ES 3.1: it lacks {COMPATIBLE}")
+        raise MissingError(f"{opengl.device_name()} does not support GLSL ES 3.1: it lacks {COMPATIBLE}")
     return opengl.device_name()
 
 

@@ -98,6 +98,6 @@ def first_complaint(log: str) -> str:
     is a line of its own: ` --> FILE:LINE:COLUMN`."""
     lines = [line.strip() for line in log.splitlines() if re.search(r"\w", line)]
     errors = [line for line in lines if re.search(r"\berror\b", line, re.I)]
-    complaint = (errors or lines or ["it failed without a word"])[0].removeprefix("ERROR: ")
+    complaint = (errors or lines or ["it failed without a message"])[0].removeprefix("ERROR: ")
     place = re.search(r"--> (\S+:\d+):\d+", log)
     return f"{place[1]}: {complaint}"[:400] if place and errors else complaint[:400]

@@ -148,7 +148,7 @@ def _try_apart(path: Path, text: Text) -> None:
             raise ShaderError(f"{path}: naga did not end within {SECONDS} s") from error
     if done.returncode:
         how = signal_name(done.returncode) or children.how_it_ended(done)
-        raise ShaderError(f"{path.name}: naga does not survive it ({how}); other back ends may")
+        raise ShaderError(f"{path.name}: naga crashed on it ({how}); other backends may accept it")
 
 
 def _text(path: Path, interface: Interface) -> str:

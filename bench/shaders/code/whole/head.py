@@ -14,12 +14,12 @@ from .emit import GBufferCode
 from .surface import Contents
 
 AXES = "xyzw"
-TITLES = ("target", "format", "bits", "lies in", "field", "code")
+TITLES = ("target", "format", "bits", "channel", "field", "encoding")
 # What keeps a line as it is: see `files.commented`.
 KEPT = "  "
 # What functions take besides.
 SAID = {
-    "view": "view is the place in view space, with the viewer at the origin.",
+    "view": "view is the view-space position, with the viewer at the origin.",
     "far": "depth is -z in view space, up to the far plane.",
 }
 
@@ -34,11 +34,11 @@ def head(code: GBufferCode, command: str, verified: str) -> list[str]:
     layout, language = code.layout, LANGUAGES[code.language]
     return [
         f"Layout {layout.name} in {language.title}: {code.prefix}_pack and {code.prefix}_unpack. {language.advice}",
-        f"{layout.title}. {layout.bytes_per_pixel} bytes a pixel; the normal's axes are the {layout.space}'s.",
+        f"{layout.title}. {layout.bytes_per_pixel} bytes per pixel; the normal's axes are the {layout.space}'s.",
         "",
         *table(code.texts.contents),
         "",
-        "Bits count from 0, the lowest. What has a channel of its own is converted by the format.",
+        "Bits are counted from 0, the lowest. A field with its own channel is converted by the format.",
         *(SAID[name] for name in code.settings if name in SAID),
         *table_lines(code.tables),
         f"Verified: {verified}.",
@@ -99,7 +99,7 @@ def _is_fourth(name: str, word: Word) -> bool:
 def _code(contents: Contents, word: Word) -> str:
     if word.component.startswith("normal."):
         return contents.layout.encoding.name
-    sign = f", under the sign of {word.sign}" if word.sign else ""
+    sign = f", with the sign of {word.sign}" if word.sign else ""
     if word.component == "depth":
         return contents.layout.depth_encoding.name + sign
     return _kept_text(contents, word) + sign
@@ -112,4 +112,4 @@ def _kept_text(contents: Contents, word: Word) -> str:
         return word.kept.encoding.name + ("" if is_light or word.kept.range == 1.0 else f", up to {word.kept.range:g}")
     if not word.bits and word.first < storage.curved:
         return "sRGB, by the format"
-    return "as it is" if word.component in (OTHER, "shading_model", "instance") else "linear"
+    return "unchanged" if word.component in (OTHER, "shading_model", "instance") else "linear"

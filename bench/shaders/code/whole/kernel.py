@@ -36,7 +36,7 @@ def unpack_operation(layout: Layout) -> Operation:
 
 def _texts(layout: Layout) -> Texts:
     if layout.encoding.domain == "view":
-        raise ShaderError(f"{layout.name}: what {layout.encoding.name} costs depends on where a pixel is")
+        raise ShaderError(f"{layout.name}: the cost of {layout.encoding.name} depends on the pixel's position")
     try:
         return Texts(Contents(layout))
     except UsageError as error:

@@ -55,7 +55,7 @@ class Contents:
 
     def __post_init__(self) -> None:
         if why := _unwritten(self.layout):
-            raise UsageError(f"layout {self.layout.name}: no code is written for {why}")
+            raise UsageError(f"layout {self.layout.name}: no code can be written for {why}")
 
     @cached_property
     def words(self) -> tuple[Word, ...]:
@@ -106,12 +106,12 @@ def _unwritten(layout: Layout) -> str:
     """Return the part of a layout that cannot be written, in words; empty if all of it can."""
     encoding, components = layout.encoding, layout.components - {"power"}
     if layout.has_signed_depth and "depth" not in components:
-        return f"a sign of {encoding.name} that no depth in a target carries"
+        return f"the sign of {encoding.name}, which needs a depth in a target"
     if encoding.is_precise or layout.rounding == DITHERED:
         how = "precisely" if encoding.is_precise else "with noise"
         return f"a normal that is rounded {how} ({encoding.name}, {layout.rounding})"
     if {"power", "roughness"} <= {word.component for word in layout.words}:
-        return "a power and a roughness in one layout"
+        return "both a specular power and a roughness"
     for name, (_, numbers) in NUMBERS.items():
         there = [component in components for component in _components(name, numbers)]
         if any(there) and not all(there):

@@ -63,12 +63,12 @@ class Agreement:
     @property
     def says(self) -> str:
         """The agreement in words."""
-        packed = f"the targets of all {self.count} surfaces are the renderer's, bit for bit"
+        packed = f"the targets of all {self.count} surfaces match the renderer's, bit for bit"
         if self.differing:
             steps = f"{self.steps} step{'s' * (self.steps != 1)}"
             packed = f"the targets of {self.differing} of {self.count} surfaces differ, by {steps} at most"
         near = f" within {self.decoded:.1g}" if self.decoded else ""
-        back = f"{self.unpacked} numbers come back otherwise" if self.unpacked else f"surfaces come back equal{near}"
+        back = f"{self.unpacked} numbers come back different" if self.unpacked else f"surfaces come back equal{near}"
         return f"{packed}; {back}"
 
 

@@ -34,9 +34,9 @@ def kernel_of(cubin: bytes) -> Kernel:
         code = [data for name, data in sections if name.startswith(TEXT)]
         about = dict(pair for name, data in sections if name == ABOUT for pair in _attributes(data))
     except (struct.error, IndexError, ValueError, OverflowError) as error:
-        raise DriverError(f"what NVRTC made is not an ELF file that is known: {error}") from error
+        raise DriverError(f"NVRTC's output is not a known ELF file: {error}") from error
     if len(code) != 1:
-        raise DriverError(f"what NVRTC made holds {len(code)} functions: calls are not counted")
+        raise DriverError(f"NVRTC's output has {len(code)} functions: calls are not counted")
     return Kernel(code[0], about.get(REGISTERS), about.get(STACK))
 
 

@@ -30,7 +30,8 @@ def listings(codes: Sequence[bytes], architecture: str, program: Path) -> list[s
             raise DriverError(f"nvdisasm: {error}") from error
     if done.returncode:
         errors = [line for line in done.stderr.splitlines() if line.strip()]
-        raise DriverError(f"nvdisasm ended with status {done.returncode}: {errors[0][:200] if errors else 'no word'}")
+        message = errors[0][:200] if errors else "no message"
+        raise DriverError(f"nvdisasm ended with status {done.returncode}: {message}")
     return _parted(done.stdout.splitlines(), [len(code) for code in codes])
 
 

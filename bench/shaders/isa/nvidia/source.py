@@ -29,7 +29,7 @@ def cuda_of(operation: Operation) -> str:
     try:
         parts = (judged(head, "cuda"), own(LANGUAGE), judged(bare(functions_of(operation)), "cuda"), own(KERNEL))
     except RefusedError as error:
-        raise ShaderError(f"NVIDIA's compiler is not given it: {error.why}") from error
+        raise ShaderError(f"not compiled for NVIDIA: {error.why}") from error
     return "\n".join((*(part.content for part in parts), "}  // namespace glsl\n"))
 
 
@@ -47,7 +47,7 @@ def functions_of(operation: Operation) -> str:
             return {"text": CudaWriter(PREFIX, {}).program(program)}
         except TranslationError as error:
             message = source.explain(re.sub(r"^(\d+):\d+: ", r"0:\1: ", str(error)))
-            raise ShaderError(f"{message}; NVIDIA's compiler is given CUDA, in which that is not written") from error
+            raise ShaderError(f"{message}; CUDA, which NVIDIA counts use, does not allow that") from error
 
     key = kept.key_of("cuda", source.text, *(path.read_text(encoding="utf-8") for path in _own_files()))
     return kept.kept(key, make)["text"]

@@ -16,8 +16,8 @@ from ....ground.output import cache as kept
 from ..compiler import MissingDriverError, fingerprint
 
 INSTALL = "install it (python -m pip install 'normalbench[nvidia]')"
-NO_COMPILER = f"no compiler of CUDA: libnvrtc is not found; {INSTALL}"
-NO_DISASSEMBLER = f"no disassembler of CUDA: nvdisasm is not found; {INSTALL}"
+NO_COMPILER = f"no CUDA compiler: libnvrtc was not found; {INSTALL}"
+NO_DISASSEMBLER = f"no CUDA disassembler: nvdisasm was not found; {INSTALL}"
 # `libnvrtc.so.12`, not `libnvrtc-builtins.so.12.9` or `libnvrtc.alt.so.12`.
 LIBRARY = re.compile(r"libnvrtc\.so(\.[\d.]+)?$")
 # A variable names an installed CUDA; pip's packages lie in folders of the package `nvidia`.

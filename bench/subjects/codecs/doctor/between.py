@@ -62,8 +62,8 @@ def _turned_codes(codes: np.ndarray) -> np.ndarray:
 
 TURNS = (
     NOTHING,
-    Step("a turn by 45 degrees, (c.x + c.y, c.x - c.y)", _turned_codes),
-    Step("a turn by 45 degrees, (c.x + c.y, c.x - c.y) / 2", lambda c: _turned_codes(c) / 2),
+    Step("a rotation by 45 degrees, (c.x + c.y, c.x - c.y)", _turned_codes),
+    Step("a rotation by 45 degrees, (c.x + c.y, c.x - c.y) / 2", lambda c: _turned_codes(c) / 2),
 )
 
 
@@ -73,7 +73,7 @@ def _other_fold(codes: np.ndarray) -> np.ndarray:
     return np.where((np.abs(codes).sum(axis=1) > 1)[:, None], swapped, codes)
 
 
-FOLDS = (NOTHING, Step("the other one's fold, whose .xy is .yx,", _other_fold))
+FOLDS = (NOTHING, Step("the other function's fold, with .yx for .xy,", _other_fold))
 
 
 @cache
@@ -92,10 +92,10 @@ def _order_change(order: Sequence[int], signs: Sequence[int]) -> Change:
 
 def _order_text(order: Sequence[int], signs: Sequence[int]) -> str:
     moved = [i for i in range(len(order)) if order[i] != i]
-    names = "its numbers" if len(order) == len(moved) else f"numbers {' and '.join(str(i + 1) for i in moved)}"
+    names = "its components" if len(order) == len(moved) else f"components {' and '.join(str(i + 1) for i in moved)}"
     swapped = [f"{names} swapped, c.{''.join(AXES[i] for i in order)}"] if moved else []
     negated = [str(i + 1) for i in range(len(signs)) if signs[i] < 0]
-    numbers = f"number{'s' * (len(negated) > 1)} {' and '.join(negated)} negated"
+    numbers = f"component{'s' * (len(negated) > 1)} {' and '.join(negated)} negated"
     return " and ".join([*swapped, *([numbers] if negated else [])])
 
 

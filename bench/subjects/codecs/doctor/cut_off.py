@@ -29,8 +29,8 @@ SHIFTED, MOST = 1.2, 24.0
 # What is left of the error if two numbers are rounded instead, and how near to it a half is.
 HALF, NEARLY = 0.5, 0.1
 
-CUT_OFF = "codes are cut off instead of rounded: rounding would {}"
-SHIFT = "codes are shifted: without that the error would be {:.0f} % of this; are they cut off, or scaled by a step?"
+CUT_OFF = "codes are truncated instead of rounded: rounding would {}"
+SHIFT = "codes are shifted: without it the error would be {:.0f}% of this; are they truncated, or scaled by a step?"
 
 
 def cut_off(held: Trip, probe: Probe) -> Iterator[str]:
@@ -49,7 +49,7 @@ def cut_off(held: Trip, probe: Probe) -> Iterator[str]:
     left = without / whole
     if low > CUT_OFF_LEAST and high < CUT_OFF_MOST:
         is_half = abs(left - HALF) < NEARLY
-        yield CUT_OFF.format("halve the error" if is_half else f"leave {100 * left:.0f} % of the error")
+        yield CUT_OFF.format("halve the error" if is_half else f"reduce the error to {100 * left:.0f}%")
     elif half > SHIFTED and high < MOST:
         yield SHIFT.format(100 * left)
 

@@ -26,7 +26,7 @@ NEARLY_DEG = 10.0
 OF_A_STEP_DEG = 600.0
 # By what the angles of one half are larger than those of the other where an encoding is made for that one alone.
 FAR_BETTER = 2.0
-NO_PAIR, MAKES_ONE = "encode and decode are not a pair", "between the two makes one"
+NO_PAIR, MAKES_ONE = "encode and decode are not a pair", "between the two makes them a pair"
 
 
 @dataclass(frozen=True)
@@ -232,7 +232,7 @@ def _or_numbers(trip: Trip, probe: Probe) -> str:
 
 
 def _domain_text(domain: Domain) -> str:
-    return f" of {domain.made_for.replace('normals', 'directions')}" if domain.made_for else ""
+    return f" for {domain.made_for.replace('normals', 'directions')}" if domain.made_for else ""
 
 
 def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
@@ -246,11 +246,11 @@ def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
         return scaled
     like = likeness(gl, probe, likely)
     if like.encoder and like.decoder and not like.shared():
-        return f"encode is that of {like.encoder[0]}, decode that of {like.decoder[0]}"
+        return f"encode matches {like.encoder[0]}, decode matches {like.decoder[0]}"
     if like.encoder and not like.decoder:
-        return f"encode is that of {like.encoder[0]}, whose decode makes a pair with it; decode is of no encoding known"
+        return f"encode matches {like.encoder[0]}, whose decode makes a pair with it; decode matches no known encoding"
     if like.decoder and not like.encoder:
-        return f"decode is that of {like.decoder[0]}, whose encode makes a pair with it; encode is of no encoding known"
+        return f"decode matches {like.decoder[0]}, whose encode makes a pair with it; encode matches no known encoding"
     return ""
 
 

@@ -31,7 +31,7 @@ POLE_SHARE, POLE_DEG = 0.5, 0.06
 UNUSUAL = 30.0
 # How far beside a direction that comes back elsewhere others are tried, and how many of them.
 BESIDE, TRIES = 1e-4, 4
-CLIPPED, UNUSED = "storages clip what is beyond", "% is unused"
+CLIPPED, UNUSED = "storages clip values outside", "% of its range is unused"
 # Below it a float32 holds every whole number.
 WHOLE_FLOATS = 2**24
 # A number of at most so many values tells them apart however much of its range it uses.
@@ -80,9 +80,9 @@ def seam(trip: Trip, probe: Probe) -> Iterator[str]:
         yield f"a pole is lost: {trip.worst}"
     elif _is_only_there(gone, probe):
         is_fold = probe.size == 2 and "" in folds.found(probe).encoder
-        yield f"{_where(gone, is_fold)}: {off.sum()} directions that were tried; {trip.worst}"
+        yield f"{_where(gone, is_fold)}: {off.sum()} of the directions tested; {trip.worst}"
     else:
-        tried = f"{off.sum()} of {len(off)} directions that were tried"
+        tried = f"{off.sum()} of {len(off)} tested directions"
         yield f"a seam: {tried} come back more than {SAME_DEG:g} degree off; {trip.worst}"
 
 
@@ -97,8 +97,8 @@ def _is_only_there(gone: Trip, probe: Probe) -> bool:
 def _where(gone: Trip, is_fold: bool) -> str:
     """Say what single directions have in common; for an octahedral fold, a number to be folded is 0."""
     if is_fold or (gone.n == 0).any(axis=1).all():
-        return "sign() is 0 where a number is 0: only directions with a 0 in them are lost, not those next to them"
-    return "only directions with equal numbers or a 0 in them are lost, not those next to them: a comparison or sign()"
+        return "sign() returns 0 for 0: only directions with a component of 0 are lost, not their neighbours"
+    return "only directions with equal components or one of 0 are lost, not their neighbours: a comparison or sign()"
 
 
 def poles(trip: Trip) -> Iterator[str]:
@@ -117,7 +117,7 @@ def poles(trip: Trip) -> Iterator[str]:
             worst = int(np.argmax(lost))
             near_deg, off_deg = beside[near][worst], around.angles()[worst]
             loss = f"directions {near_deg:.2g} degrees from it come back {off_deg:.2g} degrees off"
-            yield f"the pole {sign}{AXES[axis]} loses its neighbourhood: {loss}; {around.example(worst)}"
+            yield f"large errors around the pole {sign}{AXES[axis]}: {loss}; {around.example(worst)}"
 
 
 def lengths(trip: Trip) -> Iterator[str]:
@@ -138,17 +138,17 @@ def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
     size = trip.codes.shape[1]
     constant = [i for i in range(size) if high[i] - low[i] < 1e-4]
     for number in constant:
-        yield f"number {number + 1} of the code carries nothing: it is always {probe.own(low[number]):.3g}"
+        yield f"component {number + 1} of the code is unused: it is always {probe.own(low[number]):.3g}"
     others = [i for i in range(size) if i not in constant]
     for number in others:
         if (np.abs(held.codes[:, number]) > 1 + BEYOND).mean() > FEW:
             worst = int(np.argmax(np.abs(held.codes[:, number])))
             reached = probe.own(float(held.codes[worst, number]))
-            reach = f"number {number + 1} of the code is {reached:.4g} for {vector(held.n[worst])}"
+            reach = f"component {number + 1} of the code is {reached:.4g} for {vector(held.n[worst])}"
             yield f"{reach}: {CLIPPED} {probe.range}"
         elif (used := (high[number] - low[number]) / 2) < USED and not len(values(trip.codes, number)):
             between = f"{probe.own(low[number]):.3g} to {probe.own(high[number]):.3g}"
-            yield f"number {number + 1} of the code is {between}: {100 * (1 - used):.0f} {UNUSED}"
+            yield f"component {number + 1} of the code is {between}: {100 * (1 - used):.0f}{UNUSED}"
 
 
 def bits_used(codes: np.ndarray) -> int:
@@ -169,10 +169,10 @@ def spared(trip: Trip, probe: Probe) -> Iterator[str]:
     """Numbers of few values that do not reach both ends of their range, which loses nothing unless bits are short."""
     if probe.is_packed:
         used = bits_used(trip.codes)
-        yield from [f"{used} of the 32 bits of the code are used"] if used < 32 else ()
+        yield from [f"only {used} of the code's 32 bits are used"] if used < 32 else ()
         return
     for number in range(probe.size):
         levels = values(trip.codes, number)
         if len(levels) > 1 and (levels[-1] - levels[0]) / 2 < USED:
             some = f"{len(levels)} values from {probe.own(levels[0]):.3g} to {probe.own(levels[-1]):.3g}"
-            yield f"number {number + 1} of the code has {some}; the rest of {probe.range} is unused"
+            yield f"component {number + 1} of the code has {some}; the rest of {probe.range} is unused"

@@ -114,7 +114,7 @@ DECODERS: Mapping[str, Sequence[Side]] = MappingProxyType(
             _decoder(lambda c: c + _signs(c) * _beyond(c)),
             _decoder(lambda c: -_fold(c)),
         ],
-        "its unfold is done where z > 0, too": [_decoder(everywhere=True)],
+        "its unfold is also done where z > 0": [_decoder(everywhere=True)],
     }
 )
 

@@ -75,9 +75,9 @@ def lost(sides: Sides, half: Domain) -> str:
     axes = axes_of(sides.gone)
     which = f"{sides.share}directions with {half.lost_text}{f', which come back with {axes}' if axes else ''}"
     if sides.encoder_knows and not sides.decoder_reaches:
-        return f"decode loses {which}: encode gives them codes of their own, and no code decodes to most of them"
+        return f"decode loses {which}: encode gives them codes of their own, but no code decodes to most of them"
     if sides.decoder_reaches and not sides.encoder_knows:
-        reason = "it gives them codes of other directions, though decode reaches them from codes that it does not use"
+        reason = "it gives them the codes of other directions, although decode reaches them from unused codes"
         return f"encode loses {which}: {reason}"
     return ""
 
@@ -91,7 +91,7 @@ def unread(probe: Probe, codes: np.ndarray) -> Iterator[str]:
         changed = np.clip(codes, -1, 1).copy()
         changed[:, number] = np.random.default_rng(number).permutation(changed[:, number])
         if np.array_equal(probe.decode(changed), before):
-            yield f"decode does not read number {number + 1} of the code, which encode fills"
+            yield f"decode does not read component {number + 1} of the code, which encode fills"
 
 
 def unused(trip: Trip, probe: Probe) -> Iterator[str]:
@@ -103,4 +103,4 @@ def unused(trip: Trip, probe: Probe) -> Iterator[str]:
     codes = square(2)
     own = np.abs(codes - probe.encode(unit(probe.decode(codes)))).max(axis=1) < SAME_CODE
     if own.mean() < LEAST_USED:
-        yield f"codes use {100 * own.mean():.0f} % of the square that the storage spends bits on"
+        yield f"codes use {100 * own.mean():.0f}% of the square that the storage's bits cover"

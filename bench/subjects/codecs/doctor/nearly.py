@@ -196,9 +196,9 @@ def _rounding_sentences(fits: list[Fit], trip: Trip, probe: Probe) -> Iterator[s
         yield f"encode gives {_scale_said(fits, scale, shift, probe)}: {shown}"
     elif bits := _half_step(float(shift.mean())):
         size = "large" if shift.mean() > 0 else "small"
-        yield f"codes are half a step of {bits} bits too {size}: {shown}; is 0.5 added to what is rounded later?"
+        yield f"codes are half a step of {bits} bits too {size}: {shown}; is 0.5 added although storing rounds?"
     else:
-        yield f"encode gives the code that decode takes, plus {shift.mean():.3g}: {shown}"
+        yield f"encode gives the code that decode expects, plus {shift.mean():.3g}: {shown}"
 
 
 def _is_shift(scale: np.ndarray, shift: np.ndarray) -> bool:
@@ -218,12 +218,12 @@ def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Pr
     if max(np.ptp(scale), np.ptp(shift)) <= ALIKE * np.abs(scale - 1).max():
         mean_scale = float(scale.mean())
         fixed_point = _fixed_point_text(mean_scale, float(shift.mean()), probe)
-        return f"{_fraction(mean_scale)} times the code that decode takes{fixed_point}"
+        return f"{_fraction(mean_scale)} times the code that decode expects{fixed_point}"
     off = np.abs(scale - 1) > ALIKE * np.abs(scale - 1).max()
     parts = [
-        f"{scale[i]:.3g} times number {fits[i].number}{_shift_said(scale[i], shift[i])}" for i in np.flatnonzero(off)
+        f"{scale[i]:.3g} times component {fits[i].number}{_shift_said(scale[i], shift[i])}" for i in np.flatnonzero(off)
     ]
-    return f"{' and '.join(parts)} of the code that decode takes"
+    return f"{' and '.join(parts)} of the code that decode expects"
 
 
 def _fixed_point_text(scale: float, shift: float, probe: Probe) -> str:
@@ -266,15 +266,15 @@ def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]
     off = off[np.isfinite(off).all(axis=1) & (np.abs(off) < 4).all(axis=1)]
     kept = x[np.isfinite(y).all(axis=1) & (np.abs((y - x) / lattice.step) < 4).all(axis=1)]
     up, away = np.median(off, axis=0), np.median(off * np.sign(kept), axis=0)
-    bits = f"codes are {{}} to {lattice.bits} bits, not rounded: {{}} half a step, by which every code is off"
+    bits = f"codes are {{}} to {lattice.bits} bits, not to nearest: {{}} half a step, by which every code is off"
     if scaled := list(_lattice_scale(kept, off, lattice)):
         yield from scaled
     elif (np.abs(up - 0.5) < HALF_STEP).all():
-        yield bits.format("cut off", "add")
+        yield bits.format("rounded down", "add")
     elif (np.abs(away - 0.5) < HALF_STEP).all():
-        yield bits.format("cut off toward 0", "add")
+        yield bits.format("truncated", "add")
     elif (np.abs(up + 0.5) < HALF_STEP).all():
-        yield f"codes are half a step of {lattice.bits} bits too large: is 0.5 added twice before they are cut off?"
+        yield f"codes are half a step of {lattice.bits} bits too large: is 0.5 added twice before truncation?"
 
 
 def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator[str]:
@@ -284,7 +284,7 @@ def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator
     steps = np.array(slopes) * (2.0 if lattice.is_unit else 1.0)
     if (np.abs(np.abs(steps) - 1) < 0.2).all() and np.ptp(np.sign(steps)) == 0:
         used = lattice.steps - 1 if steps.mean() > 0 else lattice.steps + 1
-        yield f"encode gives {used}/{lattice.steps} times the code that decode takes: it rounds to {used} steps"
+        yield f"encode gives {used}/{lattice.steps} times the code that decode expects: it rounds to {used} steps"
 
 
 def scaled_angles(held: Trip) -> Iterator[str]:
@@ -304,7 +304,7 @@ def scaled_angles(held: Trip) -> Iterator[str]:
         if steps and left < LEFT:
             takes = (steps, steps - 1) if slope > 0 else (steps - 1, steps)
             yield (
-                f"the angle about {name} comes back {takes[0]}/{takes[1]} times as large: encode takes {takes[0]} "
+                f"the angle about {name} comes back {takes[0]}/{takes[1]} times as large: encode uses {takes[0]} "
                 f"steps per turn, decode {takes[1]}"
             )
             return

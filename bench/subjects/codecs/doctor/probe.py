@@ -91,7 +91,7 @@ class Trip:
         for what, numbers in (("encode", self.codes), ("decode", self.decoded)):
             indices = np.flatnonzero(~np.isfinite(numbers).all(axis=1))
             if len(indices):
-                return f"{what} of {vector(self.n[indices[0]])} is {vector(numbers[indices[0]])}, no number"
+                return f"{what} of {vector(self.n[indices[0]])} is {vector(numbers[indices[0]])}, not finite"
         return ""
 
     def angles(self) -> np.ndarray:

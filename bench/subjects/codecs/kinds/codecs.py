@@ -98,7 +98,7 @@ def _kind_of_word(word: str) -> Kind:
     kinds = [kind for kind in NAMED.values() if _has(kind, word)]
     if len(kinds) > 1 and NORMAL not in kinds:
         several = ", ".join(kind.word for kind in kinds)
-        raise UsageError(f"{word}: codes of {several} have this name; say which with --of, as in --of {kinds[0].word}")
+        raise UsageError(f"{word}: encodings of {several} have this name; choose one with --of {kinds[0].word}")
     others = list(dict.fromkeys(name for kind in MADE for name in BY_KIND[kind]))
     if not kinds and meant(word, others) and not meant(word, BY_KIND[NORMAL]):
         raise unknown_name("encoding", [word], others)
@@ -138,7 +138,7 @@ def codecs_of_kind(
     storages_of, codec_of = MADE[kind]
     over_bytes = [encoding for encoding, _ in chosen if isinstance(encoding, DepthEncoding) and encoding.bytes]
     if over_bytes and storages:
-        raise UsageError(f"{over_bytes[0].name}: its code lies in bytes, as it makes them; leave out --storage")
+        raise UsageError(f"{over_bytes[0].name}: it packs its own bytes; leave out --storage")
     codecs = (
         codec if largest is None else replace(codec, range=largest)
         for encoding, largest in chosen
@@ -164,6 +164,6 @@ def _with_range(kind: Kind, word: str) -> tuple[Any, float | None]:
     if kind is LIGHT:
         return ranged_light_buffer(word).encoding, None
     if kind is not CURVE:
-        raise UsageError(f"{word}: its functions take the range, or need none; name {name}")
+        raise UsageError(f"{word}: only light and curves take a range after the name; write {name}")
     (encoding,) = choose("curve encoding", (name,), BY_KIND[CURVE])
     return encoding, range_in(word, text)

@@ -90,16 +90,16 @@ def _is_lost(back: np.ndarray, x: np.ndarray, digits: int) -> bool:
     return float(np.abs(back - np.modf(x * whole)[0] / whole).max()) < DEPTH_NEARLY / whole
 
 
-OF_BYTES = "its code lies over bytes: `normalbench depth` measures it of linear, window and reversed window depth"
+OF_BYTES = "it packs bytes: `normalbench depth` measures it with linear, window and reversed window depth"
 # Of a code over bytes, how many of its least steps a number may be off once its bytes are rounded.
 MOST_STEPS = 2.0
-LOST = "depths that differ by 1/{} have one code: its most significant {} missing"
+LOST = "depths that differ by 1/{} share a code: its most significant {} missing"
 NO_BYTE = (
-    "in bytes it is off by up to {:.0f} steps of 1/{}: number {} of the code alone by {:.0f}, as it is no multiple of "
-    "1/255; take powers of 255 in place of 256"
+    "stored in bytes it is off by up to {:.0f} steps of 1/{}: component {} of the code alone by {:.0f}, because it is "
+    "not a multiple of 1/255; use powers of 255 instead of 256"
 )
-OPEN = "its codes lead beyond 1: floats hold them, and nothing else"
-OWN_PLANES = "it undoes itself for depths from {0:.3g} to {1:.3g}: --near and --far say where it is measured"
+OPEN = "its codes go beyond 1: only float storages hold them"
+OWN_PLANES = "it round-trips for depths from {0:.3g} to {1:.3g}; set the measured range with --near and --far"
 
 
 def _depth_encoding(own: Own) -> DepthEncoding:

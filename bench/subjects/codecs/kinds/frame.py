@@ -27,8 +27,8 @@ def _frame_text(given: np.ndarray, more: np.ndarray) -> str:
 
 # How far a frame that undoes itself comes back off, in degrees: decoders of quaternions have sines of small numbers.
 FRAME_NEARLY_DEG = 1.0
-NO_HAND = "its decoder gives no hand: of half the tangent frames, which are mirrored, it is lost"
-HANDS = "{0:.3g} % of the hands come back as the other"
+NO_HAND = "its decoder returns no handedness: it is lost for mirrored tangent frames"
+HANDS = "{0:.3g}% of the tangent frames come back with the other handedness"
 
 
 def _frames(own: Own) -> Values:

@@ -21,9 +21,9 @@ DIMMEST, BRIGHTEST, LIGHT_NEARLY = 2.0**-10, 65504.0, 0.03
 OF_8_BITS = 0.5 / 255
 # How far two lights that are added as codes come back off, in shares of their sum.
 ADDED = 1e-3
-NO_FOURTH = "its fourth number does not come back: it is measured as three colours"
+NO_FOURTH = "its fourth component does not come back: only the three colour channels are measured"
 FORMATS = ("rgba8", "rgba16f")
-NOT_BLACK = "a texel that is cleared, {0:g} in all channels, decodes to {1:.3g} of light, not to none"
+NOT_BLACK = "a cleared texel ({0:g} in all channels) decodes to a light of {1:.3g}, not 0"
 
 
 def _lights(own: Own) -> Values:
@@ -84,7 +84,8 @@ def _light_encoding(own: Own) -> LightEncoding:
     is_open = own.found.get("is_open", False)
     (kept,) = choose("format", [own.file.settings.format or FORMATS[is_open]], LIGHT_STORAGES)
     if kept.channels < own.made.components:
-        raise UsageError(f"{own.file}: its code has {own.made.components} numbers, {kept.title} {kept.channels}")
+        message = f"its code has {own.made.components} components, but {kept.title} has {kept.channels} channels"
+        raise UsageError(f"{own.file}: {message}")
     floats = kept.kind == "float"
     limit = own.found["open_limit" if floats else "limit"]
     if floats and limit >= BRIGHTEST:

@@ -34,9 +34,9 @@ from .table import OWN
 # How many pairs of a file are tried, and how many letters of a compiler's message are shown.
 MOST_PAIRS, LONGEST = 12, 1000
 NOT_A_PAIR = "encode and decode do not undo each other: {} comes back {:.3g} {} off, the largest error of {} values"
-BEYOND = "number {} of the code leaves [{}, 1], which is all that storages of fixed point hold: {:.4g} of {}"
-UNDONE = "of {} values none comes back farther off than {:.3g} {}, before any storage"
-REACH = "its numbers reach from {}"
+BEYOND = "component {} of the code leaves [{}, 1], the range of fixed-point storages: {:.4g} for {}"
+UNDONE = "largest error of {} values before any storage: {:.3g} {}"
+REACH = "its components range from {}"
 NOT_EXACT = "{} does not come back exactly, before any storage: {:.3g} {} off"
 
 
@@ -49,7 +49,7 @@ def look(kind: OwnKind, file: UserFile) -> dict[str, Any]:
         if len(kept) == 1:
             return _look_at_one(kind, file.with_pair(kept[0])) | {"pair": kept[0]}
         named = ", ".join(str(file.with_pair(pair)) for pair in kept or error.pairs)
-        verdict = f"{len(kept)} of its pairs undo themselves; name one" if kept else "none of its pairs undoes itself"
+        verdict = f"{len(kept)} of its pairs round-trip; name one" if kept else "none of its pairs round-trips"
         return {"error": f"{file}: {verdict}: {named}", "pairs": kept}
 
 
@@ -75,7 +75,7 @@ def _look_at_one(kind: OwnKind, file: UserFile) -> dict[str, Any]:
         return {"error": str(error)}
     except ShaderError as error:
         message = re.sub(r"\S+\.glsl:(\d+)", r"line \1", " ".join(str(error).partition("=\n")[2].split()) or str(error))
-        return {"error": f"{file}: the GLSL that was made of it does not compile on this device: {message[:LONGEST]}"}
+        return {"error": f"{file}: its translation to GLSL does not compile on this device: {message[:LONGEST]}"}
 
 
 def _endless(kind: OwnKind, own: Own, gl: Device) -> str:
@@ -85,7 +85,7 @@ def _endless(kind: OwnKind, own: Own, gl: Device) -> str:
     for what, flags in (("encode", trial.encode_ended), ("decode", trial.decode_ended)):
         if flags.any():
             reason = (
-                f"after {loop_limit(gl) or 'too many'} turns in all this device ends a shader's loops without a word"
+                f"this device silently ends a shader's loops after {loop_limit(gl) or 'too many'} iterations in total"
             )
             return f"the loops of {what} for {_said(kind, values, int(np.argmax(flags)))} do not end here: {reason}"
     return ""

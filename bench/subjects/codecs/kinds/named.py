@@ -31,8 +31,8 @@ CALLED = re.compile(r"\b([A-Za-z_]\w*)\s*\(")
 # As long as a first look at a file of normals.
 TIME_LIMIT = 60.0
 LOOK = "normalbench.bench.subjects.codecs.kinds.look"
-IN_32_BITS = "it declares numbers of 16 bits, but is computed in 32"
-UNIT = "its codes are in [0, 1]; every storage holds them as they are, signed and float ones as well"
+IN_32_BITS = "it declares 16-bit numbers, but is computed in 32 bits"
+UNIT = "its codes are in [0, 1]; every storage holds them unchanged, including signed and float ones"
 
 T = TypeVar("T", bound=AnyEncoding)
 
@@ -54,7 +54,7 @@ def own_codes_named(kind: Kind, names: Names, catalogue: Mapping[str, T], what: 
         if isinstance(word, str):
             check_word(word, catalogue, has_format=kind is LIGHT)
             if kind not in OWN and names_an_encoder(word):
-                raise UsageError(f"{word}: codes of {kind.plural} are the catalogue's alone")
+                raise UsageError(f"{word}: only the catalogue's encodings of {kind.plural} can be measured")
     return choose_or_look(what or f"{kind.name} encoding", names, catalogue, partial(_looked_at, kind))
 
 

@@ -17,7 +17,7 @@ from ..agreement import time_of
 
 # A question of `pick`: codes for every direction, the smallest mean angle first.
 NEEDS, AIM = "sphere", "angle"
-UNKNOWN = "not in the catalogue: the normals that it is made for are not known"
+UNKNOWN = "not in the catalogue: its domain is not known"
 # What tells questions apart.
 QUESTION = ("storage", "target", "rounding")
 # Of a storage that is not in the catalogue, behind all others.
@@ -98,7 +98,7 @@ def _sheet(question: Sequence[str], group: Sequence[Row]) -> Sheet:
     best = next((row for row in group if BEST in places_of(row)), None)
     kept = [row for row in group if row.get("front") or row is best]
     rounding_text = f"rounded to {rounding}" if rounding == "nearest" else rounding
-    title = f"{storage} in {target}, {rounding_text}: the codes that no other one beats"
+    title = f"{storage} in {target}, {rounding_text}: Pareto-optimal encodings"
     keys = {"storage": storage, "take": best["encoding"] if best else None}
     return Sheet(title, [_short_row(row) for row in kept], said=tuple(_sentences(storage, best, group)), keys=keys)
 
@@ -118,14 +118,14 @@ def _sentences(storage: str, best: Row | None, group: Sequence[Row]) -> Iterator
         yield f"{where}: no encoding qualifies."
     else:
         yield f"{where}: take {best['encoding']}."
-        errors = f"Its mean error on this device is {degrees(best['angle_mean_deg'])}"
-        yield f"{errors}, its largest {degrees(best['angle_max_deg'])}. {_price_sentence(best)}"
+        errors = f"On this device its mean error is {degrees(best['angle_mean_deg'])}"
+        yield f"{errors}, its largest error {degrees(best['angle_max_deg'])}. {_price_sentence(best)}"
         yield from rungs(group, best)
     yield from left_out(group)
 
 
 def _price_sentence(row: Row) -> str:
-    slots = f"{row['slots']:g} issue slots with {row['readers']} readers" if row["slots"] is not None else ""
+    slots = f"{row['slots']:g} issue slots with {row['readers']} decoding passes" if row["slots"] is not None else ""
     if row["ms"] is None:
         return f"This device has no times; the encoding takes {slots}." if slots else "The cost is not known."
     times = f"It takes {row['encode_ms']:.3g} ms per megapixel to encode and {row['decode_ms']:.3g} ms to decode"

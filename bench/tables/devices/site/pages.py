@@ -40,16 +40,16 @@ ALONE = Site({INDEX: "All devices"}, INDEX)
 OF_DEVICE = ("device", "browser", "row_of", "made", "program", "sources", "renderer", "vendor")
 # The columns of the index that no table has.
 INDEXED = {
-    "agree": "Codecs with every code equal to the run's.",
-    "differ": "Codecs with a code that is not the run's.",
-    "further": "Codecs with a code more than one step from the run's.",
-    "least_same_percent": "The least share of codes that equal the run's, of all codecs. Unit: %.",
+    "agree": "Codecs with all codes equal to the run's codes.",
+    "differ": "Codecs with a code that differs from the run's code.",
+    "further": "Codecs with a code more than one step from the run's code.",
+    "least_same_percent": "The lowest share of codes that equal the run's codes, among all codecs. Unit: %.",
     "differs_most": "The codec with that share.",
-    "fastest": "The codec with the least time to encode and decode.",
-    "fastest_ms": "Milliseconds per megapixel that it takes.",
+    "fastest": "The codec that takes the least time to encode and decode.",
+    "fastest_ms": "Milliseconds per megapixel of that codec.",
     "devices": "How many devices measured the codec.",
-    "differs_on": "The devices that store some other code.",
-    "fastest_on": "The device that takes the least time to encode and decode it.",
+    "differs_on": "The devices that store a different code.",
+    "fastest_on": "The device that encodes and decodes the codec in the least time.",
 }
 
 
@@ -120,7 +120,8 @@ def _index(entries: Sequence[Entry], site: Site) -> Index:
     return Index(
         path=site.devices,
         title="readers' devices",
-        description="Which GPUs and browsers store the codes of normals as the run does, and the code to take on each.",
+        description="Which GPUs and browsers store the same codes of normals as the run, and which encoding to use "
+        "on each.",
         question="Which devices store the same codes?",
         said=sentences(rows) if rows else ("No device has been added yet.",),
         label="Search by device, codec or storage",
@@ -136,7 +137,7 @@ def _table(title: str, rows: Sequence[Row]) -> PageTable:
 
 def _device_list(entries: Sequence[Entry]) -> Searched:
     rows = [{"device": e.device.called} | _row_without(overview(e.rows)[0], ("device", "browser")) for e in entries]
-    intro = "A row for each GPU and browser. Its name leads to its codecs and facts below."
+    intro = "One row per GPU and browser. Its name links to its codecs and facts below."
     words, links = [entry.words for entry in entries], [f"#{entry.key}" for entry in entries]
     return Searched("devices", "Devices", intro, _table("Agreement by device", rows), words, links)
 
@@ -146,7 +147,7 @@ def _codec_list(rows: Sequence[Row]) -> Searched:
     for row in rows:
         groups.setdefault(codec_of(row), []).append(row)
     words = [" ".join([*map(device_of, group), group[0]["storage"], group[0]["target"]]) for group in groups.values()]
-    intro = "A row for each codec and target: on which devices its codes differ from the run's."
+    intro = "One row per codec and target: the devices on which its codes differ from the run's codes."
     return Searched(
         "codecs", "Codecs", intro, _table("Agreement by codec", [_codec_row(g) for g in groups.values()]), words
     )
@@ -164,10 +165,10 @@ def _taken_list(entries: Sequence[Entry]) -> Searched:
     """The code to take on each device, with a column for each storage."""
     titles = dict.fromkeys(_column_name(sheet) for entry in entries for sheet in entry.answers)
     rows = [{"device": e.device.called} | {**dict.fromkeys(titles), **_codecs_taken_on(e)} for e in entries]
-    intro = "The answer of pick for each storage, by the errors of the device."
+    intro = "The answer of pick for each storage, from the errors measured on the device."
     words, links = [entry.words for entry in entries], [f"#{entry.key}" for entry in entries]
-    shown = words_table("The code to take, by device and storage", rows)
-    return Searched("take", "What to take", intro, shown, words, links)
+    shown = words_table("Recommended encoding, by device and storage", rows)
+    return Searched("take", "Recommendations", intro, shown, words, links)
 
 
 def _column_name(sheet: Sheet) -> str:

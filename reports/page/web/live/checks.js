@@ -261,7 +261,7 @@ function saysDifference(found, n) {
   const said = found.numbers.map(({ normals, most }, c) => normals && `${"xyzw"[c]} differs for ${normals} normals, by ${most === 1 ? "1 step" : `up to ${most} steps`}`);
   if (found.untold) {
     const numbers = found.checked.map((c) => "xyzw"[c]).join(", ");
-    said.push(`${found.untold} normals are in groups with more differences than a checksum tells apart; ${numbers} ${found.checked.length > 1 ? "differ" : "differs"} there or elsewhere`);
+    said.push(`${found.untold} normals are in groups with more differences than a checksum can distinguish; ${numbers} ${found.checked.length > 1 ? "differ" : "differs"} there or elsewhere`);
   }
   const shown = found.differing[0], at = shown && 4 * shown.normal;
   if (shown) said.push(`for example normal ${shown.normal} (${[0, 1, 2].map((c) => n[at + c].toFixed(4)).join(", ")}): here ${shown.here.join(", ")}, in the run ${shown.run.join(", ")}`);

@@ -9,7 +9,7 @@ const SHORT = "the file ends too early";
 class Kept {
   constructor(width, height) {
     if (!(width > 0 && height > 0)) throw new Error("it has no pixels");
-    if (width * height > MOST_FILE_PIXELS) throw new Error(`it has ${width} x ${height} pixels; at most ${MOST_FILE_PIXELS} are read`);
+    if (width * height > MOST_FILE_PIXELS) throw new Error(`it has ${width} x ${height} pixels; the maximum is ${MOST_FILE_PIXELS}`);
     this.step = Math.max(Math.ceil(Math.sqrt((width * height) / KEPT_PIXELS)), Math.ceil(Math.max(width, height) / KEPT_SIDE));
     [this.width, this.height] = [width, height].map((size) => Math.ceil(size / this.step));
     this.full = [width, height];
@@ -47,7 +47,7 @@ async function pixelsOfFile(file) {
   } catch (error) {
     throw error instanceof RangeError ? new Error(SHORT) : error;
   }
-  throw new Error("it is no PNG, Radiance HDR or EXR file");
+  throw new Error("it is not a PNG, Radiance HDR or EXR file");
 }
 
 async function readPng(file, bytes) {
@@ -77,8 +77,8 @@ function* pngChunks(bytes, view) {
 // A PNG of 16 bits, of which browsers keep 8: its packed rows (W3C, Portable Network Graphics, 2003).
 async function wholePng(bytes, chunks, kept) {
   const [width, height] = kept.full, channels = { 0: 1, 2: 3, 4: 2, 6: 4 }[bytes[25]], near = 2 * channels, size = near * width;
-  if (!channels) throw new Error("a PNG of 16 bits has grey or colours; this one has neither");
-  if (bytes[28]) throw new Error("its rows of 16 bits are interlaced, which is not read");
+  if (!channels) throw new Error("a 16-bit PNG must be grey or colour");
+  if (bytes[28]) throw new Error("16-bit interlaced PNGs are not supported");
   const parts = chunks.filter(({ name }) => name === "IDAT").map(({ data }) => data);
   const rows = await unpackedBytes(new Blob(parts), "deflate", height * (size + 1)).catch(() => new Uint8Array(0)), places = channels > 2 ? [0, 2, 4] : [0, 0, 0];
   if (rows.length < height * (size + 1)) throw new Error("its rows are damaged");
@@ -111,10 +111,10 @@ async function readHdr(bytes) {
     return text.trim();
   };
   for (let text = line(); text; text = line()) {
-    if (/^FORMAT=/.test(text) && text !== "FORMAT=32-bit_rle_rgbe") throw new Error(`its ${text} is not read; 32-bit_rle_rgbe is`);
+    if (/^FORMAT=/.test(text) && text !== "FORMAT=32-bit_rle_rgbe") throw new Error(`its ${text} is not supported; use 32-bit_rle_rgbe`);
   }
   const [, height, width] = line().match(/^-Y (\d{1,6}) \+X (\d{1,6})$/) ?? [];
-  if (!width) throw new Error("its rows are in another order than -Y +X, which is read");
+  if (!width) throw new Error("its row order is not supported; use -Y +X");
   const kept = new Kept(Number(width), Number(height)), row = new Uint8Array(4 * kept.full[0]);
   for (let y = 0; y < kept.full[1]; y++) {
     at = hdrRow(bytes, at, row, kept.full[0]);
@@ -132,17 +132,17 @@ function hdrRow(bytes, at, row, width) {
   const isPacked = bytes[at] === 2 && bytes[at + 1] === 2 && bytes[at + 2] < 128;
   if (!isPacked) {
     if (at + 4 * width > bytes.length) throw new Error(SHORT);
-    if (bytes[at] === 1 && bytes[at + 1] === 1 && bytes[at + 2] === 1) throw new Error("it is packed in the way of before 1991, which is not read");
+    if (bytes[at] === 1 && bytes[at + 1] === 1 && bytes[at + 2] === 1) throw new Error("its run-length coding is from before 1991 and is not supported");
     row.set(bytes.subarray(at, at + 4 * width));
     return at + 4 * width;
   }
-  if (((bytes[at + 2] << 8) | bytes[at + 3]) !== width) throw new Error("a row of it is of another width");
+  if (((bytes[at + 2] << 8) | bytes[at + 3]) !== width) throw new Error("a row has a different width");
   at += 4;
   for (let channel = 0; channel < 4; channel++) {
     for (let x = 0; x < width; ) {
       const count = bytes[at++], isRun = count > 128, length = isRun ? count - 128 : count;
       if (count === undefined || at + (isRun ? 1 : length) > bytes.length) throw new Error(SHORT);
-      if (!length || x + length > width) throw new Error("a run of it is longer than its row");
+      if (!length || x + length > width) throw new Error("a run is longer than its row");
       for (let i = 0; i < length; i++, x++) row[4 * x + channel] = bytes[isRun ? at : at + i];
       at += isRun ? 1 : length;
     }
@@ -166,7 +166,7 @@ async function readExr(bytes) {
   for (let block = 0; block < blocks; block++) {
     const at = Number(view.getBigUint64(end + 8 * block, true)), y = view.getInt32(at, true) - top, length = view.getUint32(at + 4, true);
     if (at + 8 + length > bytes.length) throw new Error(SHORT);
-    if (y < 0 || y >= height || y % rows || seen.has(y)) throw new Error("a block of it is not of its rows");
+    if (y < 0 || y >= height || y % rows || seen.has(y)) throw new Error("a block does not match its rows");
     seen.add(y);
     const count = Math.min(rows, height - y), data = await exrBlock(bytes.subarray(at + 8, at + 8 + length), count * size, packing);
     const numbers = new DataView(data.buffer, data.byteOffset, data.byteLength);
@@ -192,8 +192,8 @@ function halfOf(word) {
 
 function exrHeader(bytes, view) {
   const flags = view.getUint32(4, true);
-  for (const [bit, name] of [[0x200, "tiles"], [0x800, "deep pixels"], [0x1000, "several parts"]]) if (flags & bit) throw new Error(`an EXR with ${name} is not read; scanlines of one part are`);
-  if ((flags & 255) !== 2) throw new Error(`version ${flags & 255} of EXR is not read; version 2 is`);
+  for (const [bit, name] of [[0x200, "tiles"], [0x800, "deep pixels"], [0x1000, "several parts"]]) if (flags & bit) throw new Error(`EXR with ${name} is not supported; save one part as scanlines`);
+  if ((flags & 255) !== 2) throw new Error(`EXR version ${flags & 255} is not supported; use version 2`);
   const found = {};
   let at = 8;
   const word = () => {
@@ -214,7 +214,7 @@ function exrHeader(bytes, view) {
   }
   for (const name of ["channels", "compression", "dataWindow"]) if (found[name] === undefined) throw new Error(`its header has no ${name}`);
   const packing = EXR_PACKING[view.getUint8(found.compression)] ?? "an unknown way";
-  if (!EXR_ROWS[packing]) throw new Error(`its compression is ${packing}; none, ZIPS and ZIP are read`);
+  if (!EXR_ROWS[packing]) throw new Error(`its compression is ${packing}; use none, ZIPS or ZIP`);
   const [left, top, right, bottom] = [0, 4, 8, 12].map((off) => view.getInt32(found.dataWindow + off, true));
   return { packing, channels: found.channels, top, width: right - left + 1, height: bottom - top + 1, end: at };
 }
@@ -224,7 +224,7 @@ function exrChannels(view, word, where, go, end) {
   for (let name = word(); name; name = word()) {
     const at = where(), kind = view.getUint32(at, true);
     if (at + 16 > end || kind > 2) throw new Error("its list of channels is damaged");
-    if (view.getInt32(at + 8, true) !== 1 || view.getInt32(at + 12, true) !== 1) throw new Error(`its channel ${name} has fewer pixels than the others, which is not read`);
+    if (view.getInt32(at + 8, true) !== 1 || view.getInt32(at + 12, true) !== 1) throw new Error(`its channel ${name} is subsampled, which is not supported`);
     channels.push({ name, kind });
     go(at + 16);
   }
@@ -252,7 +252,7 @@ async function exrBlock(packed, size, packing) {
     return packed;
   }
   const bytes = await unpackedBytes(packed, "deflate", size).catch(() => new Uint8Array(0));
-  if (bytes.length !== size) throw new Error("a block of it is damaged");
+  if (bytes.length !== size) throw new Error("a block is damaged");
   for (let i = 1; i < size; i++) bytes[i] = (bytes[i - 1] + bytes[i] - 128) & 255;
   const made = new Uint8Array(size), half = (size + 1) >> 1;
   for (let i = 0; i < size; i++) made[i] = bytes[i & 1 ? half + (i >> 1) : i >> 1];

@@ -30,7 +30,7 @@ class LiveDevice {
     this.canvas = canvas;
     const options = { antialias: false, alpha: false, depth: false, preserveDrawingBuffer: true, powerPreference: "high-performance" };
     this.gl = canvas.getContext("webgl2", options);
-    if (!this.gl) throw new Error("this browser gives no WebGL2 context");
+    if (!this.gl) throw new Error("this browser provides no WebGL 2 context");
     this.listeners = { lost: [], restored: [] };
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();

@@ -88,7 +88,7 @@ class Inspect {
     const code = isFewer
       ? `numbers ${texel.slice(0, codec.size).map((word) => digits(floatOf(word), 5)).join(", ")}`
       : `bits ${numbersIn(codec, texel).map((number, at) => number.toString(2).padStart(codec.channels[at].bits, "0")).join(" ")}`;
-    return `${name}: ${code}; comes back as ${vectorText(decoded)}, off by ${digits(angleBetween(normal, decoded))}°.`;
+    return `${name}: ${code}; decodes to ${vectorText(decoded)}, off by ${digits(angleBetween(normal, decoded))}°.`;
   }
 
   // The directions of the codes around, seen along the exact normal.
@@ -104,7 +104,7 @@ class Inspect {
     const nearest = points.map((p) => Math.hypot(p[0] - own[0], p[1] - own[1])).filter((d) => d > 0).sort((a, b) => a - b);
     const reach = Math.max(3 * (nearest[Math.min(3, nearest.length - 1)] ?? 0), 1.3 * Math.hypot(...own), 1e-6);
     drawAround(pen, canvas.width, { points, own, reach, colour: getComputedStyle(canvas) });
-    this.field.around.textContent = `Codes of ${codec.label} around the exact normal, which is in the middle (cross). The filled point is the code that was taken. The picture is ${digits(2 * reach)}° wide.`;
+    this.field.around.textContent = `Codes of ${codec.label} around the exact normal, which is at the centre (cross). The filled point is the code used. The image is ${digits(2 * reach)}° wide.`;
   }
 
   // Texels whose numbers are up to AROUND steps away; of three numbers one step less, because there are more of them.

@@ -17,7 +17,7 @@ async function openLaboratory(root) {
     said.textContent = `The laboratory cannot run: ${error.message}.`;
     return;
   }
-  live.device.on("lost", () => (said.textContent = "The browser took the GPU away from this page. The laboratory goes on when it is back."));
+  live.device.on("lost", () => (said.textContent = "The browser has taken the GPU from this page. The laboratory continues when the GPU is back."));
   live.device.on("restored", () => (said.textContent = "The GPU is back."));
   root.querySelector("[data-live=device]").textContent = `${live.device.renderer}; ${browserName()}`;
   for (const part of live.parts) await part(root);

@@ -1,28 +1,28 @@
 "use strict";
 
-// "Measure it": every codec of the run on this device, in slices that leave the page alive.
+// "Measure": every codec of the run on this device, in slices that leave the page alive.
 
 // Names of columns, what they say, and whether they hold numbers.
 const COLUMNS = [
   ["codec", "The encoding and its storage."],
-  ["target", "The WebGL format that was rendered to. R32UI, RG32UI and RGBA32UI hold codes that the shader rounded and packed."],
-  ["equal", "How many of the codes are the run's, bit for bit, in per cent.", true],
-  ["one step", "Codes with one number one step away from the run's.", true],
-  ["further", "Codes that differ by more, and those of groups whose differences a checksum does not tell apart.", true],
+  ["target", "The WebGL format rendered to. R32UI, RG32UI and RGBA32UI hold codes that the shader rounded and packed."],
+  ["equal", "Percentage of codes that match the run's, bit for bit.", true],
+  ["one step", "Codes with one component one step away from the run's.", true],
+  ["further", "Codes that differ by more, and codes in groups whose differences a checksum cannot distinguish.", true],
   ["mean", "The mean angle between normals and what this device decodes, in degrees.", true],
   ["run", "The same angle of the run's own codes.", true],
   ["max", "The largest angle on this device, in degrees.", true],
-  ["encode", "Milliseconds to encode a megapixel, less a pass that only reads and writes.", true],
-  ["decode", "Milliseconds to decode a megapixel, less a pass that only reads and writes.", true],
-  ["difference", "Which numbers of which normals differ."],
+  ["encode", "Milliseconds to encode a megapixel, minus a pass that only reads and writes.", true],
+  ["decode", "Milliseconds to decode a megapixel, minus a pass that only reads and writes.", true],
+  ["difference", "Which components of which normals differ."],
 ];
 
 const FORMAT_COLUMNS = [
   ["format", "The WebGL format."],
-  ["renders", "Whether the device renders to it."],
+  ["renders", "Whether the device can render to the format."],
   ["rounds", "How it rounds a number between two steps of the first channel."],
-  ["filters", "Whether a look-up between two texels gives what lies between, and how many bits its position has."],
-  ["resolves", "What a resolve gives of four samples with two codes, in steps from their mean."],
+  ["filters", "Whether a lookup between two texels interpolates, and with how many bits of position."],
+  ["resolves", "Result of resolving four samples with two codes, in steps from their mean."],
 ];
 
 class CancelledError extends Error {}
@@ -48,8 +48,8 @@ class Measuring {
     this.results = element("div", { "data-results": "" });
     this.factList = element("div", { "data-facts": "" });
     this.keeping = element("div", { "data-keep": "" });
-    const left = this.without ? [element("p", { class: "note" }, `${this.without} of ${this.data.codecs.length} codecs are not measured: the run does not keep what their codes must be.`)] : [];
-    this.root.append(element("h3", {}, "Measure it"), ...left, element("p", { class: "tools" }, this.button, times, this.cancelling), this.progress, this.said, this.results, this.factList, this.keeping);
+    const left = this.without ? [element("p", { class: "note" }, `${this.without} of ${this.data.codecs.length} codecs are not measured: the run did not store their expected codes.`)] : [];
+    this.root.append(element("h3", {}, "Measure"), ...left, element("p", { class: "tools" }, this.button, times, this.cancelling), this.progress, this.said, this.results, this.factList, this.keeping);
   }
 
   say(text) {
@@ -81,14 +81,14 @@ class Measuring {
     for (const place of [this.results, this.factList, this.keeping]) place.replaceChildren();
     this.setBusy(true);
     try {
-      this.say("The normals are being made.");
+      this.say("Generating the normals.");
       await paused();
       await this.checkNormals();
       await this.surviving(() => this.probe());
       await this.all();
       this.say(`${this.rows.length} of ${this.codecs.length} codecs measured. ${this.agreement}`);
     } catch (error) {
-      const kept = this.rows.length ? ` ${this.rows.length} codecs that were measured before are kept.` : "";
+      const kept = this.rows.length ? ` ${this.rows.length} codecs measured earlier are kept.` : "";
       this.say(`${error instanceof CancelledError ? "Cancelled." : `Not finished: ${error.message}.`}${kept}`);
     } finally {
       this.inputs?.release();
@@ -100,18 +100,18 @@ class Measuring {
 
   async checkNormals() {
     for (const domain of new Set(this.codecs.map((codec) => codec.domain))) {
-      if (!this.normals.areRuns(domain)) throw new Error(`this browser makes other normals of the ${domain} than the run has`);
+      if (!this.normals.areRuns(domain)) throw new Error(`this browser generates different ${domain} normals from the run's`);
       await paused();
     }
   }
 
   get agreement() {
     const all = this.rows.filter((row) => row.equal === row.normals).length;
-    return `${all} of them give the run's codes, bit for bit.`;
+    return `${all} of them match the run's codes, bit for bit.`;
   }
 
   async probe() {
-    this.say("The device's formats are being looked at.");
+    this.say("Checking the device's formats.");
     this.facts = await new Probe(this.device).facts(() => this.check());
     this.showFacts();
   }
@@ -149,7 +149,7 @@ class Measuring {
   // Until the context is back.
   async restored() {
     const before = this.said.textContent;
-    this.say("The GPU's context was lost. What is measured is kept; the rest follows when the browser brings it back.");
+    this.say("The GPU context was lost. The measured codecs are kept; the rest continues when the browser restores it.");
     while (this.device.gl.isContextLost()) {
       await paused(50);
       this.check();
@@ -196,7 +196,7 @@ class Measuring {
   // A row more, without a new table: readers may have scrolled and sorted this one.
   add(row) {
     this.rows.push(row);
-    if (this.rows.length === 1) this.results.replaceChildren(sheetOf("This device's codes against the run's", COLUMNS, [], "measured-codes"));
+    if (this.rows.length === 1) this.results.replaceChildren(sheetOf("This device's codes compared with the run's", COLUMNS, [], "measured-codes"));
     this.results.querySelector("tbody").append(lineOf(COLUMNS, cellsOfRow(row)));
   }
 
@@ -204,8 +204,8 @@ class Measuring {
     const formats = Object.keys(PROBED), rows = formats.map((format) => ({ codec: "", isWhole: true, cells: [format, ...FORMAT_COLUMNS.slice(1).map(([what]) => this.facts[`${what} ${format}`] ?? "")] }));
     const list = element("dl", { class: "facts" }), others = Object.entries(this.facts).filter(([name]) => !formats.includes(name.split(" ")[1]));
     for (const [name, value] of others) list.append(element("dt", {}, name), element("dd", {}, String(value)));
-    const table = sheetOf("What this device does with formats", FORMAT_COLUMNS, rows, "measured-formats");
-    this.factList.replaceChildren(element("details", { class: "all" }, element("summary", {}, "What this device does with formats and numbers"), table, list));
+    const table = sheetOf("Formats on this device", FORMAT_COLUMNS, rows, "measured-formats");
+    this.factList.replaceChildren(element("details", { class: "all" }, element("summary", {}, "Formats and numbers on this device"), table, list));
   }
 }
 
@@ -237,7 +237,7 @@ function sheetOf(title, columns, rows, id) {
   const caption = element("caption", { id: `${id}-caption` }, element("span", {}, title)), body = rows.map((row) => lineOf(columns, row));
   const table = element("table", {}, caption, element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...body));
   const says = columns.flatMap(([name, text]) => [element("dt", {}, name), element("dd", {}, text)]);
-  const columnsSay = element("details", { class: "columns" }, element("summary", {}, "What the columns say"), element("dl", {}, ...says));
+  const columnsSay = element("details", { class: "columns" }, element("summary", {}, "Column definitions"), element("dl", {}, ...says));
   const scroll = element("div", { class: "scroll", role: "region", "aria-labelledby": `${id}-caption`, tabindex: "0" }, table);
   const sheet = element("div", { class: "sheet" }, scroll, columnsSay);
   addTools(sheet);

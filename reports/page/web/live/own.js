@@ -67,7 +67,7 @@ class OwnEncoder {
     if (typeof text !== "string" || text.length > LONGEST_TEXT) return this.run();
     this.fill(text, chosen);
     this.kept = remembered(KEPT_TEXT);
-    return isSound === true ? this.run() : this.offer("This is the encoder that you typed here before. It did not run to its end.");
+    return isSound === true ? this.run() : this.offer("This is the encoder that you typed here before. It did not finish.");
   }
 
   // Takes what an address brought. It is run by itself where this browser ran the very same before.
@@ -96,7 +96,7 @@ class OwnEncoder {
     if (performance.now() - (this.ran ?? -1e9) > 5000) return;
     this.withdraw();
     this.clear();
-    this.say("The GPU was lost while this encoder ran: does a loop of it not end?");
+    this.say("The GPU was lost while this encoder ran; check for endless loops.");
   }
 
   // It is no longer to be seen.
@@ -203,17 +203,17 @@ class OwnEncoder {
   // The codec that is typed, or what is wrong with its text.
   made() {
     const text = this.field.text.value, bare = text.replace(/\/\/[^\n]*|\/\*[\s\S]*?\*\//g, (comment) => comment.replace(/[^\n]/g, " "));
-    if (text.length > LONGEST_TEXT) return `The text is longer than ${LONGEST_TEXT} letters.`;
+    if (text.length > LONGEST_TEXT) return `The text is longer than ${LONGEST_TEXT} characters.`;
     const found = (pattern) => new Map(Array.from(bare.matchAll(pattern), (match) => [match.groups.name, match]));
     const encoders = found(/\bvec(?<size>[23])\s+(?<name>\w+)_encode\s*\((?<given>[^)]*)\)/g);
     const decoders = found(/\bvec3\s+(?<name>\w+)_decode\s*\((?<given>[^)]*)\)/g);
     const name = Array.from(encoders.keys()).find((one) => decoders.has(one));
-    if (!encoders.size) return "There is no encoder: vec2 NAME_encode(vec3 n), or of vec3.";
-    if (!name) return `There is no decoder of it: vec3 ${encoders.keys().next().value}_decode(vec2 e), or of vec3.`;
-    if (/\buniform\b/.test(bare)) return "A uniform has no value here: give its number as a constant.";
+    if (!encoders.size) return "There is no encoder: write vec2 (or vec3) NAME_encode(vec3 n).";
+    if (!name) return `There is no decoder: write vec3 ${encoders.keys().next().value}_decode(vec2 e), or with a vec3.`;
+    if (/\buniform\b/.test(bare)) return "A uniform has no value here: use a constant.";
     const encode = encoders.get(name).groups, decode = decoders.get(name).groups;
     const size = Number(encode.size), stored = live.data.storages.find((one) => one.storage === this.field.storage.value && one.size === size);
-    if (!stored) return `This storage holds no codes of ${size} numbers; choose another one.`;
+    if (!stored) return `This storage cannot hold ${size} components; choose another.`;
     const takes = (parameters) => parameters.split(",").length > 1;
     const source = `${stored.source}\nprecision highp float;\n${live.data.helpers}\n#line 1\n${text}\n#line ${OTHERS}\n`;
     const calls = { encode: `${name}_encode`, decode: `${name}_decode` }, views = { encode: takes(encode.given), decode: takes(decode.given) };
@@ -224,8 +224,8 @@ class OwnEncoder {
     const { count, lost, mean, rms, worst, direction, decibels } = trips;
     const figures = count
       ? `On ${count} random directions: mean ${digits(mean)}°, RMS ${digits(rms)}°, largest ${digits(worst)}°, at ${vectorText(direction)}; PSNR ${digits(decibels, 4)} dB.`
-      : "No direction comes back as a number.";
-    this.say(`${codec.bits} bits in ${codec.title}. ${figures}`, ...(lost && count ? [`${lost} directions come back as no number.`] : []));
+      : "No direction decodes to a finite value.";
+    this.say(`${codec.bits} bits in ${codec.title}. ${figures}`, ...(lost && count ? [`${lost} directions decode to non-finite values.`] : []));
     this.field.text.removeAttribute("aria-invalid");
     this.field.command.textContent = `normalbench quality --encoding mine.glsl --storage ${codec.storage} --normals ${codec.domain}`;
     this.trips = trips;
@@ -262,7 +262,7 @@ function linesOf(log, text) {
     if (!at) return { at: 0, text: line };
     if (Number(at) <= last) return { at: Number(at), text: said };
     if (Number(at) < OTHERS) return { at: 0, text: `At the end of the text: ${said}` };
-    return { at: 0, text: /redefinition/.test(said) ? `The page uses this name itself; choose another one: ${said}` : `Where the page calls it: ${said}` };
+    return { at: 0, text: /redefinition/.test(said) ? `The page uses this name; choose another: ${said}` : `Where the page calls it: ${said}` };
   });
 }
 

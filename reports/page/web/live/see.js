@@ -32,7 +32,7 @@ class See extends Renderer {
   take(state) {
     const sides = this.sidesOf(state), lacks = CODECS.filter((side) => state[side] && !Object.values(sides).includes(state[side]));
     for (const [side, name] of Object.entries(sides)) this.control[side].value = name;
-    this.root.querySelector("[data-live=lacks]").textContent = lacks.map((side) => `${side.toUpperCase()}, ${state[side]}, is not in this laboratory.`).join(" ");
+    this.root.querySelector("[data-live=lacks]").textContent = lacks.map((side) => `${side.toUpperCase()}, ${state[side]}, is not available in this laboratory.`).join(" ");
     this.change();
   }
 
@@ -98,8 +98,8 @@ class See extends Renderer {
     this.control.half.disabled = !isThere;
     if (!isThere) this.control.half.checked = false;
     this.out.half.textContent = isThere
-      ? `mediump keeps ${half} bits of a mantissa here, highp ${full}`
-      : `this device computes mediump with ${half} bits of a mantissa, as highp`;
+      ? `mediump has ${half} mantissa bits here, highp ${full}`
+      : `this device computes mediump with ${half} mantissa bits, like highp`;
   }
 
   // As many pixels as the screen has there, within a limit.

@@ -40,7 +40,7 @@ class Share {
     const found = Object.entries(values).filter(differs);
     if (!found.length) return "";
     const text = JSON.stringify(Object.fromEntries(found));
-    if (new Blob([text]).size > LONGEST_SHARED) throw new Error(`the encoder is too long for an address, which holds ${LONGEST_SHARED} bytes`);
+    if (new Blob([text]).size > LONGEST_SHARED) throw new Error(`the encoder is too long for an address; the maximum is ${LONGEST_SHARED} bytes`);
     return deflated(text);
   }
 
@@ -75,7 +75,7 @@ class Share {
     let found = {};
     try {
       if (state.live) found = JSON.parse(await inflated(state.live));
-      if (typeof found !== "object" || found === null || Array.isArray(found)) throw new Error("it holds no controls");
+      if (typeof found !== "object" || found === null || Array.isArray(found)) throw new Error("it contains no controls");
     } catch (error) {
       sayUnknown(`The laboratory's part of the address is damaged: ${error.message.replace(/\.$/, "")}.`);
       found = {};

@@ -128,7 +128,7 @@ def test_links_that_go_round_are_one_line(run, tmp_path, monkeypatch, output):
         for suffix in (".json", ".png", ".html"):
             Path(one + suffix).symlink_to(other + suffix)
     status, out, err = run("depth", option, name)
-    why = "links lead back to themselves; name another file"
+    why = "its links form a loop; name another file"
     assert (status, out, err) == (2, "", f"normalbench: cannot write to {name}: {why}\n")
 
 

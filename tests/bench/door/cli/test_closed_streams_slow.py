@@ -40,4 +40,4 @@ def test_a_users_encoder_is_measured_without_streams(tmp_path):
         "vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }\n"
     )
     done = started((0, 1, 2), "doctor", "mine.glsl", "-o", "said.txt", cwd=tmp_path)
-    assert done.returncode == 0 and (tmp_path / "said.txt").read_text().startswith("nothing is likely wrong\n")
+    assert done.returncode == 0 and (tmp_path / "said.txt").read_text().startswith("No problems found.\n")

@@ -39,7 +39,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "names after each other of a list": (("columns", "quality", "render"), "give one, or names separated by commas"),
     "a name without its option": (
         ("quality", "octahedral"),
-        "octahedral stands after no option; say for example --enc",
+        "unexpected argument octahedral; did you mean --enc",
     ),
     "options before the command": (
         ("--encoding", "xy", "quality", "--count", "9"),
@@ -58,8 +58,8 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "an aim twice": (("pick", "--aim", "angle", "--aim", "cost"), "one aim at a time, not angle,cost"),
     "a half": ((*ROW[:-1], "1.5"), "1.5 is not a whole number, such as 1000, 1e6, 4M or 2^22"),
     "a word for a count": ((*ROW[:-1], "many"), "many is not a whole number"),
-    "a count of nothing": ((*ROW[:-1], "0"), "--count 0: a count is 1 to"),
-    "a count beyond all": ((*ROW[:-1], "1e13"), "--count 10000000000000: a count is 1 to"),
+    "a count of nothing": ((*ROW[:-1], "0"), "--count 0: from 1 to"),
+    "a count beyond all": ((*ROW[:-1], "1e13"), "--count 10000000000000: from 1 to"),
     "a negative seed": ((*ONE, "--seed", "-1"), "--seed -1: from 0 to"),
     "a folder that is not there": ((*ONE, "-o", "no/x.csv"), "cannot write no/x.csv: there is no folder no"),
     "a page in no folder": ((*ONE, "--report", "no/x.html"), "cannot write no/x.html: there is no folder no"),
@@ -81,7 +81,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a table for a folder of results": (("run", "-o", "x.csv"), "x.csv: run writes into a folder; name one, such as x"),
     "a folder for a file": ((*ONE, "-o", "there"), "there is a folder; name a file"),
     "a format that is not": ((*ONE, "--format", "xlsx"), "Invalid value for '--format': 'xlsx' is not one of 'table'"),
-    "Metal": ((*ROW, "--encoding", "mine.metal"), "mine.metal: Metal is not read"),
+    "Metal": ((*ROW, "--encoding", "mine.metal"), "mine.metal: Metal is not supported"),
     "WGSL": ((*ROW, "--encoding", "mine.wgsl"), "no encoder and decoder found; the two functions must be"),
     "one function of a file": (
         (*ROW, "--encoding", "mine.hlsl:Encode"),
@@ -122,40 +122,49 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         "folder.glsl: none of its 0 shader files defines a function",
     ),
     "a capture that is not there": (("quality", "--normals", "missing.exr"), "missing.exr"),
-    "a capture of another kind": (("quality", "--normals", "frame.fbx1"), "a file that ends in .exr"),
-    "a JPEG": (("quality", "--normals", "frame.jpg"), "frame.jpg: JPEG changes normals; save the frame as EXR or PNG"),
-    "an archive": (("quality", "--normals", "frame.npz"), "frame.npz: an archive of arrays; save one array by np.save"),
-    "a folder of captures": (("quality", "--normals", "there"), "there: it is a folder; name the files in it"),
+    "a capture of another kind": (("quality", "--normals", "frame.fbx1"), "or a file ending in .exr"),
+    "a JPEG": (
+        ("quality", "--normals", "frame.jpg"),
+        "frame.jpg: JPEG compression changes normals; save the frame as EXR or PNG",
+    ),
+    "an archive": (("quality", "--normals", "frame.npz"), "frame.npz: an archive of arrays; save one array as .npy"),
+    "a folder of captures": (("quality", "--normals", "there"), "there: it is a folder; name files in it"),
     "two channels": (("quality", "--normals", "two.npy"), "two.npy: it has 0, 1; a normal has three channels; save z"),
     "signed bytes": (("quality", "--normals", "signed.npy"), "uint8 and uint16 are read; save array / 127 as float32"),
     "a scene that is not": (("render", "--scene", "glos"), "did you mean gloss?"),
-    "a mesh of another kind": (("render", "--scene", "scene.fbx"), "or a file that ends in"),
+    "a mesh of another kind": (("render", "--scene", "scene.fbx"), "or a file ending in"),
     "a layout that is not": (("render", "--layout", "unity"), "unknown layout 'unity'"),
     "a power of nothing": (("render", "--power", "0"), "--power 0: numbers from 1 to 2048"),
-    "an exposure in words": (("render", "--exposure", "bright"), "--exposure bright: a number of stops"),
+    "an exposure in words": (
+        ("render", "--exposure", "bright"),
+        "--exposure bright: not a number; use stops such as -1.5",
+    ),
     "a size in words": (("render", "--size", "hd"), "--size hd: WIDTHxHEIGHT, such as 640x480"),
-    "an angle of view": (("quality", "--normals", "f.npy", "--fov", "500"), "an angle of view is 1 to 175 degrees"),
+    "an angle of view": (("quality", "--normals", "f.npy", "--fov", "500"), "use 1 to 175"),
     "a matrix of twelve": (
         ("quality", "--normals", "f.npy", "--space", "world", "--view-matrix", "1,0,0,0,0,1,0,0,0,0,1,0"),
         "12 numbers; 9 or 16, row by row",
     ),
     "a space that is not": (("quality", "--normals", "f.npy", "--space", "wrld"), "did you mean world?"),
-    "options of captures without one": ((*ONE, "--fov", "60"), "options of captures are given, but --normals sphere"),
-    "a GPU for its family": (("pick", "--family", "rtx3080"), "rtx3080 is a GPU and not a family; its family is sm_86"),
-    "a GPU among families": (("cost", "--isa", "--family", "skl,RX480"), "its family is polaris10"),
-    "a number in words": (("roofline", "--overdraw", "two"), "'--overdraw': it takes a number, such as 0.5"),
-    "a number of a hundred digits": (("quality", "--count", "1e99"), "--count 100000... (100 digits): a count is 1 to"),
+    "options of captures without one": ((*ONE, "--fov", "60"), "options for captures are given, but --normals sphere"),
+    "a GPU for its family": (("pick", "--family", "rtx3080"), "rtx3080 is a GPU, not a family; use its family, sm_86"),
+    "a GPU among families": (("cost", "--isa", "--family", "skl,RX480"), "use its family, polaris10"),
+    "a number in words": (("roofline", "--overdraw", "two"), "'--overdraw': expected a number, such as 0.5"),
+    "a number of a hundred digits": (("quality", "--count", "1e99"), "--count 100000... (100 digits): from 1 to"),
     "a storage with one wrong letter": (("quality", "--storage", "rg9"), "did you mean rg8?"),
     "a family that is not": (("pick", "--family", "navi99"), "unknown family 'navi99'"),
     "a backend that is not": ((*ONE[:6], "cuda"), "unknown back end 'cuda'"),
-    "an option of another table": (("run", "--tables", "depth", "--encoding", "xy"), "none of them is measured"),
+    "an option of another table": (
+        ("run", "--tables", "depth", "--encoding", "xy"),
+        "measure one of them with --tables",
+    ),
     "a table that is not": (("run", "--tables", "qualiti"), "did you mean quality?"),
     "columns of no table": (("columns", "qualities"), "did you mean quality?"),
     "a list of nothing": (("list", "encoder"), "unknown list 'encoder'"),
     "a run that is not": (("report", "missing"), "missing"),
     "gates that are not": (("check", "missing.toml"), "missing.toml: there is no such file"),
     "gates that are not text": (("check", "bytes.toml"), "bytes.toml: it is not text in UTF-8"),
-    "a plural": (("check", "plural.toml"), "'gates' is not known; a file of gates has only [[gate]] tables"),
+    "a plural": (("check", "plural.toml"), "unknown key 'gates'; a gates file has only [[gate]] tables"),
     "a key twice": (("check", "twice.toml"), "twice.toml: line 3, column 18: a key or a table is given twice"),
     "TOML that is cut off": (("check", "cut.toml"), "cut.toml: its end: this is not TOML"),
     "a layout that is not there": (("render", "--layout", "missing.toml"), "missing.toml: there is no such file"),
@@ -172,7 +181,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         ("quality", "--normals", "f.npy", "--space", "world", "--view-matrix", "bytes.txt"),
         "--view-matrix bytes.txt: neither numbers nor a text file of numbers: it is not text in UTF-8",
     ),
-    "Parquet, which is not written": ((*ONE, "-o", "x.parquet"), "name it x.csv, or .json"),
+    "Parquet, which is not written": ((*ONE, "-o", "x.parquet"), "use x.csv, or .json"),
     "a plot of another kind": (("sweep", "--plot", "x.gif"), "x.gif"),
 }
 
@@ -235,7 +244,7 @@ def test_what_is_measured_is_not_written_over(run, tmp_path, option, name):
 def test_a_plot_of_nothing_says_why():
     """It pointed to a line above, which is there only where a row says why it has no figures."""
     table = TABLES["budget"]
-    few = f"1 row with too few figures for a chart; ask for more: {table.example}"
+    few = f"too few figures for a chart in 1 row; ask for more: {table.example}"
     assert _why_nothing(table, [{"layout": "mine", "skipped": None}]) == few
     assert _why_nothing(table, [{"layout": "mine", "skipped": "it has no normals"}]) == "it has no normals"
 
@@ -337,7 +346,7 @@ def test_help_fits_80_columns_and_groups_its_options(run, monkeypatch, name):
     status, out, _ = run(name, "-h")
     assert status == 0 and max(map(len, out.splitlines())) <= 80
     if name in TABLES:
-        assert "What is measured" in out and "Also: --output" in out
+        assert "Measurement:" in out and "Also: --output" in out
         assert "<table|json" not in out, "a list of choices leaves no room for the words"
     assert f"Example: normalbench {name}" in out
     if name == "check":

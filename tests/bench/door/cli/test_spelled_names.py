@@ -85,5 +85,5 @@ def test_options_of_attributes_take_base_color(run, option):
     words = {"--hold": "normal,base_color,Base-Color", "--readers": "base_color+tangent"}
     status, _, err = run("budget", option, words.get(option, "base_color,tangent"))
     said = {"--hold": "--hold: base_color is named twice", "--readers": "--readers base_color+tangent: unknown"}
-    wanted = said.get(option, f"{option} tangent: not held")
+    wanted = said.get(option, f"{option} tangent: not in --hold")
     assert status == 2 and wanted in err, err

@@ -22,7 +22,7 @@ def test_a_gate_that_holds_passes_and_one_that_does_not_fails(run, tmp_path):
     assert (status, err) == (0, "") and row["holds"] == "pass" and row["figure"] > 47.5
     path.write_text(PASSES + 'angle_max_deg = "at most 0.95"\n')
     status, out, err = run("check", str(path))
-    assert status == 1 and "1 of 2 limits do not hold" in err
+    assert status == 1 and "1 of 2 thresholds failed" in err
     assert "pass" in out.splitlines()[1] and "FAIL" in out.splitlines()[2] and "comes back as" in out
     rows = json.loads(run("check", str(path), "--format", "json")[1])
     off = f"{rows[1]['figure']:.6g} degrees off"
@@ -95,7 +95,7 @@ def test_rows_of_another_version_are_no_bug_of_a_gate(run, tmp_path):
         made.keep("quality", Step({}, None, ""), [{"encoding": "xy", "psnr": 40.0}])
     path.write_text('[[gate]]\nencoding = "xy"\npsnr_db = "at least 1"\n')
     status, _, err = run("check", str(path), "--run", str(folder))
-    assert status == 2 and "are not those of this version; measure them again: " in err, err
+    assert status == 2 and "do not match this version; measure them again: " in err, err
 
 
 def test_an_identity_that_rows_of_a_run_do_not_have_is_one_line(run, tmp_path):
@@ -105,10 +105,10 @@ def test_an_identity_that_rows_of_a_run_do_not_have_is_one_line(run, tmp_path):
         made.keep("depth", Step({}, None, ""), rows)
     path.write_text('[[gate]]\ntable = "depth"\ndepht = "linear"\nerror_max = "at most 2"\n')
     status, out, err = run("check", str(path), "--run", str(folder))
-    assert (status, out) == (2, "") and err.count("\n") == 1 and "have no 'depht'; they are named by depth" in err, err
+    assert (status, out) == (2, "") and err.count("\n") == 1 and "have no 'depht'; their keys are depth" in err, err
     for asked, said in (
-        ('depth = "linaer"', "no row of depth in {} has depth 'linaer'; there are linear, log"),
-        ('depth = "linear"\nfar = 10', "rows with each of depth 'linear', far 10, but none with all of them"),
+        ('depth = "linaer"', "no row of depth in {} has depth 'linaer'; values there: linear, log"),
+        ('depth = "linear"\nfar = 10', "combines depth 'linear', far 10"),
     ):
         path.write_text(f'[[gate]]\ntable = "depth"\n{asked}\nerror_max = "at most 2"\n')
         status, out, err = run("check", str(path), "--run", str(folder))
@@ -124,14 +124,14 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
 @pytest.mark.parametrize(
     "text, said",
     [
-        ("", "there is no [[gate]] table in it"),
-        ("gate = 1", "there is no [[gate]] table in it"),
-        ("gate = []", "0 gates; from 1"),
-        ("[[gate]]\n[other]", "'other' is not known; a file of gates has only [[gate]] tables"),
-        ('[[gates]]\nencoding = "xy"', "'gates' is not known; a file of gates has only [[gate]] tables"),
+        ("", "no [[gate]] table"),
+        ("gate = 1", "no [[gate]] table"),
+        ("gate = []", "0 gates; a file may have 1 to"),
+        ("[[gate]]\n[other]", "unknown key 'other'; a gates file has only [[gate]] tables"),
+        ('[[gates]]\nencoding = "xy"', "unknown key 'gates'; a gates file has only [[gate]] tables"),
         ("[[gate]", "this is not TOML"),
-        ('[[gate]]\nencoding = "xy"', "no limit given"),
-        ("[[gate]]\npsnr_db = 49", "psnr_db: 49 is not a limit; say"),
+        ('[[gate]]\nencoding = "xy"', "no threshold given"),
+        ("[[gate]]\npsnr_db = 49", "psnr_db: 49 is not a threshold; write"),
         ("[[gate]]\ncount = " + "9" * 5000, "a number has too many digits"),
         ('[[gate]]\npsnr_db = "at least many"', "gate 1: psnr_db: many is not a number"),
         ('[[gate]]\npsnr_db = "at least nan"', "nan is not a number"),
@@ -140,18 +140,18 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
         ('[[gate]]\npsnr_db = "at least 1"\nreading = "x"', "unknown option 'reading'"),
         ('[[gate]]\npsnr_db = "at least 1"\nnormalise = 1', "normalise is 1; it must be true or false"),
         ('[[gate]]\npsnr_db = "at least 1.2.3"', "1.2.3 is not a number"),
-        ('[[gate]]\npsnr_db = "at least 1"\nencoding = ["xy"]', "encoding is ['xy']; it must be a text or a number"),
+        ('[[gate]]\npsnr_db = "at least 1"\nencoding = ["xy"]', "encoding is ['xy']; it must be text or a number"),
         ('[[gate]]\npsnr_db = "at least 1"\nseed = true', "seed is True; it must be a whole number"),
         ('[[gate]]\npsnr_db = "at least 1"\nseed = "one"', "seed is 'one'; it must be a whole number"),
         ('[[gate]]\npsnr_db = "at least 1"\ncodec = "xy"', "unknown option 'codec'; known: "),
         ('[[gate]]\npsnr_db = "at least 1"\nencoding = "xyy"', "gate 1: unknown encoding 'xyy'"),
-        ('[[gate]]\npsnr = "at least 1"\nencoding = "xy"\ncount = 10', "quality: no column 'psnr'; figures are bits"),
+        ('[[gate]]\npsnr = "at least 1"\nencoding = "xy"\ncount = 10', "quality: no column 'psnr'; figures: bits"),
         (
             '[[gate]]\ntable = "depths"\nerror_max = "at most 1"',
             "unknown table 'depths'; did you mean depth? known: pick, budget, quality, render",
         ),
         ('[[gate]]\ntable = 3\nerror_max = "at most 1"', "unknown table 3; known: pick, budget, quality, render"),
-        ('[[gate]]\ntable = ["depth"]\nerror_max = "at most 1"', "table is ['depth']; it must be a text or a number"),
+        ('[[gate]]\ntable = ["depth"]\nerror_max = "at most 1"', "table is ['depth']; it must be text or a number"),
         ('[[gate]]\ndevice = "at least 3"', "quality: device is not a figure"),
     ],
 )
@@ -194,7 +194,7 @@ def test_a_gate_judges_the_rows_that_it_names(given, expected):
 @pytest.mark.parametrize(
     "words, said",
     [
-        ('matches_baseline = 3\npsnr_db = "at least 3"', "matches_baseline is 3; it must be a file's name"),
+        ('matches_baseline = 3\npsnr_db = "at least 3"', "matches_baseline is 3; it must be a file name"),
         ('matches_baseline = "gates.toml"', "gates.toml is not a baseline"),
         ('psnr_db = "at least 3"', 'no gate names a baseline; add matches_baseline = "costs.json" to one'),
     ],
@@ -220,7 +220,7 @@ def test_figures_of_any_table_are_compared_with_a_baseline(run, tmp_path):
     (tmp_path / "q.json").write_text(json.dumps(kept))
     status, _, err = run("check", str(path))
     measured = kept[0]["row"]["psnr_db"] - 1.0
-    assert status == 1 and f"psnr_db is {measured:.2f}"[:-1] in err and "1 of 2 limits do not hold" in err
+    assert status == 1 and f"psnr_db is {measured:.2f}"[:-1] in err and "1 of 2 thresholds failed" in err
 
 
 def test_registers_alone_are_no_difference_between_listings():

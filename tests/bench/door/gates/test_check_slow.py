@@ -73,7 +73,7 @@ def test_files_of_a_gate_lie_next_to_the_file_of_gates(run, tmp_path, monkeypatc
     (folder / "bumps.npy").rename(shell / "bumps.npy")
     path.write_text(asked)
     status, out, err = run("check", str(path))
-    said = "gate 1: normals: bumps.npy is in this shell's folder, and paths are relative to the file of gates; write "
+    said = "gate 1: normals: bumps.npy is in the current folder, but paths are relative to the gates file; write "
     assert (status, out, err.count("\n")) == (2, "", 1) and said + os.path.relpath("bumps.npy", folder) in err, err
 
 
@@ -99,7 +99,7 @@ def test_a_gate_does_not_pass_without_a_row_that_it_names(run, tmp_path, encodin
     words = f'encoding = "{encoding.format(tmp_path)}"\nstorage = "rg8"\nnormals = "sphere"\ncount = 1000\n'
     path.write_text(f'[[gate]]\n{words}psnr_db = "at least 1"\n')
     status, out, err = run("check", str(path))
-    assert (status, out) == (2, "") and "a row that is asked for cannot be measured" in err and said in err
+    assert (status, out) == (2, "") and "a requested row cannot be measured" in err and said in err
     path.write_text(path.read_text().replace(encoding.format(tmp_path), "all"))
     assert run("check", str(path))[0] == 0, "of all encodings some never fit"
 
@@ -172,7 +172,7 @@ def test_a_cost_that_grew_is_shown_with_the_instructions_that_came_to_it(run, tm
     assert status == 0 and {row["holds"] for row in json.loads(out)} == {"pass"}
     status, out, err = run("check", golden_gate(tmp_path, f"normalize({PLAIN})"), "--format", "json")
     (row,) = [row for row in json.loads(out) if row["holds"] == "FAIL"]
-    assert status == 1 and "instructions is 10, the baseline says 4 (+6)" in row["changed"]
+    assert status == 1 and "instructions is 10, but 4 in the baseline (+6)" in row["changed"]
     added = [line.split() for line in row["changed"].splitlines() if line.startswith(("  +", "  -"))]
     names = [f"{sign} {name}" for sign, name, *_ in added]
     # Two multiply-adds make the squared length, then its reciprocal root scales three components.

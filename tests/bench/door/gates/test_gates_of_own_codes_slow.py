@@ -46,6 +46,6 @@ def test_a_gate_finds_the_files_beside_it(run, tmp_path):
     for name in ("velocity.hlsl", "depth.wgsl", "frame.slang", "light.frag"):
         shutil.copy(INPUTS / name, tmp_path)
     status, out, err = run("check", str(tmp_path / "gates.toml"), "--format", "csv")
-    assert status == 1 and "1 of 4 limits do not hold" in err
+    assert status == 1 and "1 of 4 thresholds failed" in err
     holds = [row["holds"] for row in csv.DictReader(io.StringIO(out))]
     assert holds == ["pass", "pass", "FAIL", "pass"], out

@@ -10,4 +10,4 @@ def test_a_tolerance_is_to_either_side(figure):
     before, after = {"psnr_db": 48.0}, {"psnr_db": figure}
     assert list(baseline.changes(before, after, {"psnr_db": 0.5})) == []
     (said,) = baseline.changes(before, after, {"psnr_db": 0.25})
-    assert said.startswith(f"psnr_db is {figure}, the baseline says 48.0") and "tolerated 0.25" in said
+    assert said.startswith(f"psnr_db is {figure}, but 48.0") and "tolerance 0.25" in said

@@ -111,11 +111,11 @@ def test_a_marker_holds_before_the_test(inside):
             "  worst normal: (*) comes back as (*), * degrees off",
             "unknown option 'encodin'; known: encoding, storage, rounding, arithmetic, normals, *",
             "the marker normalbench takes options and limits by name, not 'xy'",
-            'no limit given; add for example psnr_db = "at least 47.5"',
+            'no threshold given; add for example psnr_db = "at least 47.5"',
             "unknown table 'costs'; did you mean cost? known: pick, budget, quality, render, *",
-            "quality: no column 'psnr'; figures are bits, *",
+            "quality: no column 'psnr'; figures: bits, *",
             "unknown table *quality*; known: pick, budget, quality, render, *",
-            "encoding is *xy*; it must be a text",
+            "encoding is *xy*; it must be text",
         ]
     )
     assert "this is not run" not in result.stdout.str() and "Traceback" not in result.stdout.str()
@@ -123,17 +123,17 @@ def test_a_marker_holds_before_the_test(inside):
 
 MISUSE = {
     'quality(encoding="octahedron")': "unknown encoding 'octahedron'; did you mean octahedral? known: all, xyz",
-    "quality(count=0)": "--count 0: a count is 1 to",
+    "quality(count=0)": "--count 0: from 1 to",
     'quality(count="many")': "count is 'many'; it must be a whole number",
-    f"quality(**{SMALL}).assert_that()": 'no limit given; add for example psnr_db="at least 47.5"',
-    f"quality(**{SMALL}).assert_that(psnr_db=49.5)": 'psnr_db: 49.5 is not a limit; say "at least 47.5"',
+    f"quality(**{SMALL}).assert_that()": 'no threshold given; add for example psnr_db="at least 47.5"',
+    f"quality(**{SMALL}).assert_that(psnr_db=49.5)": 'psnr_db: 49.5 is not a threshold; write "at least 47.5"',
     f"quality(**{SMALL}).assert_that(psnr_db='at least x')": "psnr_db: x is not a number",
     f"quality(**{SMALL}).assert_that(psnr='at least 5')": "quality: no column 'psnr'; figures are bits",
     f"quality(**{SMALL}).assert_that(psnr_db='at least 5', mse='at least x')": "mse: x is not a number",
     f"quality(**{SMALL}).assert_that(psnr_db='at least 5', device='at least 5')": "quality: device is not a figure",
     f"quality(**{SMALL}).assert_that(angle_sup_deg='at most 5')": "angle_sup_deg is measured only with worst_case=True",
-    f"quality(**{SMALL}, storage='rgba8,rg16f')['psnr_db']": "there are 2 rows; take one of .rows",
-    f"quality(**{SMALL}).matches_baseline()": "--normalbench-baseline FILE names one",
+    f"quality(**{SMALL}, storage='rgba8,rg16f')['psnr_db']": "there are 2 rows; choose one from .rows",
+    f"quality(**{SMALL}).matches_baseline()": "name one with --normalbench-baseline FILE",
 }
 
 
@@ -219,13 +219,13 @@ BOTH = """
 
 def test_where_it_is_required_they_fail(inside, monkeypatch):
     def missing():
-        raise NoDeviceError("no GL 4.3 device: none is here")
+        raise NoDeviceError("no OpenGL 4.3 device: none is here")
 
     for module in (quality, devices_of_the_machine):
         monkeypatch.setattr(module, "device", missing)
     result = inside("--normalbench-require-gl", test_a=BOTH)
     result.assert_outcomes(passed=1, failed=4)
-    result.stdout.fnmatch_lines(["no GL 4.3 device: none is here"])
+    result.stdout.fnmatch_lines(["no OpenGL 4.3 device: none is here"])
 
 
 STORED = """
@@ -265,11 +265,11 @@ def test_a_figure_that_changed_fails_unless_it_is_tolerated(inside, written):
     result = inside(*BASELINE)
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.fnmatch_lines(
-        ["E*xy rgba8 nearest sphere jax: psnr_db is *, the baseline says * (-1e-09)", "E*worst normal: (*)*"]
+        ["E*xy rgba8 nearest sphere jax: psnr_db is *, but * in the baseline (-1e-09)", "E*worst normal: (*)*"]
     )
     inside(*BASELINE, test_a=STORED.replace("baseline()", "baseline(psnr_db=1e-8)")).assert_outcomes(passed=2)
     result = inside(*BASELINE, test_a=STORED.replace("baseline()", "baseline(psnr=1, mse=-1)"))
-    result.stdout.fnmatch_lines(["E*no column 'psnr'; there are encoding*"])
+    result.stdout.fnmatch_lines(["E*no column 'psnr'; known: encoding*"])
     assert written.read_bytes() == before, "reading does not write"
 
 
@@ -277,7 +277,7 @@ def test_a_row_that_is_not_there_says_what_writes_it(inside, written):
     before = written.read_bytes()
     result = inside(*BASELINE, test_a=STORED.replace("count=4096", "count=4097"))
     result.assert_outcomes(failed=2)
-    result.stdout.fnmatch_lines(["E*rows.json has no row xy rgba8 * jax; --normalbench-write-baseline writes it"])
+    result.stdout.fnmatch_lines(["E*rows.json has no row xy rgba8 * jax; write it with --normalbench-write-baseline"])
     assert written.read_bytes() == before
     assert inside("--normalbench-baseline", "none.json").ret == 1 and not Path("none.json").exists()
 
@@ -294,7 +294,7 @@ def test_writing_keeps_the_other_rows_and_what_is_no_baseline(inside, written, p
     assert result.ret == 2 and other.read_text() == '{"mine": 1}'
     assert "other.json is not a baseline" in result.stdout.str() + result.stderr.str()
     for arguments, said in (
-        (["--normalbench-write-baseline"], "--normalbench-write-baseline needs --normalbench-baseline FILE"),
+        (["--normalbench-write-baseline"], "--normalbench-write-baseline requires --normalbench-baseline FILE"),
         (["--normalbench-write-baseline", "--normalbench-baseline", "/proc/no/a.json"], "cannot write to /proc/no"),
     ):
         result = inside(*arguments)
@@ -391,7 +391,7 @@ def test_without_a_gl_driver_rows_of_jax_are_held_and_the_others_skipped(pyteste
     pytester.makepyfile(BOTH)
     result = pytester.runpytest_subprocess("-rs", *PLAIN)
     result.assert_outcomes(passed=1, failed=1, skipped=3)
-    result.stdout.fnmatch_lines(["*test_jax_breaks_it*", "SKIPPED*no GL 4.3 device: *apt-get install libegl1*"])
+    result.stdout.fnmatch_lines(["*test_jax_breaks_it*", "SKIPPED*no OpenGL 4.3 device: *apt-get install libegl1*"])
 
 
 @pytest.mark.usefixtures("loaded")

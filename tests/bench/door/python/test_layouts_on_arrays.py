@@ -65,8 +65,8 @@ def test_targets_hold_what_the_renderer_writes_and_come_back_as_it_reads(name, t
     "call, said",
     [
         (lambda: nb.pack("granite", {"normal": [0, 0, 1]}), "surface lacks ao, base_color, metallic"),
-        (lambda: nb.pack("granite", {**SURFACE, "depth": 1.0}), "surface has no depth; it has normal"),
-        (lambda: nb.pack("granite", SURFACE, near=0.1), "settings has no near; it has none"),
+        (lambda: nb.pack("granite", {**SURFACE, "depth": 1.0}), "surface cannot have depth; expected: normal"),
+        (lambda: nb.pack("granite", SURFACE, near=0.1), "settings cannot have near; expected: none"),
         (lambda: nb.unpack("granite", [np.zeros(4)]), "has 3 targets, not 1"),
         (lambda: nb.pack("granit", SURFACE), "did you mean granite?"),
     ],

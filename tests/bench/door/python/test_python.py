@@ -40,13 +40,13 @@ def test_every_table_is_a_function_that_says_its_options(name):
     "call, said",
     [
         (lambda: nb.encode("octahedral", np.zeros((1, 3))), "name an encoding and a storage"),
-        (lambda: nb.encode("octahedral/rg8", np.zeros((3, 2))), r"\(3, 2\); \(..., 3\) is needed"),
+        (lambda: nb.encode("octahedral/rg8", np.zeros((3, 2))), r"\(3, 2\), but \(..., 3\) is needed"),
         (lambda: nb.encode("xyz/rg8", np.zeros((1, 3))), "3 components"),
         (lambda: nb.decode("octahedral/rg8", np.zeros((1, 3))), r"needs \(..., 2\)"),
         (lambda: nb.quality(encodings="xy"), "unknown option 'encodings'"),
         (lambda: nb.quality(count="many"), "count is 'many'"),
         (lambda: nb.encoding("my own", None, None), "identifier"),
-        (lambda: nb.encoding("octahedral", None, None), "encoding 'octahedral': the catalogue has one of this name"),
+        (lambda: nb.encoding("octahedral", None, None), "encoding 'octahedral' already exists in the catalogue"),
     ],
 )
 def test_misuse_is_one_line(call, said):
@@ -70,12 +70,12 @@ UNIT = np.eye(3, dtype=np.float32)
 @pytest.mark.parametrize(
     "name, array, said",
     [
-        ("own", 2 * UNIT, "100.0% of own are not unit vectors; divide by their lengths, or unpack them"),
+        ("own", 2 * UNIT, "100.0% of own are not unit vectors; normalise or unpack them"),
         ("own", UNIT * 0.5 + 0.5, "are not unit vectors"),
         ("own", np.full((4, 3), 200, np.uint8), "own is of uint8; give floats in [-1, 1]"),
-        ("own", np.where(UNIT == 1, np.nan, UNIT), "own has numbers that are NaN or infinite"),
+        ("own", np.where(UNIT == 1, np.nan, UNIT), "own contains NaN or infinity"),
         ("own", np.zeros((0, 3)), "an array of normals of shape (count, 3)"),
-        ("sphere", UNIT, "sphere is a set of normalbench's own"),
+        ("sphere", UNIT, "sphere is a built-in set"),
     ],
 )
 def test_what_are_not_normals_is_refused_as_a_file_of_them_is(name, array, said):

@@ -85,6 +85,6 @@ def test_a_size_may_be_two_numbers():
 
 def test_integers_are_not_decoded():
     codes = nb.encode("octahedral/rg8", UNIT)
-    with pytest.raises(UsageError, match="decode takes what encode gave, or its values"):
+    with pytest.raises(UsageError, match="decode takes the result of encode, or its values"):
         nb.decode("octahedral/rg8", codes.integers)
     assert np.array_equal(nb.decode("octahedral/rg8", codes), nb.decode("octahedral/rg8", codes.values))

@@ -98,7 +98,7 @@ def test_no_process_outlives_a_run(tmp_path, ended):
     if ended != signal.SIGKILL:
         kept, (line, *rest) = rows.read_bytes().count(b"\n"), err.splitlines()
         assert line.startswith(f"normalbench: {kept} of "), err
-        assert line.endswith("steps are kept; the same command goes on"), err
+        assert line.endswith("steps were saved; to resume, run the same command"), err
         assert rest == (["normalbench: interrupted"] if ended == signal.SIGINT else []), err
         assert {path.name for path in rows.parent.iterdir()} == {"rows.jsonl", "run.json"}
     until = time.monotonic() + 10

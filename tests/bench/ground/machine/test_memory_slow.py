@@ -22,7 +22,7 @@ def test_a_process_without_addresses_enough_is_one_line(words):
     """With 1 GB the libraries that JAX is written in ended it: terminate called, status 134."""
     done = subprocess.run([sys.executable, "-c", COMMAND, *words.split()], capture_output=True, text=True)
     said = (
-        "normalbench: not enough memory: this process is limited to 1 GB of addresses, and JAX and OpenGL need 2.5 GB"
+        "normalbench: not enough memory: this process is limited to 1 GB of addresses, but JAX and OpenGL need 2.5 GB"
     )
     assert (done.returncode, done.stdout) == (3, ""), done.stderr
     assert done.stderr == f"{said}; raise the limit: ulimit -v 2500000\n", done.stderr

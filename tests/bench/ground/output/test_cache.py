@@ -242,6 +242,6 @@ def test_what_is_no_folder_keeps_nothing_and_is_left_as_it_is(folder, put):
     put(folder)
     before = folder.lstat()
     cache.write(KEY, {})
-    with pytest.raises(MissingError, match="XDG_CACHE_HOME names another one"):
+    with pytest.raises(MissingError, match="name another folder with XDG_CACHE_HOME"):
         cache.require_folder()
     assert cache.read(KEY) is None and folder.lstat().st_mode == before.st_mode

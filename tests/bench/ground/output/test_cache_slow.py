@@ -18,7 +18,7 @@ def test_a_cache_of_another_user_is_not_used_and_doctor_says_so(run, folder):
     os.chown(folder, ELSE, ELSE)
     cache.write(KEY, {})
     assert not [*folder.iterdir()]
-    with pytest.raises(null_device.NullDeviceError, match="another user's folder; XDG_CACHE_HOME names another one"):
+    with pytest.raises(null_device.NullDeviceError, match="another user's folder; set XDG_CACHE_HOME to another"):
         null_device.library()
     _, out, _ = run("doctor", "--format", "csv")
-    assert f"no: another user's folder: {folder}; XDG_CACHE_HOME names another one" in out
+    assert f"no: another user's folder: {folder}; name another folder with XDG_CACHE_HOME" in out

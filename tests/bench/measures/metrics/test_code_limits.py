@@ -85,7 +85,7 @@ def test_radians_are_caught_and_said_with_exit_status_1(monkeypatch, run):
     words = ["--encoding", "octahedral", "--storage", "rg8", "--normals", "sphere", "--backend", "jax"]
     status, out, err = run("quality", *words, "--count", "10000", "--format", "json")
     assert status == 1 and '"below_limit": "RMS 0.006' in out
-    assert err.count("\n") == 1 and "of 0.31773 at least; 65536 codes cannot do that" in err
+    assert err.count("\n") == 1 and "below the bound of 0.31773; 65536 codes cannot be that accurate" in err
 
 
 def test_a_set_that_meets_a_codes_lattice_is_not_taken_for_a_broken_measure():

@@ -15,10 +15,10 @@ SMALL = ("quality", "--encoding", "xyz,octahedral", "--storage", "rgba8", "--nor
         ("local:0", "--on local:0: from 1 to 256 worker processes, such as local:4"),
         ("local:1000", "--on local:1000: from 1 to 256 worker processes, such as local:4"),
         ("local:few", "--on local:few: from 1 to 256 worker processes, such as local:4"),
-        ("here", "--on here: say local:N, such as local:4, or tcp://HOST:PORT"),
-        ("tcp://host", "--on tcp://host: say local:N"),
-        ("tcp://host:99999", "--on tcp://host:99999: say local:N"),
-        ("http://host:80", "--on http://host:80: say local:N"),
+        ("here", "--on here: use local:N, such as local:4, or tcp://HOST:PORT"),
+        ("tcp://host", "--on tcp://host: use local:N"),
+        ("tcp://host:99999", "--on tcp://host:99999: use local:N"),
+        ("http://host:80", "--on http://host:80: use local:N"),
     ],
 )
 @pytest.mark.parametrize("command", [SMALL, ("run",)], ids=["table", "run"])
@@ -40,4 +40,4 @@ def test_without_dask_it_says_what_to_install(run, monkeypatch):
 
 def test_the_worker_command_refuses_a_bad_address(run):
     status, _, err = run("worker", "local:2")
-    assert status == 2 and "worker local:2: say tcp://HOST:PORT" in err
+    assert status == 2 and "worker local:2: use tcp://HOST:PORT" in err

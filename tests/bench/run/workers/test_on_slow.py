@@ -38,7 +38,7 @@ def test_an_address_where_nobody_answers_is_refused_in_seconds(run):
         address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
     began = time.monotonic()
     status, _, err = run(*SMALL, "--on", address)
-    assert status == 2 and f"--on {address}: nobody answers; start a scheduler there: dask scheduler" in err
+    assert status == 2 and f"--on {address}: no scheduler responded; start one there with: dask scheduler" in err
     assert time.monotonic() - began < 20
 
 
@@ -158,7 +158,7 @@ def test_an_interruption_leaves_rows_and_no_process_and_a_killed_worker_costs_no
         assert again.poll() is None, f"it ended before a worker was killed, with {kept_in(tmp_path)} lines kept"
         os.kill(a_process_of(again.pid, "bench.run.piped"), signal.SIGKILL)
     _, err = again.communicate(timeout=300)
-    assert "steps were measured before" in err and again.returncode == 0, err
+    assert "steps are already measured" in err and again.returncode == 0, err
     assert (tmp_path / "rows.json").read_bytes() == rows_alone, "a killed worker costs a row"
     assert not [*(tmp_path / "temporary").iterdir()], "the folder of a killed worker is left"
 
@@ -184,4 +184,4 @@ def test_workers_that_do_not_stay_end_the_command(run, monkeypatch):
     """In a line, with the last that one of them said."""
     monkeypatch.setattr(piped, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
     status, out, err = run(*SMALL, "--on", "local:2")
-    assert (status, out) == (2, "") and err.endswith("--on local:2: the workers do not stay: broken\n"), err
+    assert (status, out) == (2, "") and err.endswith("--on local:2: the workers keep ending: broken\n"), err

@@ -110,7 +110,7 @@ def test_workers_that_end_before_they_are_ready_cost_no_step(ending, workers, mo
     monkeypatch.setattr(Process, "ending", ending)
     carrier = workers(measures)
     if ending == 12:
-        with pytest.raises(UsageError, match="--on local:4: the workers do not stay: broken"):
+        with pytest.raises(UsageError, match="--on local:4: the workers keep ending: broken"):
             measured(carrier, asked("quality", JAX))
         return
     _, found = measured(carrier, asked("quality", JAX))

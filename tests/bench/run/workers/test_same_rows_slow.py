@@ -132,5 +132,5 @@ def test_python_takes_workers_as_well(scheduler):
 def test_a_value_of_pythons_own_is_refused():
     """Workers measure what has a name or is a file."""
     normals = {"own": np.eye(3)}
-    with pytest.raises(UsageError, match="normals: own is a value of this process; workers measure names and files"):
+    with pytest.raises(UsageError, match="normals: own exists only in this process; with --on use names and files"):
         nb.quality(encoding="octahedral", storage="rg8", normals=normals, on="local:1")

@@ -37,18 +37,18 @@ def test_hlsl_unrolls_loops_over_constants_alone():
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["linear"], "say which with --of"),
+        (["linear"], "choose one with --of"),
         (["linear", "--of", "sound"], "unknown kind 'sound'"),
-        (["rgbm", "--rounding", "truncate"], "rounded to the nearest"),
+        (["rgbm", "--rounding", "truncate"], "round to nearest"),
         (["plain", "--of", "light", "--storage", "srgb8_a8"], "made for"),
-        (["linear", "--of", "light", "--storage", "srgb8_a8"], "by itself"),
+        (["linear", "--of", "light", "--storage", "srgb8_a8"], "converts colours itself; write the curve srgb in r8"),
         (["linear_sign", "--storage", "depth16"], "no room for a sign"),
         (["octahedral,cube_rot"], "did you mean cube_root?"),
         (["octahedral,nonsense,rgbm"], "unknown encoding 'nonsense'"),
-        (["octahedral,linear"], "say which with --of"),
-        (["cube_root:range=4"], "its functions take the range"),
-        (["rgbm:range=0"], "a range is 0.001 to 10000"),
-        (["log:4"], "say which with --of"),
+        (["octahedral,linear"], "choose one with --of"),
+        (["cube_root:range=4"], "only light and curves take a range"),
+        (["rgbm:range=0"], "the range must be 0.001 to 10000"),
+        (["log:4"], "choose one with --of"),
     ],
 )
 def test_what_cannot_be_written_of_a_kind_is_a_line(run, arguments, said):

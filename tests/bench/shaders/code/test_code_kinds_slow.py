@@ -115,7 +115,7 @@ def test_the_command_finds_the_kind_and_says_it(run):
     assert (status, err) == (0, "")
     head = " ".join(line.removeprefix("//").strip() for line in out.partition("\n\n")[0].splitlines())
     assert "normalbench code cube_root --of motion --storage rg16_snorm --to c" in head
-    assert re.search(r"texels of (\d+ of )?65536 motions", head) and "in screens a frame" in head
+    assert re.search(r"texels of (\d+ of )?65536 motions", head) and "in screens per frame" in head
 
 
 @pytest.mark.usefixtures("gl")

@@ -25,6 +25,6 @@ def test_a_table_without_wgsl_measures_by_the_others_and_says_so(run):
     arguments = ("depth", "--depth", "linear", "--storage", "r16f", "--count", "1024", "--backend")
     status, out, err = run(*arguments, "jax,wgsl")
     assert status == 0 and "linear" in out
-    assert err == "normalbench: left out: wgsl: this table measures by jax and glsl\n"
+    assert err == "normalbench: left out: wgsl: this table measures only with jax and glsl\n"
     status, out, err = run(*arguments, "wgsl")
-    assert (status, out, err) == (2, "", "normalbench: wgsl: this table measures by jax and glsl\n")
+    assert (status, out, err) == (2, "", "normalbench: wgsl: this table measures only with jax and glsl\n")

@@ -147,7 +147,7 @@ def test_the_command_writes_files_and_checks_them(run, tmp_path, monkeypatch):
     status, _, err = run("code", "mine.toml,bevy", "--of", "layout", "--prefix", "my", "-o", "two")
     assert status != 0 and "names of 2 layouts would collide" in err
     status, _, err = run("code", "mine.toml", "--storage", "rg8")
-    assert status != 0 and "a layout says its formats itself" in err
+    assert status != 0 and "a layout has its own formats" in err
 
 
 def test_a_file_that_differs_is_not_written(run, tmp_path, monkeypatch):

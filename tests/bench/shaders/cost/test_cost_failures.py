@@ -83,7 +83,7 @@ def test_the_help_of_run_names_cost():
         (["--operation", "sign"], "unknown operation 'sign'"),
         (["--storage", "13:13"], "unknown storage '13:13'"),
         (["--repeats", "1"], "--repeats 1"),
-        (["--disassembly", "d", "--time"], "--disassembly is of what compilers make"),
+        (["--disassembly", "d", "--time"], "--disassembly requires --isa"),
     ],
 )
 def test_bad_input_is_one_line(run, monkeypatch, tmp_path, words, said):

@@ -252,7 +252,7 @@ def test_a_family_that_this_mesa_refuses_has_one_row(run, monkeypatch):
     rows = json.loads(out)
     assert status == 0
     assert [row["skipped"] for row in rows if row["family"] == "navi99"] == [
-        "this Mesa knows no family navi99 or gfx9999"
+        "this Mesa version does not know family navi99 or gfx9999"
     ]
     assert all(row["skipped"] is None for row in rows if row["family"] == "navi21")
     assert err.count("\n") == 1 and "navi99" in err
@@ -349,10 +349,10 @@ def test_a_run_of_cost_alone_ends_without_compilers_and_another_leaves_it_out(
 @pytest.mark.usefixtures("radv")
 def test_without_a_gl_device_time_is_missing_and_the_rest_is_there(run, monkeypatch):
     def missing():
-        raise NoDeviceError("no GL 4.3 device; install a GL driver")
+        raise NoDeviceError("no OpenGL 4.3 device; install an OpenGL driver")
 
     monkeypatch.setattr(devices, "device", missing)
     status, out, err = run(*SMALL, "--time")
     rows = json.loads(out)
-    assert status == 3 and err == "normalbench: no GL 4.3 device; install a GL driver\n"
+    assert status == 3 and err == "normalbench: no OpenGL 4.3 device; install an OpenGL driver\n"
     assert [row["skipped"] is None for row in rows] == [row["measure"] == "isa" for row in rows]

@@ -47,11 +47,11 @@ def test_a_codec_costs_its_encoding_its_storage_and_its_sign(name, total):
 @pytest.mark.parametrize(
     "name, storage, lost, reason",
     [
-        ("xy", "rgba8", "rgba8 8:8", "what rgba8 8:8 costs is not known"),
-        ("xy", "rgba8", "xy", "what it costs is not known"),
-        ("xy_sign", "rgba8", "rgba8 signed depth 8:8:8", "what rgba8 signed depth 8:8:8 costs is not known"),
-        ("xyz", "rg8", "nothing", "rg8 does not hold it: 3 components, but RG8 has 2 channels"),
-        ("xy", "rg8", "nothing", "what rg8 8:8 costs is not known"),
+        ("xy", "rgba8", "rgba8 8:8", "the cost of rgba8 8:8 is not known"),
+        ("xy", "rgba8", "xy", "its cost is not known"),
+        ("xy_sign", "rgba8", "rgba8 signed depth 8:8:8", "the cost of rgba8 signed depth 8:8:8 is not known"),
+        ("xyz", "rg8", "nothing", "does not fit in rg8: 3 components, but RG8 has 2 channels"),
+        ("xy", "rg8", "nothing", "the cost of rg8 8:8 is not known"),
     ],
 )
 def test_a_part_that_is_not_known_is_not_nothing(name, storage, lost, reason):

@@ -100,13 +100,13 @@ def test_a_loop_that_stays_and_a_branch_are_told(tmp_path):
     for row in rows:
         assert row["loops"] == 1 and row["instructions"] < 40 and row["spirv_instructions"] is None, row
     assert cost.static_notes(rows) == [
-        "static count: mine encode contains a loop, whose body counts once, however often it runs"
+        "static count: mine encode contains a loop; its body counts once, however often it runs"
     ]
     dear = "; ".join("e = sin(e + e.yx) / e" for _ in range(12))
     sides = f"vec2 sides(vec2 e) {{ if (e.x > 0.3) {{ {dear}; }} return e; }}\n"
     rows = costs_of("sides(n.xy)", sides, tmp_path, ("polaris10", "navi31"))
     assert [(row["branches"], row["loops"]) for row in rows] == [(1, 0)] * 4
-    assert cost.static_notes(rows) == ["static count: mine encode contains a branch, both of whose sides count"]
+    assert cost.static_notes(rows) == ["static count: mine encode contains a branch; both sides count"]
 
 
 @pytest.mark.usefixtures("radv", "own_cache")

@@ -107,7 +107,7 @@ def test_kernels_of_no_common_width_have_no_counts():
     row = TABLES["cost"].empty() | {"family": "skl"}
     ours, empty = (Compiled("skl", "a device", "1.2.3", (kernel(width),)) for width in (8, 16))
     found, _ = cost._figures(row, ours, empty)
-    assert found["instructions"] is None and found["skipped"].startswith("compiled for 8 lanes, where the empty kernel")
+    assert found["instructions"] is None and found["skipped"].startswith("compiled for 8 lanes, but the empty kernel")
 
 
 def test_figures_are_by_the_drivers_own_names_and_what_a_radeon_has_is_empty():
@@ -144,7 +144,7 @@ def test_a_page_speaks_of_the_first_vendors_last_family():
 def test_a_cache_that_cannot_be_written_is_one_line(monkeypatch, tmp_path):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    with pytest.raises(null_device.NullDeviceError, match="XDG_CACHE_HOME names another one") as error:
+    with pytest.raises(null_device.NullDeviceError, match="set XDG_CACHE_HOME to another folder") as error:
         null_device.library()
     assert not error.value.is_missing
 

@@ -17,7 +17,7 @@ def test_a_layout_whose_code_is_not_written_has_no_kernel():
     view = replace(
         LAYOUTS["fp32"], targets=targets_of("rgba8: normal.x normal.y"), encoding=ENCODINGS["per_pixel_view"]
     )
-    with pytest.raises(ShaderError, match="depends on where a pixel is"):
+    with pytest.raises(ShaderError, match="depends on the pixel's position"):
         pack_operation(view)
 
 

@@ -127,7 +127,7 @@ def test_a_fragment_shader_is_refused_in_a_line(run, monkeypatch):
     monkeypatch.setattr(tools, "missing", lambda: "")
     status, out, _ = run(*INSTRUCTIONS, "--family", "navi21,sm_86", "--stage", "fragment")
     (lost,) = [row for row in json.loads(out) if row["skipped"]]
-    assert status == 0 and lost["family"] == "sm_86" and "ask for --stage compute" in lost["skipped"]
+    assert status == 0 and lost["family"] == "sm_86" and "use --stage compute" in lost["skipped"]
     assert sum(row["family"] == "navi21" for row in json.loads(out)) == 6
 
 

@@ -16,7 +16,7 @@ ENCODE = "float2 PackDir(float3 n) { return CODE; }\n"
 DECODE = "float3 UnpackDir(float2 e) { return float3(e, sqrt(saturate(1.0 - dot(e, e)))); }\n"
 WGSL = "fn f_encode(n: vec3f) -> vec2f { return n.xy * two(); }\n"
 WGSL += "fn f_decode(e: vec2f) -> vec3f { return vec3f(e, 0.0); }\n"
-UNREAD = r"mine\.\w+:\d+(:\d+)?: .*(\w+ is not read|other.slang lies outside the folder)"
+UNREAD = r"mine\.\w+:\d+(:\d+)?: .*(\w+ is not (?:read|supported)|other.slang is outside the folder)"
 PLAIN = ENCODE.replace("CODE", "n.xy") + DECODE
 
 
@@ -104,10 +104,10 @@ def test_a_refusal_names_the_line_whatever_branches_stand_before_it(tmp_path):
     path = tmp_path / "mine.hlsl"
     needs = ENCODE.replace("CODE", "n.xy * f(1.0)") + DECODE
     path.write_text("#ifdef A\n#else\n#endif\n#if B\n#endif\nimport x;\n" + needs)
-    with pytest.raises(UsageError, match=r"mine\.hlsl:6:1: import is not read; #include a file next to it"):
+    with pytest.raises(UsageError, match=r"mine\.hlsl:6:1: import is not supported; #include a file next to it"):
         translated(path)
     path.write_text("#ifdef A\n#else\n#endif\n#define B a # b\n#if C # 1\n#endif\n" + PLAIN)
-    with pytest.raises(UsageError, match=r"mine\.hlsl:5: a # inside a line is not read"):
+    with pytest.raises(UsageError, match=r"mine\.hlsl:5: a # inside a line is not supported"):
         translated(path)
 
 

@@ -108,7 +108,7 @@ def test_the_pair_of_a_file_is_found(text, named):
             f"float2 octEncodeImpl(float3 n) {OF} void PackNormal(in float3 n, out float2 e) {OF} "
             f"float3 UnpackNormal(float2 e) {OF}",
             None,
-            "PackNormal returns nothing; write a function that returns what it gives through its parameter$",
+            "PackNormal returns nothing; write a function that returns what it writes to its parameter$",
         ),
         (
             f"float2 PackNormal(float3 n) {OF} void UnpackNormal(float2 e, out float3 n) {OF} "
@@ -116,7 +116,7 @@ def test_the_pair_of_a_file_is_found(text, named):
             None,
             "UnpackNormal returns nothing; write a function",
         ),
-        (f"uint PackNormal(float3 n) {OF} {BACK}", None, "PackNormal gives a uint, but a code is two or three numbers"),
+        (f"uint PackNormal(float3 n) {OF} {BACK}", None, "PackNormal returns a uint, but a code must be two"),
         (
             "".join(f"float2 Encode{x}(float3 n) {OF} float3 Decode{x}(float2 e) {OF}" for x in "AB"),
             None,
@@ -151,7 +151,8 @@ def many(count: int, decoder: str) -> list[Function]:
 def test_too_many_functions_whose_names_do_not_go_together_are_refused_early():
     with pytest.raises(SeveralPairsError):
         pair_of(many(100, "UnpackOf{}"), None, "mine.hlsl")
-    said = "300 functions may encode and 300 may decode, and no two are named alike; name two: mine.hlsl:ENCODE:DECODE"
+    said = "300 functions may encode and 300 may decode, but no two have matching names; name two: "
+    said += "mine.hlsl:ENCODE:DECODE"
     with pytest.raises(NoPairError, match=said):
         pair_of(many(300, "UnpackOf{}"), None, "mine.hlsl")
 

@@ -43,7 +43,7 @@ def hlsl_of(folder, name, body):
     return path
 
 
-UNDEFINED = "it divides a whole number by 0, of some normal; its language does not define that"
+UNDEFINED = "it divides an integer by 0 for some normal; its language does not define that"
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
@@ -67,7 +67,7 @@ def test_hlsl_that_glslang_misreads_is_measured_as_hlsl_defines_it(name, tmp_pat
     """A line names the function, the normal and the two codes; the codes are those of the same written out."""
     misread, plain = (hlsl_of(tmp_path, f"f{at}", body) for at, body in enumerate(MISREAD[name]))
     (said,) = first_look(misread)["notes"]
-    assert said.startswith("MineEncode of [") and " by Slang and [" in said and "by glslang; the former" in said
+    assert said.startswith("MineEncode of [") and " by Slang and [" in said and "by glslang; the first" in said
     assert "notes" not in first_look(plain)
     assert np.allclose(codes(misread), codes(plain), atol=2e-6)
     assert not np.allclose(codes(misread, "glslang"), codes(plain), atol=0.1)
@@ -122,10 +122,10 @@ def test_what_glslang_is_known_to_misread_is_not_measured_by_it_alone(tmp_path, 
     path = tmp_path / plain
     path.write_text(path.read_text().replace(MATRICES, ""))
     assert "notes" not in first_look(path) and "error" not in first_look(path)
-    assert "it is read by glslang alone, as Slang's compiler does not read it" in translated(path).notes
+    assert "only glslang can read it; Slang's compiler cannot" in translated(path).notes
     path.write_text(path.read_text().replace("return p;", f"return {body};"))
     said = first_look(path)["error"]
-    assert f"it uses {used}, which glslang reads otherwise than HLSL defines it" in said and "slangc does not" in said
+    assert f"it uses {used}, which glslang interprets differently from HLSL" in said and "slangc does not" in said
 
 
 @pytest.mark.usefixtures("hlsl", "slang")

@@ -69,9 +69,9 @@ def test_a_list_of_macros_is_included_as_often_as_it_is_asked_for(tmp_path):
 @pytest.mark.parametrize(
     "name, why",
     [
-        ("/etc/hostname", "lies outside the folder of mine.hlsl"),
-        ("../outside.hlsli", "lies outside the folder of mine.hlsl"),
-        ("link.hlsli", "lies outside the folder of mine.hlsl"),
+        ("/etc/hostname", "is outside the folder of mine.hlsl"),
+        ("../outside.hlsli", "is outside the folder of mine.hlsl"),
+        ("link.hlsli", "is outside the folder of mine.hlsl"),
         ("Packages/Common.hlsl", "is not next to mine.hlsl"),
     ],
 )

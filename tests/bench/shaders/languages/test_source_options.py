@@ -47,20 +47,20 @@ def test_settings_stand_behind_a_files_name(word):
 def test_names_of_the_catalogue_are_as_they_were():
     options = QualityOptions(encoding="octahedral,mine.hlsl", define="A=1")
     assert options.encoding == ("octahedral", "mine.hlsl:define=A=1")
-    with pytest.raises(UsageError, match="--define is of users' shader files, and none is named"):
+    with pytest.raises(UsageError, match="--define applies only to your own shader files"):
         QualityOptions(define="A=1")
 
 
 @pytest.mark.parametrize(
     "settings, why",
     [
-        ({"define": "A=f(1,2)"}, r"-D '2\)': it is NAME or NAME=VALUE"),
-        ({"define": "A=1\r#error"}, "nothing can be called so"),
+        ({"define": "A=f(1,2)"}, r"-D '2\)': must be NAME or NAME=VALUE"),
+        ({"define": "A=1\r#error"}, "not a valid value"),
         ({"define": "A=b:c"}, "a colon ends a setting"),
-        ({"language": "metal"}, "it is one of hlsl, slang, wgsl, glsl"),
+        ({"language": "metal"}, "must be one of hlsl, slang, wgsl, glsl"),
         ({"prelude": "gone.hlsl"}, "gone.hlsl: there is no such file"),
-        ({"prelude": "\0.hlsl"}, "nothing can be called so"),
-        ({"prelude": "/etc/hostname"}, "does not end as that of a shader"),
+        ({"prelude": "\0.hlsl"}, "not a valid value"),
+        ({"prelude": "/etc/hostname"}, "must end like a shader's"),
     ],
 )
 def test_what_cannot_be_is_said(mine, settings, why):
@@ -84,11 +84,11 @@ def test_includes_are_read_from_the_folders_that_are_given(tmp_path, mine, name,
     for mark in ('"{}"', "<{}>"):
         mine.write_text(f"#include {mark.format(name)}\n#include {mark.format(name.replace('part', 'link'))}\n" + PAIR)
         first = name.strip("/").split("/")[0]
-        assert f"name its folder by --include {f'{first}=' * bool(root)}FOLDER" in Source(mine).lines[0].wrong
+        assert f"name its folder with --include {f'{first}=' * bool(root)}FOLDER" in Source(mine).lines[0].wrong
         source = Source(word_with(str(mine), include=f"{root}{library.parent}"))
         assert "next" in source.text and "secret" not in source.text
         assert {path.name for path in source.files.values()} == {"mine.hlsl", "part.hlsl", "next.hlsl"}
-        assert len([line for line in source.lines if "lies outside the folder" in line.wrong]) == 3
+        assert len([line for line in source.lines if "is outside the folder" in line.wrong]) == 3
 
 
 @pytest.mark.usefixtures("slang")

@@ -21,7 +21,7 @@ targets = [{ format = "rg8", holds = "normal.x normal.y" }]
 
 @pytest.mark.usefixtures("slang")
 def test_macros_and_preludes_are_read_first(tmp_path, mine):
-    with pytest.raises(UsageError, match=r"SCALE.*; a macro that is not there is given by -D or --prelude"):
+    with pytest.raises(UsageError, match=r"SCALE.*; define missing macros with -D or --prelude"):
         translated(mine)
     (tmp_path / "pre.hlsl").write_text("#define SCALE 1.0\n")
     by_macro = translated(word_with(str(mine), define="SCALE=1.0"))
@@ -42,7 +42,7 @@ def test_a_layout_says_it_behind_the_name(mine):
     (found,) = layouts_named(str(layout))
     assert found.encoding.name == "mine.hlsl"
     layout.write_text(text.replace("=pre", "=../pre"))
-    with pytest.raises(UsageError, match="is not in the folder of the layout"):
+    with pytest.raises(UsageError, match="is not in the layout's folder"):
         layouts_named(str(layout))
 
 

@@ -16,7 +16,7 @@ def test_a_bomb_of_includes_is_refused_at_once(tmp_path, part):
         written(tmp_path, part + f'#include "{at + 1}.hlsli"\n' * 2, f"{at}.hlsli")
     written(tmp_path, "z", "40.hlsli")
     began = time.process_time()
-    with pytest.raises(UsageError, match=r"with what it includes|are included more than"):
+    with pytest.raises(UsageError, match=r"with its includes|are included more than"):
         Source(tmp_path / "0.hlsli")
     assert time.process_time() - began < 4, f"{time.process_time() - began:.1f} s"
 

@@ -82,7 +82,7 @@ def test_codes_in_0_to_1_are_stored_as_they_are(run, tmp_path):
     assert first == pytest.approx(second, rel=1e-6)
     assert [row["code_range"] for row in rows] == [None, "[0, 1]"] and "[0, 1]" not in err
     _, out, _ = run("doctor", other, "--format", "json")
-    assert "are in [0, 1]; every storage holds them as they are" in out
+    assert "are in [0, 1]; every storage holds them unchanged" in out
 
 
 def test_the_way_to_a_signed_number_and_back_moves_no_integer():

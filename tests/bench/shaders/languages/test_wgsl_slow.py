@@ -64,8 +64,8 @@ def test_an_array_in_wgsl_has_elements_of_any_type(run, tmp_path, names=("typed 
 @pytest.mark.parametrize(
     "array, said",
     [
-        ("array(vec2f(1), 1.0)", "an array of float, vec2; its elements have one type"),
-        ("array()", "an array of nothing; its elements have one type"),
+        ("array(vec2f(1), 1.0)", "an array of float, vec2; its elements must have one type"),
+        ("array()", "an array of nothing; its elements must have one type"),
         ("array<vec2f, 3>(vec2f(1), vec2f(1))", "2 values of an array of 3"),
         ("array(array(1.0, 2.0), array(1.0, 2.0))", "an array of arrays is not read"),
         ("array<array<f32, 2>, 2>()", "an array of arrays is not read"),

@@ -27,7 +27,7 @@ def test_a_wiring_is_said_as_it_is_read(text):
 def test_commas_and_spaces_are_read_as_well():
     assert wiring_of("f(a=n,b= 1 )->(x, y)") == Wiring("f", (("a", "n"), ("b", "1")), ("x", "y"))
     for wrong in ("f(a)", "f(=n)", "f(a=)", "->x", "f(a=n"):
-        with pytest.raises(NoPairError, match="is not written as Pack"):
+        with pytest.raises(NoPairError, match="is not in the form Pack"):
             wiring_of(wrong)
 
 
@@ -37,13 +37,13 @@ def test_commas_and_spaces_are_read_as_well():
     [
         (
             MATERIAL.replace("s.normalWS", "s.normal"),
-            "PackSurface is not given s.normal; it is given s.albedo, s.normal",
+            "PackSurface has no input s.normal; its inputs are s.albedo, s.normal",
         ),
-        (MATERIAL.replace("->o1.xy", "->o2.xy"), "PackSurface does not give o2.xy; it gives o0, o1"),
-        (MATERIAL.replace("->o1.xy", ""), "PackSurface(s.normalWS=n; s.roughness=0.25) gives a code of 8 numbers"),
-        (MATERIAL.replace("->normalWS", "->roughness"), "gives no normal; say where it is"),
+        (MATERIAL.replace("->o1.xy", "->o2.xy"), "PackSurface does not return o2.xy; it returns o0, o1"),
+        (MATERIAL.replace("->o1.xy", ""), "PackSurface(s.normalWS=n; s.roughness=0.25) returns a code of 8 numbers"),
+        (MATERIAL.replace("->normalWS", "->roughness"), "returns no normal; name it"),
         (MATERIAL.replace("UnpackSurface", "Gone"), "no function is named Gone; there are: "),
-        (MATERIAL.replace("=0.25", "=gone"), "is not written as Pack(s.normal=n; s.roughness=0.5)->o1.xyz"),
+        (MATERIAL.replace("=0.25", "=gone"), "is not in the form Pack(s.normal=n; s.roughness=0.5)->o1.xyz"),
     ],
 )
 def test_what_is_wired_wrongly_is_named(wiring, said):

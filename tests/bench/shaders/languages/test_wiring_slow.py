@@ -27,5 +27,5 @@ def test_roughness_structures_and_out_parameters_are_bound(run):
     assert status == 0, err
     found = sorted(row["angle_mean_deg"] for row in json.loads(out))
     assert found == pytest.approx(sorted(MEANS.values()), abs=0.0005)
-    assert "what is measured is EncodeNormal(n=n)->(n.xy; face):DecodeNormal(n.xy=e.xy; face=e.z)->n" in err
+    assert "measured: EncodeNormal(n=n)->(n.xy; face):DecodeNormal(n.xy=e.xy; face=e.z)->n" in err
     assert "EncodeGBuffer(worldNormal=n; worldPos=view; depth=0.5)->xyw:DecodeGBuffer(gb.xyw=e)->worldNormal" in err

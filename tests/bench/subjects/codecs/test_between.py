@@ -51,61 +51,62 @@ def mapped(root: str = "n.z * 8.0 + 8.0", side: str = "sqrt(max(1.0 - f / 4.0, 0
 
 # What stands between the encoder and the decoder, and what is said of it.
 PAIRS = {
-    "half of the range": (with_code("c * 0.5 + 0.5"), "c * 2 - 1 between the two makes one"),
+    "half of the range": (with_code("c * 0.5 + 0.5"), "c * 2 - 1 between the two makes them a pair"),
     "twice the range": (
         RIGHT.replace("CODE", "c").replace("vec2 e) {", "vec2 e) { e = e * 2.0 - 1.0;"),
         "c * 0.5 + 0.5",
     ),
-    "swapped": (with_code("c.yx"), "as with its numbers swapped, c.yx between the two"),
-    "negated": (with_code("-c"), "as with numbers 1 and 2 negated between the two"),
-    "one negated": (with_code("vec2(c.x, -c.y)"), "as with number 2 negated between the two"),
+    "swapped": (with_code("c.yx"), "as with its components swapped, c.yx between the two"),
+    "negated": (with_code("-c"), "as with components 1 and 2 negated between the two"),
+    "one negated": (with_code("vec2(c.x, -c.y)"), "as with component 2 negated between the two"),
     "turned by 45 degrees": (
         HEMI.replace("BEFORE", "").replace("vec2(c.x + c.y, c.x - c.y)", "c"),
-        "a turn by 45 degrees, (c.x + c.y, c.x - c.y) between the two makes one of directions with z >= 0",
+        "a rotation by 45 degrees, (c.x + c.y, c.x - c.y) between the two makes them a pair for directions with z >= 0",
     ),
     "turned back": (
         HEMI.replace("BEFORE", "e = vec2(e.x + e.y, e.x - e.y);"),
-        "a turn by 45 degrees, (c.x + c.y, c.x - c.y) / 2 between the two makes one of directions with z >= 0",
+        "a rotation by 45 degrees, (c.x + c.y, c.x - c.y) / 2 between the two makes them a pair for directions with "
+        "z >= 0",
     ),
     "a range and swapped": (
         with_code("c.yx * 0.5 + 0.5"),
-        "c * 2 - 1, then its numbers swapped, c.yx between the two makes one",
+        "c * 2 - 1, then its components swapped, c.yx between the two makes them a pair",
     ),
     "twice a half map": (
         HEMI.replace("BEFORE", "").replace(") * 0.5", ")"),
-        "encode gives 2 times the code that decode takes: up to",
+        "encode gives 2 times the code that decode expects: up to",
     ),
     "4 for 8 in a root": (
         mapped("n.z * 4.0 + 4.0"),
         "are not a pair: 46.7 degrees apart on average without any storage; "
-        "encode gives 1.4142 times the code that decode takes, around 0.5: up to",
+        "encode gives 1.4142 times the code that decode expects, around 0.5: up to",
     ),
     "half of [0, 1]": (
         "vec3 mine_encode(vec3 n) { return n * 0.5; }\nvec3 mine_decode(vec3 e) { return normalize(e * 2.0 - 1.0); }\n",
-        "c + 0.5 between the two makes one",
+        "c + 0.5 between the two makes them a pair",
     ),
     "a scale and a shift": (
         RIGHT.replace("CODE", "(c * 127.0 + 128.0) / 255.0").replace("vec2 e) {", "vec2 e) { e = e * 2.0 - 1.0;"),
-        "encode gives 254/255 times the code that decode takes, plus 1/255: up to",
+        "encode gives 254/255 times the code that decode expects, plus 1/255: up to",
     ),
     "a scale alone": (
         RIGHT.replace("CODE", "(c * 0.5 + 0.5) * (254.0 / 255.0)").replace("vec2 e) {", "vec2 e) { e = e * 2.0 - 1.0;"),
-        "encode gives 254/255 times the code that decode takes: up to",
+        "encode gives 254/255 times the code that decode expects: up to",
     ),
     "256 for 255": (
         RIGHT.replace("CODE", "floor((c * 0.5 + 0.5) * 255.0 + 0.5) / 256.0").replace(
             "vec2 e) {", "vec2 e) { e = e * 2.0 - 1.0;"
         ),
-        "encode gives 255/256 times the code that decode takes: it rounds to 255 steps",
+        "encode gives 255/256 times the code that decode expects: it rounds to 255 steps",
     ),
     "another decoder of the catalogue": (
         with_code("c").split("vec3 mine_decode")[0] + decoder("spheremap"),
-        "encode is that of octahedral, decode that of spheremap",
+        "encode matches octahedral, decode matches spheremap",
     ),
     "no decoder that is known": (
         with_code("c").split("vec3 mine_decode")[0]
         + "vec3 mine_decode(vec2 e) { return normalize(vec3(e, 0.3 + e.x * e.y)); }",
-        "encode is that of octahedral, whose decode makes a pair with it",
+        "encode matches octahedral, whose decode makes a pair with it",
     ),
 }
 
@@ -124,15 +125,15 @@ def test_a_step_between_the_two_is_all_that_is_said(tmp_path):
 
 def test_signed_codes_cut_off_toward_0_are_named(tmp_path):
     (first, *_) = findings(tmp_path, with_code("trunc(c * 127.0) / 127.0"))
-    assert "codes are cut off toward 0 to 8 bits, not rounded" in first
+    assert "codes are truncated to 8 bits, not to nearest" in first
 
 
 def test_a_shift_that_is_no_half_step_is_said_as_it_is(tmp_path):
     (first, *_) = findings(tmp_path, with_code("c * 0.9 + 0.03").replace("vec2 e) {", "vec2 e) { e = e / 0.9;"))
-    assert "encode gives the code that decode takes, plus 0.03" in first
+    assert "encode gives the code that decode expects, plus 0.03" in first
 
 
 @pytest.mark.parametrize("scale, said", [(0.9, "0.9 times"), (0.99, "0.99 times"), (1 / 1.5, "0.66667 times")])
 def test_a_scale_is_named(tmp_path, scale, said):
     found = findings(tmp_path, with_code(f"c * {scale}"))
-    assert any(f"encode gives {said} the code that decode takes" in line for line in found), found
+    assert any(f"encode gives {said} the code that decode expects" in line for line in found), found

@@ -170,8 +170,11 @@ def three(text: str) -> str:
 
 
 WRONG = {
-    "a share of it": (octahedral("p * 0.7", "e /= 0.7;"), "number 1 of the code is -0.7 to 0.7: 30 % is unused"),
-    "more than it": (octahedral("p * 1.4", "e /= 1.4;"), "number 1 of the code is 1.4 for (1, 0, 0)"),
+    "a share of it": (
+        octahedral("p * 0.7", "e /= 0.7;"),
+        "component 1 of the code is -0.7 to 0.7: 30% of its range is unused",
+    ),
+    "more than it": (octahedral("p * 1.4", "e /= 1.4;"), "component 1 of the code is 1.4 for (1, 0, 0)"),
     "a mirrored half": (
         octahedral(result="normalize(vec3(abs(n.x), n.yz))"),
         "decode loses directions with x < 0, which come back with x reversed: encode gives them codes of their own",
@@ -182,7 +185,7 @@ WRONG = {
     ),
     "a scale on one side": (
         HALF.replace("p.x - p.y);", "0.98 * (p.x - p.y));", 1),
-        "encode gives 0.98 times number 2 of the code",
+        "encode gives 0.98 times component 2 of the code",
     ),
     "swapped axes": (octahedral(result="normalize(n.yxz)"), "every direction comes back with x and y swapped"),
     "a flipped y": (octahedral(result="normalize(n * vec3(1, -1, 1))"), "every direction comes back with y reversed"),
@@ -196,19 +199,19 @@ WRONG = {
     ),
     "a wrong scale of a half": (
         STEREO.replace("return n.xy", "return 0.5 * n.xy"),
-        "of directions with z >= 0 without any storage; encode gives 0.5 times the code that decode takes",
+        "for directions with z >= 0 without any storage; encode gives 0.5 times the code that decode expects",
     ),
     "no pair": (octahedral().split("vec3 mine_decode")[0] + BY_ANGLES.replace("BEFORE", ""), "are not a pair: 88.9"),
     "no unit length": (octahedral(result="n"), "decode gives lengths from 0.577 to 1; normalize() is missing"),
     "NaN": (
         ANGLES.replace("n.z)", "n.z + 1e-9 * acos(n.z * 1.001))") + BY_ANGLES.replace("BEFORE", ""),
-        "no number",
+        "not finite",
     ),
     "a seam": (
         ANGLES + BY_ANGLES.replace("BEFORE", "if (e.x > 0.97) e.x = -0.9;"),
-        " of 4338 directions that were tried come back more than 1 degree off",
+        " of 4338 tested directions come back more than 1 degree off",
     ),
-    "a number of nothing": (three(octahedral()), "number 3 of the code carries nothing: it is always 0"),
+    "a number of nothing": (three(octahedral()), "component 3 of the code is unused: it is always 0"),
     "an angle of half a turn": (
         both(
             "vec2",
@@ -216,7 +219,7 @@ WRONG = {
             f"float a = e.x * {PI}, t = (e.y + 1.0) * {PI} / 4.0; "
             "return vec3(cos(a) * sin(t), sin(a) * sin(t), cos(t));",
         ),
-        "encode gives 0.5 times number 2 of the code that decode takes",
+        "encode gives 0.5 times component 2 of the code that decode expects",
     ),
     "atan of one argument": (
         both(
@@ -228,17 +231,17 @@ WRONG = {
     ),
     "a range of one number": (
         octahedral("vec2(p.x * 0.5 + 0.5, p.y)"),
-        "encode gives 0.5 times number 1 plus 0.5 of the code that decode takes",
+        "encode gives 0.5 times component 1 plus 0.5 of the code that decode expects",
     ),
     "half of [0, 1]": (
         both("vec3", "return n * 0.5 + 0.5;", "return normalize(e);"),
-        "c * 2 - 1 between the two makes one",
+        "c * 2 - 1 between the two makes them a pair",
     ),
     "a step too many": (
         octahedral("floor((p * 0.5 + 0.5) * 256.0) / 255.0 * 2.0 - 1.0"),
-        "encode gives 256/255 times the code that decode takes: it rounds to 256 steps",
+        "encode gives 256/255 times the code that decode expects: it rounds to 256 steps",
     ),
-    "a lost pole": (INCLINED.replace("LARGEST", "0.9999"), "the pole +z loses its neighbourhood: directions 0.057"),
+    "a lost pole": (INCLINED.replace("LARGEST", "0.9999"), "large errors around the pole +z: directions 0.057"),
 }
 
 
@@ -319,7 +322,7 @@ def test_a_number_of_few_values_need_not_fill_its_range(run, tmp_path, steps, re
     assert looked_at(tmp_path, path.read_text())["wrong"] == []
     status, out, _ = run("doctor", str(path), "--format", "json")
     notes = [row["finding"] for row in json.loads(out) if row["kind"] == "note"]
-    said = f"number 3 of the code has 6 values from 0 to {reach}; the rest of [0, 1] is unused"
+    said = f"component 3 of the code has 6 values from 0 to {reach}; the rest of [0, 1] is unused"
     assert status == 0 and notes[1] == said
 
 
@@ -331,8 +334,8 @@ def test_an_encoder_that_rounds_for_another_storage_is_not_wrong(run, tmp_path):
     status, out, _ = run("doctor", str(path), "--format", "json")
     verdict, note = json.loads(out)
     assert status == 0 and (verdict["kind"], note["kind"]) == ("verdict", "note")
-    assert note["finding"].startswith("in rgba8 this is octahedral, 46 % worse: ")
-    assert note["finding"].endswith("; encode rounds to 1/127 itself: try --storage rg8_snorm")
+    assert note["finding"].startswith("in rgba8 this is octahedral, but 46% worse: ")
+    assert note["finding"].endswith("; encode itself rounds to 1/127; try --storage rg8_snorm")
     status, out, _ = run("doctor", str(path), "--storage", "rg8_snorm", "--format", "json")
     assert status == 0 and len(json.loads(out)) == 1
 
@@ -342,14 +345,14 @@ def test_a_table_says_it_too(run, tmp_path):
     path = tmp_path / "mine.glsl"
     path.write_text(octahedral("p * 0.7", "e /= 0.7;"))
     status, _, err = run("quality", "--encoding", str(path), "--storage", "rg8", "--backend", "glsl", "--count", "64")
-    assert status == 0 and f"{path}: number 1 of the code is -0.7 to 0.7: 30 % is unused" in err
+    assert status == 0 and f"{path}: component 1 of the code is -0.7 to 0.7: 30% of its range is unused" in err
 
 
 @pytest.mark.parametrize(
     "words, said",
     [
-        (("--plot", "a.png"), "name it"),
-        (("--domain", "sphere"), "name it"),
+        (("--plot", "a.png"), "require a file or a folder; name one"),
+        (("--domain", "sphere"), "require a file or a folder; name one"),
         (("a.glsl", "--domain", "z"), "unknown domain 'z'"),
         (("a.glsl", "--storage", "all"), "doctor measures in one storage"),
         (("nothing.glsl",), "there is no such file"),

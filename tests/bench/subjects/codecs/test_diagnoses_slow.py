@@ -15,13 +15,13 @@ def test_doctor_names_it_and_draws_the_sphere(run, tmp_path):
     assert picture.read_bytes().startswith(b"\x89PNG")
     path.write_text(octahedral())
     status, out, err = run("doctor", str(path))
-    assert (status, err) == (0, "") and "nothing is likely wrong" in out
+    assert (status, err) == (0, "") and "No problems found." in out
     path.write_text(octahedral().replace("mine_", "spherical_"))
     status, out, err = run("doctor", str(path))
-    assert (status, err) == (0, "") and "there is a code named spherical already" in " ".join(out.split())
+    assert (status, err) == (0, "") and "an encoding named spherical already exists" in " ".join(out.split())
     path.write_text(FLAT)
     status, out, err = run("doctor", str(path))
-    assert (status, err) == (0, "") and "taken to be made for normals with z >= 0" in " ".join(out.split())
+    assert (status, err) == (0, "") and "assumed to be made only for normals with z >= 0" in " ".join(out.split())
 
 
 @pytest.mark.usefixtures("gl")
@@ -37,11 +37,11 @@ def test_doctor_says_its_verdict_first_and_notes_apart(run, tmp_path):
     path.write_text(octahedral("p * 0.5 + 0.5", "e = e * 2.0 - 1.0;"))
     status, out, _ = run("doctor", str(path))
     verdict, about, notes, note = out.rstrip("\n").split("\n\n")
-    assert (status, verdict, notes) == (0, "nothing is likely wrong", "notes:")
+    assert (status, verdict, notes) == (0, "No problems found.", "notes:")
     assert about == "file mine.glsl, encoding mine, domain sphere, functions mine_encode:mine_decode"
     assert note.startswith("- its codes are in [0, 1]")
     rows = json.loads(run("doctor", str(path), "--format", "json")[1])
-    assert [row["kind"] for row in rows] == ["verdict", "note"] and rows[0]["finding"] == "nothing is likely wrong"
+    assert [row["kind"] for row in rows] == ["verdict", "note"] and rows[0]["finding"] == "No problems found."
     path.write_text(octahedral("p * 0.5 + 0.5", "e = e * 2.0 - 1.0;", "normalize(n.yxz) * 1.5"))
     status, out, _ = run("doctor", str(path))
     verdict, about, findings, notes, note = out.rstrip("\n").split("\n\n")

@@ -27,10 +27,10 @@ SAID = {
     ),
     "no_unfold.hlsl": ("decode is octahedral, but its unfold is missing: directions with z < 0 are lost", ""),
     "sign_unread.hlsl": (
-        "decode does not read number 3 of the code, which encode fills; decode loses directions with z < 0",
+        "decode does not read component 3 of the code, which encode fills; decode loses directions with z < 0",
         "encode gives them codes of their own",
     ),
-    "other_range.hlsl": ("encode and decode are not a pair", "c * 0.5 + 0.5 between the two makes one"),
+    "other_range.hlsl": ("encode and decode are not a pair", "c * 0.5 + 0.5 between the two makes them a pair"),
 }
 
 

@@ -59,7 +59,7 @@ LOST = {
     "no unfold": (NO_UNFOLD, "decode is octahedral, but its unfold is missing: directions with z < 0 are lost"),
     "a sign that is not read": (
         SIGN_UNREAD,
-        "decode does not read number 3 of the code, which encode fills",
+        "decode does not read component 3 of the code, which encode fills",
     ),
     "a mirror": (
         MIRRORED,
@@ -192,7 +192,7 @@ def test_a_code_that_is_finite_on_its_half_alone_is_measured_there(run, tmp_path
     status, out, err = run("quality", "--encoding", "dir.glsl,hemi_octahedral", *words, "--format", "json")
     means = [row["angle_mean_deg"] for row in json.loads(out)]
     assert status == 0 and means == pytest.approx([0.239, 0.239], abs=0.005)
-    assert "dir.glsl: taken to be made for normals with z >= 0 alone: encode of (-0.707, 0, -0.707) is (" in err
+    assert "dir.glsl: assumed to be made only for normals with z >= 0: encode of (-0.707, 0, -0.707) is (" in err
     status, out, _ = run("doctor", "dir.glsl", "--domain", "hemisphere", "--format", "json")
     assert status == 0 and "it is meant for normals with z >= 0; elsewhere encode of (-0.707, 0, -0.707)" in out
 
@@ -212,12 +212,12 @@ def test_a_hole_in_a_code_for_the_sphere_is_a_finding_unless_it_is_meant_for_les
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")
     first = json.loads(out)[0]
     assert status == 1 and first["domain"] == "sphere"
-    assert first["finding"] == "encode of (0, 0, -1) is (nan, nan), no number; all other directions come back"
+    assert first["finding"] == "encode of (0, 0, -1) is (nan, nan), not finite; all other directions come back"
     for domain in ("hemisphere", "view"):
         status, out, _ = run("doctor", "dir.glsl", "--domain", domain, "--format", "json")
         assert status == 0 and {row["domain"] for row in json.loads(out)} == {domain}, out
     status, out, _ = run("doctor", "dir.glsl", "--domain", "sphere", "--format", "json")
-    assert status == 1 and "no number" in json.loads(out)[0]["finding"]
+    assert status == 1 and "not finite" in json.loads(out)[0]["finding"]
     words = ("--storage", "rgba32f", "--normals", "sphere", "--count", "4096", "--backend", "glsl", "--format", "json")
     status, out, _ = run("quality", "--encoding", "dir.glsl", *words)
     assert status == 0 and json.loads(out)[0]["angle_mean_deg"] < 0.05
@@ -244,4 +244,4 @@ def test_a_square_that_is_half_used_is_a_finding(run, tmp_path):
     text = NO_FOLD.split("vec3 dir_decode")[0] + NO_UNFOLD[NO_UNFOLD.index("vec3 dir_decode") :]
     (tmp_path / "dir.glsl").write_text(text)
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")
-    assert status == 1 and "% of the square that the storage spends bits on" in out, out
+    assert status == 1 and "% of the square that the storage's bits cover" in out, out

@@ -20,7 +20,7 @@ def test_a_code_for_a_half_is_measured_on_its_half(run, tmp_path):
         status, out, err = run("quality", "--encoding", "dir.glsl", *words, "--format", "json")
         (row,) = json.loads(out)
         means[half] = row["angle_mean_deg"]
-        assert status == 0 and f"taken to be made for normals with {half} alone" in err
+        assert status == 0 and f"assumed to be made only for normals with {half} alone" in err
         assert row["domain"] == "hemisphere" and row["encoding"] == "dir"
     assert min(means.values()) == pytest.approx(max(means.values()), rel=0.01)
     assert means["z >= 0"] == pytest.approx(0.239, abs=0.003)
@@ -51,10 +51,10 @@ def test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monke
     for domain in ("", "hemisphere"):
         found = first_look(tmp_path / "dir.glsl", domain)
         axis, side = found.get("half", (2, 1))
-        assert found["wrong"] == [] and found["domain"] == "hemisphere" and "no number" in found["hole"], found
+        assert found["wrong"] == [] and found["domain"] == "hemisphere" and "not finite" in found["hole"], found
         assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half
     found = first_look(tmp_path / "dir.glsl", "sphere")
-    assert "no number" in (found.get("broken") or found["wrong"][0])
+    assert "not finite" in (found.get("broken") or found["wrong"][0])
 
 
 def test_a_hole_in_the_half_that_comes_back_is_no_other_half(tmp_path):
@@ -63,4 +63,4 @@ def test_a_hole_in_the_half_that_comes_back_is_no_other_half(tmp_path):
     text += "vec3 dir_decode(vec2 e) { e = e * 2.0 - 1.0; return vec3(e, sqrt(1.0 - dot(e, e))); }\n"
     (tmp_path / "dir.glsl").write_text(text)
     found = first_look(tmp_path / "dir.glsl")
-    assert found["domain"] == "hemisphere" and "no number" in found["wrong"][0]
+    assert found["domain"] == "hemisphere" and "not finite" in found["wrong"][0]

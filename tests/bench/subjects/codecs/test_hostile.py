@@ -24,7 +24,7 @@ def test_a_file_elsewhere_is_not_opened(tmp_path, monkeypatch):
     path.write_text(f'#include "{note}"\n' + GOOD.replace("NAME", "mine"))
     read = shader.read_shader
     monkeypatch.setattr(shader, "read_shader", lambda file: opened.append(file) or read(file))
-    with pytest.raises(UsageError, match=r"note\.txt, which lies outside its folder; move it there"):
+    with pytest.raises(UsageError, match=r"note\.txt, which is outside its folder; move it there"):
         read_encoding(path)
     assert path in opened and note not in opened
 
@@ -35,7 +35,7 @@ def test_a_path_does_not_end_the_line_that_includes_it(tmp_path, letter):
     path = tmp_path / f"a{letter}b" / "mine.glsl"
     path.parent.mkdir()
     path.write_text(GOOD.replace("NAME", "mine"))
-    with pytest.raises(UsageError, match="a file with quotes or control characters is not read; rename it"):
+    with pytest.raises(UsageError, match="its name has quotes or control characters; rename it"):
         read_encoding(path, is_unit=True)
 
 
@@ -54,5 +54,5 @@ def test_a_file_elsewhere_is_not_included(run, tmp_path, text, ending):
     status, _, err = run("quality", "--encoding", str(path), "--storage", "rg8", "--count", "1000")
     assert (status, err) == (
         2,
-        f"normalbench: {path}: it includes {note}, which lies outside its folder; move it there\n",
+        f"normalbench: {path}: it includes {note}, which is outside its folder; move it there\n",
     )

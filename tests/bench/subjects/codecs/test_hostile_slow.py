@@ -65,11 +65,11 @@ SHADERS = {
         ),
         "do not end here",
     ),
-    "not_a_number": (GOOD.replace("return n.xy;", "return sqrt(n.xy - 2.0);"), "no number"),
+    "not_a_number": (GOOD.replace("return n.xy;", "return sqrt(n.xy - 2.0);"), "not finite"),
     "unclosed": (GOOD + "/* never closed", "not closed"),
     "misspelt": (GOOD.replace("n.xy", "n.xq"), r"misspelt\.glsl:2"),
     "half": (GOOD.split("vec3 NAME_decode")[0], "no function vec3 half_decode"),
-    "garbage": ("\x00\x01\x02\xff", "no function|the letter U.0000 is not read"),
+    "garbage": ("\x00\x01\x02\xff", "no function|the character U.0000 is not supported"),
     "uniform": ("uniform float k;\n" + GOOD.replace("return n.xy;", "return n.xy * k;"), "reads the uniform k, which"),
     "texture": (
         "layout(binding = 0) uniform sampler2D table[2];\n"
@@ -140,7 +140,7 @@ def test_two_dozen_that_are_hostile_spare_the_others(tmp_path):
     figures = {(row["encoding"], row["backend"]): row["psnr_db"] for row in rows}
     assert all(figures[name, backend] for name in ("octahedral", "good") for backend in ("jax", "glsl"))
     assert all(figures[name, "glsl"] == figures["good", "glsl"] for name in READ_IN_PART)
-    assert "/etc/hostname lies outside the folder of includes.glsl" in said
+    assert "/etc/hostname is outside the folder of includes.glsl" in said
     lines = [line for line in but_the_domain(said) if not re.search(rf"\b({'|'.join(READ_IN_PART)})\b", line)]
     for name, (*_, why) in {**TWINS, **SHADERS}.items():
         (line,) = [line for line in lines if re.search(rf"\b{name}\.(glsl|py)", line)]
@@ -152,13 +152,13 @@ def test_two_dozen_that_are_hostile_spare_the_others(tmp_path):
 
 def but_the_domain(said: str) -> list[str]:
     """The lines but those that say what a file is taken to be made for, and what computes it."""
-    return [line for line in said.splitlines() if not re.search("taken to be made for|computed by XLA", line)]
+    return [line for line in said.splitlines() if not re.search("assumed to be made only for|computed by XLA", line)]
 
 
 def test_a_twin_that_contradicts_its_shader_is_named(tmp_path):
     twin = TWIN.replace("BODY", "return Vec2(n.y, n.x)").replace("TOP", "")
     rows, said = measured(tmp_path, written(tmp_path, "turned", twin=twin))
-    assert len(rows) == 2 and re.search(r"turned\.py: encode is another than the GLSL's for \d+ % of directions", said)
+    assert len(rows) == 2 and re.search(r"turned\.py: encode differs from the GLSL for \d+% of directions", said)
     assert len(but_the_domain(said)) == 1
 
 

@@ -80,10 +80,10 @@ def test_rows_of_an_encoder_that_changed_are_not_used_again(tmp_path, name):
         ("all", "own.toml: encoding 'all': a layout has one encoding"),
         ("code/none.glsl", "none.glsl: there is no such file"),
         ("code/bad.glsl", "own.toml: {0}/code/bad.glsl: no function vec2"),
-        ("code/mine.metal", "Metal is not read"),
-        ("code/../../mine.glsl", "code/../../mine.glsl is not in the folder of the layout, nor below it; copy it"),
-        ("/tmp/mine.glsl", "/tmp/mine.glsl is not in the folder of the layout"),
-        ("best_fit:table=../scales.npy", "../scales.npy is not in the folder of the layout"),
+        ("code/mine.metal", "Metal is not supported"),
+        ("code/../../mine.glsl", "code/../../mine.glsl is not in the layout's folder or below it; copy it"),
+        ("/tmp/mine.glsl", "/tmp/mine.glsl is not in the layout's folder"),
+        ("best_fit:table=../scales.npy", "../scales.npy is not in the layout's folder"),
         ("best_fit:table=a\0", "a\\x00: no file can have this name"),
         ("octahedral:axis=w", "axis is x, y or z, not 'w'"),
     ],
@@ -106,4 +106,4 @@ def test_an_encoding_that_is_a_link_out_of_the_layouts_folder_is_refused(run, tm
     link.symlink_to(tmp_path / "mine.glsl")
     status, out, err = run("render", "--layout", str(path), "--size", "96x64")
     assert (status, out) == (2, "") and err.count("\n") == 1, err
-    assert "code/link.glsl is not in the folder of the layout" in err
+    assert "code/link.glsl is not in the layout's folder" in err

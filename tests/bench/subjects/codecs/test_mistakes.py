@@ -72,7 +72,7 @@ def test_doctor_names_it_and_says_what_it_costs_in_a_storage(run, tmp_path, stor
     status, out, _ = run("doctor", str(tmp_path / "mine.glsl"), "--storage", storage, "--format", "json")
     first, *rest = [row["finding"] for row in json.loads(out)]
     assert status == 1 and re.search(said(mistake, bits), first), first
-    worse = [re.fullmatch(rf"in {storage} this is octahedral, (\d+) % worse: .*", line) for line in rest]
+    worse = [re.fullmatch(rf"in {storage} this is octahedral, but (\d+)% worse: .*", line) for line in rest]
     assert [40 < int(found[1]) < 150 for found in worse if found] == [True], rest
 
 

@@ -44,7 +44,7 @@ def test_hlsl_in_a_glsl_file_is_read_as_hlsl(run, tmp_path):
 def test_two_files_of_one_name_are_told_apart(run, tmp_path):
     one, other = written(tmp_path), written(tmp_path, name="other.glsl")
     status, out, err = run("quality", "--encoding", f"{one},{other}", "--backend", "glsl", *QUICK)
-    assert status == 0 and len(json.loads(out)) == 1 and "another file has a code named mine" in err
+    assert status == 0 and len(json.loads(out)) == 1 and "another file has an encoding named mine" in err
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_what_is_given_from_outside_and_not_read_makes_no_difference(tmp_path):
         + MINE
         + told,
     )
-    assert examined(path).notes[0] == "mine alone is measured; move other into a file of its own"
+    assert examined(path).notes[0] == "only mine is measured; move other into a separate file"
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ def test_two_functions_are_measured_like_any_other(run, tmp_path):
     status, out, err = run("quality", "--encoding", f"{path},octahedral", "--backend", "glsl", *QUICK)
     rows = {row["encoding"]: row for row in json.loads(out)}
     assert status == 0 and err.endswith(
-        "mine.glsl: taken to be made for normals with z >= 0 alone: no others come back\n"
+        "mine.glsl: assumed to be made only for normals with z >= 0: other normals do not come back\n"
     )
     assert err.count("\n") == 1
     assert 0.8 < rows["mine"]["effective_bits"] - rows["octahedral"]["effective_bits"] < 1.2, rows
@@ -30,7 +30,7 @@ def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path
     path = written(tmp_path)
     status, out, err = run("quality", "--encoding", path, *QUICK)
     jax_row, gl_row = json.loads(out)
-    said = "mine has no Python twin; mine.py next to it would add rows by JAX"
+    said = "mine has no Python twin; add mine.py next to it for rows computed by JAX"
     assert status == 0 and jax_row["skipped"] == said
     assert f"normalbench: measured by OpenGL alone: {said}\n" in err and "without figures" not in err
     _, out, _ = run("quality", "--encoding", path, *QUICK[:-1], "markdown")
@@ -59,7 +59,7 @@ def test_a_decoder_that_undoes_nothing_is_said_and_measured(run, tmp_path):
         (MINE.replace("p.x + p.y, p.x", "q.x + p.y, p.x"), "mine.glsl:4: error"),
         (MINE.partition("vec3 mine_decode")[0], "no function vec3 mine_decode(vec2 e, vec3 view)"),
         (MINE.replace("vec2(p.x + p.y, p", "vec2(sqrt(n.z - 2.0), p"), "encode of"),
-        (MINE.replace("mine_", "octahedral_"), "there is a code named octahedral already"),
+        (MINE.replace("mine_", "octahedral_"), "an encoding named octahedral already exists"),
         (MINE + "float2 half_of(float2 e) { return e * 0.5; }", "(float2 is HLSL: rename float2 to vec2"),
         ("", "no function vec2"),
     ],
@@ -103,6 +103,6 @@ def test_a_twin_that_fails_costs_the_rows_by_jax(run, tmp_path, twin, said):
     status, out, err = run("quality", "--encoding", written(tmp_path), *QUICK)
     by_jax, by_gl = json.loads(out)
     assert status == 0 and said in by_jax["skipped"] and by_gl["psnr_db"]
-    assert said in err and [line for line in err.splitlines() if "taken to be made for" not in line] == [
+    assert said in err and [line for line in err.splitlines() if "assumed to be made only for" not in line] == [
         err.splitlines()[-1]
     ], err

@@ -65,10 +65,10 @@ def with_value(value, row=5, column=7, channel=1):
 
 
 BAD = {
-    "NaN": (with_value(np.nan), "G is nan at column 7, row 5, counted from 0, as at 1 pixels in all"),
+    "NaN": (with_value(np.nan), "G is nan at column 7, row 5, counted from 0 (1 pixels in total)"),
     "infinite": (with_value(np.inf), "G is inf at column 7, row 5"),
     "negative": (with_value(-0.25), "G is -0.25 at column 7, row 5"),
-    "square": (np.ones((16, 16, 3), np.float32), "16 x 16 pixels; an equirectangular environment is twice as wide"),
+    "square": (np.ones((16, 16, 3), np.float32), "16 x 16 pixels; an equirectangular environment must be"),
     "a cube's cross": (np.ones((24, 32, 3), np.float32), "32 x 24 pixels; an equirectangular"),
     "small": (light(7), "14 x 7 pixels; at least 16 x 8 are needed"),
 }
@@ -94,15 +94,15 @@ def test_too_wide_a_file_is_refused_by_its_header(tmp_path):
     """Nothing of it is read: it has no pixels."""
     path = tmp_path / "wide.hdr"
     path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4100 +X 8200\n" + bytes(8200 * 4))
-    assert "8200 x 4100 pixels; at most 8192 x 4096 are read: scale it down" in refused(path)
+    assert "8200 x 4100 pixels; at most 8192 x 4096 are supported: scale it down" in refused(path)
 
 
 @here
 def test_grey_and_normals_are_refused_by_their_channels(tmp_path):
     grey = write_exr(tmp_path / "grey.exr", {"Y": np.ones((8, 16), np.float32)})
-    assert "it has Y; an environment has channels R, G and B" in refused(grey)
+    assert "it has Y; it must have channels R, G and B" in refused(grey)
     normals = write_exr(tmp_path / "n.exr", {f"N.{axis}": np.ones((8, 16), np.float32) for axis in "XYZ"})
-    assert "it has N.X, N.Y, N.Z; an environment" in refused(normals)
+    assert "it has N.X, N.Y, N.Z; it must have" in refused(normals)
 
 
 def test_an_unknown_name_lists_those_there_are():

@@ -52,9 +52,9 @@ def test_other_files_are_one_line(tmp_path):
     (tmp_path / "folder.exr").mkdir()
     os.mkfifo(tmp_path / "pipe.exr")
     for name, said in (
-        ("sky.png", "its pixels have no light beyond white; save the environment as .hdr or .exr"),
-        ("none.jpg", "its pixels have no light beyond white"),
-        ("photo.hdr", "no HDR file, by its first bytes; save it again"),
+        ("sky.png", "it stores no light brighter than white; save the environment as .hdr or .exr"),
+        ("none.jpg", "it stores no light brighter than white"),
+        ("photo.hdr", "not in HDR format, by its first bytes; save it again"),
         ("cut.hdr", "it is cut off or damaged; save it again"),
         ("scene.glb", ".hdr and .exr files are read"),
         ("folder", "it is a folder; name a file"),

@@ -43,24 +43,24 @@ def objects() -> bytes:
 
 
 BAD = {
-    "an empty PNG": ("a.png", b"", ["no PNG file, by its first bytes"]),
+    "an empty PNG": ("a.png", b"", ["not in PNG format, by its first bytes"]),
     "a PNG cut off": ("a.png", a_png()[:-40], ["cut off or damaged"]),
     "a PNG with a changed byte": ("a.png", a_png()[:90] + b"?" + a_png()[91:], ["damaged"]),
-    "a PNG of a billion pixels": ("a.png", huge_png(), ["far more pixels than it can hold", "2^25"]),
+    "a PNG of a billion pixels": ("a.png", huge_png(), ["far more pixels than the file can hold", "2^25"]),
     "a PNG of 67 million": ("a.png", huge_png(2**13), ["67108864 pixels of 3 channels", "2^25"]),
-    "a photograph by another name": ("a.png", b"\xff\xd8\xff\xe0" + bytes(99), ["no PNG file"]),
-    "a TIFF of another kind": ("a.png", b"II*\0" + bytes(99), ["no PNG file"]),
-    "no TIFF": ("a.tif", b"tiff" + bytes(99), ["no TIF file"]),
+    "a photograph by another name": ("a.png", b"\xff\xd8\xff\xe0" + bytes(99), ["not in PNG format"]),
+    "a TIFF of another kind": ("a.png", b"II*\0" + bytes(99), ["not in PNG format"]),
+    "no TIFF": ("a.tif", b"tiff" + bytes(99), ["not in TIF format"]),
     "a TIFF cut off": ("a.tif", b"II*\0" + bytes(99), ["cut off or damaged"]),
-    "no DDS": ("a.dds", b"", ["no DDS file"]),
+    "no DDS": ("a.dds", b"", ["not in DDS format"]),
     "a DDS of a billion": ("a.dds", huge_dds(), ["far more pixels", "2^25"]),
-    "no HDR": ("a.hdr", b"hdr", ["no HDR file"]),
+    "no HDR": ("a.hdr", b"hdr", ["not in HDR format"]),
     "an HDR of a billion": (
         "a.hdr",
         b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32768 +X 32768\n" + bytes(99),
         ["far more pixels", "2^25"],
     ),
-    "no WebP": ("a.webp", b"RIFF", ["no WEBP file"]),
+    "no WebP": ("a.webp", b"RIFF", ["not in WEBP format"]),
     "a PNG that unpacks to more": (
         "a.png",
         a_png()[:33] + chunk(b"IDAT", zlib.compress(bytes(10**7))) + chunk(b"IEND", b""),
@@ -74,7 +74,7 @@ BAD = {
     "a grey PNG": ("a.png", png_bytes(np.full((4, 4, 1), 9, np.uint8)), ["it has Y"]),
     "a black PNG": ("a.png", png_bytes(np.zeros((4, 4, 3), np.uint8)), ["every pixel is background"]),
     "a photograph": ("a.png", png_bytes(np.full((4, 4, 3), (200, 180, 90), np.uint8)), ["not unit", "lengths"]),
-    "no NPY": ("a.npy", b"numpy", ["no NPY header"]),
+    "no NPY": ("a.npy", b"numpy", ["its NPY header cannot be read"]),
     "an NPY of objects": ("a.npy", objects(), ["numbers of type object"]),
     "an NPY of complex numbers": ("a.npy", npy((4, 3), bytes(96), "<c8"), ["type complex64"]),
     "an NPY cut off": ("a.npy", npy((4, 4, 3), bytes(100)), ["needs 192 bytes, the file has 100"]),
@@ -84,8 +84,8 @@ BAD = {
     "an NPY of planes": ("a.npy", npy((3, 8, 8), bytes(4 * 192)), ["np.moveaxis"]),
     "an NPY of pairs": ("a.npy", npy((8, 8, 2), bytes(4 * 128)), ["it has 0, 1"]),
     "an NPY with nothing": ("a.npy", npy((0, 3)), ["shape (0, 3)"]),
-    "an NPY with a bad header": ("a.npy", b"\x93NUMPY\x01\x00\x10\x00" + b"(" * 16, ["no NPY header"]),
-    "no EXR": ("a.exr", b"exr", ["no EXR file"]),
+    "an NPY with a bad header": ("a.npy", b"\x93NUMPY\x01\x00\x10\x00" + b"(" * 16, ["its NPY header cannot be read"]),
+    "no EXR": ("a.exr", b"exr", ["not in EXR format"]),
 }
 
 
@@ -117,7 +117,7 @@ def test_numbers_that_stand_for_nothing_known_are_one_line(tmp_path):
 def test_parts_that_do_not_lie_over_each_other_are_one_line(tmp_path):
     n = some_normals()
     path = write_exr(tmp_path / "a.exr", {"large": {"X": n[..., 0]}, "small": planes_of(n[:9], ("x", "Y", "Z"))})
-    with pytest.raises(UsageError, match=r"large.X, small.Y, small.Z lie in parts of different sizes or types"):
+    with pytest.raises(UsageError, match=r"large.X, small.Y, small.Z are in parts of different sizes or types"):
         capture(path, Reading(channels="large.X,small.Y,small.Z"))
 
 
@@ -133,11 +133,11 @@ def test_a_crash_of_the_library_is_one_line(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "arguments, said",
     [
-        (["--normals", "sphere", "--unpack"], "options of captures are given, but --normals sphere names none"),
+        (["--normals", "sphere", "--unpack"], "options for captures are given, but --normals sphere names no capture"),
         (["--normals", "frame.tga"], "unknown normal set 'frame.tga'; known: all, sphere"),
-        (["--normals", "frame.tga"], "or a file that ends in .exr, .png, .tif, .tiff, .dds, .hdr, .webp, .npy, .glb"),
-        (["--normals", "a.npy", "--nan-share", "2"], "a share is 0 to 1"),
-        (["--normals", "a.npy", "--fov", "0"], "1 to 175 degrees"),
+        (["--normals", "frame.tga"], "or a file ending in .exr, .png, .tif, .tiff, .dds, .hdr, .webp, .npy, .glb"),
+        (["--normals", "a.npy", "--nan-share", "2"], "out of range; use 0 to 1"),
+        (["--normals", "a.npy", "--fov", "0"], "use 1 to 175"),
         (["--normals", "a.glb", "--size", "1x99999"], "each from 1 to 16384"),
         (["--normals", "a.glb", "--size", "16000x16000"], "2^25"),
     ],

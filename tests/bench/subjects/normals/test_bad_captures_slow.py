@@ -29,8 +29,8 @@ def test_an_exr_that_is_too_large_or_of_another_kind_is_one_line(tmp_path):
     assert data.count(window) == 2 and data.count(channel) == 1
     changes = {
         r"67108864 pixels of 3 channels; at most 33554432 pixels": (window, [0, 0, 2**13 - 1, 2**13 - 1]),
-        r"far more pixels than it can hold; at most 33554432 pixels": (window, [0, 0, 2**15 - 1, 2**15 - 1]),
-        r"fewer samples than pixels; save it in full": (channel[4:], [2, 0, 2, 1]),
+        r"far more pixels than the file can hold; at most 33554432 pixels": (window, [0, 0, 2**15 - 1, 2**15 - 1]),
+        r"subsampled; save it in full": (channel[4:], [2, 0, 2, 1]),
     }
     for said, (old, new) in changes.items():
         path.write_bytes(data.replace(old, np.array(new, "<i4").tobytes()))

@@ -77,14 +77,14 @@ WORLD_FILE: Callable[[Path], Path] = lambda path: floats(path, N @ M)  # noqa: E
 WRONG = {
     "a matrix for row vectors": Wrong(
         WORLD_FILE,
-        f"in the last row, for row vectors; --view-matrix {typed(M)} turns it",
+        f"in the last row, for row vectors; use --view-matrix {typed(M)}",
         Reading(space="world", view_matrix=typed(FOUR.T)),
         WORLD,
     ),
     "a transposed matrix": Wrong(
         WORLD_FILE,
-        f"if the matrix is transposed (it may be for row vectors, or turn view space to world space): read it with "
-        f"--space world --view-matrix {typed(M)}",
+        f"if the matrix is transposed (it may be for row vectors, or transform view space to world space): read it "
+        f"with --space world --view-matrix {typed(M)}",
         Reading(space="world", view_matrix=typed(M.T)),
         WORLD,
     ),
@@ -102,20 +102,20 @@ WRONG = {
     ),
     "a scaled matrix": Wrong(
         WORLD_FILE,
-        "the rows of --view-matrix are 2.5 long: the scale is left out",
+        "the rows of --view-matrix are 2.5 long: the scale is ignored",
         Reading(space="world", view_matrix=typed(2.5 * M)),
         WORLD,
     ),
     "a matrix with a projection": Wrong(
         WORLD_FILE,
-        "is a projection in it? give the view matrix alone",
+        "as with a projection; give only the view matrix",
         Reading(space="world", view_matrix=typed(PROJECTION @ FOUR)),
         WORLD,
     ),
     "world space read as view space": Wrong(
         WORLD_FILE,
-        "is it in world space? --space world --view-matrix turns it to view space; where the engine encodes "
-        "world-space normals, --space world --code-space world leaves it as it is",
+        "is it in world space? use --space world --view-matrix to transform it to view space; if the engine encodes "
+        "world-space normals, use --space world --code-space world",
         Reading(),
         WORLD,
     ),
@@ -153,37 +153,35 @@ WRONG = {
         Reading(fov=60),
     ),
     "an sRGB curve on 8 bits": Wrong(
-        lambda path: of_8_bits(path, N, to_srgb), "--curve srgb reads them", Reading(), Reading(curve="srgb"), 0.02
+        lambda path: of_8_bits(path, N, to_srgb), "use --curve srgb", Reading(), Reading(curve="srgb"), 0.02
     ),
     "an sRGB curve on floats": Wrong(
         lambda path: floats(path, np.where(ON_SURFACE, to_srgb(N * 0.5 + 0.5), 0)),
-        "--curve srgb --unpack reads them",
+        "use --curve srgb --unpack",
         Reading(),
         Reading(curve="srgb", unpack=True),
         1e-5,
     ),
     "an sRGB curve taken off": Wrong(
         lambda path: of_8_bits(path, N, from_srgb),
-        "--curve srgb-removed reads them",
+        "use --curve srgb-removed",
         Reading(),
         Reading(curve="srgb-removed"),
         0.06,
     ),
     "[0, 1] read as [-1, 1]": Wrong(
         lambda path: floats(path, np.where(ON_SURFACE, N * 0.5 + 0.5, 0)),
-        "--unpack reads them",
+        "use --unpack",
         Reading(),
         Reading(unpack=True),
     ),
-    "[-1, 1] read as [0, 1]": Wrong(
-        lambda path: floats(path, N), "--no-unpack reads them", Reading(unpack=True), Reading()
-    ),
+    "[-1, 1] read as [0, 1]": Wrong(lambda path: floats(path, N), "use --no-unpack", Reading(unpack=True), Reading()),
 }
 
 
 def besides_bits(notes: list[str]) -> list[str]:
     """What is said but of a file's own 8 bits, which is no fault."""
-    return [note for note in notes if not note.startswith("8 bits a channel")]
+    return [note for note in notes if not note.startswith("8 bits per channel")]
 
 
 def said_of(path: Path, reading: Reading) -> list[str]:
@@ -253,7 +251,7 @@ def test_rows_from_the_bottom_up_are_told_from_another_angle_of_view(tmp_path):
 def test_a_frame_of_8_bits_is_told_what_it_favours(tmp_path):
     """Its normals lie on the steps of RGBA8, which loses nothing more of them; 16 bits and floats favour none."""
     (line,) = said_of(of_8_bits(tmp_path / "frame", N), Reading())
-    assert line.startswith("8 bits a channel, off by about 0.2 degrees themselves")
+    assert line.startswith("8 bits per channel, about 0.2 degrees off themselves")
     assert said_of(png(tmp_path / "frame", N), Reading()) == []
 
 
@@ -261,7 +259,7 @@ def test_a_grey_background_of_packed_normals_is_background(tmp_path):
     packed_floats = np.where(ON_SURFACE, N * 0.5 + 0.5, 0.5)
     path = floats(tmp_path / "frame", packed_floats)
     (line,) = said_of(path, Reading())
-    assert line.endswith("--unpack reads them")
+    assert line.endswith("use --unpack")
     made, notes = capture(path, Reading(unpack=True))
     assert notes == [] and np.array_equal(given(made)[1], COVERED.ravel())
 
@@ -269,7 +267,7 @@ def test_a_grey_background_of_packed_normals_is_background(tmp_path):
 def test_what_is_normalised_all_the_same_is_told_what_would_be_right(tmp_path):
     path = of_8_bits(tmp_path / "frame", N, to_srgb)
     (line,) = besides_bits(said_of(path, Reading(normalise=True)))
-    assert line.endswith("normalised; --curve srgb would read them as unit")
+    assert line.endswith("normalised; --curve srgb would read them at unit length")
 
 
 @pytest.mark.parametrize("option", ["curve", "space"])

@@ -83,14 +83,14 @@ def test_channels_that_cannot_be_found_are_listed(names, asked, said):
 def test_packed_floats_are_read_with_unpack(tmp_path, run):
     np.save(tmp_path / "frame.npy", some_normals() * np.float32(0.5) + np.float32(0.5))
     err = refusal(run, tmp_path / "frame.npy")
-    assert "all components are in [0" in err and "--unpack reads them" in err
+    assert "all components are in [0" in err and "use --unpack" in err
     made, covered = given(capture(tmp_path / "frame.npy", Reading(unpack=True)))
     assert covered.all() and np.allclose(made, some_normals().reshape(-1, 3), atol=2e-7)
 
 
 def test_floats_that_are_not_packed_are_not_read_with_unpack(tmp_path, run):
     np.save(tmp_path / "frame.npy", some_normals())
-    assert "--no-unpack reads them" in refusal(run, tmp_path / "frame.npy", "--unpack")
+    assert "use --no-unpack" in refusal(run, tmp_path / "frame.npy", "--unpack")
 
 
 def test_what_is_not_unit_is_refused_with_what_it_is(tmp_path, run):
@@ -111,7 +111,7 @@ def test_a_few_normals_off_unit_length_are_normalised_and_it_is_said(tmp_path):
     np.save(tmp_path / "frame.npy", n)
     made, notes = captures.capture(tmp_path / "frame.npy", Reading())
     assert np.allclose(given(made)[0], some_normals().reshape(-1, 3), atol=2e-7)
-    assert notes == ["0.326% of the normals are not unit: normalised"]
+    assert notes == ["0.326% of the normals are not unit length: normalised"]
 
 
 def test_world_space_is_turned_to_view_space(tmp_path):
@@ -182,7 +182,7 @@ def test_codes_that_need_the_view_ray_need_it_in_their_own_space(run, tmp_path):
     np.save(tmp_path / "world.npy", some_normals())
     words = ("quality", "--normals", str(tmp_path / "world.npy"), "--space", "world", "--code-space", "world")
     status, out, err = run(*words, "--encoding", "per_pixel_view", "--storage", "rg8")
-    assert (status, out, err.count("\n")) == (2, "", 1) and "need --view-matrix where they are in world space" in err
+    assert (status, out, err.count("\n")) == (2, "", 1) and "require --view-matrix with --code-space world" in err
     status, out, err = run(*words, "--encoding", "octahedral", "--storage", "rg8", "--fov", "60")
     assert (status, out, err.count("\n")) == (2, "", 1) and "--fov gives rays in view space" in err
 
@@ -192,7 +192,7 @@ def test_codes_that_need_the_view_ray_need_it_in_their_own_space(run, tmp_path):
     [
         ("world", None, "needs --view-matrix"),
         ("screen", None, "unknown space 'screen'; known: view, view-left-handed, world"),
-        ("view", "1,0,0,0,1,0,0,0,1", "--space view needs none"),
+        ("view", "1,0,0,0,1,0,0,0,1", "--view-matrix cannot be used with --space view"),
         ("world", "1,0,0,0,1,0", "6 numbers; 9 or 16"),
         ("world", "1,0,0,0,2,0,0,0,1", "not a rotation"),
         ("world", "0,0,0,0,0,0,0,0,0", "not a rotation"),
@@ -212,7 +212,7 @@ def test_a_space_of_codes_that_cannot_be_is_one_line():
         checked(Reading(code_space="screen"))
     with pytest.raises(UsageError, match="--space view --code-space world needs --view-matrix"):
         turns_of(checked(Reading(code_space="world")))
-    with pytest.raises(UsageError, match=r"--space world needs --view-matrix.*or --code-space world"):
+    with pytest.raises(UsageError, match=r"--space world needs --view-matrix.*or use --code-space world"):
         turns_of(checked(Reading(space="world")))
 
 

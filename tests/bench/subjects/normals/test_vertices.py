@@ -103,7 +103,7 @@ def test_normals_of_no_length_and_nan_are_left_out_and_counted(tmp_path, run):
         *("quality", "--encoding", "octahedral", "--normals", f"{path}#vertices", "--backend", "jax"),
         *("--format", "json"),
     )
-    assert status == 0 and "1 vertex normals of no length and 2 that are NaN or infinite are left out" in err
+    assert status == 0 and "1 vertex normals of zero length and 2 that are NaN or infinite are left out" in err
     (row,) = json.loads(out)
     assert (row["count"], row["background"], row["not_finite"]) == (2, 1, 2)
     assert (row["normals"], row["code_space"]) == ("a.glb#vertices", "object")
@@ -138,7 +138,7 @@ def test_a_code_that_needs_a_view_ray_is_left_out_in_a_line(tmp_path, run):
     path = as_glb(tmp_path / "a.glb", BALL)
     words = ("quality", "--normals", f"{path}#vertices", "--backend", "jax", "--format", "json")
     status, out, err = run(*words, "--encoding", "octahedral,per_pixel_view")
-    said = "per_pixel_view of a.glb#vertices: it needs the view ray, and normals in object space have none"
+    said = "per_pixel_view on a.glb#vertices: it needs the view ray, which normals in object space do not have"
     assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["octahedral"]
     assert err == f"normalbench: left out: {said}\n"
     status, out, err = run(*words, "--encoding", "per_pixel_view")
@@ -166,7 +166,7 @@ BAD = {
     "an index too large": ("beyond.ply#vertices", "beyond.ply: the mesh: index 2 names vertex 9, but there are 3"),
     "options of captures": (
         "ball.glb#vertices --fov 60",
-        "options of captures are given, but --normals ball.glb#vertices names none",
+        "options for captures are given, but --normals ball.glb#vertices names no capture",
     ),
 }
 
@@ -231,7 +231,10 @@ def test_whole_numbers_of_gltf_say_by_how_much_they_are_off(tmp_path, capsys, ki
     assert right == pytest.approx(0.17 * 127 / full, rel=0.05)
     assert made.own_error_deg == pytest.approx(right, rel=0.05)
     err = capsys.readouterr().err
-    said = "its vertex normals have 8 bits and are off by about 0.17 degrees themselves: a code with a mean below 0.06"
+    said = (
+        "its vertex normals have 8 bits and are off by about 0.17 degrees themselves: "
+        "encodings with a mean error below 0.06"
+    )
     assert (said in err) == noted and len(err.splitlines()) == noted, err
 
 

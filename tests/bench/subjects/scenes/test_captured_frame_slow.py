@@ -79,7 +79,8 @@ def test_images_of_eight_bits_are_read_by_their_curve_and_named(tmp_path):
     np.save(tmp_path / "roughness.npy", rng.integers(0, 256, (16, 24)).astype(np.float32) / np.float32(255))
     assert np.allclose(pixels_of(path).base_color, from_srgb(colours / 255), atol=1e-6)
     assert (
-        "base_color, roughness: steps of 8 bits; codes of the same steps look better than they are" in read(path).notes
+        "base_color, roughness: 8-bit steps; encodings with the same steps look better than they are"
+        in read(path).notes
     )
     path = frame(tmp_path, base_color={"file": "a.png"})
     assert np.allclose(pixels_of(path).base_color, colours / 255, atol=1e-6)

@@ -95,10 +95,10 @@ BROKEN = {
         r"encode gives no number of \(0, 0\)"
     ),
     "float3 EncodeVelocity(float3 v) { return v; } float3 DecodeVelocity(float3 v) { return v; }": (
-        "have other types than a code of motion vectors"
+        "do not have the types of a pair for motion vectors"
     ),
     "uint EncodeVelocity(float2 v) { return 0; } float2 DecodeVelocity(uint v) { return 0; }": (
-        "gives a uint, but a code of motion vectors is numbers"
+        "returns a uint, but a code of motion vectors must be numbers"
     ),
     "Texture2D t; float2 EncodeVelocity(float2 v) { return t.Load(0).xy; }" + PAIR: (
         "read a texture or a constant buffer"
@@ -170,8 +170,8 @@ def test_a_depth_code_without_planes_is_tried_where_it_undoes_itself(run, tmp_pa
     status, out, err = run("depth", "--depth", ",".join(map(str, files)), *words)
     assert status == 0, err
     # Within a hundredth of its planes.
-    assert re.search(r"own.hlsl: it undoes itself for depths from (1.9[89]|2) to 25[0-2]", err), err
-    assert "units.hlsl: its codes lead beyond 1: floats hold them, and nothing else" in err
+    assert re.search(r"own.hlsl: it round-trips for depths from (1.9[89]|2) to 25[0-2]", err), err
+    assert "units.hlsl: its codes go beyond 1: only float storages hold them" in err
     storages = {name: {row["storage"] for row in json.loads(out) if row["depth"] == name} for name in OWN_DEPTHS}
     assert storages == OWN_DEPTHS
     # 24 bits of a range of 248: half a step is 7.4e-6, along a ray of at most 1.57; and float32 adds 250 2^-23 a step.
@@ -204,7 +204,7 @@ def test_a_curve_that_leaves_its_range_or_moves_its_ends_is_told(tmp_path):
     )
     found = own_code(CURVE, file).found
     (wrong,) = found["wrong"]
-    assert wrong == "number 1 of the code leaves [0, 1], which is all that storages of fixed point hold: 1.5 of 1"
+    assert wrong == "component 1 of the code leaves [0, 1], the range of fixed-point storages: 1.5 for 1"
     assert [line.split(",")[0] for line in found["notes"]] == ["1 does not come back exactly"]
 
 
@@ -262,7 +262,7 @@ def test_a_cleared_texel_that_glows_is_told(tmp_path):
         "float3 EncodeLight(float3 l) { return (l + 0.5) / 8; } float3 DecodeLight(float3 e) { return e * 8 - 0.5; }"
     )
     wrong = own_code(LIGHT, file).found["wrong"]
-    assert wrong == ["a texel that is cleared, 0 in all channels, decodes to 0.5 of light, not to none"]
+    assert wrong == ["a cleared texel (0 in all channels) decodes to a light of 0.5, not 0"]
 
 
 FRAMES = ("frames", "--count", "4096", "--backend", "glsl", "--format", "json")
@@ -274,7 +274,7 @@ def test_a_copy_of_a_code_of_frames_has_its_rows(run, ending):
     of a quaternion without a hand, which is a rotation's alone."""
     file = INPUTS / f"frame.{ending}"
     status, out, err = run(*FRAMES, "--encoding", f"{file},hexadecachoral", "--storage", "rgb10a2,rgba16,rgba8")
-    assert status == 0 and ("its decoder gives no hand" in err) == (ending == "wgsl"), err
+    assert status == 0 and ("its decoder returns no handedness" in err) == (ending == "wgsl"), err
     found = {name: [r for r in json.loads(out) if r["encoding"] == name] for name in (file.name, "hexadecachoral")}
     assert len(found["hexadecachoral"]) == 3
     storages = {name: {r["storage"]: r for r in some} for name, some in found.items()}
@@ -304,7 +304,7 @@ def test_hands_that_come_back_as_the_other_are_told(tmp_path):
     file = tmp_path / "own.hlsl"
     text = (INPUTS / "frame.hlsl").read_text()
     file.write_text(text.replace("e.w >= 0.0 ? 1.0 : -1.0", "e.w >= 0.0 ? -1.0 : 1.0"))
-    assert own_code(FRAME, file).found["wrong"] == ["100 % of the hands come back as the other"]
+    assert own_code(FRAME, file).found["wrong"] == ["100% of the tangent frames come back with the other handedness"]
 
 
 def test_axes_that_come_back_swapped_are_told(tmp_path):
@@ -342,9 +342,7 @@ def test_two_curves_in_a_file_are_named(tmp_path):
     file = tmp_path / "mine.hlsl"
     text = "float EncodeX(float r) { return r * r; } float DecodeX(float e) { return sqrt(e); }"
     file.write_text(text.replace("X", "Roughness") + text.replace("X", "Metalness"))
-    with pytest.raises(
-        UsageError, match=r"2 of its pairs undo themselves; name one: .*EncodeRoughness:DecodeRoughness"
-    ):
+    with pytest.raises(UsageError, match=r"2 of its pairs round-trip; name one: .*EncodeRoughness:DecodeRoughness"):
         own_code(CURVE, file)
     (code,) = own_codes_named(CURVE, f"{file}:EncodeMetalness:DecodeMetalness", CURVE_ENCODINGS)
     assert code.name == "mine.hlsl:EncodeMetalness"
@@ -352,7 +350,7 @@ def test_two_curves_in_a_file_are_named(tmp_path):
 
 def test_a_format_is_of_light_alone(run):
     status, _, err = run(*VECTORS, "--encoding", f"{INPUTS / 'velocity.hlsl'}:format=rg16f")
-    assert status == 2 and "format is of light buffers; --storage names what others lie in" in err
+    assert status == 2 and "format applies only to light buffers; for others use --storage" in err
 
 
 def test_structures_of_wgsl_are_bound(tmp_path):

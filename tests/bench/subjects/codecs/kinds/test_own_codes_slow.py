@@ -38,7 +38,7 @@ def test_a_format_is_named_behind_the_file(run, tmp_path):
     left = [{(row["sum"], row["gl"]) for row in lit(out, name)} for name in ("own.hlsl", "r11g11b10f")]
     assert left[0] == left[1] and len(left[0]) >= 2
     status, _, err = run(*words, f"{INPUTS / 'light.hlsl'}:format=r11g11b10f")
-    assert status == 2 and "its code has 4 numbers, R11F G11F B10F 3" in err
+    assert status == 2 and "its code has 4 components, but R11F G11F B10F has 3 channels" in err
     status, _, err = run(*words, f"{file}:format=rgba9")
     assert status == 2 and "unknown format 'rgba9'" in err
 
