@@ -204,7 +204,7 @@ def test_two_files_of_one_device_are_one_section(run, tmp_path):
     status, out, err = run("site", str(tmp_path / "files"), "-o", str(tmp_path / "site"))
     assert status == 0 and "1 device\n" in out
     assert err == (
-        f"normalbench: skipped {tmp_path}/files/a.json: {tmp_path}/files/b.json is from the same device and browser "
+        f"normalbench: left out: {tmp_path}/files/a.json: {tmp_path}/files/b.json is from the same device and browser "
         "and at least as recent\n"
     )
 

@@ -90,7 +90,7 @@ def test_a_missing_encoder_is_named(run, monkeypatch):
     status, out, err = run("maps", "--block", "bc5")
     assert (status, out, err.count("\n")) == (3, "", 1) and "pip install quicktex" in err
     status, out, err = run("maps", "--encoding", "xy", "--normals", "bumps", "--format", "json")
-    assert status == 0 and "bc5: it needs quicktex" in err
+    assert status == 0 and "bc5: requires quicktex" in err
     assert {row["block"] for row in json.loads(out)} == set(FORMATS) - {"bc3", "bc5"}
     monkeypatch.setattr(encoders, "import_module", lambda name: there("no_such_module_as_" + name))
     assert "pip install normalbench[maps]" in TABLES["maps"].work.missing()

@@ -128,7 +128,7 @@ MISUSE = {
     f"quality(**{SMALL}).assert_that()": 'no threshold given; add for example psnr_db="at least 47.5"',
     f"quality(**{SMALL}).assert_that(psnr_db=49.5)": 'psnr_db: 49.5 is not a threshold; write "at least 47.5"',
     f"quality(**{SMALL}).assert_that(psnr_db='at least x')": "psnr_db: x is not a number",
-    f"quality(**{SMALL}).assert_that(psnr='at least 5')": "quality: no column 'psnr'; figures are bits",
+    f"quality(**{SMALL}).assert_that(psnr='at least 5')": "quality: no column 'psnr'; figures: bits",
     f"quality(**{SMALL}).assert_that(psnr_db='at least 5', mse='at least x')": "mse: x is not a number",
     f"quality(**{SMALL}).assert_that(psnr_db='at least 5', device='at least 5')": "quality: device is not a figure",
     f"quality(**{SMALL}).assert_that(angle_sup_deg='at most 5')": "angle_sup_deg is measured only with worst_case=True",

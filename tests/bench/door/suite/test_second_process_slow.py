@@ -62,7 +62,7 @@ def test_an_error_there_is_an_error_here(run, tmp_path, cores):
     (folder / TABLES["quality"].files["live"] / "octahedral-rg8.json").mkdir(parents=True)
     status, _, err = run(*SMALL, "-o", str(folder))
     lines = err.splitlines()
-    assert status == 2 and len(lines) == 2 and "goes on" in lines[0] and f"cannot write {folder}/live" in lines[1], err
+    assert status == 2 and len(lines) == 2 and "resuming" in lines[0] and f"cannot write {folder}/live" in lines[1], err
     assert set(read_run(folder).tables) == {"mix", "quality", "effects"}
 
 

@@ -65,7 +65,7 @@ def test_a_file_is_measured_rendered_and_costed(run, tmp_path, ending):
     status, out, _ = run("render", "--encoding", path, *render)
     assert status == 0 and json.loads(out)[0]["encoding"] == f"mine.{ending}"
     status, out, _ = run("doctor", path, "--format", "json")
-    assert status == 0 and "made for normals with z >= 0 alone" in out
+    assert status == 0 and "made only for normals with z >= 0" in out
 
 
 @pytest.mark.usefixtures("hlsl")
