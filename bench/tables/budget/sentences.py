@@ -38,10 +38,7 @@ def told(row: Row) -> Iterator[str]:
 
 
 def in_short(row: Row) -> Iterator[str]:
-    """Yield the answer and what it costs."""
-    if row["skipped"]:
-        yield f"{row['skipped'].rstrip('.')}."
-        return
+    """Yield the answer of a row with figures, and what it costs."""
     yield _answer(row)
     slots = "not counted on this machine"
     if row["pack_slots"] is not None:
@@ -57,7 +54,8 @@ def targets(row: Row) -> list[Row]:
     if row["kind"] == IMPROVED:
         codes.pop("other", None)
     table = []
-    for number, text in enumerate((row["targets"] or "").split("; ") if row["targets"] else ()):
+    texts = row["targets"].split("; ") if row["targets"] else []
+    for number, text in enumerate(texts):
         name, words = text.split(": ", 1)
         size = TARGET_FORMATS[name].texel_bytes
         held = dict.fromkeys(_held(word, codes) for word in words.split())
@@ -152,7 +150,7 @@ def _rules(row: Row) -> str:
     return " ".join(sentences)
 
 
-def unmeasured(row: Row) -> tuple[str, ...]:
+def _unmeasured(row: Row) -> tuple[str, ...]:
     """Return a sentence on the attributes that no scene shows; empty if there are no such attributes."""
     names = row["by_contract"]
     return (f"Not measured, because no scene shows them: {_names(names)}.",) if names else ()
@@ -161,7 +159,7 @@ def unmeasured(row: Row) -> tuple[str, ...]:
 def conditions(row: Row) -> str:
     """Return what the figures hold for, and what was not measured."""
     images = f"Images: {row['scene'].replace(',', ', ')} at {row['size']}."
-    return " ".join(filter(None, [_free(row), images, *unmeasured(row)]))
+    return " ".join(filter(None, [_free(row), images, *_unmeasured(row)]))
 
 
 def _cost(row: Row) -> str:

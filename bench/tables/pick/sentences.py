@@ -115,9 +115,7 @@ def in_short(group: Sequence[Row]) -> list[str]:
     first = " ".join([_first_sentences(group, best), *_of_maps(best)])
     takes = UNKNOWN_COST
     if best["slots"] is not None:
-        slots = f"{best['encode_slots']:g} issue slots to encode and {best['decode_slots']:g} to decode"
-        takes = f"{slots} on {best['dearest_family']}{_recorded_clause(best)}: {best['slots']:g} with "
-        takes += f"{best['readers']} decoding passes."
+        takes = f"{_slots_text(best)}: {best['slots']:g} with {best['readers']} decoding passes."
     pole = _pole_sentence(best, "").strip() if images(best) else ""
     others = [_mixing_text(best), _reservation_sentence(best).strip(), _space_sentences(best)]
     others += [_rival_sentence(row, best) for row in group if row["against"] and row is not best]
@@ -306,15 +304,16 @@ def _length_text(value: float) -> str:
 def _price_sentence(row: Row) -> str:
     if row["slots"] is None:
         return UNKNOWN_COST
-    parts = f"{row['encode_slots']:g} issue slots to encode and {row['decode_slots']:g} to decode"
-    parts += f" on {row['dearest_family']}"
     passes = f"{row['readers']} decoding pass{'es' * (row['readers'] != 1)}"
     table = " It reads a lookup table." if row["table"] else ""
-    return f"{parts}{_recorded_clause(row)}. With {passes} this counts as {_of_hidden(row)}.{table}"
+    return f"{_slots_text(row)}. With {passes} this counts as {_of_hidden(row)}.{table}"
 
 
-def _recorded_clause(row: Row) -> str:
-    return f" (recorded with {row['recorded_by']}: no compiler is here)" if row["recorded_by"] else ""
+def _slots_text(row: Row) -> str:
+    """Return the slots to encode and to decode, the GPU family, and who counted them if that was elsewhere."""
+    slots = f"{row['encode_slots']:g} issue slots to encode and {row['decode_slots']:g} to decode"
+    elsewhere = f" (recorded with {row['recorded_by']}: no compiler is here)" if row["recorded_by"] else ""
+    return f"{slots} on {row['dearest_family']}{elsewhere}"
 
 
 def _of_hidden(row: Row) -> str:
