@@ -1,12 +1,12 @@
 """Trigonometry and logarithms that both languages compute the same way.
 
-GLSL promises next to nothing of `atan` and `sin` (Vulkan's precision table: 4096 units in the last place, and an
+GLSL guarantees almost no accuracy of `atan` and `sin` (Vulkan's precision table: 4096 units in the last place, and an
 absolute 2^-11) and little of `log2` (an absolute 2^-21), so a table made with them would measure the driver's
-polynomial, not the encoding. These are near minimax polynomials with float32 coefficients; angles are in half turns: an
-angle of 1 is pi.
+polynomial, not the encoding. These are near minimax polynomials with float32 coefficients; angles are in half turns:
+an angle of 1 is pi.
 The GLSL twin of this file is `elementary.glsl`, which takes the coefficients from here.
 
-float64, which GLSL does not have, stands for the exact map: there these are as good as float64 is.
+float64, which GLSL does not have, represents the exact map: there these functions are as accurate as float64 allows.
 """
 
 from __future__ import annotations
@@ -102,8 +102,8 @@ def sincos_pi(a):
 
 
 def log2_of(x):
-    """log2(x) for positive normal x: of float32 within 2 units in the last place of itself or, near 1, of x - 1; of
-    float64, which stands for the exact map, by JAX."""
+    """Return log2(x) for positive normal x. In float32 it is within 2 units in the last place of the result or,
+    near 1, of x - 1. JAX computes float64, which represents the exact map."""
     x = jnp.asarray(x)
     if x.dtype != jnp.float32:
         return jnp.log2(x)

@@ -1,6 +1,6 @@
-"""The kinds of encodings: of normals, depth, tangent frames, light and motion, and curves of what materials are.
+"""The kinds of encodings: of normals, depth, tangent frames, light and motion, and curves of material values.
 
-Pure data: readers of users' files ask for it, and import no JAX for it.
+Pure data: code that reads users' files imports it without importing JAX.
 """
 
 from __future__ import annotations
@@ -45,11 +45,11 @@ class Kind:
 
     @property
     def word(self) -> str:
-        """Its name as one word: frame for tangent frames."""
+        """The last word of its name: frame for tangent frames."""
         return self.name.rpartition(" ")[2]
 
     def is_in(self, name: str) -> bool:
-        """Tell whether a function's name says that it is of this."""
+        """Whether a function's name indicates this kind."""
         lower = name.lower()
         return any(part in lower for part in self.spoken) or any(
             word.startswith(self.begins) for word in words_in(name)
@@ -101,7 +101,7 @@ def kind_spoken_of(name: str) -> Kind | None:
 
 
 class AnyEncoding(Protocol):
-    """The attributes that encodings of every kind have; each kind's class says what they mean there."""
+    """The attributes that encodings of every kind have; the class of each kind documents them."""
 
     kind: ClassVar[Kind]
 

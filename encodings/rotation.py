@@ -28,7 +28,7 @@ class Frame(NamedTuple):
 def frame_of(normal: Vec3, tangent: Vec3, hand) -> Frame:
     """Return a frame from any numbers: +z and +x replace invalid directions, a hand that is not below 0 becomes 1.
 
-    Every path into an encoder of frames goes through this function once, so that no input makes a texel NaN.
+    Every input of a frame encoder passes through this function once, so that no texel becomes NaN.
     """
     length2 = dot(tangent, tangent)
     is_direction = (length2 > TINY) & (length2 < 1.0 / TINY)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 else:
 
     class _Lazy:
-        """Stands for `jax.numpy` until the first function is asked of it: JAX takes a second to import."""
+        """A stand-in for `jax.numpy` that imports it at the first use of a function: importing JAX takes a second."""
 
         def __getattr__(self, name: str):
             import jax.numpy
@@ -211,20 +211,20 @@ def sign_not_zero(v: Any) -> Any:
 
 
 def number_of(index, levels: int):
-    """The number in [-1, 1] that stands for a whole number from 0 to levels - 1."""
+    """Return the number in [-1, 1] that an index from 0 to levels - 1 represents."""
     return index * (2.0 / (levels - 1)) - 1.0
 
 
 def index_of(number, levels: int):
-    """The whole number (a float) from 0 to levels - 1 that a number in [-1, 1] stands for, the nearest one."""
+    """Return the index (a float) from 0 to levels - 1 that is nearest to a number in [-1, 1]."""
     return jnp.floor((number * 0.5 + 0.5) * (levels - 1) + 0.5)
 
 
 def direction_or_forward(v: Vec3) -> Vec3:
-    """`v` itself, or (0, 0, 1) where it is not a direction: zero, NaN or infinite.
+    """Return `v`, or (0, 0, 1) if it is not a direction: zero, NaN or infinite.
 
-    Every path into an encoder goes through this once, so that no input makes a texel that is not a number: arrays in
-    `from_array`, pixels in the shader that encodes them.
+    Every input of an encoder passes through this function once, so that no texel becomes NaN: arrays in `from_array`,
+    pixels in the shader that encodes them.
     """
     length2 = dot(v, v)
     is_direction = (length2 > TINY) & (length2 < 1.0 / TINY)
@@ -242,19 +242,19 @@ def with_sign_of(x, signed):
 
 
 def depth_or_far(depth, far):
-    """A signed depth, its magnitude at most `far`; NaN and infinity become `far`, the sign bit stays.
+    """Return a signed depth with a magnitude of at most `far`; NaN and infinity become `far`, the sign bit is kept.
 
-    Every path into a depth encoder goes through this once, so that no input makes a texel that is not a number.
+    Every input of a depth encoder passes through this function once, so that no texel becomes NaN.
     """
     magnitude = abs(depth)
     return with_sign_of(select(magnitude <= far, magnitude, far), depth)
 
 
 def from_array(array) -> Vec3:
-    """Planes of an array of unit vectors of shape (..., 3), as float32; what is not a direction becomes (0, 0, 1).
+    """Return the planes of unit vectors of shape (..., 3), as float32; an invalid direction becomes (0, 0, 1).
 
     Raises:
-        ValueError: another shape.
+        ValueError: the array has another shape.
     """
     array = jnp.asarray(array, jnp.float32)
     if array.ndim == 0 or array.shape[-1] != 3:
@@ -268,8 +268,8 @@ def to_array(v: Vec3) -> Array:
 
 
 def light_or_none(light: Vec4) -> Vec4:
-    """Light itself, 0 where it is negative or NaN, and no more than BRIGHTEST.
+    """Return light with negative and NaN components set to 0 and all components limited to BRIGHTEST.
 
-    Every path into a light encoder goes through this once, as normals go through `direction_or_forward`.
+    Every input of a light encoder passes through this function once, as normals pass through `direction_or_forward`.
     """
     return Vec4(*(minimum(maximum(c, 0.0), BRIGHTEST) for c in light))

@@ -50,7 +50,7 @@ class Display:
     tone_mapping: str = "none"
 
     def light(self, linear: np.ndarray) -> np.ndarray:
-        """Linear light of any shape, exposed and tone mapped; what is beyond 1 will be clipped."""
+        """Return linear light of any shape, exposed and tone mapped; values above 1 are not clipped yet."""
         exposed = np.maximum(np.asarray(linear, np.float64), 0.0) * 2.0**self.exposure
         return TONE_MAPPINGS[self.tone_mapping](exposed)
 

@@ -49,9 +49,9 @@ class Clock:
 
 
 def clock_of(device: Device) -> Clock:
-    """A device's own timer queries, or a wall clock around what is finished.
+    """Return a clock by a device's timer queries, or a wall clock for a software rasteriser.
 
-    Timer queries of a software rasteriser are not to be trusted.
+    Timer queries of a software rasteriser are not reliable.
     """
 
     def by_wall_clock(run: Callable[[], object]) -> float:
@@ -98,7 +98,7 @@ class Rendering:
 
         Args:
             scene: the scene at another moment, if one is given.
-            keeps: what the G-buffer keeps in place of the normals; only for layout fp32 at one sample per pixel.
+            keeps: replaces the normals in the G-buffer; only for layout fp32 at one sample per pixel.
         """
         if scene:
             self.frame.show(scene)
@@ -142,16 +142,16 @@ class Rendering:
         return [read_pixels(texture)[::-1].copy() for texture in self._textures_of_surfaces()]
 
     def covered(self, surfaces: Sequence[np.ndarray]) -> Covered:
-        """Return what surfaces, as `surfaces` gives them of layout fp32, cover."""
+        """Return the pixels covered by surfaces that the method `surfaces` returned with layout fp32."""
         texels = surfaces[0][::-1]
         covered, position = self._covered(texels)
         return Covered(covered, position, texels[covered, :3])
 
     def lit(self, surfaces: Sequence[np.ndarray], upto: str = "") -> np.ndarray:
-        """The image that the passes after the geometry's make of other surfaces, as `surfaces` gives them.
+        """Return the image that the passes after the geometry pass make from other surfaces, as from `surfaces`.
 
         Args:
-            upto: the pass that is left out, with those behind it; none if empty.
+            upto: the first pass to leave out, with all later passes; empty for none.
         """
         for texture, texels in zip(self._textures_of_surfaces(), surfaces, strict=True):
             texture.write(np.ascontiguousarray(texels[::-1], np.float32).tobytes())
@@ -177,7 +177,7 @@ class Rendering:
         return [self.read(resource, UNPACK)[0] for resource in UNPACKED]
 
     def read(self, resource: Resource, by: Pass | None = None) -> list[np.ndarray]:
-        """The textures of a resource in 32-bit floats, after one more pass if it is what writes it; row 0 on top."""
+        """Return a resource's textures in 32-bit floats, row 0 on top; `by` runs first if it writes the resource."""
         if by and resource in by.writes:
             if by not in self._more:
                 self._more[by] = built(self.frame, by)
@@ -214,7 +214,7 @@ class Rendering:
 
 @contextmanager
 def rendering(device: Device, pipeline: Pipeline, scene: Scene, plan: Plan) -> Iterator[Rendering]:
-    """A pipeline made ready; what it holds on the device is released in the end.
+    """Yield a pipeline that is ready to draw, and release its resources on the device at the end.
 
     Raises:
         LayoutError: the layout does not keep what the pipeline needs, or has more targets than the device.

@@ -1,7 +1,7 @@
 """Pixels sampled from a frame, lit by many sets of normals in one pass.
 
-The passes of deferred shading run over a picture in which each column is one pixel of the frame, and each row a set of
-normals. What filters, traces or mixes pixels cannot be sampled.
+The passes of deferred shading run over a picture in which each column is one pixel of the frame, and each row a set
+of normals. Passes that filter, trace or mix pixels cannot be sampled.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ class SampledScene:
     """Sampled pixels of a scene, open with the stack.
 
     Args:
-        device: where.
-        scene: its lights and what surrounds it.
-        size: width and height of the frame that pixels are of.
-        pixels: their rows and columns in the frame, row 0 on top, (count, 2).
-        positions: their view positions, (count, 3).
-        rows: how many sets of normals are lit at once.
+        device: the device that renders.
+        scene: the scene, for its lights and its environment.
+        size: width and height of the frame that contains the pixels.
+        pixels: rows and columns of the pixels in the frame, row 0 on top, (count, 2).
+        positions: view positions of the pixels, (count, 3).
+        rows: maximum number of sets of normals lit at once.
     """
 
     def __init__(
@@ -72,7 +72,8 @@ class SampledScene:
 
         Args:
             scene: the scene, at one moment.
-            surfaces: of its pixels, as `Rendering.surfaces` gives them of layout fp32, (count, channels) each.
+            surfaces: surfaces of its pixels, as returned by `Rendering.surfaces` with layout fp32, (count, channels)
+                each.
             normals: view-space normals, (sets, count, 3), at most as many sets as there are rows.
         """
         if self._made.frame.scene is not scene:

@@ -30,17 +30,17 @@ class Column:
     """A column of a table.
 
     Attributes:
-        name: what rows call it; `*` stands for a name that is only known when it is measured.
+        name: its name in rows; `*` stands for a name that is only known when it is measured.
         says: its definition, in one sentence, for the page, the manual and `normalbench columns`.
-        role: what it is for.
-        unit: of its values; empty for none.
-        better: "more" or "less"; empty where neither is better.
-        drops: in which order a narrow terminal leaves it out, from 1, of the same number the first column first; 0 if
-            it stays, and others go.
+        role: its purpose.
+        unit: unit of its values; empty for none.
+        better: "more" or "less"; empty if neither is better.
+        drops: order in which a narrow terminal leaves columns out, from 1; of equal numbers the first column goes
+            first. 0 for a column that stays, while others go.
         option: the option without which it is not measured.
         shown: whether tables for people have it.
         is_histogram: whether its values are bins, `from:count` and spaces between; CSV leaves it out.
-        before: of a column that tells rows apart, what it was in all rows of versions that did not have it.
+        before: for a column that distinguishes rows, its value in all rows of versions that did not have it.
     """
 
     name: str
@@ -65,7 +65,7 @@ class Column:
 
 
 def column_called(name: str, columns: Iterable[Column]) -> Column | None:
-    """Return the column for a name in a row or a summary; None if there is none."""
+    """Return the column for a name in a row or a summary; None if no column has that name."""
     matches = [column for column in columns if column.is_called(name)]
     # `ms_frame` is itself and not one of `ms_*`.
     return max(matches, key=lambda column: len(column.name), default=None)
@@ -121,13 +121,13 @@ class Sheet:
     """Rows for people to read, all with the same columns.
 
     Attributes:
-        title: empty if the rows need none.
-        rows: the lines.
+        title: its title; empty if the rows need none.
+        rows: the rows.
         drops: the columns that a narrow terminal leaves out, in this order.
         notes: lines below the rows, on a terminal and in Markdown.
-        said: paragraphs above the rows, the first of which is the answer.
-        aside: paragraphs after those, on what is not part of the answer; a page folds them.
-        keys: what the title says of every row, by column.
+        said: paragraphs above the rows; the first is the answer.
+        aside: paragraphs after `said` that are not part of the answer; a page folds them.
+        keys: the values that the title states for every row, by column.
     """
 
     title: str

@@ -23,7 +23,7 @@ NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?(e[-+]?\d+)?( ?%)?|inf)")
 
 
 def text_of(value: Any) -> str:
-    """A value for people: four digits of a number, nothing for nothing."""
+    """Return a value as text for people: numbers with four digits, None and NaN as empty text."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if isinstance(value, float) and math.isfinite(value):
@@ -45,17 +45,17 @@ WORDS = {
 
 
 def title_of(name: str) -> str:
-    """A column's name as people read it: PSNR dB."""
+    """Return a column's name as people read it: PSNR dB."""
     return " ".join(WORDS.get(word, word) for word in name.split("_"))
 
 
 def visible(text: str) -> str:
     """Text whose control characters, which a terminal would obey, are written as escapes."""
-    return CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+    return CONTROL.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
 
 
 def markdown_text(text: str) -> str:
-    """Text as it is, or as code where Markdown would read something into it."""
+    """Return text unchanged, or as code if Markdown would interpret it."""
     is_plain = PLAIN.fullmatch(text) and "://" not in text and "www." not in text.lower() and "<" not in text
     return text if is_plain or CODE.fullmatch(text) else code_text(text)
 
@@ -66,7 +66,7 @@ MARKED = re.compile(r"[^\w\s.,;:%°()+'?-]|^[-+]|(?<=[a-zA-Z])\.(?=\w)|(?<![^\W_
 
 def markdown_sentence(text: str) -> str:
     """A sentence in which Markdown and HTML read nothing: letters, digits and common marks stay, others are escaped."""
-    return re.sub(MARKED, lambda found: f"&#{ord(found[0])};", visible(text))
+    return re.sub(MARKED, lambda match: f"&#{ord(match[0])};", visible(text))
 
 
 def code_text(text: str) -> str:
@@ -135,9 +135,9 @@ def _captioned(rows: Sequence[dict[str, Any]], total: str) -> tuple[list[dict[st
 
 
 def without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, Any]], str]:
-    """The rows less the columns that are empty or say the same in each, and a line with what those say.
+    """Return the rows without columns that are empty or the same in each row, and a line with these constant values.
 
-    Measured figures, which are floats, stay in the table: that two are the same is what it is there to show.
+    Measured figures, which are floats, stay in the table: equal figures are a result that the table has to show.
     """
     if len(rows) < 2:
         return [{k: v for k, v in row.items() if text_of(v)} for row in rows], ""
@@ -149,7 +149,7 @@ def without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, An
 
 
 def _fitting(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[str]) -> list[str]:
-    """The columns that fit a width without breaking a number; of those that may be spared the first go first."""
+    """Return the columns that fit a width without breaking a number; expendable columns go in order."""
     columns = list(rows[0])
     spared = [column for column in expendable if column in columns]
     while spared and sum(_widths(rows, columns)) + GAP * (len(columns) - 1) > width:
@@ -167,7 +167,7 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
     """Return a table for people; `total` as in `written`.
 
     Columns with the same value in every row move to the line below the table. If the rest does not fit, the columns
-    in `expendable` are left out, the first first, and a note lists them.
+    in `expendable` are left out, in order, and a note lists them.
     """
     from io import StringIO
 
@@ -209,11 +209,11 @@ def written(
     lead: str = "",
     total: str = "",
 ) -> str:
-    """Rows as "table", "json", "csv" or "markdown"; an infinite figure is null in JSON.
+    """Return rows as "table", "json", "csv" or "markdown"; an infinite figure is null in JSON.
 
-    Tables for people are one for each value of column `by`, where it is given. `lead` is the lines above them. `total`
-    is the line below the table: columns that say the same in every row then stay in the table, as that line would be
-    read as their sum.
+    Tables for people are split by the values of column `by`, if it is given. `lead` is the text above them. `total`
+    is the line below the table: columns with the same value in every row then stay in the table, because a line
+    of them would be read as their sum.
     """
     if format == "json":
         return to_json(rows)

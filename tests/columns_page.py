@@ -1,4 +1,4 @@
-"""The manual's page of columns: `python -m tests.columns_page` writes it."""
+"""The manual's page of columns, written by `python -m tests.columns_page`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from normalbench.bench.tables.registry import TABLES
 from normalbench.bench.tables.table import Column, Table
 
-PAGE = Path(__file__).parents[1] / "docs" / "columns.md"
+PAGE = Path(__file__).parents[1] / "docs" / "reference" / "columns.md"
 HEAD = """# Columns
 
 What does a column of a table mean? Each table has a part below. `normalbench columns quality` prints the same.
@@ -16,7 +16,7 @@ WAYS = {"more": "More is better.", "less": "Less is better."}
 
 
 def text() -> str:
-    """The whole page."""
+    """Return the text of the whole page."""
     return "\n".join([HEAD, *map(_part, TABLES.values())])
 
 

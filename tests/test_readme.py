@@ -1,4 +1,4 @@
-"""What README.md and every page of docs/ say is so: commands run, examples pass."""
+"""The claims of README.md and every page of docs/ are true: commands run, examples pass."""
 
 import re
 import runpy
@@ -32,7 +32,7 @@ MOST_LINES = 120
 FENCE = re.compile(r"^```.*?^```$", re.S | re.M)
 
 
-EXAMPLES = [(path, *found) for path, text in PAGES.items() for found in NAMED.findall(text)]
+EXAMPLES = [(path, *groups) for path, text in PAGES.items() for groups in NAMED.findall(text)]
 
 
 FILES = {name: text for _, name, text in EXAMPLES}
@@ -59,7 +59,7 @@ NOT_RUN = [line for line in LINES if line.startswith(("pip install ", "uv tool "
 
 
 def users_files(folder: Path) -> None:
-    """A frame in every format, its mask, a matrix, and a scene, as the commands name them."""
+    """Write a frame in every format, its mask, a matrix and a scene, with the names that the commands use."""
     n = some_normals()
     for name in ("frame.exr", "world.exr"):
         write_exr(folder / name, planes_of(n))
@@ -82,7 +82,7 @@ def users_files(folder: Path) -> None:
 
 
 def readers_devices(folder: Path) -> None:
-    """Files of devices, as the commands name them."""
+    """Write device files with the names that the commands use."""
     devices.write(folder / "phone.json", renderer=devices.MALI, truncated=("RGB10_A2",))
     devices.write(folder / "desktop.json", renderer=devices.GEFORCE)
     devices.write_ten(folder / "contributed")
@@ -93,14 +93,14 @@ def test_the_readme_is_short():
 
 
 def test_every_indented_line_is_a_known_command():
-    """A line that no test below runs is one that installs something."""
+    """A line that no test below runs installs something."""
     assert len(COMMANDS) >= 40
     assert set(LINES) == {*COMMANDS, *PYTEST, *MAKE, *NOT_RUN}
     for path, text in PAGES.items():
         assert not re.search(r"^```(sh|bash|shell|console)", text, re.M), f"{path.name}: indent commands"
 
 
-def test_every_example_is_a_file_and_files_of_one_name_are_the_same():
+def test_every_example_is_a_file_and_files_with_the_same_name_are_the_same():
     for path, text in PAGES.items():
         fences = re.findall(r"^```(?:glsl|hlsl|json|python|toml)$", text, re.M)
         assert len(fences) == len(NAMED.findall(text)), path.name
@@ -126,7 +126,7 @@ LONG_COMMANDS = [command for command in COMMANDS if LONG.match(command)]
 
 
 class BegunError(Exception):
-    """A command has checked what was typed."""
+    """A command has checked its arguments and is about to begin."""
 
 
 def begin(*_: object) -> NoReturn:
@@ -147,7 +147,7 @@ BEGINNINGS = (
 
 
 def write_files(place) -> None:
-    """The files that the manual shows."""
+    """Write the files that the manual shows."""
     for name, text in FILES.items():
         (place / name).parent.mkdir(exist_ok=True)
         (place / name).write_text(text)
@@ -155,7 +155,7 @@ def write_files(place) -> None:
 
 @pytest.fixture
 def readers_folder(tmp_path, monkeypatch):
-    """The working folder, with the files that the commands name."""
+    """The working folder, with the files that the commands use."""
     monkeypatch.chdir(tmp_path)
     write_files(tmp_path)
     users_files(tmp_path)
@@ -166,7 +166,7 @@ def readers_folder(tmp_path, monkeypatch):
 @pytest.mark.usefixtures("gl", "readers_folder")
 @pytest.mark.parametrize("command", LONG_COMMANDS)
 def test_every_long_command_is_taken_as_written(command, monkeypatch):
-    """Its options, names and values are checked as the program checks them; then it would begin."""
+    """The program checks its options, names and values, and stops before it begins."""
     for place, name in BEGINNINGS:
         monkeypatch.setattr(place, name, begin)
     # These take time, and check nothing.
@@ -195,14 +195,14 @@ def test_the_make_targets_exist():
         assert all(f"$({variable.partition('=')[0]})" in makefile for variable in variables)
 
 
-def test_what_pip_installs_exists():
+def test_extras_that_the_manual_installs_exist():
     known = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    extras = {extra for line in NOT_RUN for found in re.findall(r"\[([\w,]+)\]", line) for extra in found.split(",")}
+    extras = {extra for line in NOT_RUN for names in re.findall(r"\[([\w,]+)\]", line) for extra in names.split(",")}
     assert extras and extras <= set(known)
 
 
-def test_the_columns_it_explains_are_those_of_the_tables():
-    """To the letter as the registry has them."""
+def test_pages_have_the_columns_of_the_tables():
+    """The generated pages match the registry exactly."""
     for page in (columns_page, gpu_page):
         assert PAGES[page.PAGE] == page.text(), f"write it: python -m tests.{page.__name__}"
 
@@ -214,15 +214,15 @@ INSTALL = re.compile(r"`?pip install ([^`\n]+)")
 
 
 def installed_by(text: str) -> set[str]:
-    """What pip installs by a page's lines and with normalbench itself."""
+    """Return the packages that a page's pip lines install, with those that normalbench requires."""
     known = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     words = [word for line in INSTALL.findall(text) for word in line.split() if not word.startswith("-")]
-    extras = [name for word in words for found in re.findall(r"\[([\w,]+)\]", word) for name in found.split(",")]
+    extras = [name for word in words for names in re.findall(r"\[([\w,]+)\]", word) for name in names.split(",")]
     asked = known["dependencies"] + [line for name in extras for line in known["optional-dependencies"][name]] + words
     return {re.split(r"[\[<>=;/ ]", line)[0].lower() for line in asked}
 
 
-def test_what_an_example_imports_is_installed_by_the_lines_of_its_page():
+def test_a_page_installs_what_its_examples_import():
     """A file of tests needs pytest, which normalbench does not install."""
     scripts = [example for example in EXAMPLES if example[1].endswith(".py")]
     assert scripts
@@ -237,13 +237,13 @@ def check_installed(page, name, text):
 
 
 def anchors(text: str) -> set[str]:
-    """What the headings of a page are linked by."""
+    """Return the link anchors of a page's headings."""
     headings = re.findall(r"^#+ (.+)$", FENCE.sub("", text), re.M)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)
-def test_what_it_links_to_is_there(path):
+def test_targets_of_links_exist(path):
     for link in re.findall(r"\]\(([^)]+)\)", PAGES[path]):
         name, _, anchor = link.partition("#")
         target = (path.parent / name).resolve() if name else path
@@ -253,11 +253,15 @@ def test_what_it_links_to_is_there(path):
 
 
 def test_every_page_is_in_the_index():
-    index = PAGES[ROOT / "docs/README.md"]
-    assert all(f"({path.name})" in index for path in PAGES if path.name != "README.md")
+    docs = ROOT / "docs"
+    pages = [path for path in PAGES if path.name != "README.md"]
+    missing = [
+        name for path in pages if f"({(name := path.relative_to(docs).as_posix())})" not in PAGES[docs / "README.md"]
+    ]
+    assert not missing, missing
 
 
-def test_a_seed_is_a_random_seed():
+def test_articles_are_not_named_by_seed_numbers():
     """Articles are named by author, title and year."""
     for path, text in PAGES.items():
         assert not re.search(r"\bseed \d", text), path.name

@@ -49,18 +49,18 @@ class Sent:
         self._send = send
 
     def find(self, table: str, step: Step) -> list[Row] | None:
-        """Return the rows of a step that were kept before; None if there are none."""
+        """Return the rows of a step that were kept before; None if no rows were kept."""
         return self._rows.get(key_text(table, step.key))
 
     def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
-        """Send the rows of a step, and give them as they are read back."""
+        """Send the rows of a step, and return them as JSON reads them back."""
         kept = plain(rows)
         self._send(Kept(key_text(table, step.key), kept))
         return kept
 
 
 def prepare(send: Send, tables: Sequence[str] = ()) -> None:  # noqa: ARG001 # as of all that a process calls
-    """Import what tables need, while the first process looks for what to measure."""
+    """Import what the tables need while the first process works out what to measure."""
     have_few_heaps()
     # What is missing is said by the first process.
     with suppress(MissingError):
@@ -73,19 +73,19 @@ def prepare(send: Send, tables: Sequence[str] = ()) -> None:  # noqa: ARG001 # a
             _ = TABLES[name].work
 
 
-def measure(send: Send, folder: Path, own: Sequence[Asking], others: Sequence[Asking], said: Iterable[str]) -> None:
-    """Measure tables one after the other, then write the files of those that the first process has measured.
+def measure(send: Send, folder: Path, own: Sequence[Asking], others: Sequence[Asking], printed: Iterable[str]) -> None:
+    """Measure tables one after the other, then write the files of the tables that the first process has measured.
 
     Args:
         folder: the run's folder.
-        own: tables that this process measures and writes.
-        others: tables that the first process measures, and whose files this process writes.
-        said: lines that the first process has already printed.
+        own: the tables that this process measures and writes.
+        others: the tables that the first process measures and whose files this process writes.
+        printed: the lines that the first process has already printed.
 
     Raises:
         UsageError, MissingError: a table cannot be measured or written.
     """
-    told.update(said)
+    told.update(printed)
     sent = Sent(folder, send)
     asks = [asking.asked() for asking in own]
     keep_what_is_imported()

@@ -43,10 +43,10 @@ NOT_COMPARED = "not in this run; the command below runs it and compares it with 
 
 
 def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
-    """Write the files, or with `check` the table of what was verified how. Exit status: 1 where code differs.
+    """Write the code or, with `check`, a table of how it was verified. Return the exit status: 1 if code differs.
 
     Raises:
-        UsageError: a name is not known, nothing fits, or something cannot be written.
+        UsageError: a name is unknown, nothing fits, or a file cannot be written.
     """
     require_memory()
     _check_prefix(options.prefix)
@@ -71,7 +71,7 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
 
 
 def _of_named(word: str) -> str:
-    """Return what `--of` names: a kind, a layout, or empty if the names decide. Raises UsageError."""
+    """Return the kind that `--of` names, or LAYOUT; empty if the names decide. Raises UsageError."""
     known = (*NAMED, LAYOUT)
     if not word:
         return ""
@@ -155,12 +155,12 @@ def _write_codec(codec: Any, languages: Sequence[str], prefix: str, output: Path
 
 @dataclass(frozen=True)
 class Proven:
-    """A codec's code in a language that was run and compared.
+    """A codec's code in one language, and how its results compare with the catalogue's.
 
     Attributes:
-        code, row: what was run, and how it compares, see `verified`.
-        why_not: why it is not written; empty where it is.
-        head: gives the paragraphs above it.
+        code, row: the code, and its row from `verified`.
+        why_not: the reason why the code is not written; empty if it is written.
+        head: a function that returns the paragraphs above the code.
     """
 
     code: Code
@@ -181,24 +181,24 @@ def proven(codec: Any, languages: Sequence[str], prefix: str = "") -> Iterator[P
         )
 
 
-def _proven_head(code: Code, codec: Any, prefix: str, row: Row, said: Callable[[], list[str]]) -> list[str]:
-    return head(code, codec, _command(codec, code.language, prefix), row["says"], said())
+def _proven_head(code: Code, codec: Any, prefix: str, row: Row, figure_lines: Callable[[], list[str]]) -> list[str]:
+    return head(code, codec, _command(codec, code.language, prefix), row["says"], figure_lines())
 
 
 def unproven_head(code: Code) -> list[str]:
-    """The paragraphs above a catalogue's code that was not run: the command that runs it."""
+    """Return the paragraphs above code of the catalogue that was not run; they name the command that runs it."""
     return head(code, code.codec, _command(code.codec, code.language, ""), NOT_COMPARED, ())
 
 
-def _why_not(code: Code, row: Row, made: Sequence[tuple[Code, Row]]) -> str:
-    """Why a language is not written; empty where it is.
+def _why_not(code: Code, row: Row, pairs: Sequence[tuple[Code, Row]]) -> str:
+    """Return the reason why a language is not written; empty if it is written.
 
-    All languages are written from one tree. Where the tree has been seen to be wrong in one, it is wrong in
-    all. What is not run here, as Metal, is written where another language of the tree agrees.
+    All languages are written from one tree. If the code of one language differs, the tree is taken to be wrong for
+    all. A language that is not run here, such as Metal, is written unless the code of another language differs.
     """
     if row["verdict"] == DIFFERS:
         return row["says"]
-    others = [pair for pair in made if pair[0] is not code]
+    others = [pair for pair in pairs if pair[0] is not code]
     if row["verdict"] == NOT_RUN:
         others = others or witness((code_of(code.codec, name, code.prefix) for name in WITNESSES), verified)
     wrong = [other.language for other, other_row in others if other_row["verdict"] == DIFFERS]
@@ -206,10 +206,10 @@ def _why_not(code: Code, row: Row, made: Sequence[tuple[Code, Row]]) -> str:
 
 
 def _all_made(codecs: Sequence[Any], languages: Sequence[str], prefix: str) -> list[Code]:
-    """The code of each codec in each language; what cannot be written is named on standard error.
+    """Return the code of each codec in each language; report what cannot be written on standard error.
 
     Raises:
-        UsageError: nothing can be.
+        UsageError: no code can be written.
     """
     codes, complaints = [], []
     for codec in codecs:

@@ -22,7 +22,7 @@ SAME = 1e-3
 STAGE, FAMILY, FAMILY_TITLE = "fragment", "navi21", "AMD RDNA 2 (navi21, RADV)"
 
 
-def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str]) -> list[str]:
+def head(code: Code, codec: Any, command: str, verified: str, figure_lines: Sequence[str]) -> list[str]:
     """Return the paragraphs above a file's functions.
 
     Args:
@@ -30,7 +30,7 @@ def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str
         codec: the measured codec; for a half other than z >= 0, its axes differ from the file's.
         command: the command that made the file.
         verified: how its results compare with the catalogue's.
-        said: the codec's figures, see `figures`.
+        figure_lines: the codec's figures, see `figures`.
     """
     encoding, kind = codec.encoding, kind_of(codec)
     compared = verified.replace(" are equal, bit", " are the catalogue's, bit", 1) if kind.is_ours(codec) else verified
@@ -42,7 +42,7 @@ def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str
         f"Encoding: {encoding.title}. Source: {encoding.citation}.",
         f"Storage: {codec.storage.title}, {codec.bits} bits, rounding: {rounding_of(codec)}. "
         f"{kind.plural.capitalize()}: {kind.held(codec)}.",
-        *said,
+        *figure_lines,
         *table_lines(code.interface.tables),
         f"Verified: {compared}.",
         f"Made by normalbench {version('normalbench')}: {command}",
@@ -51,7 +51,7 @@ def head(code: Code, codec: Any, command: str, verified: str, said: Sequence[str
 
 
 def rounding_of(codec: Any) -> str:
-    """Return how the storage of a codec of any kind rounds; to the nearest if the codec does not say."""
+    """Return the rounding of a codec of any kind; "nearest" if the codec does not define one."""
     return getattr(codec, "rounding", "nearest")
 
 
@@ -87,7 +87,7 @@ def _errors(codec: Codec) -> Iterator[str]:
 
 
 def _largest(supremum: float | None, met: float) -> str:
-    """The largest error in words: of exact arithmetic, and what float32 makes of it where that is more."""
+    """Return the supremum as text, and the largest sampled error if that is larger or the supremum is unknown."""
     if supremum is None:
         return f"largest sampled error {met:.4g} degrees"
     text = f"supremum {supremum:.4g} degrees"

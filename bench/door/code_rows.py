@@ -51,7 +51,7 @@ def compared(
 
 
 def witness(codes: Iterable[CodeT], verified: Callable[[CodeT], Row]) -> list[tuple[CodeT, Row]]:
-    """Return the first file that can be run here, with its row; an empty list if none can."""
+    """Return the first code that can be run here, with its row, in a list; an empty list if no code can be run."""
     rows = ((code, verified(code)) for code in codes)
     return list(islice((pair for pair in rows if pair[1]["verdict"] != NOT_RUN), 1))
 
@@ -87,11 +87,11 @@ def check_codes(
     format: str,
     output: Path | None,
 ) -> int:
-    """Write the table of what was verified how. Exit status: 1 where code differs.
+    """Write a table of how each code was verified. Return the exit status: 1 if any code differs.
 
     Args:
-        verified: gives a code's row.
-        about: the columns that say what it is the code of.
+        verified: a function that returns a code's row.
+        about: the columns that name the codec or the layout.
     """
     check_rows(output, COLUMNS)
     rows: list[Row] = []

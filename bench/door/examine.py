@@ -153,7 +153,7 @@ def _lines(kind: str, lines: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def word_of(file: Path, sources: Mapping[str, Any]) -> str:
-    """Return what names a file on the command line, with how it is read: see `Sources`."""
+    """Return the word for a file on the command line, including the options for reading it; see `Sources`."""
     (word,) = in_names({"encoding": (str(file),), **vars(Sources(**sources))})["encoding"]
     return str(word)
 
@@ -184,9 +184,9 @@ def _storage(name: str) -> Storage:
     return storages[0]
 
 
-def _domain(found: Examined) -> str:
+def _domain(examination: Examined) -> str:
     """Return the name of the domain for a row; for a hemisphere other than z >= 0, also which one it is."""
-    return found.domain.name + (f", {found.domain.text}" if found.domain.is_turned else "")
+    return examination.domain.name + (f", {examination.domain.text}" if examination.domain.is_turned else "")
 
 
 def no_numbers(storage: Storage, row: Mapping[str, Any]) -> list[str]:
@@ -198,20 +198,20 @@ def no_numbers(storage: Storage, row: Mapping[str, Any]) -> list[str]:
     return [f"in {storage.name}, {share} decode to NaN or infinity and count as 180° off; {remedy}"]
 
 
-def _compared(found: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str]:
-    """Say how much worse it is than the encoding of the catalogue that it is; nothing where it is as good."""
-    if not found.like:
+def _compared(examination: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str]:
+    """Return a line on how much worse an encoding is than the catalogue version of it; empty if it is as good."""
+    if not examination.like:
         return []
     # Codes in [0, 1] fill a storage without a sign, and half of one that has a sign.
     is_half_used = codec.storage.holds_unit
-    like = replace(ENCODINGS[found.like], is_unit=codec.encoding.is_unit and not is_half_used)
+    like = replace(ENCODINGS[examination.like], is_unit=codec.encoding.is_unit and not is_half_used)
     own, its = _means(row), _means(row_of(Codec(like, replace(codec.storage, holds_unit=False))))
     if not WORSE < own[0] / its[0] < ANOTHER:
         return []
     how = f"mean {own[0]:.3g} degrees instead of {its[0]:.3g}, largest {own[1]:.3g} instead of {its[1]:.3g}"
     why = "; codes in [0, 1] use half of the range; store s = 2 c - 1 and decode (s + 1) / 2" if is_half_used else ""
     percent = 100 * (own[0] / its[0] - 1)
-    return [f"in {codec.storage.name} this is {found.like}, but {percent:.0f}% worse: {how}{why}"]
+    return [f"in {codec.storage.name} this is {examination.like}, but {percent:.0f}% worse: {how}{why}"]
 
 
 def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
@@ -229,13 +229,13 @@ def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
     return [f"in {codec.storage.name}, with the half precision that the file declares: {text}"]
 
 
-def _rounded_for(found: Examined, codec: Codec) -> str:
+def _rounded_for(examination: Examined, codec: Codec) -> str:
     """To which steps the encoder rounds by itself, where the storage has others; else empty."""
-    lattice, size = found.lattice, codec.encoding.components
+    lattice, size = examination.lattice, codec.encoding.components
     if lattice is None or lattice.is_of(codec.storage, size):
         return ""
     fitting = [storage for storage in STORAGES.values() if storage.channels >= size and lattice.is_of(storage, size)]
-    named = min(fitting, key=lambda one: one.channels, default=None)
+    named = min(fitting, key=lambda candidate: candidate.channels, default=None)
     return f"encode itself rounds to 1/{lattice.steps}" + (f"; try --storage {named.name}" if named else "")
 
 
@@ -250,10 +250,10 @@ def row_of(codec: Codec) -> dict[str, Any]:
     return measure(QualityCase(codec, chosen, "glsl"))
 
 
-def _picture(codec: Codec, found: Examined) -> Any:
+def _picture(codec: Codec, examination: Examined) -> Any:
     """The error over the sphere, with each direction marked that comes back elsewhere."""
     name, shown = codec.name, sphere_map(codec).mean_deg
     halves = ("z >= 0, towards the viewer", "z < 0")
-    if found.domain.is_turned:
-        return sphere_chart({name: shown}, halves=(found.domain.text, ""))
-    return sphere_chart({name: shown}, {name: np.array(found.bad).reshape(-1, 3)}, halves)
+    if examination.domain.is_turned:
+        return sphere_chart({name: shown}, halves=(examination.domain.text, ""))
+    return sphere_chart({name: shown}, {name: np.array(examination.bad).reshape(-1, 3)}, halves)

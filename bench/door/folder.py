@@ -124,7 +124,7 @@ def examine_folder(
     report: Path | None = None,
     sources: Mapping[str, Any] = MappingProxyType({}),
 ) -> int:
-    """Write the table of a folder's pairs, and below it what is likely wrong.
+    """Write the table of a folder's pairs, followed by likely problems.
 
     Args:
         storage: the storage of every pair; None for the storage that each pair implies.
@@ -133,7 +133,7 @@ def examine_folder(
         sources: how files are read, by options of `Sources`.
 
     Returns:
-        the exit status: 1 if something is likely wrong.
+        the exit status: 1 if a problem is found.
 
     Raises:
         UsageError: the folder has no pair, or something cannot be written.
@@ -181,7 +181,7 @@ def _save(path: Path, text: str) -> None:
 
 
 def files_below(folder: Path) -> Iterator[Path]:
-    """Yield the shader files below a folder, in order, without hidden folders and those of third-party packages.
+    """Yield the shader files below a folder in order, leaving out hidden folders and third-party packages.
 
     Raises:
         UsageError: there are too many files.
@@ -292,7 +292,8 @@ def _pair(file: str, word: str, storage: Storage | None) -> Pair:
 
 
 def implied_storage(looked: Examined) -> Storage:
-    """Return the storage that an encoding implies: the one whose steps it rounds to itself, else 8 bits per number."""
+    """Return the storage that an encoding implies: 32 bits if it is packed, else the storage to whose steps it
+    rounds, else 8 bits per number."""
     encoding, lattice = looked.encoding, looked.lattice
     if encoding.is_packed:
         return BITS_32
@@ -339,7 +340,7 @@ def _disagreements(reader: OneFunctionError, pairs: Sequence[Pair]) -> Iterator[
 
 
 def _of_target(path: Path, functions: str) -> Iterator[str]:
-    """Yield what is likely wrong, in the file itself, with how the encoding's texels are read."""
+    """Yield likely problems with how the file itself reads and stores the texels: filtering and sRGB formats."""
     text, decode = _text(path), functions.rpartition(":")[2].partition("(")[0]
     if match := re.search(_FILTERED.format(re.escape(decode)), text, re.I):
         line = text.count("\n", 0, match.start()) + 1
@@ -402,9 +403,9 @@ class Told:
     """The report on a folder's pairs.
 
     Attributes:
-        rows: one for each pair, and one for each file that seems to have a pair but has none.
+        rows: one row for each pair, and one for each file that seems to have a pair but does not.
         measured: the rows of pairs that were measured, for people.
-        lines: what is likely wrong, and why other pairs were not measured.
+        lines: likely problems, and the reasons why other pairs were not measured.
         lead: the counts, in a sentence.
     """
 

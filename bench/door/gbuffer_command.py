@@ -37,10 +37,10 @@ def check_no_layout(options: CodeOptions) -> None:
 
 
 def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str, output: Path | None) -> int:
-    """Write the files, or with `check` the table of what was verified how. Exit status: 1 where code differs.
+    """Write the code or, with `check`, a table of how it was verified. Return the exit status: 1 if code differs.
 
     Raises:
-        UsageError: a name is not known, a layout is not written, or something cannot be.
+        UsageError: a name is unknown, a layout is not supported, or a file cannot be written.
     """
     if options.storage:
         raise UsageError("--storage cannot be used with layouts; a layout has its own formats")
@@ -60,16 +60,16 @@ def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str,
     )
 
 
-def _write_layout(layout: Layout, made: Sequence[GBufferCode], options: CodeOptions, output: Path | None) -> int:
-    """The files of a layout; 1 where one differs, and then none is written: all are made from one tree."""
-    rows = [(code, verified(code)) for code in made if code.layout is layout]
+def _write_layout(layout: Layout, codes: Sequence[GBufferCode], options: CodeOptions, output: Path | None) -> int:
+    """Write the files of a layout. Return 1 and write no file if one differs, because all are made from one tree."""
+    rows = [(code, verified(code)) for code in codes if code.layout is layout]
     if not any(row["verdict"] == VERIFIED for _, row in rows):
         rows += witness((gbuffer_code(layout, name, options.prefix) for name in WITNESSES), verified)
     wrong = [row for _, row in rows if row["verdict"] == DIFFERS]
     for row in wrong:
         tell(f"{layout.name} in {row['language']}: {row['says']}; {layout.name} is not written")
     for code, row in rows if not wrong else ():
-        if code.language in {other.language for other in made}:
+        if code.language in {other.language for other in codes}:
             save(code, head(code, _command(code, options), row["says"]), output)
     return int(bool(wrong))
 

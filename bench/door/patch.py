@@ -32,7 +32,7 @@ _PARAMETER = re.compile(r"\(\s*(?:(\w+)\s*:|[^,():]*?(\w+)\s*(?:[,):\[]))")
 
 
 def patch_of(folder: Path, pairs: Sequence[Pair]) -> str:
-    """Return a patch for `git apply` or `patch -p1` in the folder: each change was measured, and says so above it.
+    """Return a patch for `git apply` or `patch -p1` in the folder, with the measured errors above the changes.
 
     Pairs that cannot be changed are named on standard error.
     """
@@ -44,7 +44,7 @@ def patch_of(folder: Path, pairs: Sequence[Pair]) -> str:
 
 
 def _is_of_normals(pair: Pair) -> bool:
-    """Whether a code is of normals beyond doubt: its functions' names say so, or it is one of the catalogue."""
+    """Whether a pair is clearly for normals: its functions' names say so, or its encoding is in the catalogue."""
     is_sure = bool(pair.looked.like) or name_speaks_of_normals(pair.functions)
     if not is_sure:
         tell(f"{pair.file} {pair.functions} is not in the patch: the names of its functions do not mention normals")

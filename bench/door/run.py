@@ -40,11 +40,11 @@ RESULTS = Path("results")
 REPORT = "report.html"
 
 
-def chosen_tables(names: Names, said: Mapping[str, Any]) -> list[Table]:
-    """Return the tables that names stand for; for "all", those measured by default with the options that were given.
-    Raises UsageError."""
+def chosen_tables(names: Names, options: Mapping[str, Any]) -> list[Table]:
+    """Return the tables that names stand for; for "all", the tables that are measured by default with the given
+    options. Raises UsageError."""
     if names == ("all",):
-        return [table for table in TABLES.values() if table.is_in_all(said)]
+        return [table for table in TABLES.values() if table.is_in_all(options)]
     return list(dict.fromkeys(choose("table", names, TABLES)))
 
 
@@ -54,10 +54,10 @@ def given(request: Any) -> dict[str, Any]:
     return {name: value for name, value in values.items() if value is not None}
 
 
-def options_of(table: Table, said: Mapping[str, Any]) -> list[Any]:
+def options_of(table: Table, options: Mapping[str, Any]) -> list[Any]:
     """Return a table's options in a run: the usual values, replaced by those that were given."""
     known = fields_of(table.options)
-    own = {name: value for name, value in said.items() if name in known and known[name].option.in_run}
+    own = {name: value for name, value in options.items() if name in known and known[name].option.in_run}
     # A layout is measured as it is where nothing is said to put into it.
     is_as_it_is = own.get("layout") and not {"encoding", "storage", "rounding"} & set(own)
     unusual = {"encoding"} if is_as_it_is else set()
@@ -96,10 +96,10 @@ def asked_of(request: Any, folder: Path) -> list[Asked]:
     return asks
 
 
-def _check_taken(chosen: Iterable[Table], said: Mapping[str, Any]) -> None:
-    """Raise UsageError for an option that no chosen table takes, or that applies to files if none is named."""
-    in_names(said)
-    for name in said:
+def _check_taken(chosen: Iterable[Table], options: Mapping[str, Any]) -> None:
+    """Raise UsageError for an option that no chosen table takes, or for an option for files if no file is named."""
+    in_names(options)
+    for name in options:
         takers = [table for table in TABLES.values() if _takes(table, name)]
         if not set(takers) & set(chosen):
             option, those = name.replace("_", "-"), ", ".join(table.name for table in takers)
@@ -112,22 +112,22 @@ def _takes(table: Table, name: str) -> bool:
     return name in known and known[name].option.in_run
 
 
-def _asked(table: Table, said: Mapping[str, Any], folder: Path) -> Asked:
+def _asked(table: Table, options: Mapping[str, Any], folder: Path) -> Asked:
     """Return the request for one table, each step once."""
     if missing := table.work.missing():
         raise MissingError(missing)
-    return asked_together(table, options_of(table, said), in_folder(table, table.outputs(), folder))
+    return asked_together(table, options_of(table, options), in_folder(table, table.outputs(), folder))
 
 
 def run_command(request: Any, output: Path | None, on: str | None = None, commit: str | None = None) -> int:
-    """Measure tables into a results folder, their verdicts to standard output. What was stopped goes on.
+    """Measure tables into a results folder, and print their verdicts. A stopped run continues.
 
     Args:
-        on: where they are measured; None for this process.
-        commit: what the change is called that is measured; None for the working folder's commit.
+        on: where the tables are measured; None for this process.
+        commit: the name of the measured change; None for the working folder's commit.
 
     Returns:
-        the exit status: 1 where a row fails.
+        the exit status: 1 if a row fails.
     """
     require_memory()
     have_few_heaps()
@@ -155,7 +155,7 @@ def run_command(request: Any, output: Path | None, on: str | None = None, commit
 
 
 def _second(request: Any, on: str | None) -> AbstractContextManager[Second | None]:
-    """The second process, where there is something for it to do."""
+    """Return a context manager that gives the second process, or None if it would have nothing to do."""
     chosen = chosen_tables(request.tables, given(request))
     names = [table.name for table in chosen if not table.section.leads]
     return second_process(partial(beside.prepare, tables=names)) if not on and is_worth_it(chosen) else nullcontext()
@@ -196,10 +196,10 @@ def _new_folder() -> Path:
 def _measure_all(
     run: Run, asks: Sequence[Asked], where: Place, second: Second | None, others: Sequence[Asked] = ()
 ) -> Shown:
-    """Every table measured and shown.
+    """Measure and show every table. Return the shown tables.
 
     Args:
-        others: what the second process measures.
+        others: the tables that the second process measures.
     """
     # The answer first: this process measures nothing else while people wait for it.
     first, rest = ([ask for ask in asks if ask.table.section.leads is leads] for leads in (True, False))
@@ -219,7 +219,8 @@ def _measure_all(
 
 
 def _beside(asks: Iterable[Asked]) -> list[Asked]:
-    """Return what the second process measures, so that both take as long: not the answer, and nothing that is timed."""
+    """Return the tables that the second process measures, so that both processes take about as long. The first
+    process keeps the answer and all timed tables."""
     chosen: list[Asked] = []
     own = sum(seconds_of(ask) for ask in asks if ask.table.section.leads or _takes_times(ask))
     beside = 0.0

@@ -1,5 +1,5 @@
-"""The functions that `run` keeps for its page: every codec of the catalogue in all languages. Those of the answers
-are run."""
+"""The functions that `run` keeps for its page: every codec of the catalogue in all languages. The functions of the
+answers are also run."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _best(name: str, rows: list[Row]) -> Iterator[Row]:
 
 
 def _written(codec: Codec, is_proven: bool) -> Written:
-    """Return a codec in the languages that it can be written in; what was written and run before is kept."""
+    """Return a codec's functions in all languages; for a codec of the catalogue, earlier results are reused."""
     facts = (sources(), codec.name, str(is_proven), *LANGUAGES, *states())
     key = cache.key_of("code", *facts) if is_in_catalogue(codec.encoding) else ""
     return Written(**cache.kept(key, lambda: _written_now(codec, is_proven)._asdict()))

@@ -1,4 +1,4 @@
-"""The options of `run`: the tables, and what several of them take. Imports nothing heavy."""
+"""The options of `run`: the tables, and options of the tables themselves. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..tables.registry import TABLES
 
 
 def _shared() -> dict[str, Field]:
-    """The options that `run` takes, by their names in Python; of several tables' the first says what they are."""
+    """Return the options that `run` takes, by Python name; if several tables have an option, the first defines it."""
     options: dict[str, Field] = {}
     for table in TABLES.values():
         for name, option_field in fields_of(table.options).items():

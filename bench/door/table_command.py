@@ -35,18 +35,19 @@ def table_command(
     report: Path | None,
     on: str | None = None,
 ) -> int:
-    """Measure a table and write it. With -o a command that was stopped goes on where it was.
+    """Measure a table and write it. With -o, a stopped command continues.
 
-    A table whose answer is kept gives it again, if nothing else is written.
+    A kept answer is given again if the command writes nothing else.
 
     Args:
-        on: where it is measured; None for this process.
+        on: where the table is measured; None for this process.
 
     Returns:
-        the exit status: 1 where a row fails.
+        the exit status: 1 if a row fails.
 
     Raises:
-        UsageError, MissingError: see measuring.asked; MissingError also in the end, where a part could not be measured.
+        UsageError, MissingError: see `measuring.asked`; MissingError also at the end, if a part could not be
+            measured.
     """
     writes = any(isinstance(value, Path) for value in vars(outputs).values())
     is_alone = not (output or report or on or writes)
@@ -83,14 +84,14 @@ def _command(
 
 
 def in_folder(table: Table, outputs: Any, folder: Path) -> Any:
-    """Outputs with those that a run keeps in folders of its own, unless they are to be elsewhere."""
+    """Return outputs in which the files that a run keeps are in its folder, unless they have another place."""
     known = {field.name for field in fields(outputs)}
     places = {name: folder / place for name, place in table.files.items() if name in known}
     return replace(outputs, **{name: place for name, place in places.items() if getattr(outputs, name) is None})
 
 
 def _work(table: Table) -> Row:
-    """Return what kept rows must agree in to be reused."""
+    """Return the facts that must match for kept rows to be reused."""
     return {"table": table.name, "sources": sources(), "machine": platform.platform()}
 
 
@@ -119,7 +120,7 @@ def _say_how_to_go_on(kept: Beside | None, total: int) -> None:
 
 
 def _show(table: Table, done: Measured, format: str, output: Path | None) -> bool:
-    """Write the rows and what goes with them; whether a row fails."""
+    """Write the rows, messages, pictures and charts. Return whether a row fails."""
     from ..show.showing import say_lines, say_skipped, show
 
     work = table.work
@@ -157,7 +158,7 @@ def _why_nothing(table: Table, rows: Sequence[Row]) -> str:
 
 
 def _bring(table: Table, outputs: Any, folder: Path) -> None:
-    """Have what was written elsewhere in a run's folder too."""
+    """Copy outputs that were written elsewhere into a run's folder."""
     for name, inside in table.files.items():
         target = getattr(outputs, name, None)
         if target is not None and target.exists() and not (folder / inside).exists():

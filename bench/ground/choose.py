@@ -18,10 +18,10 @@ PART, VERTICES = "#", "vertices"
 
 def choose(what: str, names: Iterable[Word], known: Mapping[str, T]) -> list[T]:
     """Return the values that names stand for, however they are spelled, or all of them for "all"; a value of the
-    caller's own is itself.
+    caller's own is returned unchanged.
 
     Raises:
-        UsageError: an unknown name; the message says what may have been meant, and lists the known ones.
+        UsageError: an unknown name; the message suggests a similar name, and lists the known names.
     """
     asked = list(names)
     if not asked:
@@ -46,7 +46,7 @@ def choose_one(what: str, name: str, known: Collection[str]) -> str:
 
 
 def unknown_name(what: str, names: Iterable[str], known: Collection[str], listed: str = "") -> UsageError:
-    """Return the error for unknown names, with what may have been meant.
+    """Return the error for unknown names, with similar names as suggestions.
 
     Args:
         listed: the list of what is known, if that is more than the names.
@@ -59,10 +59,10 @@ def unknown_name(what: str, names: Iterable[str], known: Collection[str], listed
 def choose_or_read(
     what: str, names: Iterable[Word], known: Mapping[str, T], endings: Collection[str], read: Callable[[Path], T]
 ) -> list[T]:
-    """Return the values that names stand for, or files by what their names end in.
+    """Return the values that names stand for, and the contents of files, which are recognised by their endings.
 
     Raises:
-        UsageError: an unknown name, or two files of one name, which rows could not tell apart; and what `read` raises.
+        UsageError: an unknown name, or two files of one name, which rows could not tell apart; also errors of `read`.
     """
     words = list(names)
     files = [Path(word) for word in words if isinstance(word, str) and Path(word).suffix.lower() in endings]
@@ -79,7 +79,7 @@ def choose_or_read(
 
 
 def whole_file_of(word: str) -> str:
-    """The file of a word that names a part of it, mesh.glb of mesh.glb#vertices; any other word as it is."""
+    """Return the file of a word that names a part of it, mesh.glb of mesh.glb#vertices; other words unchanged."""
     return word.removesuffix(f"{PART}{VERTICES}")
 
 
@@ -91,7 +91,7 @@ def names_a_file(word: str) -> bool:
 
 
 def names_a_folder(word: str) -> bool:
-    """Whether there is a folder of this name."""
+    """Whether a folder of this name exists."""
     with suppress(OSError, ValueError):
         return bool(word) and Path(word).is_dir()
     return False

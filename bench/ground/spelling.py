@@ -1,4 +1,4 @@
-"""Names as people type them: in capitals, with hyphens, as an API or a maker of GPUs has them, or nearly right."""
+"""Names as people type them: in capitals, with hyphens, as an API or a GPU vendor writes them, or nearly right."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def plain(word: str) -> str:
 
 
 def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
-    """The known name that a word stands for; None where it stands for none, or for several."""
+    """Return the known name that a word stands for; None if it stands for no name, or for several."""
     known = list(known)
     if word in known:
         return word
@@ -93,7 +93,7 @@ def meant(word: str, known: Iterable[str], what: str = "") -> str:
     """Return what an unknown word may have meant, as the end of a sentence; empty if nothing is similar.
 
     Args:
-        what: the kind of name, which may have other words for it.
+        what: the kind of name; some kinds have alternative words.
     """
     known = list(known)
     parts = [part for part in re.split(r"[\s;|+]+", word) if part]

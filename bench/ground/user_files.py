@@ -104,10 +104,10 @@ LANGUAGES = tuple(dict.fromkeys(name for name in ("HLSL", *TRANSLATED.values()) 
 _MACRO = re.compile(r"[A-Za-z_]\w*(?:=.*)?")
 
 
-def _root(said: str) -> tuple[str, str]:
+def _root(text: str) -> tuple[str, str]:
     """Return the prefix of names and the folder, from FOLDER or VIRTUAL=FOLDER."""
-    virtual, mark, folder = said.partition("=")
-    return (virtual.strip("/"), folder) if mark else ("", said)
+    virtual, mark, folder = text.partition("=")
+    return (virtual.strip("/"), folder) if mark else ("", text)
 
 
 @dataclass(frozen=True)
@@ -183,7 +183,7 @@ class UserFile:
         return UserFile(f"{match['file']}:{pair}{match['settings']}")
 
     def with_language(self, language: str) -> UserFile:
-        """Return it with what it is written in."""
+        """Return the file with a setting for its language."""
         return UserFile(_with_settings(self.word, [f":{LANGUAGE}={language}"]))
 
 
@@ -240,7 +240,7 @@ def parts_of(word: str) -> list[str]:
 
 
 def names_an_encoder(word: str) -> bool:
-    """Whether a word is the file of a user's encoder: by its ending, or as it is text."""
+    """Whether a word names the file of a user's encoder: by its ending, or because it is an existing text file."""
     is_by_ending = Path(file_of(word)).suffix.lower() in ENDINGS and not _is_only_an_ending(word)
     return is_by_ending or _match_of_text(word) is not None
 
@@ -256,11 +256,12 @@ def file_of(word: str) -> Path:
 
 
 def files_in(word: str, folder: Path = Path()) -> list[str]:
-    """The files that a word names, as it has them: `mine.hlsl` of mine.hlsl:EncodeNormal:DecodeNormal, both of
-    mine.glsl/rg8+best_fit:table=scales.npy, and the folders of mine.hlsl:include=../library.
+    """Return the files that a word names, as they are written there: `mine.hlsl` of
+    mine.hlsl:EncodeNormal:DecodeNormal, both files of mine.glsl/rg8+best_fit:table=scales.npy, and also the folders
+    of mine.hlsl:include=../library.
 
     Args:
-        folder: where they are looked for.
+        folder: where the files are looked for.
     """
     match = _match(word)
     whole = match["file"] if match else whole_file_of(word)

@@ -1,1 +1,1 @@
-"""Results that are kept: rows, runs, and what changed between two of them."""
+"""Stored results: rows, runs, and the changes between two runs."""

@@ -1,4 +1,4 @@
-"""Answers of commands, kept in the user's cache folder and given again until what decides them changes."""
+"""Answers of commands, kept in the user's cache folder and reused until something that they depend on changes."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ def answered(key: str, command: Callable[[], int]) -> int:
 
 
 def key_of_answer(table: Table, options: Any, *printed: str) -> str:
-    """Return the key of an answer: what is asked, how it is printed, the program, and what computes. Empty if the
-    question names files, which change."""
+    """Return the key of an answer: the question, the form of the output, the program, and the machine with its
+    packages and compilers. Empty if the question names files, which may change."""
     asked = [(field.name, getattr(options, field.name)) for field in fields(options)]
     values = [value for _, given in asked for value in _flat(given)]
     if not all(isinstance(value, Value) for value in values) or any(map(_may_be_a_file, values)):
@@ -74,7 +74,7 @@ def _may_be_a_file(value: Value) -> bool:
 
 
 def _packages() -> list[str]:
-    """Return the names and versions of what is installed, as its folders say them."""
+    """Return the names and versions of installed packages, from the names of their folders."""
     folders = {Path(sysconfig.get_path(name)) for name in ("purelib", "platlib")}
     return sorted(path.name for folder in folders for path in folder.glob("*.dist-info"))
 

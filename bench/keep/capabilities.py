@@ -47,7 +47,7 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
 
 
 def capabilities() -> dict[str, str]:
-    """ "yes" for each of CAPABILITIES, or "no" with what to install."""
+    """Return "yes" for each of CAPABILITIES, or "no" with what to install."""
     return {name: _yes_or_why(require) for name, require in CAPABILITIES.items()}
 
 

@@ -86,7 +86,7 @@ def _subject(table: str, keys: Mapping[str, object]) -> str:
 
 
 def _sentence(name: str, count: int, changes: Sequence[Row]) -> str:
-    """In how many of `count` rows an encoding changed, and the figures of its worst row."""
+    """Return a sentence: in how many of `count` rows an encoding changed, and the figures of its worst row."""
     rows = rows_of(changes)
     verdicts = Counter(map(_verdict_word, rows))
     first, *others = (verdict for verdict in VERDICTS if verdicts[verdict])
@@ -116,8 +116,8 @@ def _before_and_after(change: Row) -> str:
 
 
 def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
-    """Changes for people, the worst first: a line for each row, or for rows that changed together; where these are more
-    than `most`, a line for several rows that share an encoding, or a table."""
+    """Return changes for people, the worst first: a line for each row, or for rows that changed together. If there
+    would be more than `most` lines, rows that share an encoding share a line, or else all rows of a table."""
     grouped: list[list[Row]] = []
     for by in (_together_key(changes), _subject_key, _table_key):
         groups: dict[tuple, list[Row]] = {}

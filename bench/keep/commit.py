@@ -1,4 +1,4 @@
-"""The commit that a run is of: the working folder's, or what the user calls the change."""
+"""The commit of a run: that of the working folder, or the user's name for the change."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ SHORT, CHANGED = 8, "+"
 
 
 def commit_of(named: str | None, folder: Path) -> Row:
-    """Return what a run records of its commit; empty if a folder is not in a repository and the change has no name.
+    """Return the facts that a run records about its commit; empty if a folder is not in a repository and the change
+    has no name.
 
     `name`, `time` in seconds, `subject`, whether files of the repository were `changed` since, and `rank`, which
-    orders commits of the same second, as a rebase makes them.
+    orders commits of the same second, such as those of a rebase.
     """
     if named:
         return {"name": named}
@@ -56,7 +57,7 @@ def _git(folder: Path, *words: str) -> str:
 
 
 def short_name(commit: Row) -> str:
-    """A commit as people read it."""
+    """Return a commit's name for people: a hash is shortened, and uncommitted changes are marked."""
     name = str(commit["name"])
     is_hash = "time" in commit
     return (name[:SHORT] if is_hash else name) + CHANGED * bool(commit.get("changed"))

@@ -52,8 +52,8 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
     return int(bool(failing))
 
 
-def _settings_apart(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[str]:
+def _settings_apart(earlier: Mapping[str, Any], other: Mapping[str, Any]) -> list[str]:
     """Return the external settings that differ between two runs, in words."""
-    names = sorted(name for name in {*one, *other} if name.startswith(SETTING) or name == ROWS_BY)
-    values = ((name.removeprefix(SETTING), one.get(name, "not set"), other.get(name, "not set")) for name in names)
+    names = sorted(name for name in {*earlier, *other} if name.startswith(SETTING) or name == ROWS_BY)
+    values = ((name.removeprefix(SETTING), earlier.get(name, "not set"), other.get(name, "not set")) for name in names)
     return [f"{name} was {before} and is {after}" for name, before, after in values if before != after]

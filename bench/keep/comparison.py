@@ -138,7 +138,7 @@ def is_small(change: Row) -> bool:
 
 
 def named_rows(table: Table, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
-    """Rows by what they are called, and those that are called alike by their order."""
+    """Return rows by name, and rows of the same name by their order."""
     return in_turn(rows, table.name_of)
 
 
@@ -176,19 +176,19 @@ def _change_row(
     return line | {"unit": known.unit if known else ""}
 
 
-def _column_changes(table: Table, called: str, one: Row, other: Row, same_machine: bool) -> Iterator[Row]:
-    differing = [name for name in dict.fromkeys([*one, *other]) if not same(one.get(name), other.get(name))]
-    has_reason = bool(differing) and (gives_reason(table, one) or gives_reason(table, other))
+def _column_changes(table: Table, called: str, earlier: Row, other: Row, same_machine: bool) -> Iterator[Row]:
+    differing = [name for name in dict.fromkeys([*earlier, *other]) if not same(earlier.get(name), other.get(name))]
+    has_reason = bool(differing) and (gives_reason(table, earlier) or gives_reason(table, other))
     for column in differing:
         known = table.column(column)
         if known and known.role in (Role.FIGURE, Role.REASON):
-            before, after = one.get(column), other.get(column)
+            before, after = earlier.get(column), other.get(column)
             severity = severity_of(known, before, after, has_reason)
-            yield _change_row(table, one, called, column, before, after, severity)
-    if same_machine and one.get(EACH) and other.get(EACH):
-        times = [[float(word) for word in row[EACH].split()] for row in (one, other)]
-        if is_slower_or_faster(one[FRAME], other[FRAME]) and mann_whitney(*times) <= CHANCE:
-            yield time_change(table, one, called, FRAME, one[FRAME], other[FRAME])
+            yield _change_row(table, earlier, called, column, before, after, severity)
+    if same_machine and earlier.get(EACH) and other.get(EACH):
+        times = [[float(word) for word in row[EACH].split()] for row in (earlier, other)]
+        if is_slower_or_faster(earlier[FRAME], other[FRAME]) and mann_whitney(*times) <= CHANCE:
+            yield time_change(table, earlier, called, FRAME, earlier[FRAME], other[FRAME])
 
 
 def is_slower_or_faster(before: float, after: float) -> bool:
@@ -213,8 +213,9 @@ def gives_reason(table: Table, row: Row) -> bool:
 def severity_of(column: Column, before: Any, after: Any, has_reason: bool) -> float:
     """Return how much worse a figure has become, in decibels; below 0 if it is better, 0 for neither.
 
-    A figure that can no longer be measured is infinitely worse; one that now can be is infinitely better. Without a
-    reason, a missing figure was not looked for, as the supremum of an encoding that is no longer the best.
+    A figure that can no longer be measured is infinitely worse; a figure that now can be is infinitely better. A
+    figure that is missing without a reason was not requested, such as the supremum of an encoding that is no longer
+    the best.
     """
     if not column.better:
         return 0.0
@@ -235,9 +236,9 @@ def _growth(column: Column, before: float, after: float) -> float:
     return 20 * math.log10(max(after, least) / max(before, least)) if least else 0.0
 
 
-def same(one: Any, other: Any) -> bool:
+def same(figure: Any, other: Any) -> bool:
     """Whether two figures are equal; NaN equals itself here."""
-    return one == other or (one != one and other != other)
+    return figure == other or (figure != figure and other != other)
 
 
 def difference(before: Any, after: Any) -> str:
@@ -247,10 +248,10 @@ def difference(before: Any, after: Any) -> str:
     return NOT_MEASURED if after is None else NEW if before is None else "another"
 
 
-def mann_whitney(one: Sequence[float], other: Sequence[float]) -> float:
+def mann_whitney(sample: Sequence[float], other: Sequence[float]) -> float:
     """Return the probability that two samples are by chance as far apart in rank as these, in either direction."""
     from scipy.stats import mannwhitneyu
 
     # The exact distribution knows no ties.
-    ties = len({*one, *other}) < len(one) + len(other)
-    return float(mannwhitneyu(one, other, method="asymptotic" if ties else "exact").pvalue)
+    ties = len({*sample, *other}) < len(sample) + len(other)
+    return float(mannwhitneyu(sample, other, method="asymptotic" if ties else "exact").pvalue)

@@ -84,9 +84,9 @@ class Change:
     """A figure that changed from one run to the next.
 
     Attributes:
-        line: the change as `compare` has it.
+        line: the change as `compare` reports it.
         at: the first run with the change.
-        mended: the run since which the figure is no longer worse; None if it still is.
+        mended: the run since which the figure is no longer worse; None if it is still worse.
         series: the row that has the figure.
     """
 
@@ -147,22 +147,22 @@ class Rows:
         return self._names[id(row)]
 
 
-def _close_gap(series: Series, at: int, asked: Sequence[str], found: int | None) -> None:
-    """Note which run first lacked a row, of those before `at` that were asked for the same as the last that has it."""
+def _close_gap(series: Series, run_index: int, asked: Sequence[str], regained: int | None) -> None:
+    """Note which run first lacked a row, of those before `run_index` with the same options as the last that has it."""
     last = series.runs[-1]
-    lacking = (run for run in range(last + 1, at) if asked[run] and asked[run] == asked[last])
+    lacking = (run for run in range(last + 1, run_index) if asked[run] and asked[run] == asked[last])
     if (lost := next(lacking, None)) is not None:
-        series.gaps.append((lost, found))
+        series.gaps.append((lost, regained))
 
 
-def _add(series: Series, at: int, row: Row, machine: str) -> None:
+def _add(series: Series, run_index: int, row: Row, machine: str) -> None:
     """The row of one run more."""
-    series.runs.append(at)
+    series.runs.append(run_index)
     if not series.rows or series.rows[-1][1] is not row:
-        series.rows.append((at, row))
+        series.rows.append((run_index, row))
     if series.is_timed:
         for name in _clocks(series.table, row):
-            series.times.setdefault((machine, name), []).append((at, row[name]))
+            series.times.setdefault((machine, name), []).append((run_index, row[name]))
 
 
 def _clocks(table: Table, row: Row) -> Iterator[str]:
@@ -174,7 +174,7 @@ def _clocks(table: Table, row: Row) -> Iterator[str]:
 
 
 def changes_of(series: Sequence[Series]) -> list[Change]:
-    """Return what got worse, or better than ever before, in any of some rows."""
+    """Return the figures that became worse, or better than ever before, in any of some rows."""
     tests = sum(len(times) - 1 for row_series in series for times in row_series.times.values())
     return [
         change
@@ -195,20 +195,20 @@ def _figures(series: Series) -> Iterator[Change]:
                 yield Change(line, run, _mended_at(series, line, run, column), series)
 
 
-def _is_told(series: Series, line: Row, at: int, column: Column) -> bool:
-    """Whether a figure is worse, or better than it ever was; what is as good again was mended."""
+def _is_told(series: Series, line: Row, run_index: int, column: Column) -> bool:
+    """Whether a figure became worse, or better than ever before; a return to an earlier figure is not reported."""
     if line["verdict"] == "worse":
         return True
-    earlier = [value for run, value in series.values(line["column"]) if run < at]
+    earlier = [value for run, value in series.values(line["column"]) if run < run_index]
     return all(severity_of(column, value, line["after"], has_reason=True) < 0 for value in earlier)
 
 
-def _mended_at(series: Series, line: Row, at: int, column: Column) -> int | None:
-    """The first run behind `at` in which a figure is not worse than before, or by little where it was by much."""
+def _mended_at(series: Series, line: Row, run_index: int, column: Column) -> int | None:
+    """Return the first run after `run_index` in which a figure is no longer worse, or little worse after much."""
     for run, value in series.values(line["column"]):
         severity = severity_of(column, line["before"], value, has_reason=True)
         is_as_good = severity <= 0 or (not is_small(line) and is_small(line | {"severity": severity}))
-        if run > at and line["verdict"] == "worse" and is_as_good:
+        if run > run_index and line["verdict"] == "worse" and is_as_good:
             return run
     return None
 

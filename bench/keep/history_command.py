@@ -109,8 +109,8 @@ def _columns(series: Sequence[Series], wanted: Wanted) -> set[str]:
 
 
 def _groups(changes: Sequence[Change]) -> list[Group]:
-    """Changes that were made at one commit and mended at one: what is worse first, then what was mended, the worst of
-    each first."""
+    """Return groups of changes that share a commit and the commit that mended them: first figures that are still
+    worse, then mended figures, then better figures, the worst of each first."""
     by_commit: dict[tuple[str, int, int | None], list[Change]] = {}
     for change in changes:
         is_worse = change.line["verdict"] in ("worse", GONE)
@@ -149,7 +149,7 @@ def _by_series(changes: Sequence[Change]) -> list[list[Change]]:
 
 
 def _tell_what_else(runs: Sequence[Past], groups: Sequence[Group]) -> None:
-    """On standard error, what else changed at the commits that are named."""
+    """Report on standard error what else changed at the commits of the groups."""
     apart = list(named_apart(runs))
     for index in dict.fromkeys(group.at for group in groups):
         if apart[index]:
@@ -157,7 +157,7 @@ def _tell_what_else(runs: Sequence[Past], groups: Sequence[Group]) -> None:
 
 
 def _lead(runs: Sequence[Past], series: Sequence[Series], groups: Sequence[Group]) -> str:
-    """The runs, what is not compared, and a sentence for each commit that made something worse."""
+    """Return the runs, the number of rows not compared, and a sentence for each commit that made something worse."""
     first, last = runs[0], runs[-1]
     lines = [f"{len(runs)} run{'s' * (len(runs) > 1)}, from {_called(first)} to {_called(last)}"]
     others = len(series) - len({(each.table.name, each.called) for each in series})
@@ -182,7 +182,7 @@ def _sentence(runs: Sequence[Past], group: Group) -> str:
 
 
 def _lines(runs: Sequence[Past], groups: Sequence[Group]) -> list[Row]:
-    """Lines for people."""
+    """Return the rows of the table for people: changes by group, with the commit, its date and the mending commit."""
     most = max(1, LINES // max(1, len(groups)))
     return [
         {"commit": runs[group.at].name, "date": runs[group.at].day}

@@ -1,4 +1,4 @@
-"""Lines of JSON that are kept for good as they come, so that what was stopped goes on where it was."""
+"""Lines of JSON that are stored on disk as they come, so that a stopped command can continue."""
 
 from __future__ import annotations
 
@@ -93,10 +93,10 @@ def data_of(lines: Sequence[Line]) -> bytes:
 
 @contextmanager
 def journal(path: Path) -> Iterator[Journal]:
-    """The journal in a file, made if it is not there.
+    """Yield the journal in a file, which is made if it is missing.
 
     Raises:
-        UsageError: another process writes it, or it cannot be written.
+        UsageError: another process is writing the file, or the file cannot be written.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -116,10 +116,10 @@ def journal(path: Path) -> Iterator[Journal]:
 
 
 def read_lines(path: Path, known: dict[bytes, Line] | None = None) -> list[Line]:
-    """The whole lines of a journal; nothing is written, and a missing file has none. Raises UsageError.
+    """Return the complete lines of a journal, without writing to it; a missing file has no lines. Raises UsageError.
 
     Args:
-        known: lines that were parsed before, which are the same objects; what this journal has is added.
+        known: lines that were parsed before, which are returned as the same objects; new lines are added.
     """
     try:
         content = file_bytes(path, MOST) if path.exists() else b""
@@ -129,7 +129,7 @@ def read_lines(path: Path, known: dict[bytes, Line] | None = None) -> list[Line]
 
 
 def _whole_lines(path: Path, content: bytes, known: dict[bytes, Line] | None = None) -> list[Line]:
-    """The lines that have their end: what was being written when the process was killed has none."""
+    """Return the complete lines, without a line that was being written when the process was killed."""
     whole = content[: content.rfind(b"\n") + 1].split(b"\n")[:-1]
     # An editor may leave an empty line.
     numbered = [(f"{path}, line {number}", line) for number, line in enumerate(whole, 1) if line.strip()]

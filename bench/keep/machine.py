@@ -64,12 +64,12 @@ def _gl_facts() -> dict[str, str]:
 
 
 def compilers() -> dict[str, str]:
-    """Return the compilers of GPU drivers and those of shaders; for a missing one, what to install."""
+    """Return the compilers of GPU drivers and of shaders; for a missing compiler, what to install."""
     return isa.driver_versions() | _compiler_facts()
 
 
 def _compiler_facts() -> dict[str, str]:
-    """The compilers of shaders; of one that is missing, what to install."""
+    """Return the compilers of shaders; for a missing compiler, what to install."""
     glslang, optimiser = spirv.version(spirv.COMPILER), spirv.version(spirv.OPTIMISER)
     return {
         "GLSL compiler": spirv.title(glslang) if glslang else spirv.NO_COMPILER,
@@ -109,8 +109,8 @@ def _require(*libraries: str) -> None:
 
 
 def examine() -> list[dict[str, str]]:
-    """Rows of name and value. "GL rounds ..." is the device's own conversion; where it is not what a codec asks for,
-    the shader rounds before the write. At last what can be measured here."""
+    """Return rows of name and value, which end with the measurements that this machine can make. "GL rounds ..." is
+    the device's own conversion; if a codec asks for another conversion, the shader rounds before the write."""
     from .capabilities import capabilities
 
     return [{"name": name, "value": value} for name, value in (machine() | capabilities()).items()]

@@ -22,10 +22,10 @@ class Past:
     """A run of the history.
 
     Attributes:
-        name: its commit's; of a run without one, its folder's.
-        commit: what it records of its commit; empty where it has none.
-        seconds: when the commit was made; without one, when the run was.
-        ran: when the run was.
+        name: the name of its commit; without a commit, the name of its folder.
+        commit: the facts that it records about its commit; empty if it records none.
+        seconds: when the commit was made; without a commit, when the run was made.
+        ran: when the run was made.
         done: its rows.
     """
 
@@ -57,8 +57,8 @@ class Past:
 
 
 def past_runs(folders: Sequence[Path]) -> list[Past]:
-    """Return the runs in some folders, by their commits, and those of one commit by their own dates. Runs without rows
-    are left out, unless all are without.
+    """Return the runs in some folders in the order of their commits, and runs of the same commit by date. Runs
+    without rows are left out, unless all runs lack rows.
 
     Raises:
         UsageError: a folder has no run, or a run cannot be read.
@@ -90,7 +90,7 @@ def _past(folder: Path, done: Done) -> Past:
 
 
 def _number(value: object, usual: float) -> float:
-    """Return a value as a float where it is a number of seconds before the year 3000, else `usual`: people may have
+    """Return a value as a float if it is a number of seconds before the year 3000, else `usual`: people may have
     edited the file."""
     return float(value) if isinstance(value, int | float) and 0 <= value < LATEST else usual
 

@@ -1,4 +1,4 @@
-"""Rows and keys as JSON gives them back."""
+"""Rows and keys in the form that JSON reads back."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..tables.table import Row
 
 
 def plain(rows: Sequence[Row]) -> list[Row]:
-    """Rows as JSON gives them back: NumPy's numbers are Python's."""
+    """Return rows as JSON reads them back: NumPy's numbers become Python's."""
     return json.loads(json.dumps(rows, default=lambda number: number.item()))
 
 

@@ -49,7 +49,7 @@ def _is_table(data: bytes, known: Sequence[Sequence[str]]) -> bool:
 
 
 def _columns_of(data: bytes) -> list[str]:
-    """The columns of a file for programs, all of them in their order; none of what is damaged."""
+    """Return all columns of a file for programs, in order; empty for damaged JSON."""
     try:
         if data.startswith(b"["):
             return list(parsed_json(data)[0])
@@ -66,7 +66,7 @@ def _lines_of(data: bytes) -> list[list[str]]:
 
 
 def _beginnings(columns: Iterable[str]) -> set[str]:
-    """Return what the first line of a header may have of each column: the first words if the column is narrow."""
+    """Return the beginnings of column names, in whole words, that the first line of a narrow header may show."""
     words = [column.split("_") for column in columns]
     return {"_".join(several[:count]) for several in words for count in range(1, len(several) + 1)}
 
@@ -85,10 +85,10 @@ def write(
     lead: str = "",
     total: str = "",
 ) -> None:
-    """Rows to a file, or to standard output; a table that does not fit the terminal spares `expendable` columns.
+    """Write rows to a file or to standard output; a table that does not fit the terminal omits `expendable` columns.
 
-    For people, rows that differ in column `by` are tables of their own, `lead` is what stands above the table, and
-    `total` is the line below it.
+    For people, rows that differ in column `by` are separate tables, `lead` is the text above the table, and `total`
+    is the line below it.
     """
     if output is None:
         width = shutil.get_terminal_size((120, 40)).columns

@@ -1,7 +1,8 @@
-"""Results folders: rows kept for good as they finish, so that a stopped run goes on and one that ended is read.
+"""Results folders: rows are stored as they are measured, so that a stopped run continues and a finished run can be
+read.
 
-A folder holds `run.json`, what was asked for and where it is measured, and `rows.jsonl`, a line for each finished step:
-the table, the key of everything that determines the rows, and the rows. Tables for others are written from those.
+A folder holds `run.json`, the request and the machine, and `rows.jsonl`, a line for each finished step: the table,
+the key of everything that determines the rows, and the rows. Tables in other formats are written from these rows.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ MOST_FACTS, SHORT = 3, 40
 
 
 def _identified(step: Row) -> list[tuple[str, Row]]:
-    """The rows of a step, each by what it is of and under what conditions."""
+    """Return the rows of a step, each with text that identifies its subject and its conditions."""
     table = TABLES[step["table"]]
     names = [c.name for c in table.of_role(Role.KEY, Role.HOW)]
     rows = map(table.as_now, step["rows"])
@@ -42,12 +43,13 @@ class Done:
     """A folder's content.
 
     Attributes:
-        facts: what run.json says.
+        facts: the content of run.json.
         steps: the finished steps in their order, each `table`, `key` and `rows`.
-        damage: what happened to the rows since the run finished; empty where nothing did.
+        damage: what happened to the rows since the run finished; empty if nothing did.
         parts: the finished parts of steps that are not finished, in the same form.
-        whole: by table its finished rows, where they are known; `finished_rows` adds to them.
-        identified: a step's rows, each by what it is of and under what conditions.
+        whole: the finished rows by table, if they are known; `finished_rows` adds to them.
+        identified: a function that returns a step's rows, each with text that identifies its subject and its
+            conditions.
     """
 
     facts: Row
@@ -100,7 +102,7 @@ class Done:
 
     @property
     def finished(self) -> bool:
-        """Whether every step has its rows, for every request that was made of the folder."""
+        """Whether every step has its rows, for every request that was made for the folder."""
         before = self.facts.get("before")
         requests = [facts for facts in before if isinstance(facts, dict)] if isinstance(before, list) else []
         # The same request may have been made again since.
@@ -109,7 +111,7 @@ class Done:
 
 
 def facts_of(command: Sequence[str]) -> Row:
-    """Return what a run records of itself before anything is measured: the command, the sources and the machine."""
+    """Return the facts that a run records before anything is measured: the command, the sources and the machine."""
     from .machine import machine
 
     return {"command": list(command), "sources": sources(), "machine": machine()}
@@ -124,7 +126,7 @@ class Shared:
         self._identified: dict[int, list[tuple[str, Row]]] = {}
 
     def identified(self, step: Row) -> list[tuple[str, Row]]:
-        """As `Done.identified`, of a step that is among `lines`; the same rows each time."""
+        """Return the same as `Done.identified`, for a step among `lines`; the same rows each time."""
         if id(step) not in self._identified:
             self._identified[id(step)] = _identified(step)
         return self._identified[id(step)]
@@ -178,7 +180,7 @@ def _check_steps(folder: Path, lines: Sequence[Row], checked: set[int]) -> None:
 
 
 def _seal_columns(data: bytes) -> Row:
-    """Return what a finished run remembers of its rows."""
+    """Return the number of lines and the digest of rows, by which a finished run detects changes."""
     return {"lines": data.count(b"\n"), "digest": hashlib.sha256(data).hexdigest()}
 
 
@@ -224,10 +226,10 @@ class Run:
         return self._kept.get(key_text(table, step.key))
 
     def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
-        """Keep the rows of a step for good, and give them as they are read back.
+        """Store the rows of a step, and return them as they are read back.
 
         Raises:
-            UsageError: they cannot be written; what was kept before stays.
+            UsageError: the rows cannot be written; rows that were stored before stay.
         """
         text, kept = key_text(table, step.key), plain(rows)
         # Those of the second process come in a thread of their own.
@@ -267,11 +269,11 @@ def _write_facts(folder: Path, facts: Row) -> None:
 
 
 class Amended:
-    """A run whose rows may be put in place of others; make it with `amended`.
+    """A run whose rows may be replaced by others; made by `amended`.
 
     Attributes:
         lines: the finished steps, each `table`, `key` and `rows`.
-        sources: the fingerprint of what computed it; empty if it does not say.
+        sources: the fingerprint of the sources that computed the rows; empty if unknown.
     """
 
     def __init__(self, folder: Path, facts: Row, kept: Journal):
@@ -360,7 +362,7 @@ def _short_text(text: str, other: str) -> str:
 
 
 def unfinished(parent: Path, facts: Row) -> Path | None:
-    """The newest folder in `parent` with a run of the same work that was stopped."""
+    """Return the newest folder in `parent` with a stopped run of the same work; None if no folder has one."""
     candidates = sorted((path.parent for path in parent.glob(f"*/{RUN}")), reverse=True)
     for folder in candidates:
         try:
@@ -383,13 +385,13 @@ def _holds_something_else(folder: Path) -> bool:
 
 @contextmanager
 def opened(folder: Path, facts: Row) -> Iterator[Run]:
-    """A results folder to write: a new one, or one that holds a run, which goes on.
+    """Yield a run in a results folder: a new run, or the run in the folder, which continues.
 
     Args:
-        facts: `sources` and `machine` decide whether it may go on; another `request` adds to it.
+        facts: `sources` and `machine` decide whether a run may continue; another `request` adds to it.
 
     Raises:
-        UsageError: there is something else, the run in it is of other sources or another machine, another process
+        UsageError: the folder holds something else, its run is of other sources or another machine, another process
             writes it, or nothing can be written.
     """
     if _holds_something_else(folder):
@@ -415,7 +417,7 @@ def _begun_facts(folder: Path, facts: Row) -> Row:
 
 
 def _extended_facts(folder: Path, kept: Row, facts: Row) -> Row:
-    """The facts of a run that goes on with another request: what was asked before is remembered."""
+    """Write and return the facts of a run that continues with another request; earlier requests are kept."""
     before = [*kept.get("before", ()), {name: kept.get(name) for name in ("request", "command", "time", "finished")}]
     new_facts = facts | {"before": before, "finished": False}
     _write_facts(folder, new_facts)

@@ -76,7 +76,7 @@ class BaselineEntry(TypedDict):
 
 @with_config(STRICT)
 class KeptLine(TypedDict):
-    """A line of what is kept next to an output file until the file is written."""
+    """A line of the rows that are kept next to an output file until the file is written."""
 
     step: str
     rows: list[dict[str, JsonValue]]

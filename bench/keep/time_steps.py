@@ -74,14 +74,14 @@ def _doubts(times: Sequence[float], begins: Sequence[int], tests: int) -> list[f
     return [_doubt(*pair, tests) for pair in pairwise(pieces)]
 
 
-def _doubt(one: Sequence[float], other: Sequence[float], tests: int) -> float:
+def _doubt(earlier: Sequence[float], other: Sequence[float], tests: int) -> float:
     """0 where the times of two pieces differ beyond noise; the more doubtful, the larger."""
-    chance = mann_whitney(one, other) * tests
-    return 0.0 if chance <= CHANCE and _is_large(one, other) else 1.0 + chance
+    chance = mann_whitney(earlier, other) * tests
+    return 0.0 if chance <= CHANCE and _is_large(earlier, other) else 1.0 + chance
 
 
-def _is_large(one: Sequence[float], other: Sequence[float]) -> bool:
+def _is_large(earlier: Sequence[float], other: Sequence[float]) -> bool:
     """Whether two pieces differ by more than anyone cares for, and by more than they waver."""
-    before, after = median(one), median(other)
-    off = [abs(time - middle) for times, middle in ((one, before), (other, after)) for time in times]
+    before, after = median(earlier), median(other)
+    off = [abs(time - middle) for times, middle in ((earlier, before), (other, after)) for time in times]
     return is_slower_or_faster(before, after) and abs(after - before) >= DEVIATIONS * FROM_MEDIAN * median(off)

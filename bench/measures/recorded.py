@@ -1,6 +1,6 @@
-"""Figures of the catalogue's codecs that come with the package, each with a key of the code that it was computed from.
+"""Figures of the catalogue's codecs that come with the package, each with a key of the code that computed it.
 
-`python -m tests.recorded` computes them anew.
+`python -m tests.recorded` computes them again.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Recorded:
     sources: Sequence[str]
 
     def find(self, name: str, codec: Codec) -> Mapping[str, Any] | None:
-        """Return the figures of a name, if they were computed from the code as it is now."""
+        """Return the figures recorded under a name; None if they were not computed from the current code."""
         known = _figures(self.file).get(name)
         return known if known and is_in_catalogue(codec.encoding) and known["key"] == self.key(codec) else None
 

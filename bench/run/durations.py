@@ -19,7 +19,8 @@ def expected(asks: Sequence[Asked], beside: Sequence[Asked]) -> dict[str, tuple[
     """Return for each table the number of its steps and the seconds of each step, and the same for the page.
 
     Args:
-        beside: what a second process measures meanwhile; only the time that exceeds this process's counts.
+        beside: the tables that a second process measures meanwhile; only the time by which it exceeds this process
+            counts.
     """
     own = {ask.table.name: (_ticks(ask), _seconds(ask)) for ask in asks if ask not in beside}
     theirs = {ask.table.name: (_ticks(ask), _seconds(ask)) for ask in beside}

@@ -36,7 +36,7 @@ class Asked:
     """A table and what is asked of it, checked; nothing is measured yet.
 
     Attributes:
-        others: further options; their steps are among the steps.
+        others: other options, whose steps are also among the steps.
     """
 
     table: Table
@@ -54,7 +54,7 @@ class Kept(Protocol):
         ...
 
     def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
-        """Keep the rows of a step for good, and give them as they are read back. Raises UsageError."""
+        """Store the rows of a step, and return them as they are read back. Raises UsageError."""
         ...
 
 
@@ -75,19 +75,20 @@ class Here:
     """Steps are measured in this process, in their order."""
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
-        """As every Place. Raises MissingError where the GL device was lost: that step's rows are not given."""
+        """Yield each step with its rows, measured in this process. Raises MissingError if the OpenGL device was lost;
+        the rows of that step are discarded."""
         settings_text = ", ".join(f"{name}={value}" for name, value in settings().items())
         for step, rows in zip(steps, ask.table.work.measure(steps, tick), strict=True):
             require_living_device()
             yield step, [_with_settings(ask.table, row, settings_text) for row in rows]
 
 
-def _with_settings(table: Table, row: Row, said: str) -> Row:
-    """A row whose device has what is set from outside, if anything is. A device that names the row is another
-    machine's."""
+def _with_settings(table: Table, row: Row, settings_text: str) -> Row:
+    """Return a row whose device includes the settings from outside, if there are any. A device that identifies the
+    row is another machine's, and stays as it is."""
     return (
-        row | {"device": f"{row['device']}, {said}"}
-        if said and row.get("device") and table.column("device") not in table.of_role(Role.KEY)
+        row | {"device": f"{row['device']}, {settings_text}"}
+        if settings_text and row.get("device") and table.column("device") not in table.of_role(Role.KEY)
         else row
     )
 
@@ -96,7 +97,7 @@ HERE = Here()
 
 
 class Nothing:
-    """A store that keeps no rows: every step is measured anew."""
+    """A store that keeps no rows: every step is measured again."""
 
     def find(self, table: str, step: Step) -> list[Row] | None:  # noqa: ARG002 # as of every Kept
         return None
@@ -132,12 +133,12 @@ def asked_together(table: Table, several: Sequence[Any], outputs: Any) -> Asked:
     return replace(asks[0], steps=list(steps.values()), others=[ask.options for ask in asks[1:]])
 
 
-def _with_files(step: Step, found: Row) -> Step:
-    return replace(step, key=step.key | found, parts=[_with_files(part, found) for part in step.parts])
+def _with_files(step: Step, fingerprints: Row) -> Step:
+    return replace(step, key=step.key | fingerprints, parts=[_with_files(part, fingerprints) for part in step.parts])
 
 
 def measured(ask: Asked, kept: Kept, place: Place = HERE) -> Measured:
-    """The finished rows: those that are kept, and the others measured now and kept as they come."""
+    """Return the finished rows: rows that were kept, and others that are measured now and kept as they come."""
     step_rows = _measured_steps(ask, kept, place)
     rows = ask.table.work.finish([row for rows in step_rows for row in rows])
     return Measured(ask.options, ask.outputs, ask.steps, rows, step_rows)
@@ -251,7 +252,7 @@ def _files_of_frame(path: Path) -> list[Path]:
 
 
 def _files_of_layout(path: Path) -> list[Path]:
-    """The encoder or the table that a layout names, and what is read with it."""
+    """Return the encoder or the table that a layout names, and the files that are read with it."""
     # It imports JAX, which start-up does without.
     from ..subjects.codecs.layout_names import files_of_layout
 

@@ -68,7 +68,8 @@ class Piped:
         return self._process.poll()
 
     def call(self, function: Callable[..., None], *arguments: Any) -> None:
-        """Have it call a function with what sends a value here, and arguments. One that has ended does not."""
+        """Have the process call a function with a function that sends values here, and with arguments. A process that
+        has ended calls nothing."""
         # Bytes within a pickle: importing what they name is left to its main thread.
         call = pickle.dumps(pickle.dumps((function, arguments)))
         assert self._process.stdin
@@ -91,7 +92,7 @@ class Piped:
             self._process.stdin.close()
 
     def wait(self) -> list[str]:
-        """End it with all that it started, and its folder. Gives the lines that it wrote to standard error."""
+        """End the process and all that it started, and delete its folder. Return its lines on standard error."""
         self.end()
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(END_S)
@@ -126,7 +127,7 @@ def _take(calls: IO[bytes], waiting: SimpleQueue[bytes]) -> None:
 
 
 def _call(call: bytes, send: Send) -> None:
-    """Call a function; what it raises is sent."""
+    """Call a function, and send any error that it raises."""
     try:
         function, arguments = pickle.loads(call)
         function(send, *arguments)
@@ -137,7 +138,7 @@ def _call(call: bytes, send: Send) -> None:
 
 
 def main() -> None:
-    """Call what standard input asks for."""
+    """Call the functions that arrive through standard input."""
     look_for_garbage_seldom()
     signal.signal(signal.SIGTERM, _end_now)
     calls, values = _own_ends()

@@ -1,7 +1,8 @@
 """The second process of a run, which measures tables while the first one renders others.
 
-Python and what it waits for keep one core busy, and llvmpipe leaves much of a second one idle. A run starts the process
-with `second_process`, and says what it calls. It writes the files of what it measured, too.
+Python and the code that it waits for keep one core busy, and llvmpipe leaves much of a second core idle. A run starts
+the process with `second_process`, and tells it what to call. The process also writes the files of the tables that it
+measures.
 """
 
 from __future__ import annotations
@@ -66,10 +67,10 @@ class Second:
         self._process.call(function, *arguments)
 
     def wait(self) -> None:
-        """Until its tables are measured and written; rows are missing where something killed it.
+        """Wait until the tables are measured and written; rows are missing if the process was killed.
 
         Raises:
-            UsageError, MissingError: what was wrong there.
+            UsageError, MissingError: measuring or writing failed.
         """
         self._process.ended.wait()
         if self._error:
@@ -106,10 +107,10 @@ class Second:
 
 @contextmanager
 def second_process(first: Callable[[Send], None]) -> Iterator[Second]:
-    """A process that waits for what to measure; ended with the block.
+    """Yield a process that waits for tables to measure, and end it with the block.
 
     Args:
-        first: what it calls at once: it imports what it will need.
+        first: the function that the process calls at once, to import what it will need.
     """
     second = Second(first)
     try:

@@ -60,8 +60,8 @@ def _takes(table: str, option: str) -> bool:
 
 
 def _codec_record(key: CodecKey) -> dict[str, Any]:
-    """The storage of a codec in words, its bits, what its codes are worth where that is less, what numbers it stores
-    and which normals it holds; empty where that is not known."""
+    """Return a codec's storage in words, its bits, the bits that its codes are worth if fewer, its numbers and its
+    domain; empty for an unknown codec."""
     if not (codec := codec_of(key)):
         return {}
     numbers = f"{rule_of_first(codec.storage, codec.encoding.components)} {codec.rounding}"
@@ -72,7 +72,7 @@ def _codec_record(key: CodecKey) -> dict[str, Any]:
 
 
 def codec_of(key: CodecKey) -> Codec | None:
-    """A codec of the catalogue; None where the encoding is not, or nothing is known of the storage."""
+    """Return a codec of the catalogue; None if its encoding is not in the catalogue, or its storage is unknown."""
     encoding = ENCODINGS.get(key.encoding)
     try:
         storage = storage_of(key.storage)
@@ -113,6 +113,6 @@ def _formula(encoding: Encoding, what: str) -> list[str]:
 
 def _engines(encoding: Encoding) -> Iterator[tuple[str, int, str]]:
     """The engines whose layouts keep normals by an encoding, in its own axes or turned; the year, and the storage."""
-    for layout in sorted(LAYOUTS.values(), key=lambda one: (one.engine.lower(), one.year)):
+    for layout in sorted(LAYOUTS.values(), key=lambda preset: (preset.engine.lower(), preset.year)):
         if layout.engine and layout.encoding.name.partition(":")[0] == encoding.name:
             yield layout.engine, layout.year, layout.normal_storage

@@ -76,12 +76,12 @@ def _identity(line: Row) -> Identity:
 
 
 def _is_newer(file: DeviceFile, there: Mapping[str, Any] | None) -> bool:
-    """Whether a file is newer than what a run has of its device and browser, if anything."""
+    """Whether a file is newer than the run's file from its device and browser, or the run has none."""
     return there is None or file.made > str(there.get("made"))
 
 
 def _said(file: DeviceFile, there: Mapping[str, Any] | None) -> str:
-    """Say what was done with a file, compared with what the run had from its device and browser."""
+    """Return a message on what was done with a file, compared with the run's file from its device and browser."""
     what = f"{many(len(file.codecs), 'codec')}, {many(len(file.facts), 'fact')}"
     if there is None:
         return f"added {what}"
@@ -100,11 +100,11 @@ def _with(lines: Sequence[Row], new: Sequence[Device]) -> list[Row]:
     return list(_renamed([*kept, *(line for device in new for line in _lines(device))]))
 
 
-def _lines(one: Device) -> Iterator[Row]:
+def _lines(device: Device) -> Iterator[Row]:
     for row_of in (CODEC, FACT):
-        rows = plain([TABLE.empty() | row for row in rows_of(one, row_of)])
+        rows = plain([TABLE.empty() | row for row in rows_of(device, row_of)])
         if rows:
-            yield {"table": TABLE.name, "key": one.key(row_of), "rows": rows}
+            yield {"table": TABLE.name, "key": device.key(row_of), "rows": rows}
 
 
 def _renamed(lines: Sequence[Row]) -> Iterator[Row]:

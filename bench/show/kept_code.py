@@ -1,4 +1,4 @@
-"""The code of a run's codecs, as `run` keeps it for the page: texts by codec and language, what they share once."""
+"""The code of a run's codecs, as `run` keeps it for the page: texts by codec and language, shared parts only once."""
 
 from __future__ import annotations
 

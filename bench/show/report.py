@@ -119,9 +119,9 @@ def drawn_page(
 
     Args:
         run: the run as it was gathered.
-        charts: the folder that files of its charts are written into; None for no files.
-        pictures: the folder of pictures, from that of the page; empty for pictures in the page.
-        most_charts: how many charts are written; None for all.
+        charts: the folder for files of its charts; None for no files.
+        pictures: the folder of pictures, relative to the page's folder; empty for pictures in the page.
+        most_charts: the number of charts that are written; None for all.
     """
     # Pictures are packed while charts are drawn; either takes a core for seconds.
     with ThreadPoolExecutor(1) as pool:
@@ -206,7 +206,7 @@ def gathered(folder: Path, done: Done, name: str = "") -> Found:
 
 
 def _other_version(facts: Row) -> str:
-    """Say which version measured a run, if it was not measured by these sources."""
+    """Return a remark that names the version that measured a run, and the version of this page."""
     machine = facts.get("machine")
     version = plain_text(str(machine.get("normalbench") or "")) if isinstance(machine, dict) else ""
     there = plain_text(str(facts.get("sources") or "unknown"))
@@ -227,9 +227,9 @@ def _encodings(tables: Mapping[str, Sequence[Row]]) -> frozenset[str]:
     return frozenset(names | ENCODINGS.keys())
 
 
-def _section(folder: Path, found: Found, done: Done, table: Table, remarks: list[str]) -> TableSection:
+def _section(folder: Path, run: Found, done: Done, table: Table, remarks: list[str]) -> TableSection:
     """A table as the page shows it."""
-    rows = _finished(done, table) if table.name in found.tables else ()
+    rows = _finished(done, table) if table.name in run.tables else ()
     return TableSection(
         key=table.name,
         about=table.section,
@@ -237,7 +237,7 @@ def _section(folder: Path, found: Found, done: Done, table: Table, remarks: list
         also=table.also,
         rows=rows,
         summary=_summary(done, table, remarks),
-        drawings=_drawings(found, done, table, remarks),
+        drawings=_drawings(run, done, table, remarks),
         asked=table.name in _asked(done.facts),
         films=_films(folder, table, rows, remarks),
     )
@@ -253,9 +253,9 @@ def _summary(done: Done, table: Table, remarks: list[str]) -> list[Sheet]:
         return []
 
 
-def _drawings(found: Found, done: Done, table: Table, remarks: list[str]) -> list[drawings.Drawing]:
+def _drawings(run: Found, done: Done, table: Table, remarks: list[str]) -> list[drawings.Drawing]:
     try:
-        charts = [*table.work.charts(whole(_finished(done, table))), *table.work.joined(found)]
+        charts = [*table.work.charts(whole(_finished(done, table))), *table.work.joined(run)]
         return list(map(drawings.of, charts))
     except UNEXPECTED as error:
         remarks.append(f"The charts of {table.name} cannot be drawn from these rows: {type(error).__name__}.")
@@ -263,7 +263,7 @@ def _drawings(found: Found, done: Done, table: Table, remarks: list[str]) -> lis
 
 
 def _finished(done: Done, table: Table) -> Sequence[Row]:
-    """Return a table's finished rows; rows of another version as they are, which the summary says."""
+    """Return a table's finished rows; if rows of another version cannot be finished, the rows as they are."""
     try:
         return done.finished_rows(table.name)
     except UNEXPECTED:
@@ -324,7 +324,7 @@ def _subjects(folder: Path, done: Done, names: Iterable[str], remarks: list[str]
 
 
 def _extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> dict[str, Any]:
-    """Collect what tables show besides their rows, by attributes of `found.Found`."""
+    """Collect the extras that tables show besides their rows, by attributes of `found.Found`."""
     extras: dict[str, Any] = {}
     for name in tables:
         try:

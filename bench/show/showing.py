@@ -61,7 +61,7 @@ def bins(text: str) -> list[tuple[float, int]]:
 
 
 def sheets(table: Table, done: Measured) -> Iterator[Sheet]:
-    """The sheets that people are shown of finished rows."""
+    """Yield the sheets of finished rows that are shown to people."""
     yield from with_verdict(table, done.rows, _own_sheets(table, done))
 
 
@@ -85,7 +85,7 @@ def _sheet(sheet: Sheet, format: str, width: int, spares: bool) -> str:
 
 
 def _said(sheet: Sheet, width: int) -> str:
-    """The paragraphs of a sheet: the first as it is, the others as a list, for a terminal and for Markdown."""
+    """Return the paragraphs of a sheet: the first as it is, the others as a list, for a terminal and for Markdown."""
     if not sheet.said:
         return ""
     first, *rest = (*sheet.said, *sheet.aside)
@@ -102,7 +102,7 @@ def with_verdict(table: Table, rows: Sequence[Row], sheets: Iterable[Sheet]) -> 
 
 
 def summary(table: Table, rows: Sequence[Row]) -> list[Sheet]:
-    """Return what people look at first: the verdict, and sheets that have rows."""
+    """Return the sheets that people look at first: the verdict, and sheets that have rows."""
     return list(with_verdict(table, rows, (sheet for sheet in table.work.summary(rows) if sheet.rows)))
 
 

@@ -61,9 +61,9 @@ def _is_run(folder: Path) -> bool:
     return (folder / RUN).is_file()
 
 
-def _counted(made: dict[str, str], found: Sequence[Device], is_run: bool) -> str:
-    devices_there = many(len(found), "device")
-    return f"{many(len(made), 'page')}, {devices_there}" if is_run else devices_there
+def _counted(html_pages: dict[str, str], all_devices: Sequence[Device], is_run: bool) -> str:
+    devices_there = many(len(all_devices), "device")
+    return f"{many(len(html_pages), 'page')}, {devices_there}" if is_run else devices_there
 
 
 def _devices_in(folders: Sequence[Path], imported: Sequence[Read]) -> tuple[list[Device], int]:
@@ -76,7 +76,7 @@ def _devices_in(folders: Sequence[Path], imported: Sequence[Read]) -> tuple[list
 
 
 def _files_in(folder: Path) -> list[Path]:
-    """Every *.json in a folder and its folders. Raises UsageError."""
+    """Return the paths of all *.json files in a folder and its subfolders. Raises UsageError."""
     if not folder.is_dir():
         raise UsageError(f"{folder}: there is no such folder" if not folder.exists() else f"{folder} is not a folder")
     paths = [Path(root) / name for root, _, names in os.walk(folder) for name in names if name.endswith(".json")]
@@ -85,7 +85,7 @@ def _files_in(folder: Path) -> list[Path]:
 
 
 def _device_files(paths: list[Path]) -> tuple[list[Read], int]:
-    """Read files. Return those that are device files, and how many are not, each of which is reported."""
+    """Read files. Return the device files, and the number of other files, each of which is reported."""
     reads, wrong = [], 0
     for path in paths:
         try:
@@ -96,7 +96,7 @@ def _device_files(paths: list[Path]) -> tuple[list[Read], int]:
     return reads, wrong
 
 
-def _pages_of_run(folder: Path, done: Done, found: Sequence[Device]) -> dict[str, str]:
+def _pages_of_run(folder: Path, done: Done, all_devices: Sequence[Device]) -> dict[str, str]:
     """A run's page, which begins with the laboratory, and the pages that need no scripts."""
     run, gallery, specs = drawn_page(gathered(folder, done))
     names = page.codecs(run, specs)
@@ -108,7 +108,7 @@ def _pages_of_run(folder: Path, done: Done, found: Sequence[Device]) -> dict[str
     site = Site({INDEX: LABORATORY} | titles, devices_there, f"{INDEX}#live" if run.live else "")
     html_pages = {INDEX: page.html(run, gallery, specs, library_of(specs), home=home)}
     html_pages |= {view.path: view_html(view, site) for view in views}
-    return html_pages | codec_pages(run, names, site, INDEX) | pages(found, site)
+    return html_pages | codec_pages(run, names, site, INDEX) | pages(all_devices, site)
 
 
 def _views(run: Found) -> list[ViewPage]:
@@ -136,5 +136,5 @@ def _answer(parts: Sequence[page.PageSection]) -> str:
 def _parts(run: Found, view: View) -> list[page.PageSection]:
     sections = [section for section in run.sections if section.about.view == view and section.rows]
     return [
-        page.part_of(run, section, {}, math.inf) for section in sorted(sections, key=lambda one: not one.about.leads)
+        page.part_of(run, section, {}, math.inf) for section in sorted(sections, key=lambda part: not part.about.leads)
     ]

@@ -1,7 +1,7 @@
-"""Writing a site into a folder: all of it or nothing, and nothing of anybody else's.
+"""The writing of a site into a folder: all of it or nothing, without changing anybody else's files.
 
-A marker file lists what this program wrote there. Files that it lists are replaced, and removed once they no longer
-belong; any other file stays as it is.
+A marker file lists the files that this program wrote there. These files are replaced, or removed once they no longer
+belong to the site; any other file stays as it is.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ OWN = re.compile(r"(index|choose|layouts)\.html|(codecs|devices)/[a-z0-9_-]+\.ht
 INDEX, FOLDERS = "index.html", ("codecs", "devices")
 
 
-def write_site(folder: Path, made: Mapping[str, str]) -> None:
+def write_site(folder: Path, files: Mapping[str, str]) -> None:
     """Put the files of a site, text by path, in place of an earlier site's.
 
     Raises:
@@ -32,14 +32,14 @@ def write_site(folder: Path, made: Mapping[str, str]) -> None:
     """
     before = _files_before(folder)
     check_folder(folder)
-    for path in made:
+    for path in files:
         if path not in before and (folder / path).exists():
             raise UsageError(f"{folder / path} is not from an earlier site; delete it, or name another folder")
     try:
         with _partial_folder(folder) as partial:
-            _write(partial, made, sorted({*before, *made}))
-            _put(partial, folder, made)
-        _clear(folder, set(before) - set(made), made)
+            _write(partial, files, sorted({*before, *files}))
+            _put(partial, folder, files)
+        _clear(folder, set(before) - set(files), files)
     except OSError as error:
         raise UsageError(f"cannot write {folder}: {error.strerror or error}") from error
 
@@ -79,8 +79,8 @@ def _partial_folder(folder: Path) -> Iterator[Path]:
         shutil.rmtree(partial, ignore_errors=True)
 
 
-def _write(folder: Path, made: Mapping[str, str], listed: list[str]) -> None:
-    for path, text in {**made, MARKER: _marker_text(listed)}.items():
+def _write(folder: Path, files: Mapping[str, str], listed: list[str]) -> None:
+    for path, text in {**files, MARKER: _marker_text(listed)}.items():
         (folder / path).parent.mkdir(exist_ok=True)
         (folder / path).write_text(text, encoding="utf-8", newline="\n")
 
@@ -89,8 +89,8 @@ def _marker_text(files: list[str]) -> str:
     return json.dumps({"made_by": "normalbench site", "files": files}, indent=1) + "\n"
 
 
-def _put(partial: Path, folder: Path, made: Mapping[str, str]) -> None:
-    """Move what was written into place: at once if the folder is empty, else the marker first and the index last."""
+def _put(partial: Path, folder: Path, files: Mapping[str, str]) -> None:
+    """Move the written files into place: at once if the folder is empty, else the marker first and the index last."""
     if not folder.exists() or not any(folder.iterdir()):
         place = folder.resolve()
         if place.exists():
@@ -98,15 +98,15 @@ def _put(partial: Path, folder: Path, made: Mapping[str, str]) -> None:
             place.rmdir()
         partial.replace(place)
         return
-    for path in (MARKER, *(path for path in made if path != INDEX), INDEX):
+    for path in (MARKER, *(path for path in files if path != INDEX), INDEX):
         (folder / path).parent.mkdir(exist_ok=True)
         (partial / path).replace(folder / path)
 
 
-def _clear(folder: Path, stale: set[str], made: Mapping[str, str]) -> None:
-    """Take away the files of an earlier site, then what lists them."""
+def _clear(folder: Path, stale: set[str], files: Mapping[str, str]) -> None:
+    """Delete stale files of an earlier site, then remove them from the marker."""
     for path in stale:
         (folder / path).unlink(missing_ok=True)
     if stale:
         with whole_file(folder / MARKER) as partial:
-            partial.write_text(_marker_text(sorted(made)), encoding="utf-8", newline="\n")
+            partial.write_text(_marker_text(sorted(files)), encoding="utf-8", newline="\n")

@@ -24,7 +24,7 @@ def having(rows: Sequence[Row], *columns: str) -> list[Row]:
 
 
 def lines_of(rows: Sequence[Row]) -> list[str]:
-    """Return labels that tell a chart's rows apart: the codec, and what else differs between the rows."""
+    """Return labels that distinguish a chart's rows: the codec, and other names that differ between the rows."""
     others = [name for name in LINES if len({str(row.get(name)) for row in rows}) > 1]
     return [" ".join([CodecKey.of(row).label, *(str(row.get(name)) for name in others)]) for row in rows]
 

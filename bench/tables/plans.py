@@ -60,9 +60,9 @@ def suited(
     return list(suited_plans)
 
 
-def attempt(make: Callable[[], T], made: list[T], complaints: list[str]) -> None:
-    """Append what can be made; why it cannot is appended to `complaints`."""
+def attempt(make: Callable[[], T], usable: list[T], complaints: list[str]) -> None:
+    """Append the result of `make` to `usable`, or the message of its LayoutError to `complaints`."""
     try:
-        made.append(make())
+        usable.append(make())
     except LayoutError as error:
         complaints.append(str(error))

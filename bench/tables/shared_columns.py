@@ -65,8 +65,8 @@ EXACT = Column("exact", "Whether the error is exactly 0.", Role.RAW, shown=False
 DEVICE = Column("device", "The device, and the environment variables of JAX and Mesa that were set.", Role.HOW, drops=1)
 ROUNDED_BY = Column(
     "rounded_by",
-    "What rounded: emulation; device, if the OpenGL driver rounds as requested; shader, if it does not and the "
-    "shader rounds first.",
+    "Where rounding was done: emulation; device, if the OpenGL driver rounds as requested; shader, if it does not and "
+    "the shader rounds first.",
     Role.HOW,
     drops=2,
 )

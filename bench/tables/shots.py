@@ -46,9 +46,9 @@ class Frame:
 
     Attributes:
         linear: light, float32 of shape (height, width, 3).
-        display: how it is shown.
-        times: of a frame that was timed, its columns.
-        flip: FLIP against the reference, (height, width); None where it was not asked for.
+        display: the exposure and the tone mapping with which it is shown.
+        times: the columns of its times; empty if it was not timed.
+        flip: FLIP against the reference, (height, width); None if it was not requested.
     """
 
     linear: np.ndarray
@@ -79,12 +79,12 @@ FrameT = TypeVar("FrameT", bound=Frame)
 
 
 class Bench(ABC, Generic[CaseT, FrameT]):
-    """Measures cases, each reference once.
+    """A bench that measures cases and renders each reference once.
 
     Args:
-        device: where.
-        repeats: frames that times are taken over; none are taken for 0.
-        with_flip: whether FLIP is wanted.
+        device: the device that renders.
+        repeats: number of frames to time; 0 for no times.
+        with_flip: whether to compute FLIP.
     """
 
     def __init__(self, device: Device, repeats: int, with_flip: bool):
@@ -99,15 +99,15 @@ class Bench(ABC, Generic[CaseT, FrameT]):
 
     @abstractmethod
     def frames(self, case: CaseT, repeats: int = 0) -> list[FrameT]:
-        """Render a case, at each of its moments; times are taken of the last one where there are repeats."""
+        """Render a case at each of its moments; if `repeats` is not 0, time the last frame."""
 
     @abstractmethod
     def display(self, case: CaseT, frames: list[FrameT]) -> Display:
-        """Return how a reference, and with it what is compared with it, is shown."""
+        """Return how a reference, and every image compared with it, is shown."""
 
     @abstractmethod
     def figures(self, case: CaseT, frames: list[FrameT], exact: list[FrameT]) -> Row:
-        """Return figures of frames compared with their reference's; at least `skipped` if there are no figures."""
+        """Return the figures that compare frames with the reference; if there are no figures, at least `skipped`."""
 
     def reference(self, case: CaseT) -> list[FrameT]:
         """Return the frames of a case's reference."""
@@ -163,10 +163,10 @@ def time_columns(timings: Mapping[str, Timing], clock: str) -> Row:
 
 
 def described(pipeline: Pipeline, plan: Plan, setting: Setting, asked: int) -> Row:
-    """Return what a row says of how it was rendered; what makes no difference to the pipeline is None.
+    """Return the columns on how a row was rendered; settings that do not affect the pipeline are None.
 
     Args:
-        asked: samples a pixel as asked for; `plan.samples` is what the device gives.
+        asked: requested samples per pixel; `plan.samples` is the number that the device provides.
     """
     kept = pipeline.has_gbuffer
     return {
@@ -213,12 +213,12 @@ def checked_device(repeats: int, least: int = 0) -> Device:
 
 @dataclass(frozen=True)
 class Shot:
-    """A case, what measures it, and the folder for its pictures, if any.
+    """A case, the bench that measures it, and the folder for its pictures, if any.
 
     Attributes:
-        bench: has `measure`, from a case to its row and what was drawn (None where nothing was), and `reference`.
-        case: what is measured.
-        images: the folder.
+        bench: object with `reference`, and with `measure`, which returns a case's row and frame (None if not drawn).
+        case: the case to measure.
+        images: the folder for pictures; None for no pictures.
     """
 
     bench: Any
@@ -234,10 +234,10 @@ def shot_steps(bench: Any, cases: Sequence[Any], images: Path | None, key: Calla
 
 
 def by_shots(write: Callable[[Path, Row, Any, Any], None]) -> Callable[[Sequence[Step], Tick], Iterator[list[Row]]]:
-    """A Work's `measure` for steps whose cases are shots.
+    """Return the `measure` function of a Work whose steps have shots as cases.
 
     Args:
-        write: the pictures: from the folder, the row, what was drawn and its reference.
+        write: writes the pictures, given the folder, the row, the frame and its reference.
     """
 
     def measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:

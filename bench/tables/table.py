@@ -69,11 +69,11 @@ class Step:
 
 @dataclass(frozen=True)
 class Measured:
-    """A table as it was measured.
+    """A table with its measured rows.
 
     Attributes:
-        options, outputs: what was asked for.
-        steps: what was measured.
+        options, outputs: the request.
+        steps: the measured steps.
         rows: the finished rows.
         kept: the rows of each step, as they were measured.
     """
@@ -235,10 +235,10 @@ class Table:
     step_s: float = 0.3
     compilers: tuple[str, ...] = ()
 
-    def is_in_all(self, said: Mapping[str, Any]) -> bool:
+    def is_in_all(self, options: Mapping[str, Any]) -> bool:
         """Whether `run` with these options, by name, measures it where no table is named."""
-        is_usual = self.in_all and said.get(self.not_with) is None
-        return is_usual or said.get(self.asked_by) is not None
+        is_usual = self.in_all and options.get(self.not_with) is None
+        return is_usual or options.get(self.asked_by) is not None
 
     @property
     def name(self) -> str:
@@ -251,7 +251,7 @@ class Table:
         return import_module(f"{self.package}.work").WORK
 
     def empty(self, parts: Iterable[str] = ()) -> Row:
-        """A row without values; `parts` are what `*` stands for in the columns that have it."""
+        """Return a row without values; each of `parts` replaces `*` in the names of columns."""
         names = [[c.name.replace("*", part) for part in parts] if "*" in c.name else [c.name] for c in self.columns]
         return dict.fromkeys(name for several in names for name in several)
 
@@ -288,7 +288,7 @@ class Table:
         return tuple(sorted((name for name, rank in ranks.items() if rank), key=lambda name: ranks[name]))
 
     def without_hidden(self, rows: Iterable[Row]) -> list[Row]:
-        """Rows less the columns that are not for people."""
+        """Return rows without the columns that are not shown."""
         hidden = {column.name for column in self.columns if not column.shown}
         return [{name: value for name, value in row.items() if name not in hidden} for row in rows]
 
@@ -299,12 +299,12 @@ def _column_of(table: Table, name: str) -> Column | None:
     return column_called(name, (*table.columns, *table.also))
 
 
-def each(one: Callable[[Any], Sequence[Row]]) -> Callable[[Sequence[Step], Tick], Iterator[list[Row]]]:
+def each(measure_case: Callable[[Any], Sequence[Row]]) -> Callable[[Sequence[Step], Tick], Iterator[list[Row]]]:
     """A Work's `measure` for a table that is measured a case at a time."""
 
     def measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
         for step in steps:
-            rows = list(one(step.case))
+            rows = list(measure_case(step.case))
             tick(step.name)
             yield rows
 

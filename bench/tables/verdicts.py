@@ -34,17 +34,17 @@ def best_by_bits(rows: Iterable[Row], figure: str, bits: str = "bits") -> list[l
 
 
 def by_bits(rows: Iterable[Row], figure: str, told: Callable[[Row], str], bits: str = "bits") -> str:
-    """Return the most accurate codes for each bit count in words, such as "16 bits: octahedral in rg8 (mean 0.336°)".
+    """Return the most accurate codecs for each bit count in words: "16 bits: octahedral in rg8 (mean 0.336°)".
 
     Args:
-        told: what stands in the brackets.
+        told: function from a row to the text in brackets.
     """
     best = best_by_bits(rows, figure, bits)
     return "; ".join(f"{tied[0][bits]:g} bits: {codecs(tied, alternatives)} ({told(tied[0])})" for tied in best)
 
 
 def codec_name(row: Row) -> str:
-    """Return what a row's codec is called in a sentence."""
+    """Return the name of a row's codec as it appears in a sentence."""
     rounding = row.get("rounding") or "nearest"
     encoding = row.get("encoding") or row.get("depth")
     return f"{encoding} in {row['storage']}" + (f" ({rounding})" if rounding != "nearest" else "")

@@ -1,4 +1,4 @@
-"""A codec: an encoding and the storage its numbers go through. It is what is measured."""
+"""Codecs, the subject of all measurements: an encoding and the storage for its numbers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LEAST_BITS = 4
 
 
 def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
-    """Why a storage's channels cannot hold numbers of so many values, 0 for any; None where they can."""
+    """Return why a storage's channels cannot hold numbers with these value counts, 0 for any; None if they can."""
     if len(levels) > storage.channels:
         has = f"{storage.channels} channel" + "s" * (storage.channels > 1)
         return f"{len(levels)} components, but {storage.title} has {has}"
@@ -60,16 +60,16 @@ def rounding_misfit(storage: Storage, rounding: str) -> str | None:
 
 
 def dither_of(storage: Storage, levels: Sequence[int], frame: int) -> Dither:
-    """The noise of a whole step for numbers of so many values, 0 for any: none for one of few. See `Dither.frame`."""
+    """Return noise of one step for numbers of any value (count 0), none for others. See `Dither.frame`."""
     return Dither(tuple(0.0 if count else storage.step(channel) for channel, count in enumerate(levels)), frame)
 
 
 @dataclass(frozen=True)
 class Codec:
-    """An encoding, the storage of its components, and how that rounds: one of `storage.ROUNDINGS`, or DITHERED.
+    """An encoding, the storage of its components, and its rounding: one of `storage.ROUNDINGS`, or DITHERED.
 
-    An encoding of numbers in [0, 1] fills every storage with these, signed ones as well. One that packs by itself has a
-    storage of its own, whatever is given.
+    An encoding of numbers in [0, 1] fills every storage with them, even a signed storage. An encoding that packs its
+    own code has its own storage, whatever storage is given.
     """
 
     encoding: Encoding
@@ -118,7 +118,7 @@ class Codec:
 
     @property
     def _not_with_noise(self) -> str:
-        """Why noise, where it is asked for, is not added by what measures it; empty where it is."""
+        """The reason why measurements cannot add the requested noise; empty if they can, or if none is requested."""
         if not self.is_dithered:
             return ""
         if self.encoding.is_half or self.encoding.before:
@@ -157,7 +157,7 @@ class Codec:
 
     @property
     def fits(self) -> bool:
-        """Whether the storage can hold what the encoding makes."""
+        """Whether the storage can hold the encoding's code."""
         return self.misfit is None
 
     @property
@@ -185,12 +185,12 @@ class Codec:
 
     @property
     def code_bits(self) -> float | None:
-        """The logarithm to base 2 of how many codes it has, where no storage gives it more."""
+        """Base-2 logarithm of the number of codes, if all components have fixed levels; otherwise None."""
         is_fixed = all(map(self.encoding.levels_of, range(self.encoding.components)))
         return math.log2(self.codes) if is_fixed else None
 
     def numbers(self, component: int) -> Float[np.ndarray, " numbers"]:
-        """Every number in [-1, 1] that a component comes back as from the storage, ascending; float64."""
+        """Return every number in [-1, 1] that the storage can return for a component, ascending; float64."""
         if component >= self.encoding.components:
             return np.array([-1.0, 1.0])
         levels = self.encoding.levels_of(component)
@@ -210,7 +210,7 @@ class Codec:
         return "nearest" if self.encoding.levels_of(component) else rounds_to(self.rounding)
 
     def store(self, code):
-        """A code (Vec2 or Vec3) as it comes back from the storage. A sign bit comes back as it was."""
+        """Return a code (Vec2 or Vec3) as the storage returns it. Sign bits are unchanged."""
         stored = (
             store_number(c, self.storage, i, self.rounding_of(i)) if i < self.encoding.components else c
             for i, c in enumerate(code)
@@ -218,10 +218,10 @@ class Codec:
         return type(code)(*stored)
 
     def stored(self, n: Vec3, view: Vec3, noise: Sequence[Float[Array | np.ndarray, "*shape"]] | None = None):
-        """The code of unit normals as it comes back from the storage.
+        """Return the code of unit normals as the storage returns it.
 
         Args:
-            noise: what is added to three numbers before they are rounded, planes of the normals' shape.
+            noise: noise to add to the numbers before they are rounded, planes of the normals' shape.
         """
         # A number chosen from constants has no width of its own; half arithmetic has another one.
         dtype = jnp.float16 if self.encoding.is_half else n.z.dtype

@@ -1,5 +1,5 @@
-"""Curve codecs: what a curve is, a pair of maps between a quantity and a number in [0, 1], written twice; and such a
-curve in a storage."""
+"""Curve codecs: curve encodings, each a pair of maps between a quantity and a number in [0, 1] in both languages,
+with a storage."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class CurveCodec:
 
     @property
     def misfit(self) -> str | None:
-        """Why the storage cannot hold what the encoding makes; None where it can: every one has a channel."""
+        """Why the storage cannot hold the encoding's number; None if it can. Every storage has a channel."""
         if self.storage.is_centred:
             return "centred numbers are signed, but a curve's values are 0 to 1"
         return rounding_misfit(self.storage, self.rounding)
@@ -119,7 +119,7 @@ class CurveCodec:
 
     @property
     def bits(self) -> int:
-        """The bits that it needs: those of one channel."""
+        """Number of bits that it needs: the bits of one channel."""
         return self.storage.bits[0]
 
     @property
@@ -131,10 +131,10 @@ class CurveCodec:
     def stored(
         self, x: Float[Array | np.ndarray, "*shape"], noise: Float[ArrayLike, "*shape"] = 0.0
     ) -> Float[Array | np.ndarray, "*shape"]:
-        """The number of a quantity (float32, any shape, not negative) as it comes back from the storage.
+        """Return the number of a quantity (float32, any shape, not negative) as the storage returns it.
 
         Args:
-            noise: what is added to the number before it is rounded, of the same shape.
+            noise: noise to add to the number before it is rounded, of the same shape.
         """
         return store_texel(self.encoding.encode(x, self.range) + noise, self.storage, 0, rounds_to(self.rounding))
 

@@ -1,5 +1,5 @@
-"""Depth codecs: what a depth encoding is, a pair of maps between view depth and one number, written twice; and such an
-encoding in a storage, which is what `normalbench depth` measures."""
+"""Depth codecs: depth encodings, each a pair of maps between view depth and one number in both languages, with a
+storage. `normalbench depth` measures them."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ class DepthCodec:
 
     @property
     def misfit(self) -> str | None:
-        """Why the storage cannot hold what the encoding makes, or not so; None where it can."""
+        """The reason why the storage cannot hold the encoding's number, or not with this rounding; None if it can."""
         if self.encoding.signed and not self.storage.is_signed:
             return f"{self.storage.title}: no room for a sign"
         if self.storage.home in ("attachment", "bytes") and self.rounding != "nearest":
@@ -138,12 +138,12 @@ class DepthCodec:
 
     @property
     def dither(self) -> Dither:
-        """The noise of a whole step for its number, which stands still."""
+        """Noise of one step for its number, the same in every frame."""
         return Dither((self.step,))
 
     @property
     def fits(self) -> bool:
-        """Whether the storage can hold what the encoding makes."""
+        """Whether the storage can hold the encoding's number."""
         return self.misfit is None
 
     @property
@@ -161,7 +161,7 @@ class DepthCodec:
 
     @property
     def is_window(self) -> bool:
-        """Whether the number is what a depth buffer holds."""
+        """Whether the number is a depth buffer's."""
         return self.encoding.projection is not None
 
     def far(self, far: Float[ArrayLike, "*shape"]) -> Float[ArrayLike, "*shape"]:
@@ -175,13 +175,13 @@ class DepthCodec:
         far: Float[ArrayLike, "*#shape"],
         noise: Float[Array | np.ndarray, "*shape"] | None = None,
     ) -> Float[Array | np.ndarray, "*shape"]:
-        """The numbers of depths (float32, any shape) as they come back from the storage.
+        """Return the numbers of depths (float32, any shape) as the storage returns them.
 
         Args:
-            depth: view depth, with the sign of the normal's z where the encoding keeps one.
+            depth: view depth, with the sign of the normal's z if the encoding keeps one.
             near, far: the planes' distances, float32, for all depths or for each; 0 < near < far.
-            noise: what is added to the numbers before they are rounded, of the depths' shape; None for nothing. Their
-                sign stays.
+            noise: noise to add to the numbers before they are rounded, of the depths' shape, or None. The numbers
+                keep their sign.
         """
         number = self.encoding.encode(depth_or_far(depth, far), near, self.far(far))
         if noise is not None:
@@ -194,7 +194,7 @@ class DepthCodec:
         near: Float[ArrayLike, "*#shape"],
         far: Float[ArrayLike, "*#shape"],
     ) -> Float[Array | np.ndarray, "*shape"]:
-        """The depths of numbers, under the sign that was kept."""
+        """Return the depths of numbers, with the signs that were kept."""
         return self.encoding.decode(number, near, self.far(far))
 
     def round_trip(
@@ -211,8 +211,8 @@ class DepthCodec:
     ) -> Float[np.ndarray, "*shape"]:
         """Return the largest possible error of each depth after a round trip through the storage.
 
-        It is the error from rounding the number, through the exact maps. If asked for, it includes what float32
-        arithmetic adds to the number and to the depth, up to the position.
+        It is the error from rounding the number, through the exact maps. If `with_arithmetic` is true, it includes
+        the error that float32 arithmetic adds to the number and to the depth, up to the position.
 
         Args:
             depth: float64, positive.

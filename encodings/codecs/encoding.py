@@ -81,16 +81,17 @@ class Encoding:
             the last place of 1), times the change of the map's result per unit of its input where that is more than
             one.
         ulps_reason: reason for these numbers.
-        sign_bits: further components that are 1 or -1 and take one bit, stored in the sign of the depth.
+        sign_bits: number of additional components that are 1 or -1 and take one bit, stored in the sign of the depth.
         constants: numbers that both languages need, by their GLSL name.
-        derived: further constants that follow from these.
+        derived: additional constants that follow from these.
         levels: how many values each component may have, evenly spread from -1 to 1; 0, or no levels at all, for an
             ordinary number.
         is_precise: whether the code that decodes nearest is stored, among those with every component rounded down
             or up.
         searches: whether the encoder takes the best of several codes; if two are equally good the languages may
             differ.
-        tables: makes the lookup tables by GLSL sampler name, float32 arrays of shape (height, width, channels).
+        tables: function that returns the lookup tables by GLSL sampler name, float32 arrays of shape (height, width,
+            channels).
         functions: prefix of its GLSL functions, for a variant that shares another encoding's file.
         parameters: the constants that may have other values.
         look_up: the table that can be changed.
@@ -104,7 +105,7 @@ class Encoding:
         packed_bits: number of bits used in a code that is one integer of 32 bits as its author's functions make it:
             its two numbers are the halves, and it is stored unchanged. 0 for any other code.
         declares_half: whether its author's functions use 16-bit numbers.
-        own: the same encoding in its author's axes, for a code of another half than z >= 0, which tables turn.
+        own: the same encoding in its author's axes, for a code of another hemisphere than z >= 0, which tables turn.
     """
 
     kind: ClassVar[Kind] = NORMAL
@@ -143,7 +144,7 @@ class Encoding:
 
     @property
     def is_packed(self) -> bool:
-        """Whether its code is one integer of 32 bits, which is stored as it stands."""
+        """Whether its code is one 32-bit integer, which is stored unchanged."""
         return self.packed_bits > 0
 
     @property
@@ -207,7 +208,7 @@ class Encoding:
 
     @property
     def is_exact(self) -> bool:
-        """Whether its maps are those of real numbers, which only the storage rounds."""
+        """Whether its maps are on real numbers, which only the storage rounds."""
         return not self.is_half and self.before is None
 
     @property
@@ -216,14 +217,14 @@ class Encoding:
         return {p.name: float(self.constants[p.constant]) for p in self.parameters}  # type: ignore[arg-type]
 
     def with_parameters(self, values: Mapping[str, float]) -> Encoding:
-        """The encoding with other values for some of its parameters, in both languages, under a name that says them."""
+        """Return the encoding with other values of some parameters, in both languages; its name states the values."""
         macros = {p.constant: values[p.name] for p in self.parameters if p.name in values}
         suffix = "".join(f":{name}={value:.9g}" for name, value in values.items())
         encoding = replace(self, constants={**self.constants, **macros})
         return encoding._variant(suffix, **values)
 
-    def turned(self, axis: str, sign: int, said: str = "") -> Encoding:
-        """Return the encoding of directions in other axes, in both languages, with `said` after its name.
+    def turned(self, axis: str, sign: int, suffix: str = "") -> Encoding:
+        """Return the encoding of directions in other axes, in both languages, with `suffix` appended to its name.
 
         Args:
             axis: which axis of a normal becomes its z, a key of AXES.
@@ -239,10 +240,10 @@ class Encoding:
             return _reordered_axes(decode(e, _reordered_axes(view, order) * sign), back) * sign
 
         encoding = replace(self, encode=turned_encode, decode=turned_decode, axis=axis, sign=sign)
-        return encoding._variant(said)
+        return encoding._variant(suffix)
 
-    def in_half(self, said: str) -> Encoding:
-        """Return the encoding computed in 16-bit floats by the same functions, with `said` after its name."""
+    def in_half(self, suffix: str) -> Encoding:
+        """Return the encoding computed in 16-bit floats by the same functions, with `suffix` appended to its name."""
         encode, decode = self.encode, self.decode
 
         def half_encode(n: Vec3, view: Vec3) -> Any:
@@ -252,14 +253,14 @@ class Encoding:
         def half_decode(e: Any, view: Vec3) -> Vec3:
             return _as_dtype(decode(_as_dtype(e, jnp.float16), _as_dtype(view, jnp.float16)), view.z.dtype)
 
-        return replace(self, encode=half_encode, decode=half_decode, is_half=True)._variant(said)
+        return replace(self, encode=half_encode, decode=half_decode, is_half=True)._variant(suffix)
 
     def behind(self, before: Any) -> Encoding:
-        """The encoding of what comes back from another codec: of a G-buffer that is decoded, renormalised and encoded
+        """Return the encoding of another codec's normals: of a G-buffer that is decoded, renormalised and encoded
         again.
 
         Args:
-            before: the `Codec` that normals have been through.
+            before: the `Codec` that normals have passed through.
         """
         encode = self.encode
 
@@ -271,18 +272,18 @@ class Encoding:
         named = {"name": f"{before.name}+{self.name}", "title": title, "functions": self.prefix, "domain": domain}
         return replace(self, encode=encode_again, before=before, **named)
 
-    def with_table(self, table: Float[Array | np.ndarray, "height width channels"], said: str) -> Encoding:
-        """Return the encoding with another lookup table, float32 of the published table's shape, named after `said`."""
+    def with_table(self, table: Float[Array | np.ndarray, "height width channels"], table_name: str) -> Encoding:
+        """Return the encoding with another lookup table, named `table_name`, float32 of the published table's shape."""
         assert self.look_up
         tables = {**self.tables(), self.look_up.sampler: table}
-        encoding = replace(self, tables=lambda: tables)._variant(f":table={said}")
+        encoding = replace(self, tables=lambda: tables)._variant(f":table={table_name}")
         encode: Callable[..., Any] = self.encode
         return replace(encoding, encode=partial(encode, table=table))
 
-    def _variant(self, said: str, **values: float) -> Encoding:
+    def _variant(self, suffix: str, **values: float) -> Encoding:
         encode, decode = (partial(function, **values) for function in (self.encode, self.decode))
-        name = self.name + said
-        title = f"{self.title}, {said.removeprefix(':').replace(':', ', ')}" if said else self.title
+        name = self.name + suffix
+        title = f"{self.title}, {suffix.removeprefix(':').replace(':', ', ')}" if suffix else self.title
         return replace(self, name=name, title=title, encode=encode, decode=decode, functions=self.prefix)
 
 

@@ -1,4 +1,4 @@
-"""Files that people name: whole, of a bounded size, and never waited for; and what can be wrong with any file here."""
+"""Reading of users' files: in full, up to a maximum size and without waiting; and the errors that files can have."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class FileError(OSError):
 
 
 class CatalogueError(Exception):
-    """An encoding that cannot be imported or is not what the catalogue calls it; one line with its file."""
+    """An encoding that cannot be imported or does not match the catalogue; the message names its file."""
 
 
 def file_bytes(path: Path, most: int) -> bytes:
@@ -131,11 +131,11 @@ def _too_many_digits(text: str) -> str:
 TWICE = ("overwrite", "twice", "immutable", "redefine")
 
 
-def _not_toml(said: str) -> str:
-    """Return what is wrong with TOML, from the library's message: `Cannot overwrite a value (at line 3, column 22)`."""
-    place = re.search(r"line (\d+), column (\d+)", said)
+def _not_toml(message: str) -> str:
+    """Return what is wrong with TOML, given a message such as `Cannot overwrite a value (at line 3, column 22)`."""
+    place = re.search(r"line (\d+), column (\d+)", message)
     where = f"line {place[1]}, column {place[2]}" if place else "its end"
-    what = "a key or a table is given twice" if any(word in said for word in TWICE) else "this is not TOML"
+    what = "a key or a table is given twice" if any(word in message for word in TWICE) else "this is not TOML"
     return f"{where}: {what}"
 
 
@@ -178,7 +178,7 @@ def _whole(digits: str) -> int | float:
 
 
 def _with_finite_numbers(document: Any) -> Any:
-    """A document as it is. Raises ValueError where one of its numbers is NaN or larger than a float can be."""
+    """Return a document unchanged. Raises ValueError if one of its numbers is NaN or larger than a float can be."""
     left = [("", document)]
     while left:
         place, value = left.pop()

@@ -1,4 +1,4 @@
-"""Tells two encodings of one name apart: a hash over what makes their figures."""
+"""Fingerprints that distinguish encodings of the same name: hashes of everything that determines their figures."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)
 
 
 def fingerprint(glsl: Path, values: object, tables: Mapping[str, Any], twin: Path | None = None) -> str:
-    """Return hex digits over a GLSL file and its includes, its Python twin if there is one, values and tables.
+    """Return a hash in hex digits of a GLSL file and its includes, its Python twin if it has one, values and tables.
 
     Args:
         twin: a Python file that may be missing; None for the one next to the GLSL file.

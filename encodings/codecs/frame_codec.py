@@ -1,4 +1,4 @@
-"""A frame codec: a frame encoding in a storage. It is what `normalbench frames` measures."""
+"""Frame codecs, which `normalbench frames` measures: a frame encoding and its storage."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class FrameCodec:
 
     @property
     def misfit(self) -> str | None:
-        """Why the storage cannot hold what the encoding makes; None where it can."""
+        """The reason why the storage cannot hold the encoding's numbers; None if it can."""
         return numbers_misfit(self.storage, self.encoding.levels) or rounding_misfit(self.storage, self.rounding)
 
     @property
@@ -50,8 +50,8 @@ class FrameCodec:
 
     @property
     def least(self) -> float:
-        """The smallest number above 0 that the storage holds where the encoding keeps the hand: a whole step of
-        SNORM, half a step of UNORM, which has no 0. It is 0 if there is no hand."""
+        """The smallest number above 0 that the storage can hold in place of the hand: a whole step of SNORM, half a
+        step of UNORM, which has no 0. It is 0 if the encoding keeps no hand."""
         if self.encoding.hand_in is None:
             return 0.0
         if self.storage.kind == "float":
@@ -66,7 +66,7 @@ class FrameCodec:
 
     @property
     def dither(self) -> Dither:
-        """The noise of a whole step for its numbers, which stands still."""
+        """Noise of one step for its numbers, the same in every frame."""
         return dither_of(self.storage, self.encoding.levels, 0)
 
     def rounding_of(self, component: int) -> str:
@@ -75,7 +75,7 @@ class FrameCodec:
         return "nearest" if has_levels else rounds_to(self.rounding)
 
     def store(self, code: Vec4) -> Vec4:
-        """A code (float32, any shape) as it comes back from the storage."""
+        """Return a code (float32, any shape) as the storage returns it."""
         return Vec4(
             *(
                 store_number(c, self.storage, i, self.rounding_of(i)) if i < self.encoding.components else 0.0 * c
@@ -84,10 +84,10 @@ class FrameCodec:
         )
 
     def stored(self, frame: Frame, noise: Vec4 | None = None) -> Vec4:
-        """The code of frames as it comes back from the storage.
+        """Return the code of frames as the storage returns it.
 
         Args:
-            noise: what is added to the numbers before they are rounded, of the same shape; None for nothing.
+            noise: noise to add to the numbers before they are rounded, of the same shape; None for no noise.
         """
 
         def store(code: Vec4) -> Vec4:

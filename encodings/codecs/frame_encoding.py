@@ -23,7 +23,7 @@ class FrameEncoding:
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
         title: human-readable name.
-        encode: (frame, least) -> four numbers in [-1, 1]; those that it does not make are 0. `least` is the
+        encode: (frame, least) -> four numbers in [-1, 1]; numbers that it does not use are 0. `least` is the
             smallest number above 0 that the storage holds in place of the hand, so that the sign is kept.
         decode: (numbers, least) -> frame.
         hand_in: index of the number whose sign is the frame's hand; None for encodings of rotations, whose frames
@@ -33,7 +33,7 @@ class FrameEncoding:
         citation: source of the encoding.
         glsl: the GLSL twin.
         ulps: allowed difference between the two languages before storage, encode and decode, in 2^-23; encode is
-            compared after decoding where two codes stand for frames that near.
+            compared after decoding where two codes represent frames this close to each other.
         ulps_reason: reason for these numbers.
         settle: (frame, the code as it comes back) -> the code to store, if some numbers depend on how others were
             rounded; the others stay as they came back.

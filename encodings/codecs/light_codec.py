@@ -1,4 +1,4 @@
-"""A light codec: a light encoding in a storage. It is what a light buffer holds."""
+"""Light codecs, the contents of light buffers: a light encoding and its storage."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class LightCodec:
 
     @property
     def misfit(self) -> str | None:
-        """Why the storage cannot hold what the encoding makes; None where it can."""
+        """The reason why the storage cannot hold the encoding's texel; None if it can."""
         encoding, storage = self.encoding, self.storage
         if storage.name in encoding.storages:
             return None
@@ -101,19 +101,19 @@ class LightCodec:
         return self.encoding.encode(light)
 
     def store(self, texel: Vec4, rounding: str = "nearest") -> Vec4:
-        """A texel (any shape) as the format gives it back; 0 in a channel that the format lacks."""
+        """Return a texel (any shape) as the format returns it; 0 in a channel that the format lacks."""
         storage = self.storage
         return Vec4(
             *(store_texel(c, storage, i, rounding) if i < storage.channels else 0.0 * c for i, c in enumerate(texel))
         )
 
     def decode(self, texel: Vec4) -> Vec4:
-        """A texel, as the format gives it back, to light; the fourth number is 0 where the format lacks it."""
+        """Return the light of a texel, as the format returns it; the fourth number is 0 if the format lacks it."""
         light = self.encoding.decode(texel)
         return light if self.storage.channels == 4 else Vec4(light.x, light.y, light.z, light.x * 0.0)
 
     def stored(self, light: Vec4) -> Vec4:
-        """Encode light, and return the texel as the format gives it back, not decoded yet."""
+        """Encode light and return the texel as the format returns it, not decoded yet."""
         return self.store(self.encode(light))
 
     def round_trip(self, light: Vec4) -> Vec4:

@@ -26,7 +26,7 @@ class LightEncoding:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
         title: human-readable name.
         encode: light (Vec4) to a texel, before the format stores it. An encoder that computes anything treats
-            negative light and NaN as none, and infinite light as the maximum that it holds; `plain` and `linear`
+            negative light and NaN as 0, and infinite light as the maximum that it holds; `plain` and `linear`
             leave that to the format.
         decode: a texel, as the format returns it, to light.
         storages: the formats that it is made for, names of LIGHT_STORAGES.
@@ -38,7 +38,8 @@ class LightEncoding:
         ulps: allowed difference between the two languages, encode and decode, in 2^-23 of the brightest channel.
         ulps_reason: reason for these numbers.
         constants: numbers that both languages need, by their GLSL name.
-        ranged: makes the encoding over another range, named `<name>:<range>`; None if it has no range.
+        ranged: function that returns the encoding over another range, named `<name>:<range>`; None if it has no
+            range.
         is_plain: whether a texel is the light itself; its light buffer has the format's name.
         in_curve: its name and title in a format that stores colours by the sRGB curve, if it is made for one.
         functions: prefix of its GLSL functions in a user's file; empty if it is the file's name.

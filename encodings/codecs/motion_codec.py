@@ -1,5 +1,5 @@
-"""Motion codecs: what a motion encoding is, a pair of maps between motion vectors and two numbers, written twice; and
-such an encoding in a storage, which is what `normalbench vectors` measures."""
+"""Motion codecs: motion encodings, each a pair of maps between motion vectors and two numbers in both languages,
+with a storage. `normalbench vectors` measures them."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class MotionCodec:
 
     @property
     def misfit(self) -> str | None:
-        """Why the storage cannot hold what the encoding makes; None where it can."""
+        """The reason why the storage cannot hold the encoding's numbers; None if it can."""
         return numbers_misfit(self.storage, [0] * NUMBERS) or rounding_misfit(self.storage, self.rounding)
 
     @property
@@ -116,7 +116,7 @@ class MotionCodec:
 
     @property
     def bits(self) -> int:
-        """The bits that it needs: those of two channels."""
+        """Number of bits that it needs: the bits of two channels."""
         return sum(self.storage.bits[:NUMBERS])
 
     @property
@@ -142,12 +142,12 @@ class MotionCodec:
         return self.storage.kind != "float"
 
     def stored(self, motion: Vec2, largest: Float[ArrayLike, "*shape"], noise: Vec2 | None = None) -> Vec2:
-        """The code of motions as it comes back from the storage.
+        """Return the code of motions as the storage returns it.
 
         Args:
-            motion: screens a frame, float32 of any shape.
-            largest: the range, float32, for all motions or for each; not used where `needs_range` is not.
-            noise: what is added to the numbers before they are rounded, of the same shape; None for nothing.
+            motion: screens per frame, float32 of any shape.
+            largest: the range, float32, for all motions or for each; ignored unless `needs_range` is true.
+            noise: noise to add to the numbers before they are rounded, of the same shape; None for no noise.
         """
         code = self.encoding.encode(motion, self._range_or_one(largest))
         noisy, rounding = (code + noise if noise else code), rounds_to(self.rounding)

@@ -11,7 +11,7 @@ BACK = (0.305306011, 0.682171111, 0.012522878)
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
     # e = (1 + offset) s^(1 / power) - offset for s = x / range, at least 0
     return maximum((1.0 + SRGB_OFFSET) * (maximum(x, 0.0) / range) ** (1.0 / SRGB_POWER) - SRGB_OFFSET, 0.0)
 

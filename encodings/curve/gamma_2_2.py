@@ -1,4 +1,4 @@
-"""Power: the share of the range to the power 1 / 2.2, as colours are kept in a format without a curve of its own."""
+"""Power: the share of the range to the power 1 / 2.2, as colours are stored in a format without its own curve."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ GAMMA = 2.2
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
     # e = (x / range)^(1 / gamma)
     return (maximum(x, 0.0) / range) ** (1.0 / GAMMA)
 

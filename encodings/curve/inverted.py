@@ -1,4 +1,4 @@
-"""Inverted: what is left of the range. Of a perceptual roughness it is the smoothness that engines store."""
+"""Inverted: 1 minus the share of the range. For a perceptual roughness it is the smoothness that engines store."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ from ..vec import maximum
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1], from 1 down to 0."""
+    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1], from 1 down to 0."""
     # e = 1 - x / range
     return 1.0 - maximum(x, 0.0) / range
 

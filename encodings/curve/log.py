@@ -9,7 +9,7 @@ RANGE = 31.0
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
     # e = log2(1 + x) / log2(1 + range)
     return log2(1.0 + maximum(x, 0.0)) / log2(1.0 + range)
 

@@ -1,6 +1,7 @@
-"""Eight rays, each hit or missed: the share of those that miss, as as many low bits of a byte.
+"""Eight rays that hit or miss: the share of rays that miss, as the number of low bits that are set in a byte.
 
-A quantity keeps one of nine values. The byte says which rays were hit where each has its bit; here they are in order.
+A quantity takes one of nine values. If each ray has its own bit, the byte tells which rays hit; here the bits are set
+in order.
 """
 
 from pathlib import Path
@@ -12,7 +13,7 @@ RAYS, BYTE = 8.0, 255.0
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to the byte of its rays, over 255."""
+    """Map a quantity (float32 or float64, any shape; negative and NaN as 0) to the byte of its rays, over 255."""
     # e = (2^k - 1) / 255 of k rays, the nearest to 8 x / range
     k = floor(minimum(maximum(x, 0.0) / range, 1.0) * RAYS + 0.5)
     return (2.0**k - 1.0) * (1.0 / BYTE)

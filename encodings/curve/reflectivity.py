@@ -1,4 +1,4 @@
-"""Reflectivity: a metalness as what a surface reflects of white, from a dielectric's 0.04 to 1."""
+"""Reflectivity: metallic as the reflectance of a white surface, from a dielectric's 0.04 to 1."""
 
 from pathlib import Path
 

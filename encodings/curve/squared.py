@@ -7,7 +7,7 @@ from ..vec import maximum, sqrt
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
     # e = (x / range)^2
     share = maximum(x, 0.0) / range
     return share * share

@@ -1,4 +1,4 @@
-"""The sRGB curve, computed by the shader: for a format that has none, or for what is packed into integers."""
+"""The sRGB curve, computed by the shader: for a format without the curve, or for numbers packed into integers."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from ..vec import maximum, select
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape; 0 for what is negative or NaN) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
     # e = slope s for s = x / range up to the knee, else (1 + offset) s^(1 / power) - offset
     s = maximum(x, 0.0) / range
     curved = (1.0 + SRGB_OFFSET) * maximum(s, SRGB_KNEE) ** (1.0 / SRGB_POWER) - SRGB_OFFSET

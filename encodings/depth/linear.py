@@ -7,7 +7,7 @@ from ..vec import maximum
 
 
 def encode(depth, near, far):
-    """Depth to its share of `far`; what is behind the eye gets 0."""
+    """Map depth to its share of `far`; depth behind the eye becomes 0."""
     # l = d / far
     return maximum(depth, 0.0) / far
 

@@ -8,7 +8,7 @@ from ..vec import maximum
 
 
 def encode(depth, near, far):
-    """Depth to its logarithm between the planes; what is nearer than `near` gets 0."""
+    """Map depth to its logarithm between the planes; depth nearer than `near` becomes 0."""
     # l = log2(d / near) / log2(far / near)
     return log2_of(maximum(depth, near) / near) / log2_of(far / near)
 

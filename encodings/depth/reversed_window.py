@@ -8,7 +8,7 @@ from ..vec import maximum
 
 
 def encode(depth, near, far):
-    """Depth to reversed window depth, not as 1 - z/w, which would cancel; what is nearer than `near` gets 1."""
+    """Map depth to reversed window depth, not as 1 - z/w, which would cancel; depth nearer than `near` becomes 1."""
     # r = near (far - d) / (d (far - near))
     d = maximum(depth, near)
     return near * (far - d) / (d * (far - near))

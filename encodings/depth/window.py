@@ -1,4 +1,4 @@
-"""z/w of the usual projection: what GL's depth buffer holds, 0 at the near plane and 1 at the far one."""
+"""z/w of the usual projection, as in OpenGL's depth buffer: 0 at the near plane and 1 at the far plane."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from ..vec import maximum
 
 
 def encode(depth, near, far):
-    """Depth to window depth; what is nearer than `near` gets 0."""
+    """Map depth to window depth; depth nearer than `near` becomes 0."""
     # w = (d - near) far / (d (far - near))
     d = maximum(depth, near)
     return (d - near) * far / (d * (far - near))

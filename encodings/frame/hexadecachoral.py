@@ -1,6 +1,6 @@
 """Hexadecachoral: a quaternion over the sum of its absolute components, which is the octahedral map one dimension up.
 
-q and -q are one rotation, so w is made positive and follows from the other three. The hand takes a number of its own.
+q and -q are the same rotation, so w is made positive and follows from the other three. The hand has its own number.
 """
 
 from pathlib import Path

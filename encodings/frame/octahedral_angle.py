@@ -36,7 +36,7 @@ def fixed(p: Vec2) -> Frame:
 
 
 def settle(frame: Frame, stored: Vec4) -> Vec4:
-    """The normal as it comes back, and the tangent's angle around it in half turns."""
+    """Return the normal's stored numbers, the tangent's angle around it in half turns, and the hand."""
     f = fixed(Vec2(stored.x, stored.y))
     # a = atan2(t' . (n x t), t' . t) / pi
     angle = atan2_pi(dot(frame.tangent, cross(f.normal, f.tangent)), dot(frame.tangent, f.tangent))

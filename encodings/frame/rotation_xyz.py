@@ -1,7 +1,8 @@
 """Three components of a quaternion, the fourth positive: a rotation without a handedness.
 
-q and -q are one rotation, so w is taken positive and is what the square of the others leaves of 1. Where w is near 0,
-steps of the others move it most: half turns are far less exact than small ones. Splats of Gaussians are stored so.
+q and -q are the same rotation, so w is positive and follows from the squares of the others. Where w is near 0, steps
+of the others change it most: half turns are far less accurate than small rotations. Gaussian splats are stored this
+way.
 """
 
 from pathlib import Path

@@ -1,6 +1,6 @@
 """Smallest three: the three smallest components of a quaternion, and the index of the largest.
 
-q and -q are the same rotation, so the largest is positive and its square is what the others leave of 1. The others
+q and -q are the same rotation, so the largest is positive and follows from the squares of the others. The others
 are in [-1, 1] / sqrt(2). The third of them is stored as its distance from the lower end of that range, with the
 hand as its sign: that takes one bit of its precision, and no other bit.
 """

@@ -14,7 +14,7 @@ MOST, MOST_BITS, STEPS = FORMS[16].largest, 31.0 * 1024.0 - 1.0, 65535.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Light to [0, 1]: 0 for what is negative or NaN, 65504 for more than that."""
+    """Map light to [0, 1]; negative light and NaN are treated as 0, light above 65504 as 65504."""
     c = Vec3(*(minimum(maximum(channel, 0.0), MOST) for channel in light.xyz))
     half = maximum(maximum(c.x, c.y), c.z).astype(jnp.float16)
     bits, m = half.view(jnp.uint16).astype(jnp.float32), half.astype(jnp.float32)
@@ -25,7 +25,7 @@ def encode(light: Vec4) -> Vec4:
 
 
 def decode(e: Vec4) -> Vec4:
-    """Return a texel's light; the fourth number is 0. The bits of infinity and NaN become those of the largest half."""
+    """Return a texel's light; the fourth number is 0. The bits of infinity and NaN are read as the largest half."""
     bits = minimum(e.w * STEPS + 0.5, MOST_BITS)
     m = bits.astype(jnp.uint16).view(jnp.float16).astype(jnp.float32)
     # L = e.rgb^2 m

@@ -1,7 +1,7 @@
 """Light over a range, in fixed point: Ols's RGBA8 scaled to [0, 2].
 
-`srgb` is the same numbers in a target that keeps colours by the sRGB curve and adds them in linear light. The curve is
-the hardware's: what the shader writes and reads is linear. The fourth channel has no curve.
+`srgb` has the same numbers in a target that stores colours on the sRGB curve and adds them in linear light. The
+hardware applies the curve: the shader writes and reads linear numbers. The fourth channel has no curve.
 """
 
 from dataclasses import replace

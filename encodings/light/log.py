@@ -14,7 +14,7 @@ LEAST = 1.0 / 255.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Light to (0, 1]: 1 for what is negative or NaN."""
+    """Map light to (0, 1]; negative light and NaN become 1."""
     # e = 2^-L
     return Vec4(*(exp2(-c) for c in light_or_none(light)))
 

@@ -1,4 +1,4 @@
-"""Light as it is, in a float format."""
+"""Light stored unchanged, in a float format."""
 
 import math
 from pathlib import Path

@@ -14,7 +14,7 @@ STEPS = 255.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Light to four bytes of [0, 1]: 0 for what is negative or NaN, 65408 for more than that."""
+    """Map light to four bytes in [0, 1]; negative light and NaN are treated as 0, light above 65408 as 65408."""
     # c = max(0, min(c, most)), which is 0 for NaN
     c = Vec3(*(minimum(maximum(channel, 0.0), MOST) for channel in light.xyz))
     largest = maximum(maximum(c.x, c.y), c.z)

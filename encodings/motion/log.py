@@ -18,7 +18,7 @@ MOST = 127.0
 
 
 def encode(motion: Vec2, range) -> Vec2:
-    """Map motion to [-1, 1] up to the range, and to larger numbers beyond it; NaN is no motion."""
+    """Map motion to [-1, 1] up to the range, and to larger numbers beyond it; NaN is treated as no motion."""
     # c = sign(v) log2(1 + k |v| / range) / log2(1 + k)
     x = Vec2(*(maximum(1.0 + share * K, 1.0) for share in abs(motion) / range))
     return sign_not_zero(motion) * Vec2(log2_of(x.x), log2_of(x.y)) / OCTAVES

@@ -7,7 +7,7 @@ from ..vec import Vec2, select, sign_not_zero, sqrt
 
 
 def encode(motion: Vec2, range) -> Vec2:
-    """Map motion to [-1, 1] up to the range, and to larger numbers beyond it; NaN is no motion."""
+    """Map motion to [-1, 1] up to the range, and to larger numbers beyond it; NaN is treated as no motion."""
     # c = sign(v) sqrt(|v| / range)
     share = abs(motion) / range
     return sign_not_zero(motion) * Vec2(*(select(s > 0.0, sqrt(s), 0.0) for s in share))

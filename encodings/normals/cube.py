@@ -1,4 +1,4 @@
-"""Cube map: the face that a normal goes through, and where."""
+"""Cube map: the face that a normal passes through, and the point on that face."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ FACES = 6
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Unit normal to a point of the square [-1, 1]^2 of the face that it goes through, and the face: +x, -x, +y ..."""
+    """Map a unit normal to a point of its face's square [-1, 1]^2 and the index of the face: +x, -x, +y ..."""
     a = abs(n)
     # the largest component's axis; the others over it
     is_z, is_y = (a.z >= a.x) & (a.z >= a.y), a.y >= a.x

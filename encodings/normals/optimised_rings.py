@@ -35,7 +35,7 @@ def points_needed(radius: float, count: int = RINGS) -> np.ndarray:
 
 @cache
 def covering_radius() -> float:
-    """The largest angle between a direction and the point that stands for it, in radians: as small as COUNT allow."""
+    """Return the largest angle between a direction and its point, in radians: the smallest that COUNT allows."""
     low, high = 0.0, math.pi
     for _ in range(60):
         middle = 0.5 * (low + high)
@@ -45,7 +45,7 @@ def covering_radius() -> float:
 
 @cache
 def rings() -> np.ndarray:
-    """Return for each ring its number of points, and that of all rings before it; float32 of shape (RINGS, 2)."""
+    """Return the number of points in each ring and in all rings before it; float32 of shape (RINGS, 2)."""
     counts = points_needed(covering_radius())
     return np.stack([counts, np.cumsum(counts) - counts], axis=1).astype(np.float32)
 

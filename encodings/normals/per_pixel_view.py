@@ -8,7 +8,7 @@ from ..vec import Vec2, Vec3, dot, maximum, sqrt
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to X and Y of the pixel's frame; what faces away from the eye shares its code with what faces it."""
+    """Map a unit normal to X and Y of the pixel's frame; normals facing the eye and facing away share codes."""
     x, y, _ = view_frame(view)
     return Vec2(dot(x, n), dot(y, n))
 

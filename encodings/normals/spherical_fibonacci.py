@@ -1,6 +1,6 @@
 """Spherical Fibonacci lattice of 2^16 points: the index of the nearest point, in two bytes.
 
-Point i is at z = 1 - (2 i + 1) / N, a golden section of a turn further around Z than the point before.
+Point i is at z = 1 - (2 i + 1) / N, rotated around Z by a golden section of a turn from the point before.
 """
 
 import math

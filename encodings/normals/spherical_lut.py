@@ -1,7 +1,7 @@
-"""Spherical coordinates with the trigonometry read from two look-up textures of 256 x 256.
+"""Spherical coordinates with the trigonometry read from two lookup textures of 256 x 256.
 
 A texel (i, j) stands for the point (-1 + 2 i / 255, -1 + 2 j / 255), so that 8-bit codes fall on texels; the nearest
-texel is read. More than 8 bits of storage therefore buy nothing.
+texel is read. More than 8 bits of storage therefore gain nothing.
 """
 
 from functools import cache

@@ -7,7 +7,7 @@ from ..vec import Vec2, Vec3, dot, maximum, sqrt
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to its X and Y; what faces away (z < 0) shares its code with what faces the camera."""
+    """Map a unit normal to its X and Y; normals facing away (z < 0) share codes with normals facing the camera."""
     return n.xy
 
 

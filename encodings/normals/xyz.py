@@ -12,7 +12,7 @@ def encode(n: Vec3, view: Vec3) -> Vec3:
 
 
 def decode(e: Vec3, view: Vec3) -> Vec3:
-    """The stored vector as it is, so that an error in its length counts too."""
+    """Return the stored vector unchanged, so that an error in its length counts too."""
     return e
 
 

@@ -1,4 +1,4 @@
-"""The colour of light apart from how much there is: what one light target rebuilds the highlights' colour from.
+"""The chromaticity of light, from which a single light target rebuilds the colour of highlights.
 
 The GLSL twin is `chromaticity.glsl`, which takes the weights from here.
 """

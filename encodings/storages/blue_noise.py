@@ -39,7 +39,7 @@ class _Pattern:
 
     @property
     def void(self) -> int:
-        """The least crowded of the pixels that are not set."""
+        """The least crowded pixel that is not set."""
         return int(np.argmin(np.where(self.pixels, np.inf, self._crowd)))
 
 

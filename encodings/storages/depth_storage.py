@@ -46,7 +46,7 @@ class DepthStorage:
 
     @property
     def is_signed(self) -> bool:
-        """Whether there is room for a sign: a depth buffer, and bytes of somebody's own, hold 0 to 1."""
+        """Whether the storage has room for a sign: depth buffers and encodings in bytes hold 0 to 1."""
         return self.home not in ("attachment", "bytes")
 
     @property
@@ -75,7 +75,7 @@ DEPTH_STORAGES: Mapping[str, DepthStorage] = MappingProxyType(
 
 
 def depth_storage_of(storage: Storage) -> DepthStorage | None:
-    """The storage of a depth that bits name, `unorm:20` or `float:5:10`; None of what holds no depth by itself."""
+    """Return the depth storage for bits such as `unorm:20` or `float:5:10`; None if they cannot hold a depth."""
     alike = (depth_storage for depth_storage in DEPTH_STORAGES.values() if depth_storage.home == "channel")
     if storage.kind == "float" and storage.channels != 2:
         return next(
@@ -107,7 +107,7 @@ def fixed(
 
 
 def from_fixed(integer: UInt[Array, "*shape"], scale: int, is_signed: bool) -> Float[Array, "*shape"]:
-    """The number that an unsigned integer (uint32) stands for."""
+    """Return the number that an unsigned integer (uint32) represents."""
     half = scale // 2
     if not is_signed:
         return _share(integer, scale)
@@ -139,8 +139,8 @@ def store_bytes(integer: UInt[Array, "*shape"], bits: int) -> UInt[Array, "*shap
 def store_depth(
     c: Float[Array | np.ndarray, "*shape"], storage: DepthStorage, is_signed: bool = False, rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """The number of a depth (float32, any shape) as it comes back, rounded in one of ROUNDINGS; with a sign where
-    `is_signed`. A depth buffer rounds to the nearest."""
+    """Return the number of a depth (float32, any shape) as the storage returns it, rounded by one of ROUNDINGS; with
+    a sign if `is_signed`. A depth buffer rounds to nearest."""
     if storage.home == "bytes":
         return storage.code.decode(storage.code.encode(c))
     if storage.home == "packed":

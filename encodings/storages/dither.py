@@ -1,9 +1,9 @@
-"""Noise that is added to a code before a fixed-point format rounds it: a whole step from end to end, so that the mean
-of what is stored is the code itself, but at the ends of a format, which clip. Each number of a code has its own part of
-a tile of blue noise.
+"""Noise that is added to a code before a fixed-point format rounds it. It spans a whole step, so that the mean of the
+stored values is the code itself, except at the ends of a format, which clip. Each number of a code has its own part
+of a tile of blue noise.
 
-Moving noise is the tile from another pixel on in each frame. The pixels are spread over the tile by the golden ratio of
-two dimensions: M. Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018.
+Moving noise starts at another pixel of the tile in each frame. These pixels are spread over the tile by the golden
+ratio of two dimensions: M. Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ class Dither:
     """Noise of one frame.
 
     Attributes:
-        steps: how far apart the values of each number are that a storage has; 0 for a number that is left as it is.
-        frame: which frame of moving noise; 0 for all frames of still noise.
+        steps: distance between neighbouring values of each number in a storage; 0 for a number without noise.
+        frame: number of the frame of moving noise; 0 for all frames of still noise.
     """
 
     steps: tuple[float, ...]

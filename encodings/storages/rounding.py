@@ -7,8 +7,8 @@ This is OpenGL 4.6, section 2.3.5, with its open choices made as the tested devi
 
 Half floats round to nearest even, or are truncated: OpenGL allows both, and both ship. Truncation applies to the
 texel: UNORM goes down, which is toward -1 in the code; SNORM, centred or not, and floats go toward zero.
-`truncate_half` is what engines that pack by hand write to compensate for that, floor(x (2^n - 1/2)). If a device
-does not round as a codec asks, the shader rounds before the write (`storage.glsl`), and the row says so.
+`truncate_half`, floor(x (2^n - 1/2)), is how engines that pack by hand compensate for that. If a device does not
+round as a codec requests, the shader rounds before the write (`storage.glsl`), and the row says so.
 
 Numbers in float64 stand for the exact map: the same integers and floats, products and reciprocals in float64.
 """
@@ -38,7 +38,7 @@ class Scale(NamedTuple):
 
 
 def scale_of(integer: int) -> Scale:
-    """The scale of a channel in which an integer stands for 1."""
+    """Return the scale of a channel in which an integer stands for 1."""
     return Scale(float(integer), 1.0 / integer)
 
 
@@ -58,14 +58,14 @@ def rounded(x: Float[Array, "*shape"], scale: Scale, rounding: str = "nearest", 
 def store_unorm(
     x: Float[Array | np.ndarray, "*shape"], scale: Scale, rounding: str = "nearest"
 ) -> Float[Array, "*shape"]:
-    """x (float32, any shape) as UNORM stores it and gives it back, in [0, 1]; NaN is 0."""
+    """Return x (float32, any shape) after storage as UNORM, in [0, 1]; NaN becomes 0."""
     return rounded(minimum(maximum(x, 0.0), 1.0), scale, rounding) * scale.reciprocal
 
 
 def store_snorm(
     x: Float[Array | np.ndarray, "*shape"], scale: Scale, rounding: str = "nearest", is_full: bool = False
 ) -> Float[Array, "*shape"]:
-    """x (float32, any shape) as SNORM stores it and gives it back, in [-1, 1]; NaN is -1. One that is full has no 1."""
+    """Return x (float32, any shape) after storage as SNORM, in [-1, 1]; NaN becomes -1. A full SNORM has no 1."""
     code = rounded(minimum(maximum(x, -1.0), 1.0), scale, rounding, scale.one - 1 if is_full else None)
     # An integer has no negative zero.
     return code.astype(jnp.int32).astype(x.dtype) * scale.reciprocal
@@ -87,10 +87,10 @@ def store_half(
 def store_small_float(
     x: Float[Array | np.ndarray, "*shape"], form: FloatForm, rounding: str = "nearest"
 ) -> Float[Array, "*shape"]:
-    """x (float32, any shape) as a float of so many bits stores it.
+    """Return x (float32, any shape) as a float of this form stores it.
 
-    Without a sign there is nothing below 0, and what is finite stays finite (OpenGL 4.6, 2.3.4.3 and 2.3.4.4). With a
-    sign nearest makes infinite what is too large, and toward zero does not (IEEE 754).
+    Without a sign, negative numbers become 0 and finite numbers stay finite (OpenGL 4.6, 2.3.4.3 and 2.3.4.4). With a
+    sign, numbers that are too large become infinite if rounded to nearest, but not toward zero (IEEE 754).
     """
     magnitude = abs(x) if form.is_signed else maximum(x, 0.0)
     cut, word = 23 - form.mantissa, magnitude.view(jnp.uint32)
@@ -113,8 +113,8 @@ def store_small_float(
 def store_float(
     x: Float[Array | np.ndarray, "*shape"], form: FloatForm, rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """x (float64, any shape, magnitude below 2^15) as a float of so many bits stores it, by arithmetic: what stands for
-    the exact map. Without a sign there is nothing below 0."""
+    """Return x (float64, any shape, magnitude below 2^15) as a float of this form stores it, by arithmetic: float64
+    stands for the exact map. Without a sign, negative numbers become 0."""
     if form == FORMS[32]:
         return x.astype(jnp.float32).astype(x.dtype)
     octave = maximum(jnp.frexp(x)[1] - 1, 1 - form.one)
@@ -139,13 +139,13 @@ def from_srgb(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.ndarra
 def store_srgb(
     x: Float[Array | np.ndarray, "*shape"], scale: Scale, rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """x (float32, any shape) as a colour of an sRGB target stores it and gives it back, in [0, 1]; NaN is 0."""
+    """Return x (float32, any shape) after storage as a colour of an sRGB target, in [0, 1]; NaN becomes 0."""
     return from_srgb(store_unorm(to_srgb(minimum(maximum(x, 0.0), 1.0)), scale, rounding))
 
 
 def store_exactly(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.ndarray, "*shape"]:
-    """x (float32, any shape) as it is. Nothing is rounded, and yet XLA must not see through it: it would make one scale
-    and offset of the encoder's and the decoder's, and measure another method."""
+    """Return x (float32, any shape) unchanged, behind a barrier to optimisation: XLA would merge the scales and
+    offsets of the encoder and the decoder, and another method would be measured."""
     from jax.lax import optimization_barrier  # a second to import, which `normalbench list` does not take
 
     return optimization_barrier(x)
@@ -165,9 +165,9 @@ def scales_of(storage: Storage, number: type[np.floating] = np.float32) -> tuple
 
 
 def shared(storage: Storage, count: int, number: type[np.floating] = np.float32) -> tuple[Storage, tuple[Scale, ...]]:
-    """Return what a traced function is given to serve every fixed-point format of a kind: a format that stands for
-    all of them, and this format's scales of the first `count` channels, in float32 or float64. Floats have no
-    scales; the first format with the same bits in these channels stands for them. Other formats stand for
+    """Return the arguments with which one traced function serves every fixed-point format of a kind: a format that
+    stands for all of them, and this format's scales of the first `count` channels, in float32 or float64. Floats have
+    no scales; the first format with the same bits in these channels stands for them. Other formats stand for
     themselves."""
     if storage.kind == "float":
         if storage.form:
@@ -185,7 +185,7 @@ def _filled_as(storage: Storage, like: Storage) -> Storage:
 
 
 def fixed(like: Storage, scales: tuple[Scale, ...]) -> Storage:
-    """A format of the same kind with scales of its own, one for each channel in use; itself where none are given."""
+    """Return a format of the same kind with its own scales, one per channel in use; `like` itself without scales."""
     return Fixed(**vars(like), scales=scales) if scales else like
 
 

@@ -24,14 +24,14 @@ RGBA = "rgba"
 
 
 def across(kind: str, bits: tuple[int, ...]) -> Storage:
-    """Numbers of so many bits laid across as few channels of 8 bits as hold them, or of 16: rg8_9_7.
+    """Return the storage of numbers of these bits across the fewest 8-bit (or 16-bit) channels: rg8_9_7.
 
     Args:
         kind: one of ENDINGS.
 
     Raises:
-        ValueError: no number or a negative one, a signed one of a bit, more than MOST_BITS, or more than MOST_TOGETHER
-            altogether; a line.
+        ValueError: the components are not one to four, of 1 (signed: 2) to MOST_BITS bits and of MOST_TOGETHER bits
+            in total at most; the message is one line.
     """
     spread = ":".join(map(str, bits))
     if not all(1 <= b <= MOST_BITS for b in bits) or sum(bits) > MOST_TOGETHER or len(bits) not in (1, 2, 3, 4):
@@ -47,16 +47,16 @@ def across(kind: str, bits: tuple[int, ...]) -> Storage:
 
 
 def _target_of(bits: int) -> str:
-    """As few channels as hold so many bits: rgb8."""
+    """Return the name of the fewest channels that hold this many bits: rgb8."""
     part = 8 if bits <= 32 else 16
     return f"{RGBA[: -(-bits // part)]}{part}"
 
 
 def word(kind: str, bits: tuple[int, ...]) -> Storage:
-    """Numbers of so many bits in one integer of 8, 16 or 32 bits, the first in the lowest bits: r32_uint_12_12.
+    """Return the storage of numbers of these bits in an integer of 8, 16 or 32 bits, from the lowest: r32_uint_12_12.
 
     Raises:
-        ValueError: as `across`; a line.
+        ValueError: as `across`; the message is one line.
     """
     laid = across(kind, bits)
     spread, size = ":".join(map(str, bits)), next(size for size in (8, 16, 32) if size >= sum(bits))

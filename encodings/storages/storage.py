@@ -30,12 +30,12 @@ def rounds_to(rounding: str) -> str:
 
 @dataclass(frozen=True)
 class FloatForm:
-    """The layout of a float: a sign, an exponent and a mantissa. The highest exponent is that of infinity and NaN.
+    """The layout of a float: a sign, an exponent and a mantissa. The highest exponent is for infinity and NaN.
 
     Attributes:
         exponent: its bits, 2 to 8.
         mantissa: its bits, 1 to 23.
-        is_signed: whether there is a sign; without one nothing is below 0, and finite numbers stay finite.
+        is_signed: whether it has a sign; without a sign, negative numbers become 0 and finite numbers stay finite.
     """
 
     exponent: int
@@ -161,7 +161,7 @@ class Storage:
         return self.bits.count(self.bits[0]) * self.bits[0] if self.kind == "unorm" else 0
 
     def scale(self, channel: int) -> int:
-        """The integer that stands for 1 in a channel; 1 for float formats."""
+        """Return the integer that stands for 1 in a channel; 1 for float formats."""
         if self.kind == "float":
             return 1
         return 2 ** (self.bits[channel] - (self.kind == "snorm")) - (not self.is_full)
@@ -171,7 +171,7 @@ class Storage:
         return self.scale(channel) - self.is_full
 
     def levels(self, channel: int) -> int:
-        """Return how many evenly spread values in [-1, 1] a channel can distinguish, at least."""
+        """Return the minimum number of evenly spread values in [-1, 1] that a channel can distinguish."""
         if self.kind != "float":
             return self.scale(channel) * (not self.is_biased) + self.most(channel) + 1
         return 2 ** (self.float_form(channel).mantissa + 1 - self.is_biased)

@@ -1,4 +1,4 @@
-"""The bits that hold numbers: what a channel of a texel is, read as an unsigned integer."""
+"""The bits of stored numbers: the channels of texels, read as unsigned integers."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from .storage import FORMS, FloatForm, Storage
 
 
 def words(numbers: np.ndarray, storage: Storage, channel: int) -> np.ndarray:
-    """The bits of a channel, as unsigned integers.
+    """Return the bits of a channel, as unsigned integers.
 
     Args:
-        numbers: any shape, as they come back from the channel; to integers NaN is 0.
-        storage: the format; colours by the sRGB curve are not numbers of a code.
-        channel: which one.
+        numbers: any shape, as the channel returns them; in integer formats NaN is treated as 0.
+        storage: the format; colours on the sRGB curve are not supported.
+        channel: index of the channel.
 
     Returns:
         uint32 of the same shape. SNORM of a render target is two's complement; laid across channels it is biased, so

@@ -71,14 +71,14 @@ def storage_kind(storage: Storage) -> int:
 def rounding_defines(
     device: Device, storage: Storage, rounding: str = "nearest", channels: Sequence[str] = ()
 ) -> tuple[str, dict[str, object]]:
-    """Who rounds what is written into a storage, and the macros of `storage_defines` for that.
+    """Return whether the device or the shader rounds numbers for a storage, and the macros of `storage_defines`.
 
     Args:
         rounding: one of ROUNDINGS.
-        channels: how each channel rounds, where not all of them round so.
+        channels: rounding of each channel, if channels differ.
 
     Returns:
-        "device" where the format's own conversion rounds so, else "shader"; and the macros.
+        "device" if the format's own conversion rounds like this, else "shader"; and the macros.
     """
     # Cut off, a centred integer goes toward its zero in the middle, and not toward that of its target.
     is_cut_otherwise = storage.is_centred and rounding != "nearest"
@@ -124,10 +124,10 @@ class Decoded:
 
 
 class CodecPasses(Passes):
-    """A codec on a GL device; a context manager that releases what it holds there.
+    """A codec on an OpenGL device; a context manager that releases its resources there.
 
     Attributes:
-        rounded_by: "device" where the format's own conversion rounds as the codec asks, else "shader".
+        rounded_by: "device" if the format's own conversion rounds as the codec requires, else "shader".
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.

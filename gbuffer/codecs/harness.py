@@ -83,7 +83,7 @@ class Passes:
         self._stack.close()
 
     def _through(self, results: Sequence[Storage], **given: np.ndarray) -> list[np.ndarray]:
-        """Arrays of shape (height, width, channels) through the targets, as the decoding pass gives them back.
+        """Write arrays of shape (height, width, channels) to the targets; return the decoding pass's output.
 
         Raises:
             FormatError: the device cannot render to a format.

@@ -1,8 +1,8 @@
 """Iterations of a shader's loops, and whether a device ends the loops before they are done.
 
 A software driver ends all loops of a shader together after some number of iterations, without a message: the
-figures are then not those of a GPU. So a short loop runs behind the user's functions: if their loops were ended, so
-is this one.
+figures are then not those of a GPU. A short loop therefore runs after the user's functions: if their loops were
+ended, the short loop is ended too.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Single operations wrapped into shaders that a compiler is asked about or a clock is held to: what they cost.
+"""Single operations wrapped into shaders, to find their cost with a compiler or a timer.
 
-Each is measured less the empty operation that moves the same numbers.
+The cost of an empty operation that moves the same numbers is subtracted.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Operation:
         glsl: the file that defines `operation`, a shader's name or a path.
         given, beside, made: number of inputs, of additional inputs and of outputs; at least 1.
         own_defines, own_names: the macros and files that the file needs, as for `Source`.
-        tables: makes its lookup tables by sampler name, like `Encoding.tables`.
+        tables: function that returns the lookup tables by sampler name, like `Encoding.tables`.
         is_portable: whether its SPIR-V shows its cost; false if a driver has to unroll and fold it first.
     """
 
@@ -90,6 +90,6 @@ def _number_count(encoding: Encoding) -> int:
 
 
 def _read(encoding: Encoding) -> tuple[Any, ...]:
-    """The macros of an encoding, the files that its macros name, and what gives its tables."""
+    """Return the macros of an encoding, the files that its macros name and the function that makes its tables."""
     as_it_stands = {"AS_IT_STANDS": 1} if encoding.is_packed else {}
     return encoding_defines(encoding) | as_it_stands, {"ENCODING": encoding.glsl}, encoding.tables

@@ -1,4 +1,4 @@
-"""A layout as macros: what `words.glsl` and `gbuffer.glsl` are given."""
+"""Macros that describe a layout to `words.glsl` and `gbuffer.glsl`."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def _curved_components(layout: Layout) -> list[str]:
 
 
 def curve_defines(layout: Layout) -> dict[str, object]:
-    """The macros that put `numbers`, an array, on a layout's curves and take them back, and what their files need.
+    """Return the macros that apply a layout's curves to the array `numbers` and undo them, and the files' constants.
 
     Raises:
         ShaderError: a curve's GLSL file cannot be read or lacks one of its functions.
@@ -125,7 +125,7 @@ def curve_defines(layout: Layout) -> dict[str, object]:
 
 
 def _integer_defines(storages: Sequence[Storage]) -> dict[str, object]:
-    """The macros of targets of whole numbers: what a fragment writes, and how a pixel is read."""
+    """Return the macros of integer targets: the outputs of a fragment shader and the reads of a pixel."""
     defines: dict[str, object] = {"HAS_WORDS": int(any(storage.is_integer for storage in storages))}
     if not defines["HAS_WORDS"]:
         return defines

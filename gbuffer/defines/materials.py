@@ -1,4 +1,4 @@
-"""The numbers of the material model: what `material.glsl`, `light.glsl` and `accumulation.glsl` are given."""
+"""Constants of the material model for `material.glsl`, `light.glsl` and `accumulation.glsl`."""
 
 from __future__ import annotations
 

@@ -26,11 +26,11 @@ BYTE = 8
 
 
 class Packing(Protocol):
-    """Numbers to a texel and back.
+    """A packing of numbers into a texel and back.
 
     Attributes:
-        name: what a reader calls it.
-        storage: the storage whose own it is; None where codecs are not measured in it.
+        name: its display name.
+        storage: the storage that it packs into; None for a packing in which no codec is measured.
     """
 
     @property
@@ -50,8 +50,8 @@ class Packing(Protocol):
 
 @dataclass(frozen=True)
 class StoragePacking:
-    """The first 2 or 3 numbers of a code in the first channels of a storage. Rounding is left to the device, as it
-    is wherever the device rounds as requested."""
+    """A packing of the first 2 or 3 numbers of a code into the first channels of a storage. Rounding is left to the
+    device, as in codecs whose rounding the device performs."""
 
     storage: Storage
     numbers: int
@@ -155,5 +155,5 @@ SIGN = (PACKINGS["depth24_sign"][0], PACKINGS["depth24"][0])
 
 
 def packing_of(codec: Codec) -> Packing:
-    """The packing that a codec's numbers, but for sign bits, go through."""
+    """Return the packing of a codec's numbers, without its sign bits."""
     return StoragePacking(codec.storage, max(codec.encoding.components, 2))

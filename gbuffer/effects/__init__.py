@@ -1,1 +1,1 @@
-"""Effects: passes that read what a pipeline keeps, and insert themselves behind a pass."""
+"""Effects: passes that read a pipeline's resources and are inserted after one of its passes."""

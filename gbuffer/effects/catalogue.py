@@ -1,12 +1,12 @@
-"""The effects there are. Adding one is its pair of files in this folder, and one line here.
+"""The catalogue of effects. To add an effect, add its files to this folder and its name to NAMES.
 
 An effect's module holds EFFECT; each of its passes names the pass that it follows. Effects do not import each other:
-what one writes others read by its name, where the macro that it tells is defined.
+an effect reads what another writes by its name, if the macro that belongs to it is defined.
 
-What the pipelines' own passes read of effects, where the macro next to it is told:
+The pipelines' own passes read these resources of effects, if the macro next to the name is defined:
     visibility      HAS_VISIBILITY    the share of ambient light that arrives at a pixel, in x
     indirect        HAS_INDIRECT      light that arrives from other surfaces, times 1 / pi
-    scattered       HAS_SCATTERED     diffuse light of skin after it went through it, and its depth; 0 elsewhere
+    scattered       HAS_SCATTERED     diffuse light of skin after scattering, and the skin's depth; 0 elsewhere
 """
 
 from __future__ import annotations

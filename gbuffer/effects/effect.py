@@ -1,4 +1,4 @@
-"""Effects: passes that read what a pipeline keeps, with settings that can be named in one word of text."""
+"""Effects: passes that read a pipeline's resources, with settings that can be given as one word of text."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Value = int | float | str
 
 
 class EffectError(ValueError):
-    """An effect that is not there, or a setting that it does not have: one line that says what would be right."""
+    """An unknown effect or an invalid setting; the message is one line that says what is valid."""
 
 
 @dataclass(frozen=True)
@@ -62,17 +62,17 @@ class Choice:
 
 @dataclass(frozen=True, eq=False)
 class Effect:
-    """One effect.
+    """An effect.
 
     Attributes:
-        name, title, source: what it is called, what it shows, where its method was published.
-        result: the image that it computes of its own, which tables compare: a resource that one of its passes writes.
-        passes: makes its passes; takes a value for each of `settings` by keyword.
-        settings: what can be chosen, by name.
-        lacks: why a scene has nothing for it, such as "it has no skin"; None where it has.
-        scene: the scene that shows it, where nobody asks for another.
-        hits: where rays of its pixels meet something: x and y in pixels, and in w 1, or 0 where one meets nothing; None
-            of an effect without rays.
+        name, title, source: its name, its description and the publication of its method.
+        result: the image that tables compare: a resource that one of its passes writes.
+        passes: function that returns its passes; takes a value for each of `settings` by keyword.
+        settings: the available settings, by name.
+        lacks: function that returns what a scene lacks for the effect, such as "it has no skin"; None for nothing.
+        scene: default scene.
+        hits: the points that its pixels' rays hit: x and y in pixels, and w 1 for a hit or 0 for none; None for
+            an effect without rays.
     """
 
     name: str
@@ -88,7 +88,7 @@ class Effect:
 
 @dataclass(frozen=True)
 class ChosenEffect:
-    """An effect with the settings that it is made with, all of them, in the effect's order."""
+    """An effect with a value for each of its settings, in the effect's order."""
 
     effect: Effect
     values: tuple[tuple[str, Value], ...]

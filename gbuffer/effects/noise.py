@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from .effect import Number
 
-SEED = Number(0, 0, 65535, "What the noise of each pixel starts from.")
+SEED = Number(0, 0, 65535, "Seed of the noise.")
 NOISE: Mapping[str, int] = MappingProxyType(
     {
         "PCG_FACTOR": 1664525,  # of the linear congruential generator of pcg3d (Jarzynski and Olano 2020, listing 7)

@@ -1,1 +1,1 @@
-"""The distant surroundings of a scene: images of them, and what surfaces of each roughness see there."""
+"""The distant surroundings of a scene: their images, and those images prefiltered for each roughness."""

@@ -6,7 +6,10 @@ import numpy as np
 
 
 def averaged(radiance: np.ndarray, height: int) -> np.ndarray:
-    """(height, 2 height, 3), float32, of (rows, 2 rows, 3) with as many rows or more: no light is lost or made."""
+    """Return an environment reduced to (height, 2 height, 3), float32, by area averages that conserve its light.
+
+    Args:
+        radiance: (rows, 2 rows, 3) with at least as many rows."""
     rows, columns = radiance.shape[:2]
     # The area of a band goes by the cosine of its polar angle.
     bands, wanted = (-np.cos(np.arange(count + 1) * np.pi / count) for count in (rows, height))

@@ -18,7 +18,7 @@ TOWARDS, RADIUS = np.array([0.48, 0.36, 0.8]), 2.0
 
 @functools.cache
 def strips() -> np.ndarray:
-    """Its radiance, (256, 512, 3), float32."""
+    """Return the radiance of the room with strips, (256, 512, 3), float32."""
     return drawn(_hung)
 
 
@@ -33,7 +33,7 @@ def _hung(towards: np.ndarray) -> np.ndarray:
 
 @functools.cache
 def lamp() -> np.ndarray:
-    """Its radiance, (256, 512, 3), float32."""
+    """Return the radiance of the room with a lamp, (256, 512, 3), float32."""
     return drawn(_bulb)
 
 

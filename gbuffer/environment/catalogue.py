@@ -15,12 +15,12 @@ from .environment import Environment
 
 @dataclass(frozen=True)
 class EnvironmentMaker:
-    """An environment by formula.
+    """An environment that is computed from a formula.
 
     Attributes:
-        name, title: what it is called, and what it shows.
-        radiance: makes its picture, (height, 2 height, 3), float32.
-        has_sun: whether a sun is in it, which scenes have as a light.
+        name, title: its name and its description.
+        radiance: function that returns its image, (height, 2 height, 3), float32.
+        has_sun: whether it contains a sun, which scenes use as a light.
     """
 
     name: str

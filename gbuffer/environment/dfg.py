@@ -34,7 +34,7 @@ def dfg(n_v: np.ndarray, roughness: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 
 def _microfacets(n_v: np.ndarray, alpha: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return what each node's microfacets add to the integral without Fresnel, and their v.h; the nodes come last.
+    """Return each node's contribution to the integral without Fresnel, and its v.h; the nodes are the last axis.
 
     A microfacet's slope is alpha tan(x) towards longitude p, p = 0 on the viewer's side. Then D n.h dh is sin 2x dx
     dp / 2 pi, and twice that with the mirror image of p. Light reaches the horizon where slope^2 - 2 slope tan(v)

@@ -9,18 +9,18 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Environment:
-    """Radiance from every direction, in an equirectangular picture.
+    """Radiance from every direction, as an equirectangular image.
 
     The centre of texel (row, column) of (height, width) is at polar angle t = pi (row + 1/2) / height from +y and
-    longitude p = 2 pi (column + 1/2) / width - pi: the direction (sin p sin t, cos t, -cos p sin t) in world space, so
-    that -z is in the middle.
+    longitude p = 2 pi (column + 1/2) / width - pi: the direction (sin p sin t, cos t, -cos p sin t) in world space,
+    so that -z is in the middle.
 
     Attributes:
-        name: what tables call it.
+        name: its name in tables.
         radiance: linear light, (height, width, 3), float32; width is twice the height.
-        sun: what was taken out of it as a light: the direction that the light goes, unit, and irradiance on a surface
-            across it, linear colour; None where nothing was.
-        changes: what was done to the picture since it was read or made, for rows.
+        sun: the sun that was removed from the image and made a light: the unit direction in which its light travels,
+            and its irradiance on a perpendicular surface, linear colour; None if no sun was removed.
+        changes: changes to the image since it was read or computed, as rows name them.
     """
 
     name: str

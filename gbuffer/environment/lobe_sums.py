@@ -1,9 +1,10 @@
 """An environment seen through GGX's lobe around each direction: sums over all of its texels, not samples.
 
-The lobe depends on two latitudes and a difference of longitudes. So what a row of texels gives to a row of directions
-is a convolution along the longitudes, a product of spectra. A lobe of several texels is summed by its values in their
-middles. One that is narrower is integrated over each texel, which is an area of one radiance: far from the lobe's
-middle by two latitudes and exactly along the longitudes, and near it by as many nodes as it takes.
+The lobe depends on two latitudes and a difference of longitudes. The contribution of a row of texels to a row of
+directions is therefore a convolution along the longitudes, computed as a product of spectra. A lobe several texels
+wide is summed by its values at their centres. A narrower lobe is integrated over each texel, whose radiance is
+constant: with two latitudes and exactly along the longitudes far from the lobe's middle, and with as many nodes as
+needed near it.
 """
 
 from __future__ import annotations

@@ -27,15 +27,15 @@ Keep = Callable[[str, Callable[[], Arrays]], Arrays]
 
 @dataclass(frozen=True, eq=False)
 class Prefiltered:
-    """An environment filtered by GGX's lobe around each direction r, where normal and viewer are r.
+    """An environment filtered by GGX's lobe around each direction r, with normal and viewer equal to r.
 
-    It is the sum of L K over that of K, K = D((1 + r.l) / 2) max(r.l, 0).
+    A texel is the sum of L K divided by the sum of K, with K = D((1 + r.l) / 2) max(r.l, 0).
 
     Attributes:
-        fine: (levels, height, width, 3), float32, texels as the environment's own; level 0 is its radiance.
+        fine: (levels, height, width, 3), float32, at the environment's own size; level 0 is its radiance.
         fine_roughness: roughness of each fine level, from 0 up.
         coarse: (levels, height / 4, width / 4, 3), float32.
-        coarse_roughness: roughness of each coarse level; the first is the last fine one, the last is 1.
+        coarse_roughness: roughness of each coarse level, from that of the last fine level up to 1.
     """
 
     fine: np.ndarray
@@ -58,12 +58,12 @@ _keepers: list[Keep] = [_made_now]
 
 
 def keep_levels_by(keep: Keep) -> None:
-    """Have what frames need of environments kept from here on."""
+    """Set the function that keeps the prefiltered levels that frames use from now on."""
     _keepers[:] = [keep]
 
 
 def kept_prefiltered(environment: Environment) -> Prefiltered:
-    """The levels of an environment, as `keep_levels_by` says. Raises ValueError as `prefiltered` does."""
+    """Return the levels of an environment, kept by the function set. Raises ValueError as `prefiltered` does."""
     return prefiltered(environment, _keepers[0])
 
 
@@ -84,7 +84,7 @@ def prefiltered(environment: Environment, keep: Keep = _made_now) -> Prefiltered
 
 
 def key_of(radiance: np.ndarray) -> str:
-    """Differs where radiance, levels or the way that they are made differ."""
+    """Return a key that changes with the radiance, the levels and VERSION."""
     stored = np.ascontiguousarray(radiance, np.float32)
     facts = json.dumps([VERSION, FINE, COARSE, STEP, stored.shape])
     return hashlib.sha256(facts.encode() + stored.tobytes()).hexdigest()

@@ -71,7 +71,7 @@ def _light(towards: np.ndarray) -> np.ndarray:
 
 
 def _with_lamps(light: np.ndarray, wall: tuple[int, int], across: np.ndarray) -> np.ndarray:
-    """A wall's light, (count, 3), with what is on it, at places along its other two axes."""
+    """Return a wall's light, (count, 3), with its lamps and grid, at positions along the wall's two axes."""
     if wall == GRID:
         light = mixed(light, LINES, _grid(across))
     for panel in PANELS:

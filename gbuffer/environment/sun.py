@@ -1,4 +1,4 @@
-"""Suns: a small part of an environment that is much brighter than all else, taken out of it as a directional light."""
+"""Suns: a small part of an environment, much brighter than the rest, that is removed and made a directional light."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""A frame: its plan, its resources, and what passes draw with."""
+"""Frames: their plans, their resources and the drawing tools of passes."""

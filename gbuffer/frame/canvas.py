@@ -37,16 +37,16 @@ class Canvas:
         PipelineError: the pass uses a resource that it does not declare.
     """
 
-    def __init__(self, frame: Frame, one: Pass):
-        self.frame, self.device, self.plan, self._pass = frame, frame.device, frame.plan, one
-        earlier = frame.pipeline.upto(one)
-        self.told = {name: value for stage in (*earlier, one) for name, value in stage.tells.items()}
+    def __init__(self, frame: Frame, render_pass: Pass):
+        self.frame, self.device, self.plan, self._pass = frame, frame.device, frame.plan, render_pass
+        earlier = frame.pipeline.upto(render_pass)
+        self.told = {name: value for stage in (*earlier, render_pass) for name, value in stage.tells.items()}
         offered = {resource for stage in earlier for resource in stage.offers}
-        self._samplers = _samplers((*one.reads, *offered), one.writes)
+        self._samplers = _samplers((*render_pass.reads, *offered), render_pass.writes)
         self._size, self._view = frame.plan.size, None
 
     def begin(self) -> None:
-        """Clear what the pass begins anew."""
+        """Clear the resources that the pass writes but does not read."""
         for resource in self._pass.begins:
             self.frame.clear(resource)
 
@@ -55,7 +55,7 @@ class Canvas:
         return self.frame.textures(self._declared_resource(resource, (*self._pass.reads, *self._pass.writes)), copy)
 
     def swap(self, resource: Resource) -> None:
-        """Write the next copy from here on; what was in use is the copy before."""
+        """Write to the next copy from now on; the current copy becomes the previous copy."""
         self.frame.held(self._declared_resource(resource, self._pass.writes)).move_on()
 
     def target(self, *colours: Resource, depth: Resource | None = None, most: int | None = None) -> Target:
@@ -77,7 +77,7 @@ class Canvas:
         self._size, self._view = size, view
 
     def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
-        """A compiled pair of shaders that knows the frame's layout and what was told. Raises ShaderError."""
+        """Compile a pair of shaders for the frame's layout and the macros in `told`. Raises ShaderError."""
         program = self.frame.program(vertex, fragment, **{**self.told, **defines})
         for name in program:
             if (
@@ -103,7 +103,7 @@ class Canvas:
         blend: tuple[int, int] | None = None,
         **defines: object,
     ) -> Run:
-        """A pass that is one shader over whole targets, or over what is covered if there is a depth."""
+        """Return a function that runs a shader over whole targets, or over covered pixels if a depth is given."""
         target, covers = self.target(*colours, depth=depth), self.fullscreen(fragment, **defines)
 
         def run() -> None:
@@ -115,7 +115,7 @@ class Canvas:
         return run
 
     def prepare(self, program: Program, **textures: Any) -> None:
-        """Bind what shaders read before a draw: the frame, the scene, tables, and what the pass reads by its name."""
+        """Bind the inputs of a draw: the frame, the scene, tables and, by name, the resources that the pass reads."""
         read = {
             name: self.frame.textures(*source) for name, source in self._samplers.items() if _is_read(name, program)
         }
@@ -141,7 +141,7 @@ def _samplers(reads: tuple[Resource, ...], writes: tuple[Resource, ...]) -> dict
 
 @contextmanager
 def counted(context: Any, queries: list[Query] | None) -> Iterator[None]:
-    """Count the samples of what is drawn in a query, which is added to the queries; do nothing if they are None."""
+    """Count the samples drawn in a query, which is added to `queries`; do nothing if `queries` is None."""
     if queries is None:
         yield
         return
@@ -176,7 +176,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Built:
-    """A pass made ready: what to run, on which canvas."""
+    """A pass compiled for a frame: its canvas and the function to run."""
 
     canvas: Canvas
     run: Run
@@ -186,13 +186,13 @@ class Built:
         self.run()
 
 
-def built(frame: Frame, one: Pass) -> Run:
-    """A pass made ready for a frame; nothing to run where nothing that it writes is there.
+def built(frame: Frame, render_pass: Pass) -> Run:
+    """Return a pass compiled for a frame; it does nothing if none of the resources that it writes exist.
 
     Raises:
-        PipelineError, ShaderError, FormatError: it cannot be made.
+        PipelineError, ShaderError, FormatError: the pass cannot be built.
     """
-    if not any(resource.texels(frame.plan) for resource in one.writes):
+    if not any(resource.texels(frame.plan) for resource in render_pass.writes):
         return lambda: None
-    canvas = Canvas(frame, one)
-    return Built(canvas, one.build(canvas))
+    canvas = Canvas(frame, render_pass)
+    return Built(canvas, render_pass.build(canvas))

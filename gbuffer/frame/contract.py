@@ -1,4 +1,4 @@
-"""The contract between passes: what each reads and writes, in which order. Checked when a pipeline is made."""
+"""The contract between passes: the resources that each reads and writes. Checked when a pipeline is created."""
 
 from __future__ import annotations
 
@@ -62,9 +62,9 @@ class Pipeline:
     """An ordered list of passes.
 
     Attributes:
-        name, title, source: what it is called, what it is, where it comes from.
+        name, title, source: its name, its description and its origin.
         stages: the passes, in order.
-        usual_layout: the layout it is published with.
+        usual_layout: the layout that it is published with.
 
     Raises:
         PipelineError: its passes do not fit together.
@@ -128,10 +128,10 @@ class Pipeline:
         return self.stages[: self.stages.index(stage)] if stage in self.stages else self.stages
 
     def with_effect(self, passes: Iterable[Pass]) -> Pipeline:
-        """Return the pipeline with an effect's passes, each behind the pass that it names and earlier effect passes.
+        """Return the pipeline with an effect's passes, each after the pass it names and any effect passes there.
 
         Raises:
-            PipelineError: there is no such pass, or they do not fit.
+            PipelineError: a pass to follow does not exist, or the passes do not fit together.
         """
         stages = list(self.stages)
         for stage in passes:
@@ -139,31 +139,31 @@ class Pipeline:
         return replace(self, stages=tuple(stages))
 
 
-def _index_after(pipeline: str, one: Pass, stages: list[Pass]) -> int:
-    places = [index for index, stage in enumerate(stages) if stage.name in one.after]
+def _index_after(pipeline: str, render_pass: Pass, stages: list[Pass]) -> int:
+    places = [index for index, stage in enumerate(stages) if stage.name in render_pass.after]
     if not places:
         known = ", ".join(stage.name for stage in stages)
         raise PipelineError(
-            f"pipeline {pipeline}: pass {one.name} comes after {' or '.join(one.after)}; known: {known}"
+            f"pipeline {pipeline}: pass {render_pass.name} comes after {' or '.join(render_pass.after)}; known: {known}"
         )
     behind = (index for index in range(places[-1] + 1, len(stages)) if not stages[index].after)
     return next(behind, len(stages))
 
 
-def _misfits(one: Pass, earlier: Sequence[Pass], stages: Sequence[Pass]) -> Iterator[str]:
+def _misfits(render_pass: Pass, earlier: Sequence[Pass], stages: Sequence[Pass]) -> Iterator[str]:
     """Why a pass does not fit behind others, reason after reason."""
-    if one.name in [other.name for other in earlier]:
+    if render_pass.name in [other.name for other in earlier]:
         yield "has the name of another pass"
-    if not one.writes:
+    if not render_pass.writes:
         yield "writes nothing"
-    for resource in (*one.reads, *one.writes):
+    for resource in (*render_pass.reads, *render_pass.writes):
         yield from _resource_misfits(resource, earlier)
-    for resource in one.reads:
+    for resource in render_pass.reads:
         if resource.name not in _written(stages if resource.kept else earlier):
             yield f"reads {resource.name}, which no {'' if resource.kept else 'earlier '}pass writes"
         if taker := next((other for other in _written(earlier).values() if other.shares == resource), None):
             yield f"reads {resource.name}, which {taker.name} has replaced"
-    yield from _macro_misfits(one, {name: value for other in earlier for name, value in other.tells.items()})
+    yield from _macro_misfits(render_pass, {name: value for other in earlier for name, value in other.tells.items()})
 
 
 def _written(stages: Sequence[Pass]) -> dict[str, Resource]:
@@ -179,11 +179,11 @@ def _resource_misfits(resource: Resource, earlier: Sequence[Pass]) -> Iterator[s
         yield f"has a resource {resource.name} that differs from an earlier pass's"
 
 
-def _macro_misfits(one: Pass, told: Mapping[str, int]) -> Iterator[str]:
-    """Why a pass cannot work with what it is told."""
-    for macro, value in one.tells.items():
+def _macro_misfits(render_pass: Pass, told: Mapping[str, int]) -> Iterator[str]:
+    """Yield the reasons why a pass cannot work with the macros of earlier passes."""
+    for macro, value in render_pass.tells.items():
         if told.get(macro, value) != value:
             yield f"defines {macro} as {value}, but an earlier pass defines it as {told[macro]}"
-    for macro, values in one.expects.items():
+    for macro, values in render_pass.expects.items():
         if told.get(macro) not in values:
             yield f"expects {macro} {' or '.join(map(str, values))}, but has {told.get(macro, 'nothing')}"

@@ -38,13 +38,13 @@ KINDS = ((SAMPLERS, False), (WORD_SAMPLERS, True))
 
 
 class Frame:
-    """The resources of one plan over one scene, made when first asked for; a context manager that releases them.
+    """A pipeline's resources for one scene and plan, created on first use; a context manager that releases them.
 
     Args:
-        device: where.
-        scene: what is drawn.
-        pipeline: whose resources.
-        plan: with which targets.
+        device: the OpenGL device.
+        scene: the scene to draw.
+        pipeline: the pipeline whose passes draw it.
+        plan: the settings of the frame.
     """
 
     def __init__(self, device: Device, scene: Scene, pipeline: Pipeline, plan: Plan):
@@ -86,7 +86,7 @@ class Frame:
         self._blocks.clear()
 
     def advance(self) -> None:
-        """Begin the next frame: what is kept moves on by one copy."""
+        """Begin the next frame: resources that are kept between frames move on by one copy."""
         for resource in self.pipeline.resources.values():
             if resource.kept and resource not in self._held:
                 for _ in range(resource.copies):
@@ -96,7 +96,7 @@ class Frame:
                 self.held(resource).move_on()
 
     def held(self, resource: Resource) -> Held:
-        """The textures of a resource, made when it is first asked for."""
+        """Return a resource on the device, created on first use."""
         if resource.shares and resource.is_shared(self.plan):
             return self.held(resource.shares)
         if resource not in self._held:
@@ -109,7 +109,7 @@ class Frame:
         return [target.texture if isinstance(target, raw.DepthBuffer) else target for target in held]
 
     def clear(self, resource: Resource) -> None:
-        """Colour to 0, or to what stands for no light; depth to 1 and stencil to 0."""
+        """Clear colour to 0 (the light buffer to its code for no light), depth to 1 and stencil to 0."""
         none = self.plan.light_buffer.no_light if resource == LIGHT else 0.0
         textures, is_depth = self.textures(resource), resource.texels(self.plan)[:1] in ((DEPTH_MAP,), (DEPTH_STENCIL,))
         if not textures:
@@ -123,14 +123,20 @@ class Frame:
             raw.clear_words(i for i, storage in enumerate(resource.texels(self.plan)) if _is_integer(storage))
 
     def framebuffer(
-        self, colours: Sequence[Any], depth: Resource | None = None, writes_depth: bool = False, at: int | None = None
+        self,
+        colours: Sequence[Any],
+        depth: Resource | None = None,
+        writes_depth: bool = False,
+        layer: int | None = None,
     ) -> Framebuffer:
-        """Targets to draw into, made once; `at` is the slice of volumes. Raises FormatError where the device cannot."""
+        """Return a framebuffer, made on first use; `layer` is a slice of volumes. Raises FormatError if unsupported."""
         against = self.held(depth).copy(0)[0] if depth else None
-        key = (*(texture.glo for texture in colours), against, writes_depth, at)
+        key = (*(texture.glo for texture in colours), against, writes_depth, layer)
         if key not in self._framebuffers:
             volumes = bool(colours) and isinstance(colours[0], Texture3D)
-            make = self.device.slice_framebuffer(colours, at) if volumes else self.device.framebuffer(colours, against)
+            make = (
+                self.device.slice_framebuffer(colours, layer) if volumes else self.device.framebuffer(colours, against)
+            )
             make.depth_mask = writes_depth
             self._framebuffers[key] = self.device.owned(self.stack, make)
         return self._framebuffers[key]
@@ -156,7 +162,7 @@ class Frame:
         }
 
     def _light_defines(self) -> dict[str, object]:
-        """The macros of the light buffer, and of what the layout keeps on curves and as codes of light."""
+        """Return the macros of the light buffer, and of the layout's curves and encoding of light."""
         light, kept = light_defines(self.plan.light_buffer), curve_defines(self.plan.layout)
         if any(light[name] != kept[name] for name in light.keys() & kept.keys()):
             buffer = self.plan.light_buffer.name
@@ -210,7 +216,7 @@ class Frame:
         return vertex_array
 
     def bind(self, program: Program, size: tuple[int, int], view: Sight | None, textures: Mapping[str, Any]) -> None:
-        """Bind what a draw into a target of this size reads, seen from a view or by the scene's own camera (None)."""
+        """Bind the inputs of a draw into a target of this size, seen from `view` or by the scene's camera (None)."""
         if (size, view) not in self._blocks:
             self._blocks[size, view] = self._frame_buffer(size, view)
         self._blocks[size, view].bind_to_uniform_block(FRAME_BINDING)
@@ -218,7 +224,7 @@ class Frame:
         bind(program, {"bumps": self.scene_buffers.bumps, **self.tables, **self._by_kind(textures)})
 
     def _by_kind(self, textures: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return textures by sampler; those of the G-buffer that hold whole numbers have a sampler of their own."""
+        """Return textures by sampler; G-buffer textures of integer formats have a separate sampler."""
         storages = [target.storage for target in self.plan.layout.targets]
         if SAMPLERS not in textures or not any(storage.is_integer for storage in storages):
             return textures

@@ -13,7 +13,7 @@ from .resource import DEPTH_MAP, Resource, Texel
 
 
 class Held:
-    """A resource's copies, made when first asked for and released with the stack; one of them is in use."""
+    """A resource's copies, created on first use and released with the stack; one copy at a time is in use."""
 
     def __init__(self, device: Device, stack: ExitStack, resource: Resource, plan: Plan):
         self._device, self._stack, self._resource = device, stack, resource
@@ -29,7 +29,7 @@ class Held:
         return self._copies[place]
 
     def move_on(self) -> None:
-        """Make the next copy the one in use."""
+        """Switch to the next copy."""
         self._used = (self._used + 1) % self._resource.copies
 
     def _owned_texture(self, texel: Texel) -> Any:

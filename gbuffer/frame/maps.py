@@ -31,7 +31,7 @@ class Maps:
             for texture_map in material.maps if isinstance(material, MetalRough) else ():
                 if texture_map is not None and _sampled(texture_map) not in textures:
                     textures[_sampled(texture_map)] = kept(
-                        lambda one=texture_map: device.picture(one.texels, one.is_srgb, _repeats(one))
+                        lambda image=texture_map: device.picture(image.texels, image.is_srgb, _repeats(image))
                     )
         self._bound = [
             [white if material_map is None else textures[_sampled(material_map)] for material_map in material.maps]
@@ -47,13 +47,13 @@ class Maps:
                 texture.use(unit)
 
 
-def _sampled(one: Map) -> tuple[object, ...]:
+def _sampled(texture_map: Map) -> tuple[object, ...]:
     """Return the identity of a map's texture: maps that differ only in their placement share one."""
-    return id(one.texels), one.is_srgb, _repeats(one)
+    return id(texture_map.texels), texture_map.is_srgb, _repeats(texture_map)
 
 
-def _repeats(one: Map) -> tuple[bool, bool]:
-    along_u, along_v = (wrap == "repeat" for wrap in one.wrap)
+def _repeats(texture_map: Map) -> tuple[bool, bool]:
+    along_u, along_v = (wrap == "repeat" for wrap in texture_map.wrap)
     return along_u, along_v
 
 

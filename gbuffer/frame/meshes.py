@@ -21,7 +21,7 @@ class Geometry:
         ]
 
     def draw(self, name: str | int, cull: str = "back") -> None:
-        """Draw one of the scene's lists, without the "back" or "front" sides of what is closed."""
+        """Draw one of the scene's lists; cull the "back" or "front" faces of meshes that are not two-sided."""
         buffers, device = self._frame.scene_buffers, self._frame.device
         device.context.cull_face = cull
         for draw in buffers.draws[name]:

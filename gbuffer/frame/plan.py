@@ -19,15 +19,15 @@ class Plan:
     Attributes:
         size: width and height of the final image.
         samples: samples per pixel.
-        layout, light_buffer: how the G-buffer and the light are stored.
-        light_targets: 1 or 2, see `accumulation.glsl`.
+        layout, light_buffer: storage of the G-buffer and of the light.
+        light_targets: 1 or 2; see `accumulation.glsl`.
         shadows: whether the sun has a shadow map.
-        antialiased: whether metallic-roughness surfaces are made rougher by the normals within a pixel.
+        antialiased: whether varying normals within a pixel make metallic-roughness surfaces rougher.
         least_roughness: lowest roughness for lights; the environment is reflected down to 0.
         scale: size of the G-buffer and light buffer relative to the image's, for pipelines that have the choice.
         apart: whether G-buffer and light buffer have that scale, and one sample per pixel; set by the pipeline.
-        dither: the noise that is added to the normal's code; None for what its layout says.
-        sampled_from: for pixels that were sampled from another frame, that frame's width and height.
+        dither: the noise that is added to the normal's code; None for the layout's own.
+        sampled_from: width and height of the frame that the pixels were sampled from; None if not sampled.
     """
 
     size: tuple[int, int]

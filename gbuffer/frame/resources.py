@@ -1,4 +1,4 @@
-"""The resources that the pipelines' own passes share, and what a light buffer may hold."""
+"""Resources that the pipelines' own passes share, and the possible contents of a light buffer."""
 
 from __future__ import annotations
 

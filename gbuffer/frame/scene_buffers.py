@@ -1,4 +1,4 @@
-"""A scene on the device: meshes, instances, materials, lights, and lists of what each pass draws."""
+"""A scene on the device: meshes, instances, materials, lights and the lists that passes draw."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ class Sight(Protocol):
 
 @dataclass(frozen=True)
 class Draw:
-    """Some instances of one mesh, `count` entries of the order from `first` on. Those of metal/rough materials are all
-    of one material, whose maps are bound before."""
+    """Some instances of one mesh: `count` entries of the instance order from `first` on. In a scene with maps they
+    have one material, whose maps are bound before the draw."""
 
     mesh: int
     first: int
@@ -53,12 +53,12 @@ class SceneBuffers:
     """Buffers that a scene's frames are drawn from, released with `stack`; the scene may move from frame to frame.
 
     Attributes:
-        draws: by name, what to draw: "opaque", "general", "special", "transparent" (farthest first), "casters"
-            (closed) and "thin casters" (two-sided), and for each light's index the opaque instances in its reach.
-        view: world space to that of the scene's own camera, by which transparent instances are ordered.
-        lights, first_lamp: the lights in the order of the shaders, and the first that is not a sun.
+        draws: draw lists by name: "opaque", "general", "special", "transparent" (farthest first), "casters"
+            (closed) and "thin casters" (two-sided), and by each light's index the opaque instances within its range.
+        view: matrix from world space to the scene's own view space, by which transparent instances are ordered.
+        lights, first_lamp: the lights in the order of the shaders, and the index of the first that is not a sun.
         meshes: vertex and index buffers.
-        two_sided: whether the back of each mesh is drawn as well.
+        two_sided: for each mesh, whether its back faces are drawn as well.
         bumps: the normal map.
     """
 
@@ -138,7 +138,7 @@ class SceneBuffers:
         return np.array([_light_numbers(light, view) for light in self.lights], np.float32).reshape(-1, 16)
 
     def _ordered_instances(self) -> np.ndarray:
-        """Fills `draws` and gives the instances that they list."""
+        """Fill `draws` and return the instances in the order in which the draws list them."""
         parts, transparent = self._scene.parts, self._transparent
         mesh = np.repeat(np.arange(len(parts)), [len(part.models) for part in parts])
         special = np.array([m.kind != KINDS[0] for m in self._scene.materials])[self._material]
@@ -221,7 +221,7 @@ def sun_matrix(scene: Scene) -> np.ndarray:
     to 1 around the casters.
 
     Raises:
-        ValueError: nothing casts a shadow, or there is no sun.
+        ValueError: nothing casts a shadow, or the scene has no sun.
     """
     if scene.sun is None or not any(part.casts for part in scene.parts):
         raise ValueError("no sun, or nothing that casts a shadow")

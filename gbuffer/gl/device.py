@@ -1,4 +1,4 @@
-"""The GL device: a headless context, what it is, and how it rounds."""
+"""The OpenGL device: a headless context, its limits and its rounding."""
 
 from __future__ import annotations
 
@@ -57,8 +57,8 @@ class NoDeviceError(Exception):
     """This machine has no usable GL driver."""
 
 
-def _release_all(made: Sequence[_Releasable]) -> None:
-    for resource in made:
+def _release_all(resources: Sequence[_Releasable]) -> None:
+    for resource in resources:
         resource.release()
 
 
@@ -84,10 +84,10 @@ def _dtype(storage: Storage) -> str:
 
 
 class Device:
-    """A GL context and the few operations the passes are made of.
+    """An OpenGL context and the few operations that passes consist of.
 
     Raises:
-        NoDeviceError: there is no GL 4.3 driver here; the message says what to install.
+        NoDeviceError: no OpenGL 4.3 driver was found; the message says what to install.
     """
 
     def __init__(self):
@@ -212,12 +212,12 @@ class Device:
         return texture
 
     def picture(self, texels: np.ndarray, is_srgb: bool, repeats: tuple[bool, bool]) -> moderngl.Texture:
-        """uint8 or uint16 of shape (height, width, 4) that shaders sample at every size, each in [0, 1]; or float32,
-        which they take one texel of as it is.
+        """Return a texture of texels of shape (height, width, 4): uint8 or uint16, in [0, 1] and with mipmaps, or
+        float32 without filtering.
 
         Args:
             is_srgb: whether the first three channels are on the sRGB curve; 8 bits only.
-            repeats: along x and y, or its edge goes on.
+            repeats: whether it repeats along x and along y; otherwise its edge is extended.
         """
         height, width, _ = texels.shape
         data, dtype = np.ascontiguousarray(texels).tobytes(), PICTURES[texels.dtype.name]
@@ -279,10 +279,10 @@ class Device:
         /,
         **textures: moderngl.Texture,
     ):
-        """Run a fragment pass into targets, its samplers bound by name; those the compiler dropped are left out.
+        """Run a fragment pass into targets; bind samplers by name, except those that the compiler dropped.
 
         Args:
-            depth: what the pass's `gl_FragDepth` is written to, without a test.
+            depth: the buffer that the pass's `gl_FragDepth` is written to, without a depth test.
 
         Raises:
             FormatError: the device cannot render to one of the targets.
@@ -323,7 +323,7 @@ class Device:
             raise FormatError(f"{self.renderer} cannot render to this format: {error}") from error
         return framebuffer
 
-    def slice_framebuffer(self, volumes: Sequence[moderngl.Texture3D], at: int | None) -> moderngl.Framebuffer:
+    def slice_framebuffer(self, volumes: Sequence[moderngl.Texture3D], layer: int | None) -> moderngl.Framebuffer:
         """Return a framebuffer of one slice of each volume, or of all slices by `gl_Layer`; moderngl needs flat
         targets to make it, which the slices replace."""
         width, height, _ = volumes[0].size
@@ -332,11 +332,11 @@ class Device:
             framebuffer = self.framebuffer(flat)
             framebuffer.use()
             for index, volume in enumerate(volumes):
-                attach_slice(index, volume.glo, at)
+                attach_slice(index, volume.glo, layer)
         return framebuffer
 
     def blend(self, function: tuple[int, int] | None) -> None:
-        """Blend what is drawn next by source and destination factor, or not; no depth test, whatever drew before."""
+        """Blend the following draws by source and destination factor, or not; turn the depth test off."""
         self.state(None, function)
 
     def state(self, depth: str | None, blend: tuple[int, int] | None = None, cull: str | None = None) -> None:
@@ -365,7 +365,7 @@ class Device:
             self.idle.use()
 
     def through(self, values: np.ndarray, storage: Storage) -> np.ndarray:
-        """float32 values of shape (height, width, 4), written to a target of the format as they are and read back."""
+        """Return values, float32 of shape (height, width, 4), written to a target of the format and read back."""
         height, width, _ = values.shape
         with ExitStack() as stack:
             source = self.owned(stack, self.upload(values))
@@ -387,8 +387,8 @@ class Device:
 
     @property
     def answers(self) -> bool:
-        """Whether it still draws: a texel of a random colour is what was asked for. A driver that lost its GPU goes on
-        without a word, and what it gives back is anything."""
+        """Whether the device still draws: a texel of a random colour must read back unchanged. A driver that has
+        lost its GPU reports no error and returns arbitrary data."""
         texel = np.random.default_rng().integers(0, 256, 4, np.uint8)
         self.idle.clear(*(texel / np.float32(255)).tolist())
         return self.idle.read(components=4) == texel.tobytes()
@@ -440,10 +440,10 @@ def explained(source: Source) -> Iterator[None]:
 
 
 def in_steps(texels: np.ndarray, storage: Storage, channel: int = 0) -> np.ndarray:
-    """Texels that a device gave back, as the whole numbers that its format holds; of others as they are.
+    """Return texels read back from a device as the integers that the format stores; float and sRGB texels unchanged.
 
-    A device divides a whole number by the scale, as an H100 does, or takes the scale's reciprocal, as llvmpipe does:
-    what it holds is the same where what comes back is a unit in the last place apart.
+    A device divides an integer by the scale, as an H100 does, or multiplies it by the scale's reciprocal, as llvmpipe
+    does. The results may differ by a unit in the last place although the stored integers are the same.
     """
     # What comes back of the sRGB curve is light, whose steps are uneven.
     if storage.kind == "float" or storage.curved:

@@ -1,4 +1,4 @@
-"""The types of what lives on a device, for whoever holds some: moderngl is imported in this folder alone."""
+"""The types of objects on a device, for use elsewhere: only this folder imports moderngl."""
 
 from moderngl import Buffer, Framebuffer, Program, Query, Texture, Texture3D, VertexArray
 

@@ -10,8 +10,8 @@ T = TypeVar("T")
 
 
 class Lasting(Generic[T]):
-    """Objects by a key, each made once. Beyond a maximum number, objects without users are released, those
-    requested longest ago first."""
+    """Objects by key, each created once. Above a maximum number, objects without users are released, starting with
+    the object that was requested longest ago."""
 
     def __init__(self, most: int, release: Callable[[T], None]):
         self._most, self._release = most, release
@@ -19,7 +19,7 @@ class Lasting(Generic[T]):
         self._users: dict[Hashable, int] = {}
 
     def used(self, stack: ExitStack, key: Hashable, make: Callable[[], T]) -> T:
-        """The object of a key, in use until the stack closes. Raises what `make` does."""
+        """Return the object of a key, in use until the stack closes. Raises what `make` raises."""
         instance = self._held.pop(key) if key in self._held else make()
         self._held[key] = instance
         self._users[key] = self._users.get(key, 0) + 1

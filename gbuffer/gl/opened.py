@@ -12,7 +12,7 @@ class Opened(Protocol):
 
     @property
     def answers(self) -> bool:
-        """Whether it still does what it is asked."""
+        """Whether the device still works."""
         ...
 
 

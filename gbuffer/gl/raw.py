@@ -77,13 +77,13 @@ def _lookup() -> Callable[[bytes], int | None]:
     raise OSError(f"none of {', '.join(_FINDERS)} can be loaded")
 
 
-def _address(found: int | None) -> int | None:
+def _address(address: int | None) -> int | None:
     """Return the result of a finder; None for one of the numbers that mean "not found" in WGL."""
-    return None if found in (None, 1, 2, 3, ctypes.c_void_p(-1).value) else found
+    return None if address in (None, 1, 2, 3, ctypes.c_void_p(-1).value) else address
 
 
 def _address_within(library: ctypes.CDLL, name: str) -> int | None:
-    """Return the address of a library's own function, such as those of GL 1.1 in opengl32.dll; None if it has none."""
+    """Return the address of a library's own function, such as OpenGL 1.1's in opengl32.dll; None if not found."""
     symbol = getattr(library, name, None)
     return ctypes.cast(symbol, ctypes.c_void_p).value if symbol else None
 
@@ -106,14 +106,14 @@ def samples_of(texture: moderngl.Texture) -> int:
 
 
 class DepthBuffer:
-    """A depth texture that passes draw against, or write, and shaders read the depth of.
+    """A depth texture that passes test against or write to, and whose depth shaders can read.
 
     Args:
-        context: a GL context, current.
+        context: the current OpenGL context.
         size: width and height in pixels.
-        samples: 1, or as many as the device has.
-        internal_format: the GL enum.
-        attachment: what it is to a framebuffer, DEPTH_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT.
+        samples: samples per pixel: 1, or a number that the device supports.
+        internal_format: the OpenGL enum of the format.
+        attachment: its attachment point in a framebuffer, DEPTH_ATTACHMENT or DEPTH_STENCIL_ATTACHMENT.
     """
 
     def __init__(
@@ -167,12 +167,12 @@ def delete_texture(number: int) -> None:
     function("glDeleteTextures")(1, ctypes.byref(ctypes.c_uint(number)))
 
 
-def attach_slice(index: int, volume: int, at: int | None) -> None:
-    """Make a volume's slice the colour target `index` of the framebuffer in use; all slices if `at` is None."""
-    if at is None:
+def attach_slice(index: int, volume: int, layer: int | None) -> None:
+    """Attach slice `layer` of a volume, or all slices if None, as colour target `index` of the current framebuffer."""
+    if layer is None:
         function("glFramebufferTexture")(FRAMEBUFFER, COLOR_ATTACHMENT + index, volume, 0)
     else:
-        function("glFramebufferTextureLayer")(FRAMEBUFFER, COLOR_ATTACHMENT + index, volume, 0, at)
+        function("glFramebufferTextureLayer")(FRAMEBUFFER, COLOR_ATTACHMENT + index, volume, 0, layer)
 
 
 def depth_stencil(context: moderngl.Context, size: tuple[int, int], samples: int) -> DepthBuffer:
@@ -192,8 +192,8 @@ def clear_words(attachments: Iterable[int]) -> None:
 
 
 def mark_volume() -> None:
-    """Make draws change only the stencil: up where a back face is behind what is drawn, down where a front face is.
-    Everything inside a closed volume is left at 1, wherever the eye is (depth fail)."""
+    """Make draws change only the stencil: a back face behind the drawn surface increments it, a front face
+    decrements it. Surfaces inside a closed volume end up at 1, wherever the eye is (depth fail)."""
     function("glColorMask")(0, 0, 0, 0)
     function("glStencilFunc")(ALWAYS, 0, 0xFF)
     function("glStencilOpSeparate")(BACK, KEEP, INCR_WRAP, KEEP)
@@ -215,7 +215,7 @@ def once_a_pixel(number: int) -> None:
 
 
 def clear_stencil() -> None:
-    """Stencil to 0 in the framebuffer in use, depth as it is."""
+    """Clear the stencil of the current framebuffer to 0; leave the depth unchanged."""
     function("glClearBufferiv")(STENCIL, 0, ctypes.byref(ctypes.c_int(0)))
 
 
@@ -243,7 +243,7 @@ def compute_program(code: bytes, entry: str) -> int:
 
 
 def dispatch(program: int, groups: int) -> None:
-    """Run groups of a compute program; what it writes is there for all that follows."""
+    """Run groups of a compute program; a barrier makes its writes visible to all later commands."""
     function("glUseProgram")(program)
     function("glDispatchCompute")(groups, 1, 1)
     function("glMemoryBarrier")(ALL_BARRIERS)

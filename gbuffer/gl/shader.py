@@ -31,7 +31,7 @@ class ShaderError(Exception):
 
 @cache
 def shaders() -> Mapping[str, Path]:
-    """Every shader of this room, and what the encodings share, by file name. Raises ShaderError where two have one."""
+    """Return this package's shaders and the encodings' shared files by name. Raises ShaderError for duplicates."""
     paths: dict[str, Path] = {}
     shared = (path for pattern in SHARED for path in (ROOM.parent / "encodings").glob(pattern))
     for path in sorted([*ROOM.rglob("*.*"), *shared]):
@@ -43,17 +43,17 @@ def shaders() -> Mapping[str, Path]:
 class Source:
     """A shader's text with every include expanded once.
 
-    An include is a file next to the one that includes it, else a shader of `shaders`, by its name only.
+    An include is a file next to the including file, or else a shader of `shaders`, by its name only.
 
-    The origin of each line is kept here and not told to the compiler by `#line`: Mesa forgets the source string
-    number in some of its messages, and then blames the wrong file.
+    The origin of each line is kept here and not passed to the compiler with `#line`: Mesa omits the source string
+    number from some of its messages, and then names the wrong file.
 
     Args:
         path: the shader: a name of `shaders`, or a path.
         defines: macros set at its head; unused ones are left out, so that identical programs have identical text.
         names: the file or the files that replace `#include NAME`.
-        may_read: whether a file from outside this program may be included, its links resolved; otherwise it is not
-            opened. None: the files have been checked before.
+        may_read: function that returns whether a file outside this program may be included, given its path with links
+            resolved; other files are not opened. None if the files have been checked before.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class Source:
         return [path for _, path, _ in self._lines]
 
     def explain(self, log: str) -> str:
-        """A compiler's message with file names and their line numbers in place of its own."""
+        """Return a compiler's message with its line numbers replaced by those of the files, and the files' names."""
 
         def place(match: re.Match[str]) -> str:
             index = int(match[1] or match[2] or match[3]) - 1
@@ -108,8 +108,8 @@ def _is_own(path: Path) -> bool:
 
 
 def _once_of_own(function: Callable[..., T]) -> Callable[..., T]:
-    """A function of a path and more, kept for the program's own files. They stay as they are, and frames ask for the
-    same shaders again and again."""
+    """Return a function of a path whose results are cached for the program's own files. These do not change, and
+    frames request the same shaders again and again."""
     kept = cache(function)
 
     @wraps(function)
@@ -131,7 +131,7 @@ def _joined_text(lines: Iterable[Line]) -> str:
 def _expanded(
     main: Path, names: Sequence[tuple[str, tuple[Path, ...]]], may_read: Callable[[Path], bool] | None = None
 ) -> tuple[list[Line], str]:
-    """The lines of a shader and of what it includes, each file once, and the text of all but the first line."""
+    """Return the lines of a shader and its includes, each file once, and the text of all lines but the first."""
     stand_for, seen = dict(names), set()
 
     def expand(path: Path) -> list[Line]:

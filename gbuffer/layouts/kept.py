@@ -26,7 +26,7 @@ MOTION = "motion"
 
 
 def quantity_of(component: str) -> str:
-    """Return what a component of a layout is a number of: `base_color` of `base_color.r`."""
+    """Return the quantity that a component of a layout belongs to: `base_color` for `base_color.r`."""
     base, dot, _ = component.partition(".")
     return F0_COLOUR if dot and base == F0 else base
 

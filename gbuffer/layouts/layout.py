@@ -42,7 +42,7 @@ DIFFUSE_F0 = "diffuse colour, F0"
 
 
 def engines_space(encoding: Encoding) -> str:
-    """The space in which engines keep normals by an encoding: the world's where it is made for all directions."""
+    """Return the space in which engines store normals of an encoding: world if it covers the sphere, else view."""
     return WORLD if encoding.domain == "sphere" else VIEW
 
 
@@ -51,23 +51,24 @@ class Layout:
     """The render targets of a G-buffer.
 
     Attributes:
-        name, title, source: what it is called, what it is, where it comes from.
-        targets: in the order of their attachment.
-        encoding: of the normal. In the world's axes a code for a half keeps its own: its y is the world's.
-        space: "view" or "world", what the normal's axes are.
-        rounding: how the normal's own format rounds, one of ROUNDINGS; or DITHERED, where noise of a step that stands
-            still is added to the numbers of its code before.
+        name, title, source: its name, its description and its source.
+        targets: the targets in the order of their attachment.
+        encoding: the encoding of the normal. In world space an encoding of another hemisphere than z >= 0 keeps its
+            author's axes: its y is the world's.
+        space: "view" or "world", the space of the normal.
+        rounding: how the normal's own format rounds, one of ROUNDINGS; or DITHERED, if noise of one step, the same in
+            every frame, is added to the numbers of its code before.
         packing: how words with bits round, a key of PACKINGS.
-        depth: the encoding of the depth; None for the first of the catalogue that suits the normal.
-        engine, year: which engine or SDK it is of, and when its source was written or read; empty and 0 where it is
-            of none.
+        depth: the encoding of the depth; None for the first in the catalogue that suits the normal.
+        engine, year: the engine or SDK, and the year in which its source was written or read; empty and 0 for a
+            layout of no engine.
         is_whole: whether the targets are all that the engine keeps of an opaque material, and not only its normal.
-        light: the engine's light buffer, a key of LIGHT_BUFFERS; empty where it is not known. Emission is added there
-            if the targets hold none.
-        decals: how the engine puts decals on it, one sentence; empty where it is not known.
+        light: the engine's light buffer, a key of LIGHT_BUFFERS; empty if unknown. Emission is added there if the
+            targets hold none.
+        decals: how the engine draws decals on it, in one sentence; empty if unknown.
 
     Raises:
-        LayoutError: what it names does not exist, does not fit, or clashes.
+        LayoutError: a name is unknown, or the parts do not fit together.
     """
 
     name: str
@@ -109,16 +110,16 @@ class Layout:
             return "noise needs one channel per component"
         return self.codec.undithered
 
-    def _check_normal_words(self, found: Collection[str]) -> None:
+    def _check_normal_words(self, components: Collection[str]) -> None:
         """Raise LayoutError if the words of the normal are not those that its encoding needs."""
         encoding, name, carried = self.encoding, self.encoding.name, self.carried
         normal = {f"normal.{axis}" for axis in "xyz"[: encoding.components]}
-        kept = {c for c in found if c.startswith("normal.")} | ({carried} if carried else set())
-        if kept != normal or carried in found:
+        kept = {c for c in components if c.startswith("normal.")} | ({carried} if carried else set())
+        if kept != normal or carried in components:
             raise LayoutError(f"layout {self.name}: {name} needs exactly {', '.join(sorted(normal))}")
         if carried and encoding.levels_of("xyz".index(carried[-1])) != 2:
-            raise LayoutError(f"layout {self.name}: {carried} of {name} is not a sign, so no quantity can carry it")
-        if encoding.sign_bits and "depth" not in found:
+            raise LayoutError(f"layout {self.name}: {carried} of {name} is not a sign, so no quantity can store it")
+        if encoding.sign_bits and "depth" not in components:
             raise LayoutError(f"layout {self.name}: {name} needs the depth's sign, but the layout has no depth")
 
     def _check_colours(self) -> None:
@@ -142,17 +143,17 @@ class Layout:
 
     @property
     def carrier(self) -> Word | None:
-        """The word whose sign stores a number of the normal's code; None if there is none."""
+        """The word whose sign stores a number of the normal's code; None if no word does."""
         return next((word for word in self.words if word.sign), None)
 
     @property
     def carried(self) -> str:
-        """The number in the sign of `carrier`, such as `normal.z`; empty if there is none."""
+        """The number that the sign of `carrier` stores, such as `normal.z`; empty without a carrier."""
         return self.carrier.sign if self.carrier else ""
 
     @property
     def has_signed_depth(self) -> bool:
-        """Whether the depth has a sign: one that the encoding leaves to it, or that of a number of the code."""
+        """Whether the depth is signed, for a sign bit of the encoding or for a number of the code."""
         return self.encoding.sign_bits > 0 or (self.carrier is not None and self.carrier.component == "depth")
 
     @property
@@ -184,7 +185,7 @@ class Layout:
         return tuple(words)
 
     def _check_word(self, word: Word) -> None:
-        """Raise LayoutError if a word cannot represent what it must."""
+        """Raise LayoutError if a word cannot represent its component."""
         target, component = self.targets[word.target], word.component
         place, storage = place_of(self.name, word.target, target), target.storage
         bits = word.bits or storage.bits[word.first]
@@ -198,7 +199,7 @@ class Layout:
             self._check_normal(place, component, storage, bits)
 
     def _check_normal(self, place: str, component: str, storage: Storage, bits: int) -> None:
-        """Raise LayoutError if a number of the normal's code is not stored as the encoding needs it."""
+        """Raise LayoutError if a number of the normal's code is not stored as the encoding requires."""
         encoding = self.encoding
         if encoding.is_packed and storage != BITS_32:
             raise LayoutError(f"{place}: {encoding.name} packs 32 bits itself and needs the format {BITS_32.name}")
@@ -276,11 +277,11 @@ class Layout:
         return DIFFUSE_F0 if "f0.r" in self.components else ""
 
     def with_codec(self, codec: Codec) -> Layout:
-        """The layout with its normal in a target of its own, encoded and stored as `codec` does.
+        """Return the layout with its normal in a separate target, encoded and stored as `codec` does.
 
         Raises:
-            LayoutError: the codec keeps a sign in a depth that the layout does not keep, cuts off signed words, or its
-                storage is only measured.
+            LayoutError: the codec keeps a sign in a depth that the layout does not keep, truncates signed words, or
+                has a storage that is only for measurements.
         """
         storage, components = codec.storage, "xyz"[: codec.encoding.components]
         if storage.only_measured:
@@ -300,12 +301,12 @@ class Layout:
         return replace(self, targets=(*kept, home), encoding=codec.encoding, **rounding)
 
     def with_depth(self, codec: DepthCodec) -> Layout:
-        """The layout with its depth in a target of its own, encoded and stored as `codec` does.
+        """Return the layout with its depth in a separate target, encoded and stored as `codec` does.
 
-        A depth buffer's number is stored by a shader: integers across channels of 8 bits, floats in a channel of 32.
+        A shader stores a depth buffer's number: integers across 8-bit channels, floats in a 32-bit channel.
 
         Raises:
-            LayoutError: the code does not suit the encoding of the normal, or does not fit its storage.
+            LayoutError: the depth encoding does not suit the normal's encoding, or does not fit its storage.
         """
         if codec.misfit:
             raise LayoutError(f"layout {self.name}: {codec.name}: {codec.misfit}")
@@ -325,7 +326,7 @@ def engine_layout(
 
 
 def _check_known(layout_name: str, field: str, name: str, known: Collection[str]) -> None:
-    """Raise LayoutError for a name that is not among the known ones."""
+    """Raise LayoutError if a name is unknown."""
     if name not in known:
         raise LayoutError(f"layout {layout_name}: unknown {field} {name!r}; known: {', '.join(known)}")
 
@@ -346,14 +347,15 @@ def catalogue_encoding(word: str) -> Encoding:
 
 
 def read_layout(path: Path, encoding_named: Callable[[str], Encoding] = catalogue_encoding) -> Layout:
-    """A layout from a TOML file: `title`, `encoding`, `[[targets]]` of `format` and `holds`; `space`, `rounding`,
-    `packing`, `depth` and `light` where they are not the usual.
+    """Return the layout in a TOML file: `encoding`, and `[[targets]]` with `format` and `holds`; optionally `title`,
+    `source`, `space`, `rounding`, `packing`, `depth` and `light`.
 
     Args:
-        encoding_named: gives the encoding that the file names.
+        encoding_named: function that returns the encoding that the file names.
 
     Raises:
-        LayoutError: it cannot be read, or is not a layout; one line. And what `encoding_named` raises.
+        LayoutError: the file cannot be read or is not a layout; the message is one line. Also raises what
+            `encoding_named` raises.
     """
     try:
         data = file_toml(path)

@@ -1,4 +1,4 @@
-"""Other words for what a layout keeps, as engines have them, with the curve that some of them stand for."""
+"""Other names for the attributes of a layout, as engines use them, and the curves that some of the names imply."""
 
 from __future__ import annotations
 
@@ -43,17 +43,17 @@ REFUSED: Mapping[str, str] = MappingProxyType(
 
 
 class RefusedWordError(ValueError):
-    """A word that means several things: one line that says what to write."""
+    """An ambiguous word, or a curve within a curve; the message is one line that says what to write."""
 
 
 def named(word: str, has_curve: bool = False) -> str:
-    """Return what COMPONENTS calls a word, with its curve; a word that is not known as it is.
+    """Return the name of a word in COMPONENTS, with its curve; an unknown word is returned unchanged.
 
     Args:
-        has_curve: whether it stands in a curve's brackets.
+        has_curve: whether the word is inside a curve's parentheses.
 
     Raises:
-        RefusedWordError: it means several things, or has a curve of its own within another one.
+        RefusedWordError: the word is ambiguous, or has its own curve inside another curve.
     """
     base, dot, channel = word.partition(".")
     plain = base.lower().replace("_", "")

@@ -49,7 +49,7 @@ WORD = re.compile(
 
 
 class LayoutError(Exception):
-    """A layout that cannot be: one line that says what clashes."""
+    """An invalid layout; the message is one line that names the conflict."""
 
 
 @dataclass(frozen=True)
@@ -175,7 +175,7 @@ def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
     if match["bits"] and not bits:
         raise LayoutError(f"{place}: {text}: a field has at least 1 bit; without a bit count it takes a whole channel")
     if sign and name not in CARRIERS:
-        raise LayoutError(f"{place}: {text}: only {', '.join(CARRIERS)} can carry a sign")
+        raise LayoutError(f"{place}: {text}: only {', '.join(CARRIERS)} can store a sign")
     try:
         kept = kept_as(match["curve"], match["range"], quantity_of(name)) if match["curve"] else None
     except ValueError as error:

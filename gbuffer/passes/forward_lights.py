@@ -12,7 +12,7 @@ LAMP_NUMBERS = 254
 
 
 def forward_lights() -> Pass:
-    """Every light by itself."""
+    """Return the pass that draws opaque surfaces once per light."""
     return Pass("lights", (FINAL, DEPTH, SHADOW_MAP), (FINAL,), _build)
 
 

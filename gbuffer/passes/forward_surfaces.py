@@ -7,7 +7,7 @@ class ForwardSurfaces:
     """The scene's meshes, lit as they are drawn: with or without the sun, and by a range of lamps.
 
     Attributes:
-        lamps: the number of the first lamp, and the number of the last plus one.
+        lamps: index of the first lamp, and index of the last lamp plus one.
     """
 
     def __init__(self, canvas: Canvas, by_sun: bool):

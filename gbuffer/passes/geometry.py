@@ -8,12 +8,12 @@ from ..frame.resources import DEPTH, GBUFFER, LIGHT, TERMS
 
 
 def geometry(light_holds: int, stipple: bool = False) -> Pass:
-    """Opaque surfaces to the G-buffer; where the light buffer holds colour, their own light starts it.
+    """Return the pass that draws opaque surfaces to the G-buffer and, unless it holds TERMS, to the light buffer.
 
     Args:
-        light_holds: what the light buffer is for.
-        stipple: whether G-buffer and light buffer have a size of their own, which later passes filter, and transparent
-            surfaces follow, each layer in one pixel of four; else they are left out.
+        light_holds: the content of the light buffer: TERMS, COLOURS or BY_KIND.
+        stipple: whether G-buffer and light buffer have their own size, which later passes filter, and transparent
+            surfaces follow, each layer in one of four pixels; otherwise transparent surfaces are left out.
     """
     writes = (GBUFFER, DEPTH, *((LIGHT,) if light_holds != TERMS else ()))
     tells = {"LIGHT_HOLDS": light_holds, "FILTERS": int(stipple)}

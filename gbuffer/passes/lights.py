@@ -1,4 +1,4 @@
-"""Lights on what the G-buffer holds: each on what its bounds enclose, added up in the light buffer."""
+"""Lights on the surfaces in the G-buffer, each within its bounds, added up in the light buffer."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ def lights(light_holds: int) -> Pass:
 
 
 class LightVolumes:
-    """Every light on what its bounds enclose: by the stencil for point and spot lights, the whole screen for a sun.
+    """The pass that adds every light within its bounds: point and spot lights by stencil, a sun on the whole screen.
 
-    A code that cannot be blended is read from one copy of the light buffer and written to another with the light added;
-    a second draw over the same pixels brings it back.
+    A code that cannot be blended is read from one copy of the light buffer and written to another with the light
+    added; a second draw over the same pixels copies it back.
 
     Attributes:
-        queries: where set, a query around the shading of each local light and not of its marking.
+        queries: the list to which the shading of each local light adds a query, without its marking; None for none.
     """
 
     def __init__(self, canvas: Canvas):
@@ -81,7 +81,7 @@ class LightVolumes:
             self._bring_back(self._sun_back, vertices=3)
 
     def _draw(self, drawn: VertexArray, before: Resource, vertices: int = -1) -> None:
-        """Draw what may read the light that there was before."""
+        """Draw; bind the light from `before` if the shaders have to read it."""
         reads = {"light_before": self._canvas.textures(before)} if self._reads else {}
         self._canvas.prepare(drawn.program, **reads)
         drawn.render(vertices=vertices)

@@ -1,4 +1,4 @@
-"""The native depth buffer resolved to linear view depth; nothing where the layout keeps a depth of its own."""
+"""The native depth buffer resolved to linear view depth, unless the layout stores its own depth."""
 
 from ..frame.canvas import Canvas
 from ..frame.contract import Pass, Run

@@ -1,4 +1,4 @@
-"""The second geometry pass: materials under the light that was accumulated."""
+"""The second geometry pass: materials lit by the accumulated light."""
 
 from functools import partial
 
@@ -10,12 +10,12 @@ from ..gl.device import ADD, OVER
 
 
 def material(draws: str, filters: bool = False) -> Pass:
-    """Surfaces under the light buffer's light.
+    """Return the pass that shades surfaces with the light buffer's light.
 
     Args:
-        draws: which of the scene's lists: "opaque" begins the image, "special" is added to what is there, with its
-            ambient light, and "transparent" is laid over it.
-        filters: whether the light buffer has a size of its own, and is read by the discontinuity-sensitive filter.
+        draws: which of the scene's lists to draw: "opaque" begins the image, "special" is added to the image with its
+            ambient light, and "transparent" is blended over it.
+        filters: whether the light buffer has its own size, and is read through the discontinuity-sensitive filter.
     """
     depth = FINAL_DEPTH if filters else DEPTH
     begins = draws == "opaque"

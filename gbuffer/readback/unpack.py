@@ -1,4 +1,4 @@
-"""The G-buffer at one sample a pixel as passes understand it, on what is covered; 0 elsewhere."""
+"""The G-buffer unpacked as passes read it, at one sample per pixel; 0 on pixels that are not covered."""
 
 from ..frame.canvas import Canvas
 from ..frame.contract import Pass, Run

@@ -22,12 +22,12 @@ class SceneMaker:
     """A scene and the settings with which it is shown.
 
     Attributes:
-        name, title: its name, and what it shows.
-        make: makes the scene for a setting, such as a moment.
+        name, title: its name and its description.
+        make: function that returns the scene for a setting, such as a moment.
         frames: number of moments over which a figure is averaged.
-        exposure: in stops; None to measure it, for a scene whose light nobody has set.
+        exposure: exposure in stops; None to measure it, for a scene without a given exposure.
         is_metal_rough: whether its materials are metallic-roughness, which have no specular power.
-        sides: width and height of the image that the scene is; None if it can be drawn at any size.
+        sides: width and height of the image that the scene consists of; None if it can be drawn at any size.
     """
 
     name: str
@@ -51,7 +51,7 @@ class SceneMaker:
         return max(1, round(self.sides[0] * share)), max(1, round(self.sides[1] * share))
 
     def display(self, linear: np.ndarray) -> Display:
-        """Return how images are displayed; an exposure that nobody has set is measured on linear light, (..., 3)."""
+        """Return the display of images; if `exposure` is None, measure it on linear light, (..., 3)."""
         exposure = measured_exposure(linear.reshape(-1, 3)) if self.exposure is None else self.exposure
         return Display(exposure, self.tone_mapping)
 

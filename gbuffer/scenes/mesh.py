@@ -23,7 +23,7 @@ class Mesh:
         uv: (vertices, 2), the place of each vertex on its surface; a normal map's tangents follow from it.
         authored: (vertices, 4), tangents and the signs of their bitangents, as returned by `tangents`, that do not
             follow from `uv`: a file's own, or those of its normal map's uv set.
-        second_uv: (vertices, 2), a second set of uv that maps may use; None if there is none.
+        second_uv: (vertices, 2), a second set of uv that maps may use; None if the mesh has only one.
     """
 
     positions: np.ndarray
@@ -45,7 +45,7 @@ class Mesh:
         return vertices.astype(np.float32), wound(self).astype(np.int32)
 
     def placed(self, linear: np.ndarray, translation) -> Mesh:
-        """The mesh under row vectors' p' = p linear + translation; normals go by the inverse transpose."""
+        """Return the mesh under p' = p linear + translation (row vectors); normals use the inverse transpose."""
         normals = _unit(self.normals @ np.linalg.inv(linear).T)
         authored = None if self.authored is None else _tangents_placed(self.authored, linear)
         return Mesh(
@@ -114,11 +114,11 @@ def facing(mesh: Mesh) -> Mesh:
 
 
 def smooth_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Vertex normals of a mesh that has none, (vertices, 3): the mean of the triangles around, weighed by their angles
-    (Thuermer and Wuethrich 1998). Vertices in one place, but for rounding, share theirs; zero where no triangle has an
-    area.
+    """Return vertex normals for a mesh without normals, (vertices, 3): means over the adjacent triangles, weighted by
+    angle (Thuermer and Wuethrich 1998). Vertices in the same place, up to rounding, share a normal; it is zero if no
+    adjacent triangle has an area.
 
-    Out is where a triangle's corners go counter-clockwise.
+    A triangle's corners run counter-clockwise when seen from outside.
     """
     corners = positions[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -147,10 +147,11 @@ def grid_uv(rows: int, columns: int) -> np.ndarray:
 
 
 def tangents(mesh: Mesh, uv: np.ndarray | None = None) -> np.ndarray:
-    """The direction in which u grows, (vertices, 4): unit, at right angles to the normal, and the bitangent's sign.
+    """Return unit tangents perpendicular to the normals, in the direction of increasing u, and the bitangents' signs.
 
-    The bitangent is sign x (normal x tangent), the side to which v grows. Where u grows nowhere, as at a pole, the
-    tangent is any direction. Authored ones are given as they are, unless other uv are asked for.
+    The shape is (vertices, 4). The bitangent is sign x (normal x tangent), the side to which v increases. Where u
+    does not increase, as at a pole, the tangent is any direction. Authored tangents are returned unchanged, unless
+    other uv are given.
     """
     if uv is None and mesh.authored is not None:
         return mesh.authored

@@ -1,4 +1,4 @@
-"""Maps without a GL driver: normals of normal maps, looked up with mips as pixels see them, and what is cut out."""
+"""Maps without an OpenGL driver: normal maps, mipmapped and sampled for each pixel, and alpha cut-outs."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _bilinear(texels: np.ndarray, uv: np.ndarray, wrap: tuple[Wrap, Wrap]) -> np
 
 
 def _wrapped(index: np.ndarray, count: int, wrap: Wrap) -> np.ndarray:
-    """Texels' numbers beyond the picture, as it goes on there."""
+    """Return texel indices, wrapped at the edges of the map."""
     if wrap == "clamp":
         return np.clip(index, 0, count - 1)
     if wrap == "repeat":
@@ -100,7 +100,7 @@ def _wrapped(index: np.ndarray, count: int, wrap: Wrap) -> np.ndarray:
 
 
 def _halved(texels: np.ndarray) -> np.ndarray:
-    """Half as many rows, rounded down; each the mean of what it covers: of an odd number, two rows and a part."""
+    """Return half as many rows, rounded down, each the mean of the rows that it covers, in whole or in part."""
     rows = len(texels)
     half = rows // 2
     if rows == 1:
@@ -177,7 +177,7 @@ def cut_out(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> IsDrawn | No
 
 
 def _alpha(mesh: Mesh, lying: Map | None, corners: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Return a map's alpha at points in triangles, (points,); 1 if there is no map."""
+    """Return a map's alpha at points in triangles, (points,); 1 without a map."""
     if lying is None:
         return np.ones(len(corners))
     uv = np.einsum("pc,pck->pk", weights, placed_uv(mesh, lying)[corners])
@@ -185,7 +185,7 @@ def _alpha(mesh: Mesh, lying: Map | None, corners: np.ndarray, weights: np.ndarr
 
 
 def placed_uv(mesh: Mesh, lying: Map) -> np.ndarray:
-    """Return where a map is sampled at a mesh's vertices, (vertices, 2); if there is no second uv set, by the first."""
+    """Return the uv of a map at a mesh's vertices, (vertices, 2): the first set if the mesh lacks a second."""
     uv = mesh.second_uv if lying.uv_set and mesh.second_uv is not None else mesh.uv
     return uv @ lying.placed[:, :2].T + lying.placed[:, 2]
 

@@ -89,10 +89,10 @@ class View:
     """A camera in world space, right-handed, y up.
 
     Attributes:
-        eye, target: where it is and what it looks at.
+        eye, target: the camera's position and the point that it looks at.
         fov: vertical field of view in degrees.
         near, far: distances along the line of sight.
-        up: what is up in the picture, at any angle but 0 to the line of sight.
+        up: the up direction of the image, not parallel to the line of sight.
     """
 
     eye: Colour
@@ -114,11 +114,11 @@ class View:
         return matrix
 
     def turned(self, axis: str, degrees: float) -> View:
-        """The camera turned where it stands: to the left, upwards, or its picture clockwise.
+        """Return the camera turned in place: to the left, upwards, or with its image turned clockwise.
 
         Args:
             axis: one of TURNS.
-            degrees: how far; any number.
+            degrees: angle in degrees; any number.
         """
         axes, angle = self.matrix()[:3, :3], np.radians(degrees)
         index = TURNS.index(axis)
@@ -177,10 +177,10 @@ class Scene:
 
     Attributes:
         parts, materials, lights: the contents; at most one light is a sun. All materials use the same model.
-        ambient: linear colour, times the albedo.
+        ambient: linear colour, which is multiplied by the albedo.
         view: the camera.
-        previous: the camera one frame earlier; the motion that a G-buffer may store is between the two.
-        water: None if there is none.
+        previous: the camera one frame earlier; the motion that a G-buffer may store is between the two cameras.
+        water: the water; None for a scene without water.
         environment: the surroundings, at every distance; only for metallic-roughness scenes.
     """
 
@@ -194,7 +194,7 @@ class Scene:
     environment: Environment | None = None
 
     def under(self, environment: Environment) -> Scene:
-        """Return the scene with these surroundings; a sun that was taken out of them replaces the scene's own."""
+        """Return the scene with these surroundings; a sun removed from their image replaces the scene's own."""
         if environment.sun is None:
             return replace(self, environment=environment)
         way, irradiance = environment.sun

@@ -1,4 +1,4 @@
-"""The settings of scenes, and what several scenes share."""
+"""The settings of scenes, and code that several scenes share."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ class Setting:
     """The settings with which a procedural scene is made.
 
     Attributes:
-        objects, lights: their numbers, where the scene has a choice.
+        objects, lights: number of objects and of lights, in scenes that use them.
         seed: seed of its random numbers.
-        time: 0 to 1, the position of moving lights on their way around.
+        time: position of moving lights on their way around, 0 to 1.
     """
 
     objects: int = 200

@@ -97,7 +97,7 @@ class Axis:
         return math.copysign(math.log1p(abs(value) / LINEAR_TO), value) if self.scale == Scale.COUNT else value
 
     def back(self, along: float) -> float:
-        """The value that `along` gives."""
+        """Return the value for which `along` returns this position."""
         if self.scale == Scale.LOG:
             return math.exp(along)
         is_count = self.scale == Scale.COUNT
@@ -116,7 +116,7 @@ class Axis:
         return self.back(low + share * (high - low))
 
     def places(self, value: Any) -> bool:
-        """Whether a value has a place: a name that is known, a finite number, above 0 for logarithms."""
+        """Whether the axis can place a value: a known name, or a finite number, above 0 for logarithms."""
         if self.scale == Scale.NAMES:
             return value in self.names
         return is_number(value) and math.isfinite(value) and (self.scale != Scale.LOG or value > 0)
@@ -169,7 +169,7 @@ class Switch:
         field: the field of rows by which it chooses.
         label: label of the control.
         values: the choices; ALL shows all rows.
-        usual: the first choice, which is also the one in a file.
+        usual: the initial choice, which files show too.
         has_panels: whether a file shows all choices instead, one panel for each.
     """
 
@@ -232,17 +232,17 @@ class Chart:
     """A chart.
 
     Attributes:
-        name: of its files, without an ending.
-        title: what a reader sees in it: the finding.
+        name: name of its files, without an extension.
+        title: the finding that a reader sees in it.
         subtitle: what it shows, under what conditions.
-        description: what is drawn, for who cannot see it.
+        description: what is drawn, for readers who cannot see it.
         x, y: its axes.
-        marks: what is drawn, the first below.
-        rows: what marks without rows of their own draw.
-        colour, shape, dash: what these tell apart.
-        panels: what has a panel of its own, all with the same marks; rows without the field are in each of them.
-        switch: what a reader of the page chooses.
-        height: of its panels on the page, in pixels; 0 for the usual one.
+        marks: its marks, from back to front.
+        rows: rows for marks without rows of their own.
+        colour, shape, dash: the names that colours, shapes and dashes distinguish.
+        panels: the names that have a panel each, all with the same marks; rows without the field are in every panel.
+        switch: the choice for a reader of the page.
+        height: height of its panels on the page, in pixels; 0 for the usual height.
     """
 
     name: str
@@ -287,7 +287,7 @@ class Chart:
         return tuple(row for row in rows if all(axis.places(row.get(name)) for axis, name in used))
 
     def lasts(self, mark: Mark) -> list[Row]:
-        """The last row of each line of a mark, at which its name stands."""
+        """Return the last row of each line of a mark, next to which its name is written."""
         return [line[-1] for line in mark.groups(self.rows_of(mark))]
 
     def still(self) -> list[tuple[str, Chart]]:
@@ -364,7 +364,7 @@ def lines_apart(axis: Axis, values: Sequence[float], height: float, least: float
     Returns:
         shares of the axis, in the order of the values.
     """
-    order = sorted(range(len(values)), key=lambda at: axis.share(values[at]))
+    order = sorted(range(len(values)), key=lambda index: axis.share(values[index]))
     placed = apart([axis.share(values[i]) * height for i in order], least)
     shares = dict(zip(order, placed, strict=True))
     return [shares[i] / height for i in range(len(values))]
@@ -376,7 +376,7 @@ def distinct(rows: Sequence[Row], field: str) -> tuple[Any, ...]:
 
 
 def _between(colours: Sequence[str], count: int) -> list[str]:
-    """As many colours as asked for, evenly spaced along a sequence of them; of one alone the middle."""
+    """Return this many colours, evenly spaced along a sequence of colours; for a count of 1 the middle colour."""
     last = len(colours) - 1
     return [_mixed(colours, i / (count - 1) * last if count > 1 else last / 2) for i in range(count)]
 

@@ -79,7 +79,7 @@ def _size(chart: Chart) -> tuple[float, float]:
 
 
 def _draw(place: Any, chart: Chart) -> list[tuple[Chart, Any]]:
-    """Draw a chart into a figure or a part of one. Gives its panels with their axes."""
+    """Draw a chart into a figure or a part of a figure. Return its panels with their axes."""
     parts, across = chart.still(), _column_count(chart)
     grid = place.subplots(-(-len(parts) // across), across, squeeze=False)
     drawn = [(part, axes) for (_, part), axes in zip(parts, grid.flat, strict=False)]
@@ -118,40 +118,40 @@ def _panel(axes: Any, part: Chart) -> None:
             DRAWN[mark.kind](axes, part, mark, rows)
 
 
-def _axis(axis: Any, limit: Any, said: Axis) -> None:
-    """Set up one of matplotlib's axes as `said` describes it."""
-    axis.set_label_text(plain(said.title), size=9)
-    if said.scale == Scale.NAMES:
-        axis.set_ticks(range(len(said.names)), [as_text(name) for name in said.names], size=8)
-        last = len(said.names) - 0.5
+def _axis(axis: Any, limit: Any, chart_axis: Axis) -> None:
+    """Set up one of matplotlib's axes as `chart_axis` describes it."""
+    axis.set_label_text(plain(chart_axis.title), size=9)
+    if chart_axis.scale == Scale.NAMES:
+        axis.set_ticks(range(len(chart_axis.names)), [as_text(name) for name in chart_axis.names], size=8)
+        last = len(chart_axis.names) - 0.5
         limit(*((last, -0.5) if axis.axis_name == "y" else (-0.5, last)))
         return
-    if said.scale == Scale.LOG:
+    if chart_axis.scale == Scale.LOG:
         axis._set_axes_scale("log")
-    elif said.scale == Scale.COUNT:
-        axis._set_axes_scale("function", functions=_functions(said))
-    assert said.domain
-    limit(*said.domain)
-    _ticks(axis, said)
+    elif chart_axis.scale == Scale.COUNT:
+        axis._set_axes_scale("function", functions=_functions(chart_axis))
+    assert chart_axis.domain
+    limit(*chart_axis.domain)
+    _ticks(axis, chart_axis)
 
 
-def _functions(said: Axis) -> tuple[Any, Any]:
+def _functions(chart_axis: Axis) -> tuple[Any, Any]:
     """A scale and its inverse, of arrays."""
     import numpy as np
 
-    return np.vectorize(said.along, otypes=[float]), np.vectorize(said.back, otypes=[float])
+    return np.vectorize(chart_axis.along, otypes=[float]), np.vectorize(chart_axis.back, otypes=[float])
 
 
-def _ticks(axis: Any, said: Axis) -> None:
+def _ticks(axis: Any, chart_axis: Axis) -> None:
     from matplotlib.ticker import LogLocator
 
-    assert said.domain
-    ticks = said.ticks or tuple((float(count), str(count)) for count in said.counts)
+    assert chart_axis.domain
+    ticks = chart_axis.ticks or tuple((float(count), str(count)) for count in chart_axis.counts)
     if ticks:
         axis.set_ticks([position for position, _ in ticks], [as_text(name) for _, name in ticks], size=8)
         axis.set_ticks([], minor=True)
         return
-    if said.scale == Scale.LOG and said.domain[1] < 3000 * said.domain[0]:
+    if chart_axis.scale == Scale.LOG and chart_axis.domain[1] < 3000 * chart_axis.domain[0]:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     # As plain text, which matplotlib lays out much faster than powers of ten.
     axis.set_major_formatter("{x:g}")
@@ -231,7 +231,7 @@ DRAWN = MappingProxyType(
 
 
 def _legend(place: Any, chart: Chart) -> None:
-    """Draw the legend of colours, shapes and dashes, those of one field together; none if line ends are labelled."""
+    """Draw the legend of colours, shapes and dashes, combined by field; do nothing if line ends are labelled."""
     from matplotlib.lines import Line2D
 
     if any(mark.kind == Kind.ENDS for mark in chart.marks):
@@ -248,14 +248,14 @@ def _legend(place: Any, chart: Chart) -> None:
         place.legend(handles=handles, loc="outside lower center", ncols=min(columns, len(handles)), **LEGEND)
 
 
-def _look(chart: Chart, named: Mapping[str, Names], at: int) -> dict[str, Any]:
+def _look(chart: Chart, named: Mapping[str, Names], index: int) -> dict[str, Any]:
     """A line of the legend: a colour, a shape or a dash, or several of them."""
     kinds = {mark.kind for mark in chart.marks if mark.colour in {names.field for names in named.values()}}
-    colour = named["colour"].colours()[at] if "colour" in named else "#555555"
+    colour = named["colour"].colours()[index] if "colour" in named else "#555555"
     if "shape" in named:
-        return {"color": colour, "marker": MARKERS[named["shape"].of(SHAPES)[at]], "linestyle": "", "markersize": 5}
+        return {"color": colour, "marker": MARKERS[named["shape"].of(SHAPES)[index]], "linestyle": "", "markersize": 5}
     if "dash" in named:
-        return {"color": colour, "linestyle": stroke(named["dash"].of(DASHES)[at])}
+        return {"color": colour, "linestyle": stroke(named["dash"].of(DASHES)[index])}
     if Kind.LINES in kinds:
         return {"color": colour}
     return {"color": colour, "marker": "s" if kinds & {Kind.BARS, Kind.AREAS} else "o", "linestyle": ""}

@@ -1,4 +1,4 @@
-"""Charts: as files, and as what a page draws."""
+"""Charts, as files and as drawings on a page."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class Drawing:
     """A chart that can be drawn.
 
     Attributes:
-        name: of its files, without an ending.
-        title: what it is called.
-        description: what it shows, for who cannot see it.
-        draw: gives a figure for `plots.save`.
-        spec: gives the same as the page draws it; None where the page has a picture instead.
+        name: name of its files, without an extension.
+        title: its title.
+        description: what it shows, for readers who cannot see it.
+        draw: function that returns a figure for `plots.save`.
+        spec: function that returns the chart as the page draws it; None if the page has an image instead.
     """
 
     name: str

@@ -21,7 +21,7 @@ LEADER = {"arrowstyle": "-", "linewidth": 0.6}
 
 
 def write_ends(axes: Any, part: Chart) -> list[Any]:
-    """Write the names of lines to the right of a panel, where the layout makes room for them; gives the texts."""
+    """Write the names of lines to the right of a panel, where the layout makes room for them; return the texts."""
     texts = []
     for mark, row in _lasts(part):
         name, colour, (x, y) = as_text(str(row[mark.text])), colour_of(part, mark, row), (row[mark.x], row[mark.y])
@@ -38,10 +38,10 @@ def _lasts(part: Chart) -> list[tuple[Mark, Row]]:
 
 
 def label_ends(axes: Any, part: Chart, texts: Sequence[Any]) -> None:
-    """Move the names of lines apart, in a panel that stands where it will stand.
+    """Move the names of lines apart, in a panel at its final position.
 
     Args:
-        texts: as `write_ends` gives them.
+        texts: the texts that `write_ends` returned.
     """
     box, points = axes.get_window_extent(), 72 / axes.figure.dpi
     values = [row[mark.y] for mark, row in _lasts(part)]
@@ -50,7 +50,7 @@ def label_ends(axes: Any, part: Chart, texts: Sequence[Any]) -> None:
 
 
 def label_points(axes: Any, part: Chart) -> None:
-    """Write each point's name where it covers no point, line or other name, if there is such a place."""
+    """Write each point's name where it covers no point, line or other name, if possible."""
     marks = [mark for mark in part.marks if mark.kind == Kind.LABELS]
     taken = list(_covered(axes, part, axes.figure.dpi / 72)) if marks else []
     for mark in marks:
@@ -60,10 +60,10 @@ def label_points(axes: Any, part: Chart) -> None:
             taken.append(_placed(text, taken, axes.bbox))
 
 
-def _written_label(axes: Any, said: str, at: tuple[float, float], colour: str) -> Any:
+def _written_label(axes: Any, label: str, point: tuple[float, float], colour: str) -> Any:
     leader = LEADER | {"color": "#BBBBBB", "shrinkA": 0, "shrinkB": 3}
     text = axes.annotate(
-        said, at, (0, 0), textcoords="offset points", size=SIZE, color=colour, arrowprops=leader, zorder=4
+        label, point, (0, 0), textcoords="offset points", size=SIZE, color=colour, arrowprops=leader, zorder=4
     )
     # The layout is done, and is not to be done again around labels.
     text.set_in_layout(False)
@@ -89,14 +89,14 @@ def _covered(axes: Any, part: Chart, pixels: float) -> Iterator[Any]:
 
 
 def _corners(mark: Mark, line: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The corners of a line that goes across and then up or down, or its points."""
+    """Return the corners of a stepped line, which goes across and then up or down, or the points of another line."""
     if not mark.is_stepped:
         return list(line)
     return [line[0], *(corner for (_, y), b in pairwise(line) for corner in ((b[0], y), b))]
 
 
 def along(a: Any, b: Any, pixels: float) -> Iterator[Any]:
-    """The boxes of a straight line, in pixels: one where it goes up or across, and else some of a few pixels each."""
+    """Yield the boxes of a straight line, in pixels: one if it is vertical or horizontal, else many small boxes."""
     steps = 1 if min(abs(b[0] - a[0]), abs(b[1] - a[1])) < 1 else int(max(abs(b[0] - a[0]), abs(b[1] - a[1])) / 8) + 1
     for (x0, y0), (x1, y1) in pairwise(np.linspace(a, b, steps + 1).tolist()):
         yield _box(x0, y0, x1, y1, pixels)
@@ -109,7 +109,7 @@ def _box(x0: float, y0: float, x1: float, y1: float, padding: float) -> Any:
 
 
 def _placed(written: Any, taken: Sequence[Any], within: Any) -> Any:
-    """Move a label to the nearest free place, or else to the one with the fewest overlaps, and return its box."""
+    """Move a label to the nearest free place, or else to the place with the fewest overlaps, and return its box."""
     candidates, pixels, boxes = [], written.figure.dpi / 72, np.array([box.extents for box in taken])
     # Laying text out takes a hundred times as long as moving its box.
     at_point: dict[tuple[str, str], Any] = {}

@@ -37,7 +37,7 @@ def _axis_position(axis: Axis, value: Any) -> Any:
 
 
 def colour_of(part: Chart, mark: Mark, row: Row) -> str:
-    """The colour of what a mark draws of a row."""
+    """Return the colour in which a mark draws a row."""
     if mark.rest and row.get(mark.rest):
         return ROLES[FAINT]
     if mark.colour in ROLES:

@@ -19,20 +19,20 @@ CAPTION_HEIGHT, GAP = 14, 4
 MILLISECONDS = 80
 
 
-def beside(one: np.ndarray, other: np.ndarray, title: str) -> Image.Image:
+def beside(image: np.ndarray, other: np.ndarray, title: str) -> Image.Image:
     """A frame of an animation: a code, exact normals, and GAIN times their difference around grey.
 
     Args:
-        one, other: displayed images, (height, width, 3), 0 to 1.
+        image, other: displayed images, (height, width, 3), 0 to 1.
         title: above all of them.
     """
-    apart = 0.5 + GAIN * (np.nan_to_num(one, nan=1.0) - other)
-    height, width = (size * ENLARGED for size in one.shape[:2])
+    apart = 0.5 + GAIN * (np.nan_to_num(image, nan=1.0) - other)
+    height, width = (size * ENLARGED for size in image.shape[:2])
     wide = 3 * width + 2 * GAP
     sheet = Image.new("RGB", (wide, height + 2 * CAPTION_HEIGHT), "white")
     text = ImageDraw.Draw(sheet)
     text.text((2, 1), title, fill="black")
-    for column, (pixels, caption) in enumerate(zip((one, other, apart), CAPTIONS, strict=True)):
+    for column, (pixels, caption) in enumerate(zip((image, other, apart), CAPTIONS, strict=True)):
         bytes_ = np.round(np.clip(np.nan_to_num(pixels), 0, 1) * 255).astype(np.uint8)
         left = column * (width + GAP)
         text.text((left + 2, CAPTION_HEIGHT), caption, fill="black")
@@ -42,7 +42,7 @@ def beside(one: np.ndarray, other: np.ndarray, title: str) -> Image.Image:
 
 
 def write_animation(path: Path, frames: Sequence[Image.Image]) -> None:
-    """Write an animated PNG that goes on for ever. Raises OSError."""
+    """Write an animated PNG that loops forever. Raises OSError."""
     first, *others = frames
     first.save(
         path, format="png", save_all=True, append_images=others, duration=MILLISECONDS, loop=0, pnginfo=made_by()

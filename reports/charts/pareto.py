@@ -1,4 +1,4 @@
-"""The cost of codecs against what they lose, and which of them no other beats."""
+"""The cost of codecs against their error, and the Pareto-optimal codecs."""
 
 from __future__ import annotations
 

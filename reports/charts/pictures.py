@@ -1,4 +1,4 @@
-"""Pictures of what codecs do: what is stored, what comes back, and how far off it is."""
+"""Images of codecs: the stored numbers, the decoded values and their errors."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def codec_pictures(
 
 
 def normals_picture(normals: np.ndarray, covered: np.ndarray) -> np.ndarray:
-    """Normals as they are: [-1, 1] as [0, 255], black on the background; shapes as for `codec_pictures`."""
+    """Return normals as bytes: [-1, 1] as [0, 255], black on the background; shapes as for `codec_pictures`."""
     return _byte_pixels((normals * 0.5 + 0.5) * covered[..., None])
 
 
@@ -67,7 +67,7 @@ def difference(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
 
 
 def strips(lines: Sequence[np.ndarray], height: int) -> np.ndarray:
-    """Lines of colours as displayed, (width, 3) each, one below the other, each so many pixels high; in bytes."""
+    """Return lines of colours as displayed, (width, 3) each, stacked, each `height` pixels high; in bytes."""
     return np.concatenate([np.repeat(_byte_pixels(line)[None], height, axis=0) for line in lines])
 
 
@@ -92,7 +92,7 @@ def depth_pictures(errors: np.ndarray, positions: np.ndarray, covered: np.ndarra
 
 
 def _coloured(powers: np.ndarray) -> np.ndarray:
-    """Powers of ten as colours, uint8; what is outside DECADES has the colour of its end."""
+    """Return powers of ten as colours, uint8; powers outside DECADES have the colour of its nearest end."""
     import matplotlib
 
     low, high = DECADES

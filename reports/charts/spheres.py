@@ -35,7 +35,7 @@ class Globe:
 
 @dataclass(frozen=True)
 class Globes:
-    """The codecs of so many bits, in one scale of colours."""
+    """The codecs with the same number of bits, on one scale of colours."""
 
     bits: int
     globes: Sequence[Globe]
@@ -54,7 +54,7 @@ def _groups(maps: Sequence[SphereMap]) -> dict[int, list[SphereMap]]:
 
 def shown(maps: Sequence[SphereMap], most: int = MOST) -> list[SphereMap]:
     """Return the maps that a page shows: the most accurate for each number of bits, then the second, and so on."""
-    ranked = [sorted(group, key=lambda one: float(np.nanmean(one.mean_deg))) for group in _groups(maps).values()]
+    ranked = [sorted(group, key=lambda sphere: float(np.nanmean(sphere.mean_deg))) for group in _groups(maps).values()]
     turns = (sphere_map for turn in zip_longest(*ranked) for sphere_map in turn if sphere_map is not None)
     kept = {sphere_map.key.label for sphere_map in islice(turns, most)}
     return [sphere_map for sphere_map in maps if sphere_map.key.label in kept]
@@ -89,8 +89,8 @@ def _mean(half: np.ndarray) -> float:
     return float(np.average(half[held], weights=np.maximum(inside[held], 1)))
 
 
-def _named_planes(one: SphereMap) -> list[tuple[str, np.ndarray]]:
-    return [("mean", one.mean_deg), ("largest", one.max_deg)]
+def _named_planes(sphere_map: SphereMap) -> list[tuple[str, np.ndarray]]:
+    return [("mean", sphere_map.mean_deg), ("largest", sphere_map.max_deg)]
 
 
 def _disc_pixels(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:

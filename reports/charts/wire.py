@@ -84,7 +84,7 @@ def library() -> str:
 
 
 def spec(chart: Chart) -> Spec:
-    """A chart as JSON has it: what all its panels share, and each panel with its marks and rows."""
+    """Return a chart as data for JSON: what all its panels share, and each panel with its marks and rows."""
     parts = chart.parts()
     has_names = any(name for name, _ in parts) or (chart.switch is not None and chart.switch.usual != ALL)
     chart_spec: Spec = {"label": f"{chart.title}. {chart.description}", "height": chart.pixels}
@@ -103,9 +103,9 @@ def spec(chart: Chart) -> Spec:
     return chart_spec | {"panels": [_panel(name, part) for name, part in parts]}
 
 
-def codecs(made: Spec) -> set[str]:
+def codecs(chart_spec: Spec) -> set[str]:
     """The codecs that a chart draws."""
-    columns = [table["codec"] for panel in made["panels"] for table in panel["tables"] if "codec" in table]
+    columns = [table["codec"] for panel in chart_spec["panels"] for table in panel["tables"] if "codec" in table]
     return {name for column in columns for name in (column["names"] if isinstance(column, dict) else column) if name}
 
 
@@ -176,7 +176,7 @@ def _legend(chart: Chart, named: Mapping[str, Names]) -> Spec:
 
 
 def _shades(shades: Shades) -> Spec:
-    """The colours of numbers, and what their legend is marked by: shares of its length, and texts."""
+    """Return the colours of numbers and the ticks of their legend: shares of its length, and texts."""
     low, high = math.log10(shades.low), math.log10(shades.high)
     values = [shades.low, *(10.0**power for power in range(math.floor(low) + 1, math.ceil(high))), shades.high]
     ticks = [(round(100 * (math.log10(v) - low) / (high - low), 2), f"{v:g}") for v in values]
@@ -202,7 +202,7 @@ def _panel(name: str, part: Chart) -> Spec:
 
 
 def _drawn(part: Chart, mark: Mark) -> Sequence[Row]:
-    """The rows of a mark; of names at ends the last ones, with the share of the panel's height where each stands."""
+    """Return the rows of a mark: for names at line ends the last rows, with their places as shares of the height."""
     if mark.kind != Kind.ENDS:
         return part.rows_of(mark)
     all_ends = [row for other in part.marks if other.kind == Kind.ENDS for row in part.lasts(other)]
@@ -217,7 +217,7 @@ def _fields(part: Chart, mark: Mark) -> set[str]:
 
 
 def _mark(part: Chart, mark: Mark) -> Spec:
-    """A mark, less what is as usual; `named` are the looks by which it tells names apart."""
+    """Return a mark without its default values; `named` lists the looks by which it distinguishes names."""
     mark_spec = {name: value for name in ("x", "y", "x2", "y2", "text", "rest") if (value := getattr(mark, name))}
     mark_spec |= {"kind": mark.kind, "colour": mark.colour} | (
         {"css": ROLES[mark.colour]} if mark.colour in ROLES else {}

@@ -1,4 +1,4 @@
-"""The block from which the page builds its cards of codecs: facts about each, and which columns are its figures."""
+"""The data from which the page builds its cards of codecs: facts about each codec, and the columns of its figures."""
 
 from __future__ import annotations
 
@@ -22,33 +22,33 @@ OF_TEXELS = ("bytes_per_pixel", "bits_per_texel", "free_bits")
 OWN = ("encoding", "storage", "rounding", "backend")
 
 
-def block(found: Found, names: Sequence[str]) -> str:
+def block(run: Found, names: Sequence[str]) -> str:
     """Return the packed data that cards.js reads; empty if the run has no codecs.
 
     Args:
         names: names of the codecs that the page shows.
     """
-    about = found.cards
+    about = run.cards
     if not about or not names:
         return ""
-    sections = sections_of(found)
-    codecs = codecs_of(found, names)
+    sections = sections_of(run)
+    codecs = codecs_of(run, names)
     shown = set(map(of_encoding, names))
     encodings = {name: encoding for name, encoding in about["encodings"].items() if name in shown}
     tables = [_table(section, about["takes"][section.key]) for section in sections]
-    content = {"codecs": codecs, "encodings": encodings, "tables": tables, "code": _code(found, names)}
+    content = {"codecs": codecs, "encodings": encodings, "tables": tables, "code": _code(run, names)}
     return packed(json.dumps(content, allow_nan=False, separators=(",", ":")))
 
 
-def sections_of(found: Found) -> list[TableSection]:
+def sections_of(run: Found) -> list[TableSection]:
     """The sections whose rows are of codecs of normals."""
-    return [section for section in found.sections if section.rows and section.key in found.cards["takes"]]
+    return [section for section in run.sections if section.rows and section.key in run.cards["takes"]]
 
 
-def codecs_of(found: Found, names: Sequence[str]) -> dict[str, dict[str, Any]]:
+def codecs_of(run: Found, names: Sequence[str]) -> dict[str, dict[str, Any]]:
     """Return what is known of each codec: its storage, and the figures by which codecs are compared."""
-    known = found.cards["codecs"]
-    first = _first_rows(sections_of(found), known)
+    known = run.cards["codecs"]
+    first = _first_rows(sections_of(run), known)
     return {name: first.get(name, {}) | known.get(name, {}) for name in names}
 
 
@@ -58,8 +58,8 @@ def of_encoding(codec: str) -> str:
 
 
 def _table(section: TableSection, takes: Sequence[str]) -> dict[str, Any]:
-    """A table as a card shows it: what tells its rows apart, its figures, those that matter most first, which of these
-    the whole texel decides, and why figures are missing."""
+    """Return a table as a card shows it: the columns that distinguish its rows, its figures with the most important
+    first, the figures that depend on the whole texel, and the reasons for missing figures."""
     columns = [section.column(name) for name in whole(section.rows)[0]]
     keys = [column.name for column in columns if column.role is Role.KEY and column.name not in OWN]
     figures = sorted(filter(is_figure, columns), key=lambda column: column.drops > 0)
@@ -75,8 +75,8 @@ def is_figure(column: Column) -> bool:
 
 
 def _first_rows(sections: Sequence[TableSection], known: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return what the list shows of each codec, from a row of it or of one that stores the same numbers. Rows of
-    normals for which it is made come first, then those of an answer before other tables. `of` is the normal set."""
+    """Return the list's figures of each codec, from its own row or from a codec that stores the same numbers. Rows of
+    normals for which it is made come first, then rows of an answer, then its own. `of` is the normal set."""
     rows: dict[tuple[str, str], list[tuple[bool, bool, str, Row]]] = {}
     labels: dict[str, None] = {}
     for section in sections:
@@ -90,7 +90,7 @@ def _first_rows(sections: Sequence[TableSection], known: Mapping[str, Any]) -> d
 
 
 def _best_row(label: str, rows: Sequence[tuple[bool, bool, str, Row]]) -> Row:
-    return min(rows, key=lambda one: (*one[:2], one[2] != label))[3]
+    return min(rows, key=lambda candidate: (*candidate[:2], candidate[2] != label))[3]
 
 
 def _stored(label: str, known: Mapping[str, Any]) -> tuple[str, str]:
@@ -109,9 +109,9 @@ def _first(row: Row, names: Sequence[str]) -> float | None:
     return next((value for value in values if math.isfinite(value)), None)
 
 
-def _code(found: Found, names: Sequence[str]) -> dict[str, Any]:
+def _code(run: Found, names: Sequence[str]) -> dict[str, Any]:
     """The code that the run keeps of these codecs, with the pieces that these need alone."""
-    kept = found.code
+    kept = run.code
     if not kept:
         return {"languages": {}, "pieces": [], "codecs": {}}
     codecs = {name: kept["codecs"][name] for name in names if name in kept["codecs"]}

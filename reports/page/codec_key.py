@@ -1,4 +1,4 @@
-"""What tells codecs apart in rows."""
+"""The values that identify a codec in rows."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 
 class CodecKey(NamedTuple):
-    """What tells codecs apart in rows."""
+    """The values that identify a codec in rows: its encoding, storage and rounding."""
 
     encoding: str
     storage: str
@@ -21,7 +21,7 @@ class CodecKey(NamedTuple):
     @classmethod
     def said_by(cls, row: Mapping[str, Any]) -> CodecKey | None:
         """Return the codec of a row of any table, which rounds to nearest unless the row says otherwise; None if
-        the row does not say how it is stored."""
+        the row does not name an encoding and a storage."""
         return cls.of(row) if row.get("encoding") and row.get("storage") else None
 
     @property

@@ -32,7 +32,7 @@ Lines = Sequence[tuple[bool, str]]
 
 @dataclass(frozen=True)
 class CodecPage:
-    """An encoding's page: what it is, its storages, its rows in each table, and its code by storage and language."""
+    """An encoding's page: its description, storages, rows in each table, and code by storage and language."""
 
     name: str
     title: str
@@ -46,32 +46,32 @@ class CodecPage:
     look_ups: bool
 
 
-def codec_pages(found: Found, names: Sequence[str], site: Site, run_page: str) -> dict[str, str]:
+def codec_pages(run: Found, names: Sequence[str], site: Site, run_page: str) -> dict[str, str]:
     """The pages by their paths in the site's folder; nothing where the run has no codecs.
 
     Args:
         names: of the codecs that the run's page shows.
         run_page: the path of that page.
     """
-    codecs = cards.codecs_of(found, names)
+    codecs = cards.codecs_of(run, names)
     groups = {name: list(labels) for name, labels in groupby(names, cards.of_encoding)}
     named = zip(groups, plain_names(groups, "encoding"), strict=True)
     files = {group: f"{FOLDER}/{name}.html" for group, name in named}
     pages = {}
     for name, path in files.items():
-        about, card = _page(found, name, {label: codecs[label] for label in groups[name]}), _card(groups[name][0])
+        about, card = _page(run, name, {label: codecs[label] for label in groups[name]}), _card(groups[name][0])
         around = base(SCRIPTS) | site.leads(path)
         pages[path] = template("codec.html.j2").render(codec=about, card=linked(run_page + card, path), **around)
-    return pages | ({INDEX: _index_page(found, codecs, files, site)} if groups else {})
+    return pages | ({INDEX: _index_page(run, codecs, files, site)} if groups else {})
 
 
 def _card(label: str) -> str:
     return f"#v1/codecs?a={label.replace(' ', '%20')}"
 
 
-def _page(found: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
-    known = found.cards["encodings"].get(name, {})
-    code = list(_code(found, codecs))
+def _page(run: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
+    known = run.cards["encodings"].get(name, {})
+    code = list(_code(run, codecs))
     return CodecPage(
         name=name,
         title=f"{name}, an encoding of normals: formula, error, cost and code",
@@ -80,25 +80,25 @@ def _page(found: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
         says=known.get("says") or OWN,
         facts=list(_facts(known)),
         storages=_codec_table(f"{name} by storage", codecs),
-        tables=[section_table for section in cards.sections_of(found) if (section_table := _rows(section, name))],
+        tables=[section_table for section in cards.sections_of(run) if (section_table := _rows(section, name))],
         code=code,
         look_ups=bool(known.get("tables")),
     )
 
 
 def _description(name: str, known: Mapping[str, Any], codecs: Mapping[str, Row]) -> str:
-    """Return the text for search results: what the encoding is, and its figures with the fewest bits."""
+    """Return the text for search results: a description of the encoding, and its figures with the fewest bits."""
     says = known.get("says") or f"{name}, an encoding of normals."
     measured = [(label, row) for label, row in codecs.items() if "mean" in row]
     if not measured:
         return says
-    label, figures = min(measured, key=lambda one: one[1].get("bits") or math.inf)
+    label, figures = min(measured, key=lambda pair: pair[1].get("bits") or math.inf)
     slots = f", {figures['slots']:g} issue slots to encode and decode" if "slots" in figures else ""
     return f"{says} {label}: mean error {figures['mean']:.3g} degrees on {figures['of']}{slots}."
 
 
 def _facts(known: Mapping[str, Any]) -> Iterator[tuple[str, Lines]]:
-    """Yield what is known of an encoding of the catalogue."""
+    """Yield the facts about an encoding of the catalogue."""
     for what in ("encode", "decode"):
         if known.get(what):
             says, *formulas = known[what]
@@ -132,7 +132,7 @@ def _measured(codecs: Mapping[str, Row]) -> Mapping[str, Row]:
 
 
 def _rows(section: TableSection, name: str) -> tuple[str, str, PageTable] | None:
-    """An encoding's rows in a table: what tells them apart, and the figures that codecs are compared by."""
+    """Return a table's key and title and an encoding's rows in it; None if these have no figures."""
     rows = [row for row in whole(section.rows) if row.get("encoding") == name]
     known = {column for row in rows for column, value in row.items() if value is not None and column != "encoding"}
     columns = [section.column(column) for column in (rows[0] if rows else ()) if column in known]
@@ -145,9 +145,9 @@ def _rows(section: TableSection, name: str) -> tuple[str, str, PageTable] | None
     return section.key, section.about.title, page_table
 
 
-def _code(found: Found, codecs: Mapping[str, Row]) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
+def _code(run: Found, codecs: Mapping[str, Row]) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
     """The code that the run keeps of an encoding, by codec and language."""
-    kept = found.code or {"codecs": {}}
+    kept = run.code or {"codecs": {}}
     for label in codecs:
         if label in kept["codecs"]:
             texts = kept["codecs"][label]["texts"].items()
@@ -157,7 +157,7 @@ def _code(found: Found, codecs: Mapping[str, Row]) -> Iterator[tuple[str, Sequen
             )
 
 
-def _index_page(found: Found, codecs: Mapping[str, Row], files: Mapping[str, str], site: Site) -> str:
+def _index_page(run: Found, codecs: Mapping[str, Row], files: Mapping[str, str], site: Site) -> str:
     links = {name: linked(path, INDEX) for name, path in files.items()}
     index = Index(
         path=INDEX,
@@ -166,13 +166,13 @@ def _index_page(found: Found, codecs: Mapping[str, Row], files: Mapping[str, str
         question="Encodings of normals",
         said=(f"{len(files)} encodings, {len(_measured(codecs))} codecs.",),
         label="Search by encoding, storage or source",
-        searched=[_encoding_list(found, codecs, links), _codec_list(codecs, links)],
+        searched=[_encoding_list(run, codecs, links), _codec_list(codecs, links)],
     )
     return index_html(index, site)
 
 
-def _encoding_list(found: Found, codecs: Mapping[str, Row], links: Mapping[str, str]) -> Searched:
-    known = found.cards["encodings"]
+def _encoding_list(run: Found, codecs: Mapping[str, Row], links: Mapping[str, str]) -> Searched:
+    known = run.cards["encodings"]
     rows = [
         {
             "encoding": name,

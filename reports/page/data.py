@@ -19,12 +19,12 @@ MANY_ROWS, DIGITS = 2_000, 5
 
 
 def block(rows: Sequence[Row], columns: Iterable[Column]) -> str:
-    """Every row of a table, as base64 of packed JSON that data.js reads; it gives the table's CSV file to the byte, or
-    of MANY_ROWS and more its DIGITS.
+    """Return every row of a table as base64 of packed JSON. From it data.js reproduces the table's CSV file to the
+    byte or, with more than MANY_ROWS rows, to DIGITS digits.
 
     Args:
-        rows: all with the same columns.
-        columns: what is known of them.
+        rows: rows with the same columns.
+        columns: the known columns.
     """
     known = tuple(columns)
     names = list(rows[0]) if rows else []

@@ -1,4 +1,4 @@
-"""Pictures in a page: every pixel exactly as it is, packed without loss."""
+"""Images in a page: every pixel unchanged, with lossless compression."""
 
 from __future__ import annotations
 
@@ -120,9 +120,9 @@ class _Packer:
         self.taken: dict[str, Record] = {}
         self.has_flip, self.is_full = True, False
 
-    def planes(self, one: Pictured) -> Record | None:
+    def planes(self, pictured: Pictured) -> Record | None:
         """Return a codec's pixels, empty if there is no more room; None if they cannot be read."""
-        pixels = one.load()
+        pixels = pictured.load()
         self.has_flip = self.has_flip and isinstance(pixels, ImagePixels) and pixels.flip is not None
         if not pixels or pixels.shape != self.original.shape:
             return None
@@ -132,9 +132,9 @@ class _Packer:
         """Return the size that another codec adds to the page; the first codec brings the original with it."""
         return len(json.dumps(planes)) + (0 if self.taken else len(self.record["original"]))
 
-    def take(self, one: Pictured, what: Record) -> None:
+    def take(self, pictured: Pictured, what: Record) -> None:
         """Show a codec."""
-        self.taken[one.label] = {"label": one.label, "codec": one.codec} | what
+        self.taken[pictured.label] = {"label": pictured.label, "codec": pictured.codec} | what
 
     @property
     def shown(self) -> Record:
@@ -185,9 +185,9 @@ def _packed(pool: ThreadPoolExecutor, packers: Sequence[_Packer]) -> Iterator[tu
 
 
 def _in_turn(packers: Sequence[_Packer]) -> Iterator[tuple[_Packer, Pictured]]:
-    """Yield what comes before all others; then by rank the first codec of each subject, the second, and so on."""
+    """Yield codecs that precede all others, then by rank the first codec of each subject, the second and so on."""
     ranked = [
-        [(packer, codec) for codec in sorted(packer.subject.codecs, key=lambda one: one.rank)] for packer in packers
+        [(packer, codec) for codec in sorted(packer.subject.codecs, key=lambda shown: shown.rank)] for packer in packers
     ]
     yield from (pair for turn in ranked for pair in turn[: turn[0][0].subject.first])
     for turn in itertools.zip_longest(*(turn[turn[0][0].subject.first :] for turn in ranked)):

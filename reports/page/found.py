@@ -29,7 +29,7 @@ class SphereMap:
 
 @dataclass(frozen=True)
 class Front:
-    """Cost against error: panels for each GPU family, and what the decibels are of."""
+    """Cost against error: a label for the decibels, and panels for each GPU family."""
 
     label: str
     panels: Sequence[Panel]
@@ -37,7 +37,7 @@ class Front:
 
 @dataclass(frozen=True)
 class Listing:
-    """A kernel's disassembly, and its encoding's GLSL, which is empty if there is none."""
+    """A kernel's disassembly, and its encoding's GLSL, which may be empty."""
 
     text: str
     source: str = ""
@@ -53,17 +53,17 @@ class Found:
         tables: rows by table, as they were stored.
         sections: the tables as the page shows them, in its order.
         steps: number of steps that have their rows.
-        finished: whether everything that was asked for has its rows.
+        finished: whether all requested steps have their rows.
         encodings: names of encodings of normals: the catalogue's, and those in users' files.
-        subjects: what codecs were tested on, and their pixels.
+        subjects: the normals and images that codecs were tested on, and their pixels.
         maps: errors over the sphere.
         agreement: how far the figures of the two backends differ, in a sentence; empty if no codec has both.
         fronts: cost against error.
         listings: disassemblies, by name.
-        choices: the questions that a reader may ask differently; empty if a run answers none.
-        cards: what is known of codecs and encodings; empty if there are none.
+        choices: the questions whose conditions a reader may change; empty if a run answers none.
+        cards: facts about codecs and encodings; may be empty.
         code: source code of codecs that the run stores; empty if it stores none.
-        live: what its laboratory runs; None if the run has none.
+        live: the data of its laboratory; None if the run has no laboratory.
         remarks: problems with the run, in sentences.
     """
 
@@ -91,18 +91,18 @@ class Found:
 
     @property
     def machine(self) -> Row:
-        """Names and versions of what measured, by what they are of; empty where the run does not say."""
+        """Names and versions of the hardware and software that measured, by component; empty if unknown."""
         machine = self.facts.get("machine")
         return machine if isinstance(machine, dict) else {}
 
     @property
     def begun(self) -> str:
-        """When the run began; empty if it does not say."""
+        """Time at which the run began; empty if unknown."""
         return str(self.facts.get("time") or "")
 
     @property
     def sources(self) -> str:
-        """The fingerprint of what computed it; empty if it does not say."""
+        """The fingerprint of the code that computed it; empty if unknown."""
         return str(self.facts.get("sources") or "")
 
     @property

@@ -46,9 +46,9 @@ class Live:
     """The data of a run for the laboratory.
 
     Attributes:
-        codecs: as `bench.measures.live.programs` makes them.
+        codecs: the codecs, as `bench.measures.live.programs` returns them.
         storages: the functions of storages, in the same form, for an encoder that the reader types.
-        left_out: why a browser cannot be given a codec, by codec.
+        left_out: the reason why a browser cannot run a codec, by codec.
         scenes: sets of normals that are images: names, pixels as uint8 of shape (height, width, 4), slopes of the
             rays through the right and the upper edge.
         unpacking: how pixels become normals.
@@ -82,7 +82,7 @@ class Live:
         return json.dumps(content, sort_keys=True)
 
     def _scenes(self) -> Iterator[Record]:
-        """As many as there is room for."""
+        """Yield the first scenes, as many as fit in SCENES bytes."""
         left = SCENES
         for name, pixels, slope in self.scenes:
             uri = small_uri(pixels)
@@ -110,5 +110,5 @@ def script() -> str:
 
 
 def _bare(text: str) -> str:
-    """Without indents and lines of comment, which a page does not need."""
+    """Return text without indentation and comment lines, which a page does not need."""
     return re.sub(r"^\s*(//.*\n|(?=\S))", "", text, flags=re.MULTILINE)

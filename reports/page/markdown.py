@@ -1,4 +1,4 @@
-"""A run's report for a pull request: the answer, or shortened tables if there is none, without a link."""
+"""A run's report for a pull request: the answer, or shortened tables if the run has no answer, without a link."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ LONGEST = 60_000
 CUT = "The tables do not fit in a comment; `normalbench report` shows them all.\n"
 
 
-def markdown(found: Found) -> str:
+def markdown(run: Found) -> str:
     """The text, at most LONGEST characters."""
     safe = replace(
-        found,
-        name=_plain(found.name),
-        tables={name: _rows(rows) for name, rows in found.tables.items()},
+        run,
+        name=_plain(run.name),
+        tables={name: _rows(rows) for name, rows in run.tables.items()},
     )
     text = ""
     for block in _blocks(safe):
@@ -33,26 +33,26 @@ def markdown(found: Found) -> str:
     return text.rstrip() + "\n"
 
 
-def _blocks(found: Found) -> Iterator[str]:
-    yield f"## normalbench: {found.name}\n"
-    for remark in remarks(found):
+def _blocks(run: Found) -> Iterator[str]:
+    yield f"## normalbench: {run.name}\n"
+    for remark in remarks(run):
         yield f"> {_plain(remark)}\n"
-    answers = [sheet for section in found.sections if section.about.leads for sheet in section.summary if sheet.said]
+    answers = [sheet for section in run.sections if section.about.leads for sheet in section.summary if sheet.said]
     for sheet in answers:
         first, *rest = map(tables.markdown_sentence, sheet.said)
         yield "\n".join([f"**{first}**\n", *(f"- {line}" for line in rest), ""])
-    if agreement := found.agreement:
+    if agreement := run.agreement:
         yield f"{tables.markdown_sentence(agreement)}\n"
     # Nobody reads the tables of a whole run in a comment: its page has them.
-    summaries = () if answers else (sheet for section in found.sections for sheet in section.summary if sheet.rows)
+    summaries = () if answers else (sheet for section in run.sections for sheet in section.summary if sheet.rows)
     for sheet in summaries:
         heading = f"<details><summary>{html.escape(sheet.title)}</summary>\n"
         yield "\n".join([heading, tables.to_markdown(_rows(whole(sheet.rows))), "</details>\n"])
     if answers:
         yield f"For tables, charts and images, open the page that {tables.code_text('normalbench report')} writes.\n"
-    machine = [found.machine.get(name) for name in ("processor", "GL", "RADV") if found.machine.get(name)]
-    versions = [f"{name} {found.machine[name]}" for name in ("normalbench", "jax", "python") if name in found.machine]
-    yield f"Measured by {tables.code_text(found.command)}: {_plain(', '.join(map(str, [*machine, *versions])))}.\n"
+    machine = [run.machine.get(name) for name in ("processor", "GL", "RADV") if run.machine.get(name)]
+    versions = [f"{name} {run.machine[name]}" for name in ("normalbench", "jax", "python") if name in run.machine]
+    yield f"Measured by {tables.code_text(run.command)}: {_plain(', '.join(map(str, [*machine, *versions])))}.\n"
 
 
 def _rows(rows: Sequence[Row]) -> list[Row]:

@@ -50,7 +50,7 @@ MOST_REMARKS = 2
 
 @dataclass(frozen=True)
 class Cell:
-    """A table's cell: what is read, what it is sorted by where that is something else, and its classes in page.css."""
+    """A table's cell: its text, the value that it is sorted by if different, and its classes in page.css."""
 
     text: str
     value: str
@@ -76,8 +76,8 @@ class Line:
 
 @dataclass(frozen=True)
 class PageTable:
-    """A table as the template shows it; `constants` says what is the same in every row, and `data` has its rows packed
-    where the page builds it when it is opened."""
+    """A table as the template shows it; `constants` states the values that all rows share, and `data` has its rows
+    packed if the page builds the table only when it is opened."""
 
     title: str
     columns: Sequence[Heading]
@@ -101,11 +101,11 @@ def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> PageTa
 
 
 def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Container[str] = ()) -> PageTable:
-    """A sheet as a table to show.
+    """Return a sheet as a table to show.
 
     Args:
-        column: what is known of a column, by its name.
-        encodings: names; rows of these say which codec they are of.
+        column: function that returns the column of a name.
+        encodings: names of encodings; their rows say which codec they are of.
     """
     rows = whole(sheet.rows)
     shown, constants = tables.without_constants(rows)
@@ -155,19 +155,19 @@ def _codec(row: Mapping[str, Any], encodings: Container[str]) -> str:
     return key.label if key else encoding
 
 
-def remarks(found: Found) -> list[str]:
-    """Return what a reader must know of the run before its figures."""
-    sentences = list(found.remarks)
-    left_out = found.facts.get("left_out")
+def remarks(run: Found) -> list[str]:
+    """Return what a reader must know about the run before reading its figures."""
+    sentences = list(run.remarks)
+    left_out = run.facts.get("left_out")
     sentences += [f"Skipped in this run: {line}." for line in left_out] if isinstance(left_out, list) else []
-    if not found.finished:
-        sentences.insert(0, f"This run is not finished. Completed steps: {found.steps}.")
+    if not run.finished:
+        sentences.insert(0, f"This run is not finished. Completed steps: {run.steps}.")
     return sentences
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A drawing in the page, and what charts.js draws of it."""
+    """A drawing in the page, and its description for charts.js."""
 
     drawing: Drawing
     spec: Spec
@@ -207,16 +207,16 @@ class Home:
     links: Sequence[tuple[str, str]]
 
 
-def views(found: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
+def views(run: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
     """Return the views that a reader may choose, in the order of the page."""
     parts: dict[View, list[tuple[str, str]]] = {view: [] for view in View}
-    for section in found.sections:
+    for section in run.sections:
         mine = parts[section.about.view]
         mine.append((section.key, section.about.short))
         mine += [(extra, EXTRAS[extra]) for extra in section.about.extras if extra in EXTRAS]
     parts[View.COMPARE] += [("both", "Figures")] if has_codecs else []
     parts[View.COMPARE] += [("pictures", "Pictures")] if has_pictures else []
-    parts[View.SEE] += [("live", "Your GPU")] if found.live else []
+    parts[View.SEE] += [("live", "Your GPU")] if run.live else []
     parts[View.DATA] += [("rows", "Every row"), ("measured", "Measured")]
     return [Shown(view, TITLES[view], mine) for view, mine in parts.items() if mine]
 
@@ -224,9 +224,9 @@ def views(found: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
 def beginning(
     parts: Sequence[PageSection], names: Sequence[str], own: Sequence[str] = (), is_laboratory: bool = False
 ) -> dict[str, Any]:
-    """Return the state with which the script begins: every codec; A and B until a reader chooses others; and the
-    view. A and B are the answer and its neighbour in the table, or a user's own codec and the answer. The view is
-    the laboratory if the page is one, else that of the first section measured, answers before all others."""
+    """Return the state with which the script begins: every codec, the first A and B, and the view. A and B are the
+    answer and its neighbour in the table, or a user's own codec and the answer. The view is the laboratory if the
+    page is a laboratory, else the view of the first measured section, answers before all others."""
     measured = sorted((part for part in parts if part.is_there), key=lambda part: not part.section.about.leads)
     leading = [part for part in measured if part.section.about.leads]
     answers = (table for part in leading for table in part.tables if table.said)
@@ -241,16 +241,16 @@ def beginning(
     return {"codecs": list(names), "a": first, "b": second, "view": view}
 
 
-def _own(found: Found, names: Sequence[str]) -> list[str]:
+def _own(run: Found, names: Sequence[str]) -> list[str]:
     """The codecs whose encoding a user has brought."""
-    known = found.cards.get("encodings")
+    known = run.cards.get("encodings")
     return [name for name in names if known and cards.of_encoding(name) not in known]
 
 
-def drawings(found: Found) -> list[Drawing]:
-    """Every chart of a run."""
-    charts = [drawing for section in found.sections for drawing in section.drawings]
-    return charts + spheres.drawings(found.maps)
+def drawings(run: Found) -> list[Drawing]:
+    """Return every chart of a run."""
+    charts = [drawing for section in run.sections for drawing in section.drawings]
+    return charts + spheres.drawings(run.maps)
 
 
 @cache
@@ -270,17 +270,17 @@ def template(name: str) -> Any:
     return environment.get_template(name)
 
 
-def codecs(found: Found, specs: Mapping[str, Spec]) -> list[str]:
-    """Every codec that the page shows, by name."""
-    named = {pictured.codec for subject in found.subjects for pictured in subject.codecs if pictured.codec}
+def codecs(run: Found, specs: Mapping[str, Spec]) -> list[str]:
+    """Return the names of all codecs that the page shows."""
+    named = {pictured.codec for subject in run.subjects for pictured in subject.codecs if pictured.codec}
     named |= {name for spec in specs.values() for name in drawn_codecs(spec)}
-    encodings = found.encodings
-    rows = [row for section in found.sections for row in section.rows]
+    encodings = run.encodings
+    rows = [row for section in run.sections for row in section.rows]
     return sorted(named | {name for row in rows if " " in (name := _codec(row, encodings))})
 
 
 def html(
-    found: Found,
+    run: Found,
     gallery: embedded.Gallery,
     specs: Mapping[str, Spec],
     library_script: str,
@@ -290,30 +290,30 @@ def html(
     """Return the page.
 
     Args:
-        found: the run.
+        run: the run.
         gallery: its pictures.
         specs: its charts, by the names of their drawings; a chart that is missing is not shown.
         library_script: the script that draws them.
         files: names of the files next to the page.
         home: its text as the first page of a site, which begins with the laboratory; None for a page alone.
     """
-    laboratory = live.script() if found.live else ""
-    names = codecs(found, specs)
+    laboratory = live.script() if run.live else ""
+    names = codecs(run, specs)
     most_cells = CELLS_BESIDE_MANY if len(names) > MANY_CODECS else MOST_CELLS
-    parts = [part_of(found, section, specs, most_cells) for section in found.sections]
+    parts = [part_of(run, section, specs, most_cells) for section in run.sections]
     leading = [part for part in parts if part.section.about.leads and part.is_there]
     maps, begins, choices = (
-        found.maps,
-        beginning(parts, names, _own(found, names), bool(home and found.live)),
-        found.choices,
+        run.maps,
+        beginning(parts, names, _own(run, names), bool(home and run.live)),
+        run.choices,
     )
     return template("page.html.j2").render(
-        found=found,
+        found=run,
         home=home,
-        remarks=remarks(found),
+        remarks=remarks(run),
         most_remarks=MOST_REMARKS,
-        views=views(found, bool(names), bool(gallery.subjects)),
-        agreement=found.agreement,
+        views=views(run, bool(names), bool(gallery.subjects)),
+        agreement=run.agreement,
         parts=parts,
         leading=leading,
         spheres=spheres.globes(spheres.shown(maps)),
@@ -329,21 +329,21 @@ def html(
         begins_data=data_block(begins),
         choices=choices,
         choices_data=packed(json.dumps(choices)) if choices else "",
-        cards=cards.block(found, names),
-        listings=packed(_listings(found)) if found.listings else "",
+        cards=cards.block(run, names),
+        listings=packed(_listings(run)) if run.listings else "",
         files=files,
         library=packed(library_script) if specs else "",
         specs=packed(json.dumps(specs)) if specs else "",
-        live=found.live,
-        live_script=packed(laboratory) if found.live else "",
-        live_data=packed(found.live.data(about(found))) if found.live else "",
+        live=run.live,
+        live_script=packed(laboratory) if run.live else "",
+        live_data=packed(run.live.data(about(run))) if run.live else "",
         **base(SCRIPTS, [library_script, laboratory], is_beside=bool(gallery.files)),
     )
 
 
-def _listings(found: Found) -> str:
+def _listings(run: Found) -> str:
     """Disassemblies as data.js reads them."""
-    listings = found.listings
+    listings = run.listings
     return json.dumps({name: {"text": listing.text, "source": listing.source} for name, listing in listings.items()})
 
 
@@ -360,9 +360,9 @@ def base(names: Sequence[str], unpacked: Sequence[str] = (), is_beside: bool = F
     return {"scripts": scripts, "style": style, "script_sources": sources_of([*scripts, *unpacked], is_beside)}
 
 
-def about(found: Found) -> dict[str, str]:
+def about(run: Found) -> dict[str, str]:
     """Return what the laboratory says about the page that contains it."""
-    return {"run": found.name, "sources": found.sources, "program": str(found.machine.get("normalbench", ""))}
+    return {"run": run.name, "sources": run.sources, "program": str(run.machine.get("normalbench", ""))}
 
 
 def data_block(data: Any) -> str:
@@ -376,10 +376,10 @@ def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 
 
-def part_of(found: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float) -> PageSection:
+def part_of(run: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float) -> PageSection:
     """Return the PageSection of a table: its charts, and its tables, as blocks of data once they have more than
     `most_cells` cells."""
-    encodings = found.encodings
+    encodings = run.encodings
     sheets = list(section.sheets)
     shown = [sheet_table(sheet, section.column, encodings) for sheet in sheets]
     cells = itertools.accumulate(len(page_table.rows) * len(page_table.columns) for page_table in shown)

@@ -1,4 +1,4 @@
-"""Pixels that a page can show: what is kept of them in a run's files, and how angles become bytes."""
+"""Pixels that a page can show: how a run's files store them, and how angles become bytes."""
 
 from __future__ import annotations
 
@@ -74,11 +74,11 @@ class Pictured:
     """The pixels of a codec.
 
     Attributes:
-        key: which codec.
+        key: the codec.
         label: human-readable name.
         codec: the codec's name in tables and charts; empty if it is not a codec.
-        load: returns its pixels; None if its files are damaged.
-        rank: those of a lower rank are shown if there is not room for all.
+        load: function that returns its pixels; None if its files are damaged.
+        rank: codecs of a lower rank are shown if there is not room for all.
     """
 
     key: CodecKey
@@ -110,7 +110,7 @@ class Subject:
 
 @dataclass(frozen=True)
 class Film:
-    """An animation: what it shows, in a sentence, and its file."""
+    """An animation: its description, in a sentence, and its file."""
 
     said: str
     path: Path

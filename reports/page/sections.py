@@ -1,4 +1,4 @@
-"""A page's sections: what each asks, shows and was measured by. Nothing here knows HTML."""
+"""The sections of a page: their questions, contents and methods, without any HTML."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class TableSection:
 
     Attributes:
         key: its anchor, and the name of the run's table.
-        about: what the page says of the table, whatever was measured.
+        about: the page's text about the table, whatever was measured.
         columns: columns of its rows.
         also: columns that only its summary has.
         rows: every row.
         summary: the sheets that people look at first.
         drawings: its charts.
-        asked: whether the run was asked for it.
+        asked: whether the run requested it.
         films: its animations, each a sentence and a data URI.
     """
 
@@ -40,7 +40,7 @@ class TableSection:
     films: Sequence[tuple[str, str]] = ()
 
     def column(self, name: str) -> Column:
-        """Return the column for a name in rows or sheets; without a definition if nothing is known of it."""
+        """Return the column for a name in rows or sheets; an unknown column has no definition."""
         known = column_called(name, (*self.columns, *self.also))
         return replace(known, name=name) if known else undefined(name)
 

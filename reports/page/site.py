@@ -32,7 +32,7 @@ class Site:
     laboratory: str = ""
 
     def leads(self, path: str) -> dict[str, Any]:
-        """Return what base pages need to link from a path to the others."""
+        """Return the links that base pages need from a path to the other pages."""
         links = [(linked(to, path), title, to == path) for to, title in self.pages.items()]
         about = {"links": links if len(links) > 1 else [link for link in links if not link[2]]}
         return about | {"laboratory": linked(self.laboratory, path) if self.laboratory else ""}
@@ -45,10 +45,10 @@ def linked(to: str, path: str) -> str:
 
 
 def plain_names(names: Iterable[str], other: str) -> Iterator[str]:
-    """Return for each name one of its own, of letters that every file system and every address has; none is "index".
+    """Yield a unique name for each name, in letters that every file system and URL allows; never "index".
 
     Args:
-        other: what one is called whose name has no such letters.
+        other: name to use in place of a name without such letters.
     """
     taken = {"index"}
     for name in names:
@@ -61,7 +61,7 @@ def plain_names(names: Iterable[str], other: str) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class Answer:
-    """The answer to a question about a device: sentences, the first of which is the answer, and a table."""
+    """The answer to a question about a device: sentences that begin with the answer itself, and a table."""
 
     said: Sequence[str]
     table: PageTable
@@ -76,8 +76,8 @@ class DeviceSection:
         key: the section's anchor.
         said: how it agrees with the run, in a sentence.
         about: what the browser reports about it, by name.
-        answers: which encoding to take.
-        tables: every codec, and the facts.
+        answers: the recommended encodings.
+        tables: tables of every codec and of the facts.
     """
 
     name: str
@@ -90,7 +90,7 @@ class DeviceSection:
 
 @dataclass(frozen=True)
 class Searched:
-    """A searchable table of the index: for each row, further words that find it and its link, empty for none."""
+    """A searchable table of the index: for each row, more words that find it and its link, empty for none."""
 
     key: str
     title: str
@@ -101,7 +101,7 @@ class Searched:
 
 
 def words_table(title: str, rows: Sequence[Mapping[str, str | None]]) -> PageTable:
-    """Rows of words as a table to show; every column stays, also one that says the same in each row."""
+    """Return rows of words as a table to show; every column stays, even if all rows have the same value."""
     heads = [Heading(undefined(name), name, numeric=False) for name in rows[0]]
     lines = [Line([Cell(tables.text_of(row[head.title]), "", "") for head in heads], "") for row in rows]
     return PageTable(title, heads, lines, "")
@@ -112,9 +112,9 @@ class Headed:
     """A page that answers a question.
 
     Attributes:
-        path: of the page, from the site's folder.
-        title: what the page is of.
-        description: what a search shows of it.
+        path: path of the page, from the site's folder.
+        title: subject of the page.
+        description: text for search results.
         question: its heading.
     """
 
@@ -129,7 +129,7 @@ class Index(Headed):
     """A searchable list.
 
     Attributes:
-        said: what all rows together show, in sentences.
+        said: the findings from all rows together, in sentences.
         label: label of the search field.
         searched: its tables.
         devices: sections on the devices in its tables.

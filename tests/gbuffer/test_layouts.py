@@ -1,4 +1,4 @@
-"""Layouts: what lies where, what clashes, and that every preset gives back what was put in to within its bits."""
+"""Layouts: the places of fields, conflicts, and presets that give back every value to within its bits."""
 
 from dataclasses import replace
 from functools import cache
@@ -39,10 +39,10 @@ def plan(layout: Layout, **changes) -> Plan:
 
 @cache
 def kept(name: str) -> list[np.ndarray]:
-    """What the G-buffer of a layout gives back of the room: position, direction, albedo and power, specular."""
-    with rendering(device(), PIPELINES["prepass"], ROOM, plan(LAYOUTS[name])) as made:
-        made.draw()
-        return made.gbuffer()
+    """Return the decoded G-buffer of a layout in the room: position, direction, albedo and power, specular."""
+    with rendering(device(), PIPELINES["prepass"], ROOM, plan(LAYOUTS[name])) as drawing:
+        drawing.draw()
+        return drawing.gbuffer()
 
 
 def layout(*targets: Target, encoding: str = "octahedral", **more) -> Layout:
@@ -57,7 +57,7 @@ def test_a_preset_says_what_it_is_and_where_it_comes_from(name):
 
 
 def test_words_fill_a_target_in_order_from_the_most_significant_bit():
-    """11:10:11 in RGBA8: the y starts at bit 11, the z at bit 21."""
+    """11:10:11 in RGBA8: y starts at bit 11, z at bit 21."""
     words = {w.component: (w.target, w.first, w.bits) for w in LAYOUTS["kajiya"].words}
     assert words["normal.x"] == (1, 0, 11) and words["normal.y"] == (1, 11, 10) and words["normal.z"] == (1, 21, 11)
     assert words["base_color.g"] == (0, 1, 0), "a word without bits counts channels"
@@ -88,7 +88,7 @@ def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
         ([("rgba8", "normal.x:8 normal.y:8 normal.z:1")], {"encoding": "tetrahedral"}, "normal.z has 4 values"),
         ([("rg8", "normal.x normal.y"), ("r11g11b10f", "depth")], {"encoding": "xy_sign"}, "which depth needs"),
         ([("rgb555", "normal.x normal.y")], {}, "unknown format 'rgb555'; known: rgba8"),
-        ([("rgba8", "normal.x normal.y kind*normal.z")], {}, "only depth, power, roughness can carry a sign"),
+        ([("rgba8", "normal.x normal.y kind*normal.z")], {}, "only depth, power, roughness can store a sign"),
         ([("rgba8", "normal.x roughness*normal.y")], {}, "normal.y of octahedral is not a sign"),
         (
             [("rgba8", "normal.x normal.y normal.z roughness*normal.z")],
@@ -121,7 +121,7 @@ def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
         ),
     ],
 )
-def test_a_layout_that_clashes_is_one_line(targets, more, said):
+def test_conflicting_layout_is_a_one_line_error(targets, more, said):
     with pytest.raises(LayoutError) as caught:
         layout(*(Target(*target) for target in targets), **more)
     assert said in str(caught.value) and "\n" not in str(caught.value)
@@ -151,7 +151,7 @@ def test_a_layout_that_clashes_is_one_line(targets, more, said):
         ),
     ],
 )
-def test_a_file_that_is_no_layout_is_one_line(tmp_path, text, said):
+def test_invalid_layout_file_is_a_one_line_error(tmp_path, text, said):
     path = tmp_path / "mine.toml"
     path.write_text(text)
     with pytest.raises(LayoutError) as caught:
@@ -170,7 +170,7 @@ def test_a_layout_is_read_from_a_file(tmp_path):
 
 
 def test_a_codec_takes_the_place_of_a_layouts_normal():
-    """The normal moves to a target of its own, what lay beside it stays in its channels."""
+    """The normal moves to its own target; the other fields of its old target stay in their channels."""
     changed = LAYOUTS["normal_depth"].with_codec(Codec(ENCODINGS["octahedral"], STORAGES["rg16_snorm"]))
     assert [t.holds for t in changed.targets] == ["- - depth:16", "normal.x normal.y"]
     assert changed.codec.name == "octahedral/rg16_snorm" and changed.components == LAYOUTS["normal_depth"].components
@@ -208,7 +208,7 @@ HALF = 0.5 + 1e-3
 
 
 def steps(name: str, component: str) -> float | None:
-    """What a component's codes are apart, of a range of 1; None where it is kept in floats."""
+    """Return the distance between a component's codes, for a range of 1; None if it is stored in floats."""
     preset = LAYOUTS[name]
     word = next(w for w in preset.words if w.component == component)
     storage = preset.targets[word.target].storage
@@ -219,8 +219,8 @@ def steps(name: str, component: str) -> float | None:
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.usefixtures("gl")
 def test_depth_comes_back_to_half_a_code(name):
-    """Linear depth in n bits over the far plane's distance, or within half a unit of a float; native depth to float32's
-    precision there."""
+    """Linear depth in n bits over the distance of the far plane, or within half a unit of a float; native depth to
+    the precision of float32 there."""
     exact, got = (kept(n)[0][..., 2][covered()].astype(np.float64) for n in ("fp32", name))
     stored = "depth" in LAYOUTS[name].components
     step = (steps(name, "depth") if stored else None) or 0.0
@@ -237,15 +237,15 @@ def test_depth_comes_back_to_half_a_code(name):
 @pytest.mark.parametrize("holds", ["depth:16 power", "depth:24", "depth"])
 @pytest.mark.parametrize("name", DEPTH_ENCODINGS)
 def test_every_depth_code_comes_back_within_its_bound(gl, name, holds):
-    """The room through a layout that names its depth's code: packed in 16 and 24 bits, and in a float of its own."""
+    """The layout names its depth encoding: packed in 16 and 24 bits, and in a float of its own."""
     normal = "xy_sign" if DEPTH_ENCODINGS[name].signed else "octahedral"
     home = Target("r32f" if holds == "depth" else "rgba8", holds)
     mine = layout(Target("rgba16f", "normal.x normal.y"), home, encoding=normal, depth=DEPTH_ENCODINGS[name])
     storage = {"depth:16 power": "packed16", "depth:24": "packed24", "depth": "r32f"}[holds]
     exact = -kept("fp32")[0][..., 2][covered()].astype(np.float64)
-    with rendering(gl, PIPELINES["prepass"], ROOM, plan(mine)) as made:
-        made.draw()
-        got = -made.gbuffer()[0][..., 2][covered()].astype(np.float64)
+    with rendering(gl, PIPELINES["prepass"], ROOM, plan(mine)) as drawing:
+        drawing.draw()
+        got = -drawing.gbuffer()[0][..., 2][covered()].astype(np.float64)
     camera = Camera(ROOM.view.near, ROOM.view.far, ROOM.view.fov, 4 / 3)
     bounds = DepthCodec(DEPTH_ENCODINGS[name], DEPTH_STORAGES[storage]).furthest(exact, camera)
     worst = int(np.argmax(abs(got - exact) / bounds))
@@ -260,7 +260,7 @@ def test_a_layout_keeps_the_depth_that_suits_its_normal():
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.usefixtures("gl")
 def test_material_comes_back_to_half_a_code(name):
-    """Colours, powers by their logarithm, roughness; kinds exactly."""
+    """Colours, powers by their logarithm, roughness; material kinds exactly."""
     exact, got = ([image[covered()].astype(np.float64) for image in kept(n)] for n in ("fp32", name))
     for image, channel, component in [(2, c, f"albedo.{'rgb'[c]}") for c in range(3)] + [(3, 0, "specular.r")]:
         if component in LAYOUTS[name].components:
@@ -276,7 +276,7 @@ def test_material_comes_back_to_half_a_code(name):
 
 
 def check_kept(name: str, component: str, exact: np.ndarray, got: np.ndarray) -> None:
-    """Numbers in [0, 1] come back to half a code; a sign that they carry takes one bit, and so does SNORM's."""
+    """Check that numbers in [0, 1] come back to half a code; a sign stored with them takes one bit, as in SNORM."""
     preset = LAYOUTS[name]
     word = next(w for w in preset.words if w.component == component)
     storage = preset.targets[word.target].storage
@@ -300,20 +300,20 @@ def check_kept(name: str, component: str, exact: np.ndarray, got: np.ndarray) ->
 
 
 def test_only_the_normal_is_packed_as_the_layout_says(gl):
-    """Powers of ten bits are rounded in a layout that cuts its normal off."""
+    """10-bit powers are rounded to nearest in a layout that truncates its normal."""
     mine = replace(LAYOUTS["unreal5_substrate_22"], packing="truncate")
     materials = tuple(replace(m, power=10.0 + 7.3 * number) for number, m in enumerate(ROOM.materials))
     powers = []
-    for one in (mine, LAYOUTS["fp32"]):
-        with rendering(gl, PIPELINES["prepass"], replace(ROOM, materials=materials), plan(one)) as made:
-            made.draw()
-            powers.append(np.log2(made.gbuffer()[2][covered()][:, 3].astype(np.float64)))
+    for layout in (mine, LAYOUTS["fp32"]):
+        with rendering(gl, PIPELINES["prepass"], replace(ROOM, materials=materials), plan(layout)) as drawing:
+            drawing.draw()
+            powers.append(np.log2(drawing.gbuffer()[2][covered()][:, 3].astype(np.float64)))
     apart = abs(powers[0] - powers[1]) / 11 * (2**10 - 1)
     assert 0.3 < apart.max() <= HALF, f"{apart.max():.3f} steps off"
 
 
 def expected_directions(name: str, n: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """Directions through a layout's codec as the JAX half computes it, its packing in NumPy; (count, 3)."""
+    """Return directions through a layout's codec as the JAX half computes it, its packing in NumPy; (count, 3)."""
     preset = LAYOUTS[name]
     axes = np.linalg.inv(ROOM.view.matrix())[:3, :3] if preset.space == "world" else np.eye(3)
     n, view = (from_array((a @ axes.T).astype(np.float32)) for a in (n, position))
@@ -326,7 +326,7 @@ def expected_directions(name: str, n: np.ndarray, position: np.ndarray) -> np.nd
         stored = codec.store(code)
     elif preset.packing == SIGNED:
         ones = [2.0 ** (count - 1) - 1 for count in bits]
-        stored = type(code)(*(jnp.round(c * one) / one for c, one in zip(code, ones, strict=True)))
+        stored = type(code)(*(jnp.round(c * most) / most for c, most in zip(code, ones, strict=True)))
     else:
         widen, bias = PACKINGS[preset.packing]
         numbers = []
@@ -343,7 +343,7 @@ def expected_directions(name: str, n: np.ndarray, position: np.ndarray) -> np.nd
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.usefixtures("gl")
 def test_directions_come_back_as_the_codec_says(name):
-    """The G-buffer's normal is the JAX codec's of the exact one; a code beside a tie may be its neighbour."""
+    """The G-buffer's normal is that of the JAX codec for the exact normal; a code near a tie may be off by one."""
     here = covered() & (kept("fp32")[1][..., 3] != HAIR)
     position, exact, got = kept("fp32")[0][here][:, :3], kept("fp32")[1][here][:, :3], kept(name)[1][here][:, :3]
     expected = expected_directions(name, exact, position)
@@ -355,14 +355,14 @@ def test_directions_come_back_as_the_codec_says(name):
     assert same > 0.985, f"{same:.4%} the same; worst {apart.max():.4f} degrees"
 
 
-def test_motion_is_from_where_the_camera_stood(gl):
-    """In screens, from the frame before to this one, as the two cameras' matrices have it."""
+def test_motion_is_from_the_previous_camera_to_the_current_one(gl):
+    """Motion is in screens, from the previous frame to this one, and matches the matrices of the two cameras."""
     x, y, z = ROOM.view.eye
     scene = replace(ROOM, previous=replace(ROOM.view, eye=(x + 0.3, y - 0.1, z + 0.2)))
     mine = layout(Target("rgba32f", "normal.x normal.y motion.x motion.y"))
-    with rendering(gl, PIPELINES["prepass"], scene, plan(mine)) as made:
-        made.draw()
-        got = made.read(GBUFFER)[0][covered()][:, 2:].astype(np.float64)
+    with rendering(gl, PIPELINES["prepass"], scene, plan(mine)) as drawing:
+        drawing.draw()
+        got = drawing.read(GBUFFER)[0][covered()][:, 2:].astype(np.float64)
     seen = np.append(kept("fp32")[0][covered()][:, :3], np.ones((covered().sum(), 1)), axis=1)
     to_world, projection = np.linalg.inv(scene.view.matrix()), scene.view.projection(4 / 3)
     now, then = (seen @ matrix.T for matrix in (projection, projection @ scene.previous.matrix() @ to_world))
@@ -389,7 +389,7 @@ def test_motion_is_from_where_the_camera_stood(gl):
         ("gltf_specular", "f0", ("linear", 0.04)),
     ],
 )
-def test_engines_words_are_understood_with_the_curve_that_they_stand_for(typed, components, curve):
+def test_names_of_engines_are_understood_with_their_curves(typed, components, curve):
     words = list(placed("mine", 0, Target("rgba8", typed)))
     assert [word.component for word in words] == components.split()
     kept = words[0].kept
@@ -417,7 +417,7 @@ FIELDS = (
 
 
 # In the bits of RGB10A2 whose channels are of one size.
-FEWER_FIELDS = tuple(one.replace("roughness:10", "roughness:8").replace("f0:7", "f0:5") for one in FIELDS)
+FEWER_FIELDS = tuple(field.replace("roughness:10", "roughness:8").replace("f0:7", "f0:5") for field in FIELDS)
 
 
 @pytest.mark.parametrize(
@@ -434,15 +434,15 @@ FEWER_FIELDS = tuple(one.replace("roughness:10", "roughness:8").replace("f0:7", 
         (("rgba32_uint",), 1),
     ],
 )
-def test_fields_lie_in_targets_of_any_size(gl, targets, samples):
+def test_fields_can_be_in_targets_of_any_size(gl, targets, samples):
     """The same fields in whole numbers of any size, or across channels of any size, give the same image to the bit."""
     images, fields = [], FEWER_FIELDS if "rgb10a2" in targets else FIELDS
     for formats in (("rgba8", "rgba8"), targets):
         held = fields if len(formats) == 2 else (" ".join(fields),)
         asked = plan(layout(*map(Target, formats, held)), samples=samples, size=(64, 48))
-        with rendering(gl, PIPELINES["prepass"], ROOM, asked) as made:
-            made.draw()
-            images.append(made.image())
+        with rendering(gl, PIPELINES["prepass"], ROOM, asked) as drawing:
+            drawing.draw()
+            images.append(drawing.image())
     assert images[0].max() > 0.1 and np.array_equal(*images), f"{np.abs(images[0] - images[1]).max():.3g} apart"
 
 
@@ -457,14 +457,14 @@ def test_fields_lie_in_targets_of_any_size(gl, targets, samples):
         (("r64_uint", "normal.x:16 normal.y:16"), "unknown format 'r64_uint'"),
     ],
 )
-def test_what_fields_cannot_hold_is_said(target, what):
+def test_targets_that_cannot_hold_fields_are_refused_with_the_reason(target, what):
     with pytest.raises(LayoutError, match=what):
         layout(Target(*target)).words  # noqa: B018 # asked for, not used
 
 
 @pytest.mark.usefixtures("gl")
 def test_world_space_is_not_view_space():
-    """The room's walls lie along the world's axes: RGB10A2 has no 0, and tilts them all by the same angle."""
+    """The room's walls are parallel to the world's axes: RGB10A2 has no 0, and tilts them all by the same angle."""
     n = kept("fp32")[1][covered()][:, :3].astype(np.float64)
     world = n @ np.linalg.inv(ROOM.view.matrix())[:3, :3].T
     walls = abs(world).max(axis=1) > 1 - 1e-6

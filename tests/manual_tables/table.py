@@ -1,5 +1,5 @@
-"""A measured table of the manual: its lines from measured rows, its text from kept lines, and what differs between two
-measurements."""
+"""A measured table of the manual: its lines from measured rows, its text from kept lines, and the differences between
+two measurements."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ class Column:
     """A column of the page.
 
     Attributes:
-        title: the heading; empty for a figure that is kept and compared and not shown.
+        title: the heading; empty for a figure that is kept and compared but not shown.
         name: the column of the measured rows.
-        of: values of other columns, which choose a row among those of a line; the last of several counts.
-        form: how a value is written.
-        empty: what is written where there is none.
-        abs, rel: how far what is measured anew may be from what is shown, as a distance or as a share.
+        of: values of other columns, which choose a row among those of a line; the last of several matches counts.
+        form: format of a value.
+        empty: text for a missing value.
+        abs, rel: maximum difference between a new measurement and the shown figure, absolute or relative.
         is_key: whether it names the line.
-        is_counted: whether a compiler counts it, whose next version may count otherwise.
-        is_compared: whether it is measured anew.
+        is_counted: whether a compiler counts it, so that the next version may give another count.
+        is_compared: whether it is measured again.
     """
 
     title: str
@@ -51,7 +51,7 @@ class Column:
         return self.empty if value is None else self.form(value)
 
     def agrees(self, kept: Any, measured: Any) -> bool:
-        """Whether a figure is the one that is shown; whether anything else is the same."""
+        """Whether a figure is near the shown figure; whether anything else is the same."""
         if not (is_figure([kept]) and is_figure([measured])):
             return kept == measured
         (shown,) = re.findall(r"-?[\d.]+(?:e-?\d+)?", self.text(kept))
@@ -79,9 +79,9 @@ class Measured:
 
 
 def markdown(table: Table, kept: Measured) -> str:
-    """A table in Markdown, padded so that its source reads too."""
+    """Return a table in Markdown, padded to keep its source readable."""
     lines = [line for line in kept.lines if line[0] not in table.unshown]
-    made = [
+    columns = [
         _padded(
             [column.title.format(*kept.drivers), *map(column.text, values)],
             is_figure([value for value in values if value is not None]),
@@ -89,19 +89,19 @@ def markdown(table: Table, kept: Measured) -> str:
         for column, values in zip(table.columns, zip(*lines, strict=True), strict=True)
         if column.title
     ]
-    return "\n".join("|" + "|".join(cells) + "|" for cells in zip(*made, strict=True))
+    return "\n".join("|" + "|".join(cells) + "|" for cells in zip(*columns, strict=True))
 
 
 def _padded(texts: list[str], is_right: bool) -> list[str]:
-    """The cells of a column, the heading first and a rule below it."""
+    """Return the cells of a column, the heading first and a rule below it."""
     width = max(map(len, texts))
     cells = [f" {text:>{width}} " if is_right else f" {text:<{width}} " for text in texts[1:]]
     return [f" {texts[0]:<{width}} ", "-" * (width + 1) + "-:"[is_right], *cells]
 
 
 def page_with(marker: str) -> tuple[Path, str]:
-    """The one page of the manual that has a marker, and its text."""
-    texts = {path: path.read_text() for path in (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))}
+    """Return the only page of the manual that has a marker, and its text."""
+    texts = {path: path.read_text() for path in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))}
     ((path, text),) = [(path, text) for path, text in texts.items() if f"\n<!-- {marker} -->\n" in text]
     return path, text
 
@@ -112,18 +112,18 @@ class Table:
 
     Attributes:
         marker: the comment above it.
-        rows: commands of normalbench whose rows it is made of, or a function that measures them.
-        columns: those of its lines, which are kept.
-        needs: fixtures of what measures it.
+        rows: commands of normalbench that print its rows, or a function that measures them.
+        columns: columns of its lines, which are kept.
+        needs: fixtures that the measurement needs.
         takes: whether a row belongs to the table.
-        gather: makes the rows of lines of the rows that were measured.
-        lines: the lines in their order, each by its keys, such as `linear packed16,linear r16f`; empty for all of the
-            rows in theirs.
-        unshown: names of lines that are kept and compared and not shown.
-        again: commands that measure it anew in less time than `rows`.
-        holds: asserts what the page concludes from the lines.
-        text: how it is written.
-        end: what follows it on the page.
+        gather: converts the measured rows to the rows of lines.
+        lines: the lines in their order, each by its keys, such as `linear packed16,linear r16f`; empty for all rows
+            in their own order.
+        unshown: names of lines that are kept and compared but not shown.
+        again: commands that measure it again in less time than `rows`.
+        holds: asserts the page's conclusions from the lines.
+        text: writes the table.
+        end: text after the table on the page.
     """
 
     marker: str
@@ -151,13 +151,13 @@ class Table:
         self.path.write_text(f'{{"drivers": {json.dumps(measured.drivers)}, "lines": [\n{lines}\n]}}\n')
 
     def parts(self, page: str) -> tuple[str, str, str]:
-        """A page before the table, the table, and the page after it."""
+        """Return a page before the table, the table, and the page after it."""
         before, mark, rest = page.partition(f"<!-- {self.marker} -->\n")
         text, end, after = rest.partition(self.end)
         return before + mark, text, end + after
 
     def measured(self, rows: list[Row]) -> Measured:
-        """The lines of measured rows."""
+        """Return the lines of measured rows."""
         drivers = {row["driver"].partition(" (")[0] for row in rows if row.get("driver")}
         groups: dict[str, list[Row]] = {}
         for row in filter(self.takes, self.gather(rows)):
@@ -166,18 +166,18 @@ class Table:
         return Measured([[column.value(group) for column in self.columns] for group in chosen], sorted(drivers))
 
     def name(self, line: Line) -> str:
-        """What a line is of: its first values, which are its keys."""
+        """Return a line's name: its first values, which are its keys."""
         return " ".join(str(value) for value, column in zip(line, self.columns, strict=False) if column.is_key)
 
     def differences(self, kept: Measured, measured: Measured) -> list[str]:
-        """What of the kept lines is not measured anew, line by line; without counts where other compilers counted."""
+        """Return a line per kept figure that the new measurement does not confirm; skip counts by other compilers."""
         names = [[*map(self.name, lines)] for lines in (kept.lines, measured.lines)]
         if names[0] != names[1]:
             return [f"the lines are {names[1]}, and were {names[0]}"]
         columns = [c for c in self.columns if c.is_compared and not (c.is_counted and kept.drivers != measured.drivers)]
         return [
-            f"{self.name(line)}: {column.title or column.name}: {line[at]} was kept, {other[at]} is measured"
+            f"{self.name(line)}: {column.title or column.name}: {line[index]} was kept, {other[index]} is measured"
             for line, other in zip(kept.lines, measured.lines, strict=True)
             for column in columns
-            if not column.agrees(line[at := self.columns.index(column)], other[at])
+            if not column.agrees(line[index := self.columns.index(column)], other[index])
         ]

@@ -3,13 +3,13 @@
     import normalbench as nb
 
     nb.quality(encoding="octahedral", storage=["rg8", "rgb10a2"])   # a pandas DataFrame
-    nb.encode("octahedral/rg8", normals)                            # what is stored, as numbers and as integers
-    nb.decode("octahedral/rg8", codes)                              # the normals that come back
-    nb.pack("granite", surface)                                     # what a layout's targets hold of surfaces
-    nb.unpack("granite", targets)                                   # the surfaces that come back
+    nb.encode("octahedral/rg8", normals)                            # the codes, as numbers and as integers
+    nb.decode("octahedral/rg8", codes)                              # the decoded normals
+    nb.pack("granite", surface)                                     # the contents of a layout's targets
+    nb.unpack("granite", targets)                                   # the unpacked surfaces
 
-Each table of the command line is a function of the same name and options; `help(nb.quality)` lists them. Nothing heavy
-is imported before something is used.
+Each table of the command line is a function with the same name and options; `help(nb.quality)` lists them. Heavy
+modules are imported only when they are needed.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The command line: `normalbench COMMAND`.
 
 Heavy packages are imported inside the commands, so that `--help` and `list` answer at once; so is whatever imports the
-catalogue, so that an encoding that cannot be imported is said in one line.
+catalogue, so that an encoding that cannot be imported is a one-line error.
 """
 
 from __future__ import annotations
@@ -466,22 +466,22 @@ def main() -> int:
         return UsageError.exit_code
 
 
-def _plainly(said: str) -> str:
-    """What the parser says, without the words of the library that reads values."""
+def _plainly(message: str) -> str:
+    """Return the parser's message in this program's words."""
     for theirs, ours in PARSERS_WORDS.items():
-        said = said.replace(theirs, ours)
-    return said
+        message = message.replace(theirs, ours)
+    return message
 
 
-def _hint(said: str) -> str:
-    """What would be right, after what the parser says."""
-    if "extra argument" in said:
+def _hint(message: str) -> str:
+    """Return a hint for the end of the parser's message; empty if there is none."""
+    if "extra argument" in message:
         return "; give one, or names separated by commas"
-    return f" Commands: {', '.join(command_line().list_commands())}." if "command" in said else ""
+    return f" Commands: {', '.join(command_line().list_commands())}." if "command" in message else ""
 
 
 def _words(words: list[str], group: Any) -> list[str]:
-    """What was typed, with each option once. Raises UsageError."""
+    """Return the typed words with each option once. Raises UsageError."""
     own = ["-h", "--help", *(flag for option in group.params for flag in option.opts)]
     # They may stand anywhere.
     words = ["--help" if word == HELP_ALL else word for word in words]

@@ -24,7 +24,7 @@ NAMES: Mapping[str, tuple[str, str]] = MappingProxyType(
 
 
 def completion_of(option: str) -> Callable[[str], list[str]]:
-    """What the last of comma-separated names may become, with those before it."""
+    """Return a function that completes the last of comma-separated names of an option."""
     what, kind = NAMES[option]
 
     def complete(incomplete: str) -> list[str]:

@@ -82,11 +82,11 @@ def _by_flag(options: Sequence[Any]) -> dict[str, Any]:
     return {flag: option for option in options for flag in (*option.opts, *option.secondary_opts)}
 
 
-def _stray(word: str, made: Sequence[str], by_flag: dict[str, Any]) -> UsageError:
+def _stray(word: str, arguments: Sequence[str], by_flag: dict[str, Any]) -> UsageError:
     """What is wrong with a word that follows no option."""
-    flag = made[-2] if len(made) > 1 else ""
+    flag = arguments[-2] if len(arguments) > 1 else ""
     if flag in by_flag and _takes(by_flag[flag], str):
-        return UsageError(f"separate names by commas: {flag} {made[-1]},{word}")
+        return UsageError(f"separate names by commas: {flag} {arguments[-1]},{word}")
     return UsageError(f"unexpected argument {word}; did you mean {next(iter(by_flag))} {word}?")
 
 
@@ -96,31 +96,31 @@ def _option_of(word: str, by_flag: dict[str, Any]) -> tuple[str, Any]:
 
 
 def _value_of(word: str, flag: str, rest: Any) -> str | None:
-    """What stands behind the flag, or after it; None where nothing does, which the parser says."""
+    """Return the value of a flag: the rest of its word, or the next word; None if there is none."""
     if word == flag:
         return next(rest, None)
     return word[len(flag) :].removeprefix("=")
 
 
-def _add_flag(made: list[str], word: str, seen: dict[str, tuple[str, int]], option: Any) -> None:
-    first, _ = seen.setdefault(option.name, (word, len(made)))
+def _add_flag(arguments: list[str], word: str, seen: dict[str, tuple[str, int]], option: Any) -> None:
+    first, _ = seen.setdefault(option.name, (word, len(arguments)))
     if first != word:
         raise UsageError(f"{first} and {word} contradict each other; give one of them")
-    if word not in made:
-        made.append(word)
+    if word not in arguments:
+        arguments.append(word)
 
 
-def _add(made: list[str], typed: tuple[str, str], seen: dict[str, tuple[str, int]], option: Any) -> None:
+def _add(arguments: list[str], typed: tuple[str, str], seen: dict[str, tuple[str, int]], option: Any) -> None:
     flag, value = typed
     if option.name not in seen:
-        seen[option.name] = flag, len(made) + 1
-        made += [flag, value]
+        seen[option.name] = flag, len(arguments) + 1
+        arguments += [flag, value]
         return
     first, index = seen[option.name]
     if _takes(option, str):
-        made[index] = f"{made[index]},{value}"
-    elif made[index] != value:
-        raise UsageError(f"{first} is given twice, {made[index]} and {value}; give it once")
+        arguments[index] = f"{arguments[index]},{value}"
+    elif arguments[index] != value:
+        raise UsageError(f"{first} is given twice, {arguments[index]} and {value}; give it once")
 
 
 def _takes(option: Any, kind: type) -> bool:

@@ -1,4 +1,5 @@
-"""Baselines: rows as they once were, in a file that is compared with, and written on request only."""
+"""Baselines: rows of an earlier measurement, in a file that later rows are compared with. It is written only on
+request."""
 
 from __future__ import annotations
 
@@ -26,12 +27,12 @@ HOW = ("device", "rounded_by", "clock")
 
 
 def entry(table: Table, asked: Mapping[str, Any], row: Row, listing: str = "") -> Entry:
-    """Return a row and its request, as JSON has them: names as in the row, numbers as they were requested.
+    """Return a row and its request in a form for JSON: names as in the row, numbers as they were requested.
 
     Times, and columns that only programs read, are left out.
 
     Args:
-        listing: the instructions in which its figures were counted; empty if there are none.
+        listing: the instructions behind the row's counts; empty if no instructions were counted.
     """
     known = fields_of(table.options)
     key = {name: row.get(name, value) if known[name].kind is str else value for name, value in asked.items()}
@@ -62,8 +63,8 @@ def read_baseline(path: Path) -> dict[str, Entry]:
     return {_text(known_entry): known_entry for known_entry in entries}
 
 
-def _text(one: Entry) -> str:
-    return json.dumps([one["table"], one["key"]], sort_keys=True)
+def _text(row_entry: Entry) -> str:
+    return json.dumps([row_entry["table"], row_entry["key"]], sort_keys=True)
 
 
 def write_baseline(path: Path, dumped: Sequence[str]) -> None:
@@ -88,18 +89,18 @@ class NoRowError(AssertionError):
         said: the name of the row.
     """
 
-    def __init__(self, message: str, said: str = ""):
+    def __init__(self, message: str, row_name: str = ""):
         super().__init__(message)
-        self.said = said
+        self.said = row_name
 
 
 @dataclass
 class Baseline:
-    """A file of entries; what is recorded is written by `write_baseline`, once.
+    """A file of entries; `write_baseline` writes the recorded rows, once.
 
     Attributes:
         writes: whether rows are recorded.
-        writer: the option that has them recorded.
+        writer: the option that turns recording on.
     """
 
     path: Path
@@ -108,13 +109,13 @@ class Baseline:
     recorded: dict[str, Entry] = field(default_factory=dict)
     _read: dict[str, Entry] | None = None
 
-    def record(self, one: Entry) -> None:
+    def record(self, row_entry: Entry) -> None:
         """Keep a row for writing. Raises UsageError where another is asked for by the same."""
-        before = self.recorded.setdefault(_text(one), one)
-        if list(changes(before["row"], one["row"], {})):
-            raise UsageError(f"two rows of a baseline are called {_name(one)}; rename one")
+        before = self.recorded.setdefault(_text(row_entry), row_entry)
+        if list(changes(before["row"], row_entry["row"], {})):
+            raise UsageError(f"two rows of a baseline are called {_name(row_entry)}; rename one")
 
-    def differences(self, one: Entry, tolerances: Mapping[str, float]) -> list[str]:
+    def differences(self, row_entry: Entry, tolerances: Mapping[str, float]) -> list[str]:
         """Return the differences between a row and its entry, a line for each column.
 
         Raises:
@@ -123,28 +124,28 @@ class Baseline:
         """
         if self._read is None:
             self._read = read_baseline(self.path) if self.path.exists() else {}
-        before = self._read.get(_text(one))
+        before = self._read.get(_text(row_entry))
         if before is None:
-            row_name = f"{_name(one)}{self._other_compilers(one)}"
+            row_name = f"{_name(row_entry)}{self._other_compilers(row_entry)}"
             raise NoRowError(f"{self.path} has no row {row_name}; write it with {self.writer}", row_name)
-        lines = list(changes(before["row"], one["row"], tolerances))
-        if lines and before.get("listing") and one.get("listing"):
-            changed = list(listing_differences(before["listing"], one["listing"]))
+        lines = list(changes(before["row"], row_entry["row"], tolerances))
+        if lines and before.get("listing") and row_entry.get("listing"):
+            changed = list(listing_differences(before["listing"], row_entry["listing"]))
             lines.append("\n  ".join(["instructions, with changes marked + and -:", *changed]))
-        devices = [row.get("device") for row in (before["row"], one["row"])]
+        devices = [row.get("device") for row in (before["row"], row_entry["row"])]
         if lines and devices[0] != devices[1]:
             lines.append(f"measured on {devices[1]}, baseline measured on {devices[0]}")
         return lines
 
-    def _other_compilers(self, one: Entry) -> str:
-        """Return the other compilers for which the file has a row; empty if there are none."""
-        table = TABLES.get(one["table"])
+    def _other_compilers(self, row_entry: Entry) -> str:
+        """Return text that names the other compilers for which the file has a row; empty if there are none."""
+        table = TABLES.get(row_entry["table"])
         names = table.compilers if table else ()
-        alike = [e["key"] for e in (self._read or {}).values() if _less(e, names) == _less(one, names)]
+        alike = [e["key"] for e in (self._read or {}).values() if _less(e, names) == _less(row_entry, names)]
         if not names or not alike:
             return ""
-        differ = [name for name in names if any(key.get(name) != one["key"].get(name) for key in alike)]
-        mine, *others = (", ".join(str(key.get(name)) for name in differ) for key in (one["key"], *alike))
+        differ = [name for name in names if any(key.get(name) != row_entry["key"].get(name) for key in alike)]
+        mine, *others = (", ".join(str(key.get(name)) for name in differ) for key in (row_entry["key"], *alike))
         return f" by {mine}; it has one by {' and by '.join(dict.fromkeys(others))}"
 
     def dumped(self) -> str:
@@ -152,14 +153,14 @@ class Baseline:
         return json.dumps(list(self.recorded.values())) if self.recorded else ""
 
 
-def _less(one: Entry, names: Sequence[str]) -> str:
+def _less(row_entry: Entry, names: Sequence[str]) -> str:
     """An entry's key without some of its parts, as text."""
-    return _text({**one, "key": {name: value for name, value in one["key"].items() if name not in names}})
+    return _text({**row_entry, "key": {name: value for name, value in row_entry["key"].items() if name not in names}})
 
 
-def _name(one: Entry) -> str:
-    table = TABLES.get(one["table"])
-    return table.name_of(one["row"]) if table else str(one["table"])
+def _name(row_entry: Entry) -> str:
+    table = TABLES.get(row_entry["table"])
+    return table.name_of(row_entry["row"]) if table else str(row_entry["table"])
 
 
 def changes(before: Row, after: Row, tolerances: Mapping[str, float]) -> Iterator[str]:
@@ -171,8 +172,8 @@ def changes(before: Row, after: Row, tolerances: Mapping[str, float]) -> Iterato
             yield f"{column} is {other}, but {previous} in the baseline ({difference(previous, other)}{allowed})"
 
 
-def _near(one: Any, other: Any, tolerance: float) -> bool:
-    return isinstance(one, int | float) and isinstance(other, int | float) and abs(one - other) <= tolerance
+def _near(figure: Any, other: Any, tolerance: float) -> bool:
+    return isinstance(figure, int | float) and isinstance(other, int | float) and abs(figure - other) <= tolerance
 
 
 def checked_tolerances(tolerances: Mapping[str, Any], columns: Sequence[str]) -> dict[str, float]:

@@ -14,14 +14,14 @@ from .gates import Gate
 
 
 def gates_that_read(files: Sequence[Path], gates: Iterable[Gate], path: Path) -> list[Gate]:
-    """The gates that read one of some files: the file that they stand in, their baseline, a file that an option names,
-    its twin, or what it includes.
+    """Return the gates that read one of some files: the file of the gates, their baseline, a file that an option
+    names, its Python twin, or a file that it includes.
 
     Args:
         path: the file of the gates.
 
     Raises:
-        UsageError: a gate names a file that is not where it should be.
+        UsageError: a gate names a file that is in the working directory instead of the folder of the gates.
     """
     changed = {file.resolve() for file in files}
     return [gate for gate in gates if changed & {file.resolve() for file in _read_by(gate, path)}]

@@ -16,11 +16,14 @@ from .gates import BASELINE, COLUMNS, WRITER, Baselines, Gate, checked, read_gat
 def check_command(
     gates: Path, files: Sequence[Path], run: Path | None, writes: bool, format: str, output: Path | None
 ) -> int:
-    """Measure what the gates ask for, or take it from a run, and write what holds. Exit status: 1 if a gate fails.
+    """Measure the gates' rows, or take them from a run, and write the results.
 
     Args:
-        files: only gates that read one of these are held; none for all.
+        files: check only the gates that read one of these files; empty for all gates.
         writes: whether rows are written into the gates' baselines instead of being compared with them.
+
+    Returns:
+        the exit status: 1 if a gate fails.
     """
     chosen_gates, baselines = read_gates(gates), Baselines(writes)
     if files and not (chosen_gates := gates_that_read(files, chosen_gates, gates)):
@@ -53,7 +56,7 @@ def check_command(
 
 
 def _check_baselines(path: Path, gates: Sequence[Gate], run: Path | None) -> None:
-    """Raise UsageError if there is no baseline to write, or it cannot be written."""
+    """Raise UsageError if figures come from a run, no gate names a baseline, or a baseline cannot be written."""
     if run:
         raise UsageError("--write-baseline cannot be used with --run")
     named = dict.fromkeys(gate.baseline for gate in gates if gate.baseline)

@@ -1,4 +1,4 @@
-"""Gates: what figures a team's choices must keep, from a TOML file, measured and held against."""
+"""Gates: a team's thresholds for figures, read from a TOML file and checked against measurements."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ COLUMNS = ("gate", "table", "row", "column", "figure", "limit", "holds", "worst_
 
 @dataclass(frozen=True)
 class Gate:
-    """Rows of a table, and what they must keep.
+    """Rows of a table, and the limits that they must keep.
 
     Attributes:
         table: the table of the rows.
         options: the table's options to measure with; for rows of a run, the column values that select them.
-        limits: one for each column.
-        place: file and number, for messages.
+        limits: the limits, at most one for each column.
+        place: the file and the gate's number, for messages.
         folder: the folder of the gates file, where the files that options name are looked for.
-        baseline: the file that every row is compared with, with or without limits; None for none.
+        baseline: the file that every row is compared with, with or without limits; None for no baseline.
     """
 
     table: Table
@@ -115,11 +115,11 @@ Measure = Callable[[Gate], list[Found]]
 
 
 def measured_for(gate: Gate) -> list[Found]:
-    """The rows of a gate, measured now.
+    """Return the rows of a gate, measured now.
 
     Raises:
-        UsageError: a table, an option or a name that there is not; one line with the gate's place.
-        MissingError: this machine lacks what they need.
+        UsageError: a table, an option or a name is unknown; one line with the gate's place.
+        MissingError: this machine lacks something that the rows need.
     """
     try:
         measurements = measured(gate.table, with_their_options(gate.table, gate.located(), gate.limits))
@@ -178,7 +178,7 @@ def _check_was_measured(gate: Gate, limit: Limit, rows: list[Row], run: Path) ->
 
 
 def _is(value: Any, asked: Any) -> bool:
-    """Tell whether a row's value is what was asked for: one of the names, where those are several."""
+    """Whether a row's value is the requested value, or one of several."""
     return value in asked if isinstance(asked, tuple) else value == asked
 
 
@@ -226,37 +226,37 @@ class Baselines:
         return self._by_path.setdefault(path, Baseline(path, self.writes, WRITER))
 
     def write(self) -> Iterator[Path]:
-        """Write what was recorded, and tell where. Raises UsageError."""
+        """Write the recorded rows into their baselines, and yield the paths. Raises UsageError."""
         for path, baseline in self._by_path.items():
             if self.writes and (dumped := baseline.dumped()):
                 write_baseline(path, [dumped])
                 yield path
 
 
-def _row(gate: Gate, found: Found, **more: Any) -> Row:
-    row: Row = {"gate": gate.place.rsplit(" ", 1)[-1], "table": gate.table.name, "row": gate.table.name_of(found.row)}
-    return dict.fromkeys(COLUMNS) | row | {"holds": "pass", "skipped": found.row.get("skipped")} | more
+def _row(gate: Gate, tested: Found, **more: Any) -> Row:
+    row: Row = {"gate": gate.place.rsplit(" ", 1)[-1], "table": gate.table.name, "row": gate.table.name_of(tested.row)}
+    return dict.fromkeys(COLUMNS) | row | {"holds": "pass", "skipped": tested.row.get("skipped")} | more
 
 
-def _held(gate: Gate, found: Found, limit: Limit) -> Row:
+def _held(gate: Gate, tested: Found, limit: Limit) -> Row:
     try:
-        broken = limit.broken_by(gate.table, found.row)
+        broken = limit.broken_by(gate.table, tested.row)
     except UsageError as error:
         raise UsageError(f"{gate.place}: {gate.table.name}: {error}") from error
-    worst = str(found.worst) if broken and found.worst else None
-    figure, holds = found.row[limit.column], "FAIL" if broken else "pass"
-    return _row(gate, found, column=limit.column, figure=figure, limit=str(limit), holds=holds, worst_normal=worst)
+    worst = str(tested.worst) if broken and tested.worst else None
+    figure, holds = tested.row[limit.column], "FAIL" if broken else "pass"
+    return _row(gate, tested, column=limit.column, figure=figure, limit=str(limit), holds=holds, worst_normal=worst)
 
 
-def _compared(gate: Gate, found: Found, baseline: Baseline) -> Row:
+def _compared(gate: Gate, tested: Found, baseline: Baseline) -> Row:
     """Return one row: whether the baseline agrees, and if not, the differences."""
-    record = entry(gate.table, found.asked, found.row, found.listing)
+    record = entry(gate.table, tested.asked, tested.row, tested.listing)
     if baseline.writes:
         baseline.record(record)
-        return _row(gate, found, limit=f"written into {baseline.path.name}")
+        return _row(gate, tested, limit=f"written into {baseline.path.name}")
     try:
         differences = baseline.differences(record, {})
     except NoRowError as error:
-        return _row(gate, found, limit=f"as in {baseline.path.name}", holds="FAIL", lacks=f"{error.said}")
+        return _row(gate, tested, limit=f"as in {baseline.path.name}", holds="FAIL", lacks=f"{error.said}")
     holds, changed = "FAIL" if differences else "pass", "\n".join(differences) or None
-    return _row(gate, found, limit=f"as in {baseline.path.name}", holds=holds, changed=changed)
+    return _row(gate, tested, limit=f"as in {baseline.path.name}", holds=holds, changed=changed)

@@ -26,7 +26,7 @@ class Limit:
     value: float
 
     def holds(self, figure: Any) -> bool:
-        """Whether a figure keeps it; what is not a number does not."""
+        """Whether a figure keeps the limit; False for a value that is not a number."""
         if isinstance(figure, bool) or not isinstance(figure, int | float) or math.isnan(figure):
             return False
         return figure >= self.value if self.side == "at least" else figure <= self.value
@@ -103,8 +103,8 @@ def not_a_limit(column: str, value: Any) -> UsageError:
 def split_limits(
     values: Mapping[str, Any], table: Table, may_lack: bool = False
 ) -> tuple[dict[str, Any], tuple[Limit, ...]]:
-    """Options, and limits on columns, of what names both. Raises UsageError where no limit is among them and there must
-    be one."""
+    """Return the options, and the limits on columns, from values that mix both. Raises UsageError if limits are
+    required but missing."""
     bounds = {name: limit(name, value) for name, value in values.items()}
     options = {name: value for name, value in values.items() if bounds[name] is None}
     limits = tuple(bound for bound in bounds.values() if bound)

@@ -29,11 +29,12 @@ USUAL = next(table.name for table in TABLES.values() if table.is_usual)
 
 @dataclass(frozen=True)
 class Found:
-    """A row, and how to find the normal that came back farthest off, which takes a second look.
+    """A row, and functions that find its worst normal and its instructions on demand.
 
     Attributes:
-        asked: every option that it was measured with; empty of a run's rows.
-        list_it: gives the instructions that it was counted in, or None.
+        find: a function that returns the normal with the largest error; None if unknown.
+        asked: every option that the row was measured with; empty for rows of a run.
+        list_it: a function that returns the instructions counted for the row, or None.
     """
 
     row: Row
@@ -43,7 +44,7 @@ class Found:
 
     @property
     def listing(self) -> str:
-        """The instructions in which the row was counted; empty if there are none."""
+        """The instructions counted for the row, as text; empty if no instructions were counted."""
         return self.list_it() or ""
 
     @cached_property
@@ -63,14 +64,14 @@ def table_named(name: Any) -> Table:
 
 
 def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] | None = None) -> list[Found]:
-    """The rows of a table with these options, and with what is usual where they say nothing.
+    """Return the rows of a table, measured with these options and with the usual values of the other options.
 
     Args:
-        usual: in place of what is usual for a gate.
+        usual: values to use in place of a gate's usual values.
 
     Raises:
-        UsageError: an option or a value that there is not.
-        MissingError: this machine lacks what they need.
+        UsageError: an option or a value is unknown.
+        MissingError: this machine lacks something that the rows need.
     """
     given = {**checked_options(table.options, usual or {}), **checked_options(table.options, values)}
     options = table.options(**single(table, given))
@@ -142,7 +143,7 @@ def _found(table: Table, row: Row, step: Step, options: Mapping[str, Any]) -> Fo
 
 
 def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options that a gate measures with: those it names, and values that give one row for the rest.
+    """Return the options that a gate measures with: its own, and for the others values that give one row.
 
     A layout is measured as it is. A shader without a Python twin is measured in GLSL.
     """

@@ -1,15 +1,16 @@
-"""Saves the G-buffer of a RenderDoc capture, for normalbench: every target and the depth as EXR, matrices as text.
+"""Save the G-buffer of a RenderDoc capture for normalbench: every target and the depth as EXR, matrices as text.
 
 In RenderDoc, open the capture, then Window > Python Shell > Run Scripts. The folder `gbuffer` is made next to it. Or:
 
     python3 save_gbuffer.py FRAME.rdc [FOLDER] [EVENT]
 
-with RenderDoc's Python module (Debian: apt-get install python3-renderdoc). EVENT is the number of the draw after which
-targets are read. Without it that is the last draw into the targets that most draws with two or more targets write.
+with RenderDoc's Python module (Debian: apt-get install python3-renderdoc). EVENT is the number of the draw after
+which targets are read. By default it is the last draw into the targets that most draws with two or more targets
+write.
 
-It ends with the commands that measure what it saved, and `gbuffer.json` says which file holds what: `normalbench budget
---scene` reads that. RenderDoc's own EXR files hold half floats; these have 32 bits.
-It needs RenderDoc 1.18 or newer, Python 3.6, and nothing else.
+At the end the script prints the commands that measure the saved files. `gbuffer.json` lists the contents of each
+file, for `normalbench budget --scene`. RenderDoc's own EXR files hold half floats; these have 32 bits.
+The script needs RenderDoc 1.18 or newer, Python 3.6, and nothing else.
 """
 
 import json
@@ -105,7 +106,7 @@ def planes(data, layout, kind, width, count, bgra=False):
 
 
 def depths(data, pixels, kind, is_opengl):
-    """The numbers of a depth buffer, in [0, 1]; what is stencil is left out."""
+    """Return the numbers of a depth buffer, in [0, 1], without the stencil."""
     width = len(data) // pixels
     if width == 2:
         return shares(data, "H", 65535)
@@ -164,11 +165,11 @@ def write_text(path, text):
         file.write(text + "\n")
 
 
-def file_name(name, at, taken):
+def file_name(name, index, taken):
     """Return a file name for a texture's name that is not taken."""
     plain = f"{re.sub(r'[^A-Za-z0-9]+', '_', name).strip('_').lower() or 'target'}.exr"
     is_free = plain != DEPTH and plain not in [target["file"] for target in taken.values()]
-    return plain if is_free else f"{at}_{plain}"
+    return plain if is_free else f"{index}_{plain}"
 
 
 # What the numbers are
@@ -180,9 +181,9 @@ def covered(plane):
     return [0.0 if value == background else 1.0 for value in plane]
 
 
-def normals_in(found, mask):
+def normals_in(channels, mask):
     """Return "--no-unpack" for unit normals, "--unpack" for unit normals stored in [0, 1], and "" for anything else."""
-    x, y, z = found[:3]
+    x, y, z = channels[:3]
     inside = [i for i, is_covered in enumerate(mask) if is_covered]
     for option, scale, bias in (("--no-unpack", 1, 0), ("--unpack", 2, -1)):
         lengths = [sum((plane[pixel] * scale + bias) ** 2 for plane in (x, y, z)) ** 0.5 for pixel in inside]
@@ -192,7 +193,7 @@ def normals_in(found, mask):
     return ""
 
 
-def facing(found, option, mask, width, fov, turn):
+def facing(channels, option, mask, width, fov, turn):
     """The share of normals that face the camera once they are turned to view space, x right, y up, z to the viewer."""
     height, up = len(mask) // width, math.tan(math.radians(fov) / 2)
     scale, bias = (2, -1) if option == "--unpack" else (1, 0)
@@ -200,16 +201,16 @@ def facing(found, option, mask, width, fov, turn):
     inside = inside[:: max(1, len(inside) // LOOKED_AT)]
     front = 0
     for pixel in inside:
-        n = [plane[pixel] * scale + bias for plane in found[:3]]
+        n = [plane[pixel] * scale + bias for plane in channels[:3]]
         x, y, z = (sum(a * b for a, b in zip(row, n)) for row in turn)
         right = (2 * (pixel % width + 0.5) / width - 1) * up * width / height
         front += x * right + y * (1 - 2 * (pixel // width + 0.5) / height) * up < z
     return front / max(len(inside), 1)
 
 
-def space_of(found, option, mask, width, fov, matrices):
-    """Return {"space": ..., "view_matrix": ...} of the first space in which about as many normals face the camera as in
-    the best one; without a matrix where none is known."""
+def space_of(channels, option, mask, width, fov, matrices):
+    """Return {"space": ..., "view_matrix": ...} of the first space in which about as many normals face the camera as
+    in the best space; without a matrix if the space has none."""
     same, into = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0], [0, 0, -1]]
     known = [({"space": "view"}, same), ({"space": "view-left-handed"}, into)]
     for name in views(matrices)[:1]:
@@ -221,12 +222,12 @@ def space_of(found, option, mask, width, fov, matrices):
             (dict(space, **other), axes) for (space, axes), other in zip(known, (matrix, {"view_matrix": mirrored}))
         ]
         known += [(dict(space="world", **matrix), turn), ({"space": "world", "view_matrix": mirrored}, mirrored)]
-    shares = [facing(found, option, mask, width, fov, turn) for _, turn in known]
+    shares = [facing(channels, option, mask, width, fov, turn) for _, turn in known]
     return next(space for (space, _), share in zip(known, shares) if share >= max(shares) - MORE)
 
 
 def views(matrices):
-    """The names of the matrices that turn world space to view space, as far as names say it."""
+    """Return the names of the rotations that, by their names, turn world space into view space."""
     return [
         name
         for name, rows in matrices.items()
@@ -244,7 +245,7 @@ def camera_of(matrices, is_opengl):
 
 
 def guessed(targets):
-    """Return what targets hold, by quantity, as far as their names show it, in the form of a description."""
+    """Return the quantities that the targets' names reveal, with their sources, in the form of a description."""
     letters = {
         match.group(1).lower(): buffer for name, buffer in targets.items() for match in [UNREAL.search(name)] if match
     }
@@ -269,7 +270,7 @@ def guessed(targets):
 
 
 def description(targets, camera, has_depth):
-    """Return what `normalbench budget --scene` reads: known facts of the frame, and null for unknown ones."""
+    """Return the description for `normalbench budget --scene`: known facts of the frame, and null for the others."""
     scene: dict = {"fov": None, "near": None, "far": None, "view_matrix": None}
     scene.update((name, None) for name in QUANTITIES)
     if camera:
@@ -296,7 +297,7 @@ def say(text):
     print("".join(letter if letter.isprintable() or letter == "\n" else repr(letter)[1:-1] for letter in text))
 
 
-def say_description(folder, said, targets):
+def say_description(folder, scene, targets):
     """Print what was guessed and what the user has to fill in, and return the command."""
     where = folder / "gbuffer.json"
     held = [
@@ -305,7 +306,7 @@ def say_description(folder, said, targets):
     ]
     if held:
         say(f"{where}: guessed from the targets' names: {', '.join(held)}")
-    lacks = [name for name in said if said[name] is None and name != "view_matrix"]
+    lacks = [name for name in scene if scene[name] is None and name != "view_matrix"]
     if lacks:
         say(
             f"{where}: null marks what is not known: {', '.join(lacks)}. "
@@ -338,7 +339,7 @@ def is_rotation(rows):
 
 
 def measuring(folder, targets, matrices, has_depth, is_opengl):
-    """The commands that measure what was saved."""
+    """Return the commands that measure the saved files."""
     camera = camera_of(matrices, is_opengl)
     fov = f" --fov {camera[0]:.6g}" if camera else ""
     lines = []
@@ -349,7 +350,7 @@ def measuring(folder, targets, matrices, has_depth, is_opengl):
 
 
 def of_normals(folder, target, matrices, options):
-    """The command for a target of normals, and what to add where they are in world space."""
+    """Return the command for a target of normals, and the options to add if the normals are in world space."""
     read = f"--normals {folder / target['file']} {target['normals']}{options}"
     lines = [f"normalbench quality {read} --storage rg8,rgb10a2 --encoding octahedral"]
     for name in views(matrices):
@@ -410,25 +411,25 @@ def constants(controller, rd):
     return matrices
 
 
-def block(controller, state, stage, at):
+def block(controller, state, stage, index):
     """The variables of a constant buffer."""
     if hasattr(state, "GetConstantBlock"):  # RenderDoc 1.32 and newer
-        used = state.GetConstantBlock(stage, at, 0).descriptor
+        used = state.GetConstantBlock(stage, index, 0).descriptor
         place = (used.resource, used.byteOffset, used.byteSize)
     else:
-        used = state.GetConstantBuffer(stage, at, 0)
+        used = state.GetConstantBuffer(stage, index, 0)
         place = (used.resourceId, used.byteOffset, used.byteSize)
     pipeline = state.GetGraphicsPipelineObject()
     shader = (state.GetShader(stage), stage, state.GetShaderEntryPoint(stage))
-    return controller.GetCBufferVariableContents(pipeline, shader[0], shader[1], shader[2], at, *place)
+    return controller.GetCBufferVariableContents(pipeline, shader[0], shader[1], shader[2], index, *place)
 
 
-def add_matrices(found, variable, rd):
+def add_matrices(matrices, variable, rd):
     if variable.rows == 4 and variable.columns == 4 and variable.type == rd.VarType.Float:
         numbers = list(variable.value.f32v[:16])
-        found.setdefault(variable.name, [numbers[start : start + 4] for start in (0, 4, 8, 12)])
+        matrices.setdefault(variable.name, [numbers[start : start + 4] for start in (0, 4, 8, 12)])
     for member in variable.members:
-        add_matrices(found, member, rd)
+        add_matrices(matrices, member, rd)
 
 
 def name_of(kind, value):
@@ -462,7 +463,7 @@ class Saving:
         say(f"{name}: {self.names[int(texture.resourceId)]}, {texture.format.Name()}{says}")
 
     def depth(self):
-        """The mask of what is covered; None where the draw has no depth buffer."""
+        """Write the depth, and return the mask of covered pixels; None if the draw has no depth buffer."""
         texture = self.textures.get(int(self.action.depthOut))
         if texture is None:
             return None
@@ -481,7 +482,7 @@ class Saving:
         return [self.upright(plane, texture) for plane in channels]
 
     def target(self, texture, name, mask):
-        """Writes one; what is known of it."""
+        """Write a target, and return the known facts about it."""
         channel_planes = self.planes(texture)
         pixels = len(channel_planes[0])
         own = mask if mask and len(mask) == pixels else [1.0] * pixels
@@ -501,7 +502,7 @@ class Saving:
         return kept
 
     def targets(self, mask):
-        """Writes all; what is known of each, by its name in the capture."""
+        """Write all targets, and return the known facts about each, by its name in the capture."""
         kept = {}
         for index, number in enumerate(targets_of(self.action, self.rd)):
             name = self.names[number]

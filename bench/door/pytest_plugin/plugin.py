@@ -61,7 +61,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def _check_baseline(path: Path | None) -> None:
-    """Said before anything is measured. Raises pytest.UsageError where it could not be written afterwards."""
+    """Raise pytest.UsageError if a baseline cannot be written; called before anything is measured."""
     from ...ground.output.writing import check_writable
 
     if not path:
@@ -80,7 +80,7 @@ def normalbench(request: pytest.FixtureRequest) -> Normalbench:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_call(item: pytest.Item) -> None:
-    """Hold what the test's markers name before the test itself."""
+    """Check what the test's markers ask for, before the test itself runs."""
     messages = [messages for mark in item.iter_markers("normalbench") if (messages := _broken(item, mark))]
     if messages:
         pytest.fail("\n".join(messages), pytrace=False)
@@ -106,13 +106,13 @@ def _broken(item: pytest.Item, mark: pytest.Mark) -> str:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodedown(node: Any) -> None:
-    """A worker of xdist is done: what it measured for the baseline is written here, once, with the others'."""
+    """Collect the baseline rows of a finished xdist worker, to be written once with the rows of the others."""
     if text := getattr(node, "workeroutput", {}).get(KEPT):
         node.config.stash.setdefault(REPORTED, []).append(text)
 
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """Write the baseline whole, or hand what belongs there to the process that does."""
+    """Write the whole baseline or, in an xdist worker, hand its rows to the process that writes it."""
     config, path = session.config, baseline_path(session.config)
     if exitstatus not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED) or not path:
         return

@@ -76,7 +76,8 @@ class Session:
         return Measured(self, table, asked, self._found[key])
 
     def lacking(self, error: MissingError) -> NoReturn:
-        """This machine has no GL driver: skip the test, or fail it. What else it may lack can be installed by pip."""
+        """Skip the test if this machine has no OpenGL device and the tests do not require one. Fail the test
+        otherwise, because anything else can be installed by pip."""
         if str(error) == found_device()[1] and not self.require_gl:
             pytest.skip(str(error))
         pytest.fail(str(error), pytrace=False)
@@ -84,7 +85,7 @@ class Session:
 
 @dataclass(frozen=True)
 class Measured:
-    """Rows, of one codec mostly, and what they must keep. `measured["psnr_db"]` is the figure of a single row."""
+    """Rows, mostly of one codec, and checks on them. `measured["psnr_db"]` is the figure of a single row."""
 
     session: Session = field(repr=False)
     table: Table
@@ -116,7 +117,7 @@ class Measured:
         self.hold(_checked_limit(column, text) for column, text in limits.items())
 
     def hold(self, limits: Iterable[Limit]) -> None:
-        """Every row keeps every limit; see assert_that."""
+        """Check that every row keeps every limit; see `assert_that`."""
         limits = list(limits)
         for bound in limits:
             bound.check(self.table)
@@ -160,7 +161,7 @@ class Measured:
         self._raise_for(wrong)
 
     def _request(self) -> dict[str, Any]:
-        """Return every option, with the usual value for each that nobody named."""
+        """Return every option, with the usual value for each option that is not named."""
         return asdict(self.table.options(**single(self.table, self.asked)))
 
     def _measurable(self) -> list[Found]:
@@ -236,7 +237,7 @@ class Normalbench:
 
 
 def session_of(config: pytest.Config) -> Session:
-    """The one of this process, made when it is first asked for."""
+    """Return the session of this process; it is made on first use."""
     if SESSION not in config.stash:
         usual, path = {name: config.getoption(destination(name)) for name in mirrored()}, baseline_path(config)
         config.stash[SESSION] = Session(

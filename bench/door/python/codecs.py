@@ -1,7 +1,7 @@
 """Codecs on arrays, NumPy's or JAX's, of shape (..., 3).
 
-The functions can be jitted, and differentiated where the maths is: rounding has no slope, decoding has. Those of a
-user's shader file without a Python twin are run by OpenGL, and cannot.
+The functions can be jitted and, except for rounding, which has no slope, differentiated. The functions of a user's
+shader file without a Python twin are run by OpenGL and can be neither jitted nor differentiated.
 """
 
 from __future__ import annotations
@@ -52,15 +52,15 @@ def encoding(
     domain: str = "sphere",
     glsl: Path | None = None,
 ) -> Encoding:
-    """An encoding of your own functions, for `Codec` and for every table.
+    """Return an encoding made of your own functions, for `Codec` and for every table.
 
     Args:
-        name: what rows call it.
+        name: the name in rows.
         encode: (n, view) -> Vec2 or Vec3 of numbers in [-1, 1]; `n` is a unit normal with n.x, n.y, n.z.
         decode: (code, view) -> Vec3.
         components: how many numbers are stored, 2 or 3.
         domain: the normals it can hold: "sphere", "hemisphere" (z >= 0) or "view".
-        glsl: a file with its GLSL twin; without one, rows by GLSL say that it is missing.
+        glsl: a file with its GLSL twin; without a file, rows by GLSL say that the twin is missing.
     """
     if not name.isidentifier() or components not in CODES:
         raise UsageError(f"encoding {name!r}: the name must be an identifier, and components must be 2 or 3")

@@ -1,6 +1,6 @@
-"""Whole G-buffer layouts on arrays: what their targets hold of surfaces, and the surfaces that come back.
+"""Whole G-buffer layouts on arrays: surfaces packed into targets, and surfaces unpacked from targets.
 
-What runs is the code that `normalbench code --of layout --to glsl` writes, on the GL device.
+The code that `normalbench code --of layout --to glsl` writes is run on the OpenGL device.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def _written(layout: Layout) -> GBufferCode:
 
 
 def _check_names(what: str, given: Mapping[str, Any], wanted: Mapping[str, Any] | Sequence[str]) -> None:
-    """Raise UsageError if the names are not the wanted ones."""
+    """Raise UsageError if names are missing or unexpected."""
     if set(given) != set(wanted):
         lacking, odd = sorted(set(wanted) - set(given)), sorted(set(given) - set(wanted))
         wrong = [f"lacks {', '.join(lacking)}"] * bool(lacking) + [f"cannot have {', '.join(odd)}"] * bool(odd)
@@ -102,7 +102,7 @@ def _check_names(what: str, given: Mapping[str, Any], wanted: Mapping[str, Any] 
 
 
 def _ran(code: GBufferCode, rows: np.ndarray, settings: Mapping[str, Any], shape: tuple[int, ...]) -> np.ndarray:
-    """Return what both functions make of rows: uint32 of shape (count, numbers), the targets' first."""
+    """Return the results of both functions for rows: uint32 of shape (count, numbers), the targets' numbers first."""
     _check_names("settings", settings, code.settings)
     besides = np.zeros((len(rows), max(place.stop for place in PLACES.values())), np.uint32)
     for name, value in settings.items():

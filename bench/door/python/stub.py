@@ -48,7 +48,7 @@ def _function(table: Table) -> str:
     return f"def {table.name}(\n    *,\n{parameters}) -> Rows:\n{doc}\n"
 
 
-def _type(one: Field) -> str:
-    """Text stands for names too, in a list or as the caller's own values."""
-    kind = "Names" if one.kind is str else one.kind.__name__
-    return kind if one.default is not None else f"{kind} | None"
+def _type(field: Field) -> str:
+    """Return the type of an option in the stub; for text, `Names` also covers lists and the caller's own values."""
+    kind = "Names" if field.kind is str else field.kind.__name__
+    return kind if field.default is not None else f"{kind} | None"

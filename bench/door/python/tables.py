@@ -64,7 +64,7 @@ def _svg(drawing: Any) -> str:
 
 @cache
 def function_of(name: str) -> Callable[..., Rows]:
-    """The function of a table: its options are keyword arguments, and lists stand for comma-separated names."""
+    """Return the function of a table: options are keyword arguments, and lists stand for comma-separated names."""
     table = TABLES[name]
 
     def call(*, on: str | None = None, **options: Any) -> Rows:
@@ -97,8 +97,8 @@ def _framed(table: Table, done: Measured) -> Rows:
 
 
 def _typed(key: str, value: Any) -> Any:
-    """Return an argument as its option has it: a list, a mapping, an encoding or a storage as a tuple of names and
-    Given values, a pair for `size` as "WxH", and others as they are."""
+    """Return an argument in the form of its option: a list, a mapping, an encoding or a storage as a tuple of names
+    and Given values, a pair for `size` as "WxH", and other values unchanged."""
     if isinstance(value, Mapping):
         return tuple(Given(name, _value(key, name, array)) for name, array in value.items())
     several = value if isinstance(value, list | tuple) else [value]
@@ -129,7 +129,8 @@ def _depths(name: str, array: np.ndarray) -> np.ndarray:
 
 
 def _value(key: str, name: str, value: Any) -> Any:
-    """An array under a name: of normals, (..., 3), as a set to measure on; of depths, (height, width), as it is."""
+    """Return an array under a name: normals, (..., 3), as a set to measure on; depths, (height, width), unchanged.
+    Raises UsageError."""
     array = np.asarray(value)
     if key == "depths":
         return _depths(name, array)

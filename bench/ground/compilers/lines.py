@@ -20,7 +20,7 @@ _LEFT_OUT = frozenset(["line", "pragma", "version", "extension"])
 
 
 def joined(text: str) -> str:
-    """Return a text in which no line goes on in the next one. Empty lines follow, so that others keep their number."""
+    """Return a text with continued lines joined. Empty lines follow, so that the other lines keep their numbers."""
     return _JOINED.sub(lambda match: _JOIN.sub("", match[0]) + "\n" * match[0].count("\n"), text)
 
 
@@ -43,7 +43,7 @@ def bare(text: str, is_wgsl: bool = False) -> str:
 
 
 def _without_nested_comments(text: str) -> str:
-    """As `without_comments`, of WGSL."""
+    """Return the same as `without_comments`, for WGSL, in which comments can be nested."""
     pieces, place = [], 0
     while (match := _OF_WGSL.search(text, place)) and (end := _end_of_comment(text, match)):
         pieces += [text[place : match.start()], blank(text[match.start() : end])]
@@ -70,12 +70,12 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def with_known_directives(text: str, kept: re.Pattern[str] | None = None) -> str:
-    """Return a text without #line, #pragma, #version and #extension. Another one that is unknown becomes an #error,
+    """Return a text without #line, #pragma, #version and #extension. Any other unknown directive becomes an #error,
     which does no harm in a branch that is left out.
 
     Args:
         text: whole lines without comments.
-        kept: what lines look like that stay as they are.
+        kept: a pattern for lines that stay unchanged.
     """
 
     def known(match: re.Match[str]) -> str:

@@ -143,11 +143,11 @@ class Compiled:
 
 
 def compiled(text: str, options: Sequence[str], folder: Path) -> Compiled:
-    """Return what the compiler makes of a text.
+    """Return the compiler's result for a text.
 
     Args:
-        options: its words for the target, and macros.
-        folder: an empty one to work in.
+        options: the compiler's options for the target, and macros.
+        folder: an empty folder to work in.
 
     Raises:
         RefusedError: the compiler may not be given the text.
@@ -193,7 +193,7 @@ def _is_seen(probe: Path) -> bool:
 
 
 def _printed(words: Sequence[str]) -> str:
-    """Return what the library prints to descriptor 1. Raises _NotExpandedError."""
+    """Return the preprocessed text, which the library prints to descriptor 1. Raises _NotExpandedError."""
     with tempfile.TemporaryFile() as file:
         own = os.dup(1)
         os.dup2(file.fileno(), 1)

@@ -126,13 +126,14 @@ def judged(
     Args:
         text: all that the compiler is given: whole lines, without comments.
         language: a name of RULES.
-        expanded: what the compiler's own preprocessor makes of the text, for languages whose macros can spell a word
-            that does not stand in it. None: the text itself is looked at, and may have no macro that joins words.
-        knows: whether the compiler may know a word that begins with two underscores. One that it does not know is a
-            name of the user's.
+        expanded: returns the text as the compiler's own preprocessor expands it, for languages whose macros can spell
+            a word that is not in the text. If None, the text itself is checked, and it may have no macro that joins
+            words.
+        knows: whether the compiler may know a word that begins with two underscores. A word that it does not know is
+            a name of the user's.
 
     Raises:
-        RefusedError: it may not.
+        RefusedError: the text may not be given to the compiler.
     """
     rules = RULES[language]
     _check_letters(text, rules)
@@ -150,7 +151,7 @@ def own(*files: Path, **numbers: int | str) -> Text:
     """Return files of this program as one text, with macros in front.
 
     Raises:
-        ValueError: a file is none of this program's, or a macro is neither a number nor a name.
+        ValueError: a file does not belong to this program, or a macro is neither a number nor a name.
     """
     if strange := [path for path in files if not is_own_file(path)]:
         raise ValueError(f"{strange[0]} is not a file of normalbench")

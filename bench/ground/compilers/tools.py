@@ -48,7 +48,7 @@ class ToolError(Exception):
 
 
 def path_of(tool: str) -> Path:
-    """Return where a tool is: on the path, or in a package that has it.
+    """Return the path of a tool: on the path, or in an installed package that has it.
 
     Raises:
         MissingError: one line that says what to install.
@@ -62,7 +62,7 @@ def path_of(tool: str) -> Path:
 
 
 def states() -> list[str]:
-    """Return where each compiler is, and the state of its file; what compilers made holds while this is the same."""
+    """Return the path and the file state of each compiler; compiled results are valid while these stay the same."""
     paths = (shutil.which(tool) for tool in MISSING)
     return [f"{path} {state_of(Path(path))}" if path else "" for path in paths]
 
@@ -76,7 +76,7 @@ def _in_a_wheel(tool: str) -> str | None:
 
 @cache
 def version_text(tool: str) -> str:
-    """Return all that a tool says of its version. Raises MissingError."""
+    """Return all text that a tool prints about its version; empty if it cannot be run. Raises MissingError."""
     try:
         command = [path_of(tool), _ASKED.get(tool, "--version")]
         done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS)
@@ -91,7 +91,7 @@ def first_line(tool: str) -> str:
 
 
 def version(tool: str) -> str:
-    """Return a tool's name and its own word for its version, or what to install."""
+    """Return a tool's name and the first line that it prints about its version, or what to install."""
     try:
         return f"{tool} {first_line(tool) or 'of no version'}"
     except MissingError as error:
@@ -99,7 +99,7 @@ def version(tool: str) -> str:
 
 
 def stamp(tool: str) -> str:
-    """Return what tells one build of a tool from another: its place, size and time. Raises MissingError."""
+    """Return text that identifies a build of a tool: its path, size and time. Raises MissingError."""
     path = path_of(tool).resolve()
     status = path.stat()
     return f"{path} {status.st_size} {status.st_mtime_ns}"
@@ -215,5 +215,5 @@ def _piped(command: list[str], given: bytes, *descriptors: int) -> subprocess.Co
 
 
 def webgpu_module(device: Any, text: Text) -> Any:
-    """Return what naga makes of WGSL on a device of wgpu."""
+    """Return the shader module that naga makes from WGSL on a device of wgpu."""
     return device.create_shader_module(code=text.content)

@@ -25,7 +25,7 @@ def python(module: str, *words: str) -> list[str]:
 
 
 def environment() -> dict[str, str]:
-    """This process's, less the folders of PYTHONPATH that stand for the current one."""
+    """Return the environment of this process, without relative folders in PYTHONPATH."""
     folders = [word for word in os.environ.get("PYTHONPATH", "").split(os.pathsep) if Path(word).is_absolute()]
     return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | (
         {"PYTHONPATH": os.pathsep.join(folders)} if folders else {}
@@ -33,7 +33,7 @@ def environment() -> dict[str, str]:
 
 
 def limit_this_process() -> None:
-    """Memory, processor time and files; what goes beyond ends this process and no other."""
+    """Limit memory, processor time and files; exceeding a limit ends this process and no other."""
     limit(SECONDS, FILE, MEMORY)
 
 
@@ -42,18 +42,19 @@ _under_way: set[subprocess.Popen[Any]] = set()
 
 
 def stop() -> None:
-    """End what is under way: whoever waits for it has it as killed."""
+    """End the commands that are running; their callers see them as killed."""
     for process in [*_under_way]:
         end_group(process)
 
 
 def finished(command: Sequence[str], seconds: float, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """A command's status and what it printed, in a folder. It and what it started are ended after some seconds.
+    """Run a command in a folder, and return its status and its output. The command, and all that it started, are
+    ended after `seconds` at the latest.
 
-    What it prints goes to files, whose size it limits itself.
+    The output goes to files, whose size the command limits itself.
 
     Raises:
-        TimeoutExpired: it took longer; it has what was printed until then.
+        TimeoutExpired: the command took longer; the error has the output until then.
     """
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         files = {"stdin": subprocess.DEVNULL, "stdout": out, "stderr": err}

@@ -18,8 +18,7 @@ from .systems.system_files import processor_kind
 
 
 def require_jax() -> None:
-    """Raise MissingError if JAX has no device to compute on, as after an unknown JAX_PLATFORMS, or too little
-    memory."""
+    """Raise MissingError if JAX has too little memory, or no device, such as after an unknown JAX_PLATFORMS."""
     require_memory()
     keep_programs()
     try:
@@ -30,9 +29,9 @@ def require_jax() -> None:
 
 
 def keep_programs() -> None:
-    """Have JAX keep what it compiles in the user's cache folder, so that the next process need not.
+    """Make JAX keep its compiled programs in the user's cache folder, for later processes.
 
-    Whoever has chosen a folder for JAX, or none (JAX_ENABLE_COMPILATION_CACHE=0), is not overruled.
+    A folder that the user has chosen for JAX is kept, and so is a disabled cache (JAX_ENABLE_COMPILATION_CACHE=0).
     """
     chosen: Any = jax.config
     if chosen.jax_compilation_cache_dir is None and chosen.jax_enable_compilation_cache and not cache.is_off():

@@ -74,8 +74,8 @@ def look_for_garbage_seldom() -> None:
 
 
 def keep_what_is_imported() -> None:
-    """Have the garbage collector pass over what is there now: with JAX that is a million objects, looked at again and
-    again for nothing."""
+    """Exclude all objects that exist now from garbage collection: with JAX, a million objects would be examined again
+    and again for nothing."""
     gc.collect()
     gc.freeze()
     # At the end it is let go like all else, or libraries in C++ complain of leaks.

@@ -97,7 +97,7 @@ def c_type(dtype: Any) -> str:
 
 
 class _Constant(str):
-    """A number in C, and what it is."""
+    """A number in C, with its value."""
 
     value: float
 
@@ -210,10 +210,10 @@ def _limited(sign: str, equation: Any, value: str, other: str) -> str:
 
 
 def _shifted(operator: str, kind: str, equation: Any, value: str, by: str) -> str:
-    """A shift. C leaves open what one by all bits or more gives.
+    """Return a shift by a known number of bits. C does not define a shift by all bits or more.
 
     Args:
-        kind: the kind of integers that C shifts so; others are taken for these.
+        kind: the kind of integers, signed or unsigned, that C shifts in this way; other integers are cast to it.
     """
     dtype = equation.outvars[0].aval.dtype
     if not isinstance(by, _Constant) or not 0 <= by.value < 8 * dtype.itemsize:

@@ -30,7 +30,7 @@ DIGEST = hashlib.sha256().digest_size
 
 
 class NoCompilerError(Exception):
-    """There is no C compiler, or it cannot compile."""
+    """A C compiler is missing, or cannot compile."""
 
 
 def compiler() -> str:
@@ -45,10 +45,10 @@ def source(file: Path, function: str, given: Sequence[str], **numbers: int) -> T
     """Return a file as C that `library` can compile.
 
     Args:
-        file: its C, below what this adds.
-        function: what it calls, as `c_function` writes it.
-        given: the types of what the function takes of the array `given`.
-        numbers: further macros.
+        file: the file's C, which follows the text that is added here.
+        function: the function that the file calls, as `c_function` writes it.
+        given: the types of the arguments that the function takes from the array `given`.
+        numbers: other macros.
     """
     taken = "".join(f", ({kind})given[{i}]" for i, kind in enumerate(given))
     called = judged(f"#define GIVEN{taken and ' '}{taken}\n{function}", "c")
@@ -56,14 +56,14 @@ def source(file: Path, function: str, given: Sequence[str], **numbers: int) -> T
 
 
 def library(text: Text, *functions: str) -> ctypes.CDLL:
-    """C source, compiled.
+    """Return a compiled library of C source.
 
     Args:
         text: the source.
-        functions: what it must define.
+        functions: the functions that the source must define.
 
     Raises:
-        NoCompilerError: it cannot be compiled here.
+        NoCompilerError: the source cannot be compiled here.
     """
     outcome = _made(text, functions)
     if isinstance(outcome, str):
@@ -93,7 +93,7 @@ def _made(text: Text, functions: tuple[str, ...]) -> ctypes.CDLL | str:
 
 
 def _compiled(text: Text, folder: Path) -> Path:
-    """The library, followed by the digest of its bytes: linkers pass over what follows."""
+    """Compile a library and append the digest of its bytes, which linkers ignore. Return its path."""
     _compile(text, folder)
     path = folder / "library.so"
     data = path.read_bytes()

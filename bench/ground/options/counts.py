@@ -25,7 +25,7 @@ TIMES = {"k": 10**3, "m": 10**6, "g": 10**9}
 
 
 def whole_number(text: str | int) -> int:
-    """A whole number as people write it: 1000, 1e6, 4M, 2^22, 1_000_000. Raises ValueError for anything else."""
+    """Read a whole number as people write it: 1000, 1e6, 4M, 2^22, 1_000_000. Raises ValueError for anything else."""
     word = str(text).strip().replace("_", "").lower()
     if power := re.fullmatch(r"(\d{1,9})(?:\^|\*\*)(\d{1,4})", word):
         return int(power[1]) ** int(power[2])
@@ -60,7 +60,7 @@ def check_seed(seed: int) -> None:
 
 
 def checked_sides(text: str, most: int, where: str) -> tuple[int, int]:
-    """Width and height of "WxH". Raises UsageError for what is not a size, or beyond the most that `where` can do."""
+    """Return the width and the height of "WxH". Raises UsageError for a malformed size, or a side above `most`."""
     match = re.fullmatch(r"(\d{1,9})x(\d{1,9})", text.strip().lower())
     if not match or not all(1 <= int(side) <= most for side in match.groups()):
         raise UsageError(f"--size {text}: WIDTHxHEIGHT, such as 640x480, each from 1 to {most} {where}")

@@ -89,7 +89,7 @@ TITLES = MappingProxyType(
 
 
 def usual_stage(family: str) -> str:
-    """Fragment shaders, or what a family is counted for where it has none of these."""
+    """Return a family's usual stage: fragment shaders, or its first stage if fragment shaders are not counted."""
     stages = FAMILIES[family].stages if family in FAMILIES else (FRAGMENT,)
     return FRAGMENT if FRAGMENT in stages else stages[0]
 

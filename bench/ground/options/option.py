@@ -118,7 +118,7 @@ Verbose = Annotated[
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Options whose texts of several names are split where they are made, and nowhere else."""
+    """Options that split texts of several names into names when they are constructed, and nowhere else."""
 
     def __post_init__(self) -> None:
         for name, field in fields_of(type(self)).items():
@@ -157,8 +157,8 @@ class Reading(Options):
     """Options for reading files of normals.
 
     Attributes:
-        channels: a layer, or three channels by name; None for those that look like normals.
-        unpack: whether [0, 1] stands for [-1, 1]; None: only in files of integers, which have nothing else.
+        channels: a layer, or three channels by name; None for the channels that look like normals.
+        unpack: whether [0, 1] stands for [-1, 1]; None: only in files of integers, which have no negative numbers.
         curve: the curve that was applied to the components before they were stored, one of captures.CURVES.
         normalise: whether any length is accepted.
         space: the space of the frame, one of captures.SPACES.
@@ -232,7 +232,7 @@ class Field:
 
     @property
     def kind(self) -> type:
-        """As it is typed: str, int, float, bool or Path."""
+        """The type of the option as it is typed: str, int, float, bool or Path."""
         return str if self.has_names else next(k for k in get_args(self.type) or (self.type,) if k is not NoneType)
 
     @property
@@ -241,7 +241,7 @@ class Field:
         return typed(self.default)
 
     def read(self, value: Any, folder: Path = Path()) -> Any:
-        """Return what an option holds for what was given: names in place of the text of several.
+        """Return the option's value for a given value; a text of several names is split into names.
 
         Args:
             folder: where files are looked for.

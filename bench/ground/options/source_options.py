@@ -1,6 +1,6 @@
-"""Options that say how users' files are read: they become a part of the files' names, which go everywhere.
+"""Options for reading users' files. They become a part of the files' names, which are passed on everywhere.
 
-Every run of pytest imports this module: what reads names is imported where it is needed.
+Every run of pytest imports this module, so modules that read names are imported only when they are needed.
 """
 
 from __future__ import annotations

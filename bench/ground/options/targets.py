@@ -1,4 +1,4 @@
-"""Render targets and scenes as they are asked for: sizes, samples and counts, checked against the device."""
+"""Options for render targets and scenes: sizes, samples and counts, checked against the device."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def checked_setting(objects: int, lights: int, seed: int) -> Setting:
 
 
 def checked_target(size: str, samples: int, frames: int, device: Device) -> tuple[tuple[int, int], int]:
-    """The size, and the samples a pixel that the device gives. Raises UsageError for what is beyond it."""
+    """Return the size, and the samples per pixel that the device gives. Raises UsageError for values out of range."""
     in_range("--samples", samples, 1, 64)
     sides, given = checked_sides(size, device.max_size, f"on {device.renderer}"), device.given_samples(samples)
     _check_budget(sides, given * frames)
@@ -83,7 +83,7 @@ N = TypeVar("N", bound=Noisy)
 
 
 def not_with_noise(option: str) -> str:
-    """Why codes with noise are not measured where an option asks for what only exact codes have."""
+    """Return the message for an option that cannot be used with codes that have noise."""
     return f"{option} cannot be used with --rounding {DITHERED}"
 
 
@@ -96,11 +96,11 @@ def without_noise(codecs: Iterable[N], reason: str) -> list[N]:
     return what_is_left(exact, by_reason((codec.name, reason) for codec in every if codec.is_dithered))
 
 
-def what_is_left(made: list[T], complaints: list[str]) -> list[T]:
+def what_is_left(usable: list[T], complaints: list[str]) -> list[T]:
     """Return what could be made; report the rest on standard error. Raises UsageError if nothing is left."""
     reasons = list(dict.fromkeys(complaints))
-    if not made:
+    if not usable:
         raise UsageError(reasons[0] if reasons else "nothing to measure")
     for reason in reasons:
         leave_out(reason)
-    return made
+    return usable

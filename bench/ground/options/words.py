@@ -41,12 +41,12 @@ def names(text: str, is_whole: Callable[[str], bool] = lambda _: False, repeats:
 
 
 def text_of(words: Iterable[Word]) -> str:
-    """Return names as they are typed."""
+    """Return names as they are typed: one text, comma-separated."""
     return ",".join(map(str, words))
 
 
 def typed(value: Any) -> Any:
-    """Return an option's value as it is typed: several names are one text."""
+    """Return an option's value as it is typed: several names become one text."""
     return text_of(value) if isinstance(value, tuple) else value
 
 

@@ -1,4 +1,4 @@
-"""Arrays from files that may be damaged: what is in them is counted before room is made for it."""
+"""Arrays from files that may be damaged: their sizes are checked before memory is allocated for them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.re
 
 
 class DamagedError(ValueError):
-    """A file that is not what it says."""
+    """A file is not what it declares to be."""
 
 
 def array_of(data: bytes) -> np.ndarray:
@@ -44,12 +44,12 @@ def _bytes(path: Path, most: int) -> bytes:
 
 
 def read_npy(path: Path, most: int) -> np.ndarray:
-    """The array of a file of at most so many bytes. Raises OSError or DamagedError."""
+    """Return the array of a file of at most `most` bytes. Raises OSError or DamagedError."""
     return array_of(_bytes(path, most))
 
 
 def read_npz(path: Path, names: Sequence[str], most: int = MOST_BYTES) -> list[np.ndarray]:
-    """Arrays of an archive by their names, of at most so many bytes together. Raises OSError or DamagedError."""
+    """Return arrays of an archive by their names, of at most `most` bytes in all. Raises OSError or DamagedError."""
     data = _bytes(path, most)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:

@@ -52,12 +52,12 @@ def folder() -> Path:
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder of the cache, and those above it, for this user alone.
+    """Make a folder of the cache, and the folders above it, for this user alone.
 
-    One that others could write into until now is closed to them, and emptied of what is not this user's.
+    A folder that others could write into until now is closed to them, and their entries are removed.
 
     Raises:
-        OSError: it cannot be made, or it is another user's.
+        OSError: the folder cannot be made, or it is another user's.
     """
     for directory in reversed((path, *path.parents)):
         if not directory.is_dir():
@@ -79,7 +79,7 @@ def _close(path: Path) -> None:
 
 
 def require_folder() -> None:
-    """Raise MissingError if nothing can be kept."""
+    """Raise MissingError if the cache is off, or its folder cannot be made."""
     if is_off():
         raise MissingError(f"{OFF} is set")
     try:
@@ -89,8 +89,8 @@ def require_folder() -> None:
 
 
 def keep_only_files(path: Path) -> None:
-    """Take out of a folder what others read by names of theirs and is not a file: a pipe would be waited for, and a
-    device read without an end. Raises OSError."""
+    """Remove everything except files from a folder that other programs read by file name: they would wait for a pipe,
+    and never finish reading a device. Raises OSError."""
     with os.scandir(path) as entries:
         for entry in entries:
             if not entry.is_file(follow_symlinks=False):
@@ -183,16 +183,16 @@ def read_figures(key: str) -> dict[str, Any] | None:
 
 
 def kept(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-    """The value of a key, or what is made now, and kept where the key is not empty."""
+    """Return the value of a key. If the value is missing, make it, and keep it unless the key is empty."""
     return _found_or_made(read(key) if key else None, key, make)
 
 
-def _found_or_made(found: dict[str, Any] | None, key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-    if found is None:
-        found = make()
+def _found_or_made(content: dict[str, Any] | None, key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    if content is None:
+        content = make()
         if key:
-            write(key, found)
-    return found
+            write(key, content)
+    return content
 
 
 def _digest(value: Any) -> str:

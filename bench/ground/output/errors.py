@@ -26,7 +26,7 @@ def names_by_reason(left_out: Iterable[tuple[str, str | None]]) -> dict[str, lis
 
 
 def by_reason(left_out: Iterable[tuple[str, str | None]]) -> list[str]:
-    """A line for each reason, with the names of what is left out for it."""
+    """Return a line for each reason, with the names of what is left out for it."""
     return [f"{', '.join(names)}: {why}" for why, names in names_by_reason(left_out).items()]
 
 
@@ -35,7 +35,7 @@ _noted: ContextVar[list[str] | None] = ContextVar("noted", default=None)
 
 
 def leave_out(line: str) -> None:
-    """Say what is not measured, and why."""
+    """Report what is not measured, and why."""
     if (lines := _noted.get()) is None:
         tell(f"left out: {line}")
     else:
@@ -75,8 +75,8 @@ class SeveralEncodersError(UsageError):
         failing: the names of pairs that do not round-trip.
     """
 
-    def __init__(self, said: str, pairs: list[str], alone: Any = None, failing: Sequence[str] = ()):
-        super().__init__(said)
+    def __init__(self, message: str, pairs: list[str], alone: Any = None, failing: Sequence[str] = ()):
+        super().__init__(message)
         self.pairs, self.alone, self.failing = pairs, alone, failing
 
 
@@ -109,9 +109,9 @@ def hear(is_error: bool, text: str) -> None:
 
 
 def tell(line: str) -> None:
-    """A line to standard error, once in a command.
+    """Print a line to standard error, once per command.
 
-    Whatever names of files hold, it is one line and leaves the terminal as it is.
+    The output is one line and leaves the terminal as it is, whatever the names of files contain.
     """
     # Here, because every run of pytest imports this module.
     from ....reports.tables import visible

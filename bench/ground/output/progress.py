@@ -1,6 +1,6 @@
-"""A progress bar for whatever takes over a second, and the place where an interruption is not lost.
+"""A progress bar for work that takes over a second. Its steps also raise interruptions that a library has swallowed.
 
-A run says how far it is where no bar can be shown.
+If no bar can be shown, a run reports its progress in lines.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Bar:
         self._of = self._under_way = ""
 
     def advance(self, description: str) -> None:
-        """Move one step further; say what is under way now."""
+        """Advance by one step, and show the work that is under way now."""
         if ending:
             raise ending[0]
         self._move(self._step, f"{self._of}{description}")
@@ -63,14 +63,14 @@ class Bar:
         self._bar.update(self._task, completed=self._done, total=self._all, description=visible(under_way), left=left)
 
     def _left_text(self) -> str:
-        """The time that is left, by how long what was done took."""
+        """Return the remaining time, estimated from the time that the finished steps took."""
         trusted = TRUST * self._all
         slower = (time.monotonic() - self._since + trusted) / (self._done + trusted) if self._all else 1.0
         minutes, seconds = divmod(round(max(0.0, self._all - self._done) * slower), 60)
         return f"about {minutes}:{seconds:02} left"
 
     def says(self) -> str:
-        """Say how far it is."""
+        """Return the progress in words: the percentage, the remaining time, and the work under way."""
         share = self._done / self._all if self._all else 1.0
         return f"{100 * min(share, 1.0):.0f}%, {self._left_text()}, {self._under_way}"
 
@@ -131,10 +131,11 @@ def progress_of_all(expected: Mapping[str, tuple[int, float]]) -> Iterator[None]
 
 @contextmanager
 def progress(steps: int, table: str = "", there: int = 0) -> Iterator[Callable[[str], None]]:
-    """A bar that advances by one each time it is called with what is under way.
+    """Yield a function that advances a bar by one step; its argument names the step that begins.
 
     Args:
-        table: what is measured; `there` of its steps are there already. In a run with one bar for all it is part of it.
+        table: the measured table; `there` of its steps are already measured. In a run its bar is a part of the run's
+            bar.
     """
     if _whole and table:
         _whole[-1].begin(table, there)

@@ -69,7 +69,7 @@ def is_empty(data: bytes) -> bool:
 
 
 def _ends(path: Path) -> bytes:
-    """Read both ends of a file: matplotlib writes at the end of a PDF what made it."""
+    """Read both ends of a file: matplotlib writes its name at the end of a PDF."""
     with path.open("rb") as file:
         first = file.read(MOST)
         file.seek(max(file.seek(0, 2) - MOST, len(first)))
@@ -77,7 +77,7 @@ def _ends(path: Path) -> bytes:
 
 
 def _beginning(data: bytes) -> bytes:
-    """Return what files of one kind share: their first bytes, for JSON the bracket, for a text the first line."""
+    """Return the beginning that files of one kind share: first bytes, the bracket of JSON, or the first line."""
     if b"\0" in data:
         return data[:4]
     return data[:1] if data[:1] in (b"{", b"[") else data.partition(b"\n")[0]

@@ -1,4 +1,4 @@
-"""Writing what was measured: whole or not at all, and one line when it cannot be."""
+"""Writing of results: a file is written whole or not at all, and a failure is reported in one line."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def check_writable(path: Path, makes_folder: bool = False, mark: bytes = b"") ->
 
 
 def _check_own(path: Path) -> None:
-    """Raise UsageError if a file is one of a run's own, which only the run writes."""
+    """Raise UsageError if a file belongs to a run, which alone may write it."""
     is_own = path.suffix in OWN_SUFFIXES and (path.parent / RUN).exists() and path.exists()
     if is_own:
         raise UsageError(f"{path} belongs to the run in its folder; name another file")
@@ -78,7 +78,7 @@ def check_folder(folder: Path) -> None:
 
 
 def target_of(path: Path) -> Path:
-    """The file that links lead to, which is what is written. Raises UsageError where they lead back to themselves."""
+    """Return the file that links lead to, which is the file to write. Raises UsageError if the links form a loop."""
     try:
         return path.resolve()
     except (OSError, RuntimeError) as error:
@@ -86,12 +86,12 @@ def target_of(path: Path) -> Path:
 
 
 def is_special(path: Path) -> bool:
-    """A pipe or a device: what is written there goes through, and the name must stay what it is."""
+    """Whether a path is an existing pipe, device or other special file, which is written to and never replaced."""
     return path.exists() and not path.is_file()
 
 
 def clear_away(path: Path) -> None:
-    """Take away what processes that were killed have left of a file or folder. Raises OSError."""
+    """Remove the partial files and folders that killed processes have left of a path. Raises OSError."""
     for partial in path.parent.glob(f".{glob.escape(path.name)}.*.partial"):
         number = partial.name.split(".")[-2]
         if number.isdecimal() and not is_running(int(number)):
@@ -174,12 +174,12 @@ def say(text: str) -> None:
 
 
 def abandon_output() -> None:
-    """Discard all further output; Python flushes once more at exit, and would report an error."""
+    """Discard all later output: Python flushes once more at exit, and would report an error."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def write_text(make: Callable[[], str], output: Path | None, is_checked: bool = False) -> None:
-    """Text to a file, or to standard output; it is made once it is known that the file can be written.
+    """Write text to a file or to standard output. The text is made only after the check that the file can be written.
 
     Raises UsageError; `is_checked` as in `whole_file`.
     """
@@ -194,7 +194,7 @@ def write_text(make: Callable[[], str], output: Path | None, is_checked: bool = 
 
 
 def files_of(folder: Path) -> dict[str, Path]:
-    """Return a folder's own files by name; empty if there is no folder."""
+    """Return a folder's own files by name, without links; empty if the folder cannot be read."""
     try:
         return {path.name: path for path in folder.iterdir() if path.is_file() and not path.is_symlink()}
     except OSError:

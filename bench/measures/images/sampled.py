@@ -31,10 +31,10 @@ class Sample:
 
     Attributes:
         name: the class.
-        columns: which of the image's samples they are.
+        columns: the range of the class among the image's samples.
         share: the share of this class in the frame's pixels that show a surface.
-        weights: the weight of each pixel, so that the mean of weighted figures is that of the class; float64 of
-            shape (count,).
+        weights: the weight of each pixel, so that the mean of weighted figures is that of the class; float64 of shape
+            (count,).
     """
 
     name: str
@@ -48,12 +48,12 @@ class SampledImage:
 
     Args:
         whole: the image.
-        seed: of the choice of pixels.
-        device: lights them.
-        stack: keeps what that takes.
+        seed: the seed of the choice of pixels.
+        device: the device that lights the pixels.
+        stack: the stack that keeps what the lighting needs.
 
     Attributes:
-        classes: the samples of each class that is there.
+        classes: the samples of each class in the image.
         normals, positions: in view space, float32 of shape (count, 3).
     """
 
@@ -79,11 +79,11 @@ class SampledImage:
         return np.mean(np.where(np.isfinite(shown), shown - self._exact, 1.0) ** 2, axis=-1)
 
     def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
-        """Return the mean squared error of each class, and as "" that of the frame, in which classes count by their
+        """Return the mean squared error of each class and, as "", of the frame, in which classes count by their
         share.
 
         Args:
-            domain: pixels whose normals are outside do not count; a class without others is left out.
+            domain: pixels whose normals are outside do not count; a class without other pixels is left out.
         """
         return self._means(self.errors(trip, turns), in_domain(self.normals, self.positions, domain))
 
@@ -118,9 +118,9 @@ def _changes(whole: WholeImage, seed: int) -> np.ndarray:
 
 
 def _sampled(whole: WholeImage, changes: np.ndarray, seed: int) -> tuple[np.ndarray, list[Sample]]:
-    """Pixels of each class, (count, 2), neighbours in space next to each other as far as they go, and their samples.
+    """Return pixels of each class, (count, 2), in an order that keeps neighbours in space close, and their samples.
 
-    Pixels are drawn by what they change, and half of them evenly, so that none has a weight above 2.
+    Half of a pixel's chance is the same for all, and half is proportional to its change, so that no weight exceeds 2.
     """
     random, is_seen = np.random.default_rng([seed, 2]), whole.classes >= 0
     total, change_of_all = max(int(is_seen.sum()), 1), float(np.sum(changes[is_seen])) or 1.0
@@ -145,7 +145,7 @@ def _sampled(whole: WholeImage, changes: np.ndarray, seed: int) -> tuple[np.ndar
 
 
 def _along_a_curve(places: np.ndarray, bits: int = 10) -> np.ndarray:
-    """The order of points, (count, 3), along Morton's curve, so that what one lamp reaches is in few runs."""
+    """Return the order of points, (count, 3), on Morton's curve, so that points that a lamp reaches form few runs."""
     spread = np.ptp(places, axis=0).max() or 1.0
     cells = ((places - places.min(axis=0)) / spread * (2**bits - 1)).astype(np.int64)
     curve = np.zeros(len(places), np.int64)

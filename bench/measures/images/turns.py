@@ -58,7 +58,7 @@ def two_worst_db(errors: Sequence[float]) -> float:
 
 
 def gap_db(errors: Errors, other: Errors) -> tuple[float, float]:
-    """Return how far the lowest PSNR of an encoding is above that of another one, and the standard error of that.
+    """Return how far the lowest PSNR of an encoding is above that of another, in dB, and the gap's standard error.
 
     Each encoding is at its best pole, over the yaws that both have. The error of a single orientation is 0.
     """

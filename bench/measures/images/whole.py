@@ -51,12 +51,12 @@ class WholeImage:
         to_world: the matrix from view space to the world's axes, (3, 3).
     """
 
-    def __init__(self, scene: Scene, maker: SceneMaker, made: Rendering):
-        made.frame.show(scene)
-        self.scene, self._made = scene, made
-        self.surfaces = made.surfaces()
-        self._covered = made.covered(self.surfaces)
-        opaque, linear = made.lit(self.surfaces, upto="transparent"), made.lit(self.surfaces)
+    def __init__(self, scene: Scene, maker: SceneMaker, rendered: Rendering):
+        rendered.frame.show(scene)
+        self.scene, self._made = scene, rendered
+        self.surfaces = rendered.surfaces()
+        self._covered = rendered.covered(self.surfaces)
+        opaque, linear = rendered.lit(self.surfaces, upto="transparent"), rendered.lit(self.surfaces)
         self.display: Display = maker.display(linear)
         self.exact = self.display.image(linear)
         self.to_world = np.linalg.inv(scene.view.matrix())[:3, :3]
@@ -80,7 +80,7 @@ class WholeImage:
     def decoded(
         self, trip: Trip, turns: Sequence[Turn], normals: Float[np.ndarray, "count 3"], positions: np.ndarray
     ) -> Float[np.ndarray, "turns count 3"]:
-        """Return what comes back of view-space normals, in view space, in each orientation of an encoding."""
+        """Return decoded view-space normals, in view space, for each orientation of an encoding."""
         matrices = [np.eye(3) if turn is None else turn @ self.to_world for turn in turns]
         given = np.concatenate([normals @ matrix.T for matrix in matrices]).astype(np.float32)
         decoded = trip(given, np.tile(positions, (len(turns), 1))).reshape(len(turns), *normals.shape)

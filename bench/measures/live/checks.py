@@ -54,14 +54,14 @@ def sums(domain: str) -> list[int]:
     return [checksum(vectors) for vectors in normals.normals(domain)]
 
 
-def is_whole(found: Mapping[str, Any], domain: str, size: int) -> bool:
+def is_whole(saved: Mapping[str, Any], domain: str, size: int) -> bool:
     """Whether checks are of the normals that this version makes, and as many as codes of `size` numbers have."""
     counts = {"groups": COUNT // GROUP, "numbers": size, "sample": COUNT // STRIDE * size}
     try:
-        is_there = all(len(base64.b64decode(found[name], validate=True)) == 4 * count for name, count in counts.items())
+        is_there = all(len(base64.b64decode(saved[name], validate=True)) == 4 * count for name, count in counts.items())
     except ValueError:
         return False
-    return is_there and found["normals"] == sums(domain)[0]
+    return is_there and saved["normals"] == sums(domain)[0]
 
 
 def checks(codec: Codec) -> dict[str, Any]:
@@ -98,10 +98,10 @@ def _codec_checks(codec: Codec) -> dict[str, Any]:
     }
 
 
-def ordered(codec: Codec, made: Reference) -> np.ndarray:
-    """Stored codes as integers in the order of the numbers that they stand for: int32 of shape (count, components)."""
+def ordered(codec: Codec, reference: Reference) -> np.ndarray:
+    """Return codes as integers in the order of their numbers: int32 of shape (count, components)."""
     channels = Channels(codec).channels
-    whole = [signed(channel, made.integers[:, i]) for i, channel in enumerate(channels)]
+    whole = [signed(channel, reference.integers[:, i]) for i, channel in enumerate(channels)]
     return np.stack(whole, axis=1).astype(np.int32)
 
 

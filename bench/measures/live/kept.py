@@ -1,4 +1,5 @@
-"""A run's codecs for the laboratory of its page: a file for each, read again as what somebody may have edited."""
+"""A run's codecs for the laboratory of its page: a file for each codec, checked when read because people may edit
+it."""
 
 from __future__ import annotations
 
@@ -93,8 +94,8 @@ def file_name(codec: Codec) -> str:
 
 
 def write_live(codecs: Iterable[Codec], folder: Path) -> None:
-    """A file for each codec, which says why where a browser cannot be given it. Raises UsageError where one cannot be
-    written."""
+    """Write a file for each codec; if browsers cannot run the codec, the file has the reason. Raises UsageError if a
+    file cannot be written."""
     for codec in dict.fromkeys(codecs):
         try:
             record = {**program(codec), "checks": _checks_or_none(codec)}

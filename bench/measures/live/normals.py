@@ -39,10 +39,10 @@ def _uniform_numbers(words: np.ndarray) -> np.ndarray:
 
 
 def _random_normals(index: np.ndarray) -> np.ndarray:
-    """Uniform unit normals, float32 of shape (count, 3); the same for the same index.
+    """Return uniform unit normals, float32 of shape (count, 3); the same for the same index.
 
-    G. Marsaglia, "Choosing a Point from the Surface of a Sphere" (1972): the first (a, b) with s = a^2 + b^2 < 1 gives
-    (2 a sqrt(1 - s), 2 b sqrt(1 - s), 1 - 2 s).
+    G. Marsaglia, "Choosing a Point from the Surface of a Sphere" (1972): the first (a, b) with s = a^2 + b^2 < 1
+    gives (2 a sqrt(1 - s), 2 b sqrt(1 - s), 1 - 2 s).
     """
     unity, two = np.float32(1), np.float32(2)
     a, b, open_, turn = (np.zeros(len(index), kind) for kind in ("f4", "f4", "?", "u4"))

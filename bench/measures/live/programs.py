@@ -38,10 +38,12 @@ class NotLiveError(ValueError):
 
 @cache
 def program(codec: Codec) -> Record:
-    """A codec as the page's scripts read it; flat but for `channels` and `tables`. What was written before is kept.
+    """Return a codec in the form that the page's scripts read, flat except for `channels` and `tables`. Results are
+    cached for the catalogue's encodings.
 
     Raises:
-        NotLiveError: its GLSL cannot be translated, its look-up tables are too large, or noise is added to its numbers.
+        NotLiveError: its GLSL cannot be translated, its lookup tables are too large, or noise is added to its
+            numbers.
     """
     key = kept.key_of("live program", sources(), codec.name) if is_catalogues(codec.encoding) else ""
     return kept.kept(key, lambda: _program(codec))

@@ -41,7 +41,7 @@ class CodeLimit:
 
 
 def code_limit(codes: int, area: float = SPHERE) -> CodeLimit:
-    """The limit of so many codes (4 or more) spread over `area` steradians."""
+    """Return the bounds on the errors of `codes` codes (4 or more) spread over `area` steradians."""
     cell = area / codes
     radius = math.sqrt(2 * cell / (3 * math.sqrt(3)))
     return CodeLimit(

@@ -1,7 +1,7 @@
 """FLIP, a perceptual difference of two images seen one after the other, at the same place.
 
-P. Andersson, J. Nilsson, T. Akenine-Moller, M. Oskarsson, K. Astrom, M. D. Fairchild: FLIP: A Difference Evaluator for
-Alternating Images, HPG 2020. Here as they publish it for images in [0, 1], by separable filters.
+P. Andersson, J. Nilsson, T. Akenine-Moller, M. Oskarsson, K. Astrom, M. D. Fairchild: FLIP: A Difference Evaluator
+for Alternating Images, HPG 2020. Implemented as published for images in [0, 1], with separable filters.
 """
 
 from __future__ import annotations

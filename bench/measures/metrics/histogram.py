@@ -1,7 +1,7 @@
 """The histogram of angles, and the figures that come from it.
 
-A bin is the upper bits of a float32, ten of them mantissa: 2^-10 of an octave, so that percentiles hold to 0.1 %. Bins
-go from 2^-40 degrees to 180 and above, and their numbers fit in 16 bits.
+A bin is the upper bits of a float32, ten of them mantissa: 2^-10 of an octave, so that percentiles are accurate to
+0.1%. Bins range from 2^-40 degrees to 180 and above, and their numbers fit in 16 bits.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ Load = Callable[[], Any]
 
 
 def idle() -> None:
-    """Do nothing: called for each chunk when nobody watches."""
+    """Do nothing: the default function to call for each chunk."""
 
 
 def angle_between(a: Vec3, b: Vec3) -> Float[Array, "*shape"]:
@@ -83,7 +83,7 @@ def _packed(
 
 
 class Decoded(NamedTuple):
-    """CHUNK normals, what they were decoded as, and which of them count."""
+    """CHUNK normals, their decoded normals, and which of them count."""
 
     n: Vec3
     decoded: Vec3
@@ -161,14 +161,14 @@ def is_smaller(largest: float, met_deg: float) -> bool:
 
 
 def _angles(n: Float[np.ndarray, "count 3"], decoded: Float[np.ndarray, "count 3"]) -> Float[np.ndarray, " count"]:
-    """As `angle_between`, in float64, of rows; 180 where a decode is not a number."""
+    """Return the angles between rows as `angle_between` does, in float64; 180 if a decoded normal is not a number."""
     with np.errstate(invalid="ignore", over="ignore"):
         angles = angles_deg(n, decoded)
     return np.where(np.isfinite(decoded).all(axis=1) & (decoded != 0).any(axis=1), angles, 180.0)
 
 
 def _on_device(plane: Shaped[Array | np.ndarray, "*shape"]) -> Shaped[Array, "*shape"]:
-    """A plane as JAX has it. To ask this of each is ten times as fast as to convert what is there already."""
+    """Return a plane as a JAX array. The check is ten times as fast as converting a JAX array once more."""
     return plane if isinstance(plane, jax.Array) else jnp.asarray(plane)
 
 
@@ -176,7 +176,7 @@ class Measures(Protocol):
     """An object that measures chunks of normals."""
 
     def decoded(self, block: Any) -> Vec3:
-        """What a block is decoded as."""
+        """Return the decoded normals of a block."""
         ...
 
     def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> ChunkTotal:
@@ -209,16 +209,16 @@ class Meter:
     takes longer to compile.
 
     Args:
-        decode: a jitted function from a block to decoded normals. A block is a pytree of planes with the unit
-            normals `n`, the mask `covered` of those that count, and whatever else the decoder needs.
-        given: its further arguments, the same for every block.
+        decode: a jitted function from a block to decoded normals. A block is a pytree of planes with the unit normals
+            `n`, the mask `covered` of those that count, and whatever else the decoder needs.
+        given: other arguments of `decode`, the same for every block.
     """
 
     def __init__(self, decode: Callable[..., Vec3], given: Sequence[Any] = ()):
         self._decode, self._given = decode, given
 
     def decoded(self, block: Any) -> Vec3:
-        """What a block is decoded as."""
+        """Return the decoded normals of a block."""
         return self._decode(block, *self._given)
 
     def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> ChunkTotal:
@@ -243,7 +243,7 @@ class Meter:
         return measure_together([self], loads, lambda _: tick())[0]
 
     def measure(self, loads: Iterable[Load], pixels: int, tick: Callable[[], None] = idle) -> Statistics:
-        """Statistics of a set of so many normals, background included; the rest is as for `total`."""
+        """Return the statistics of `pixels` normals, background included; see `total` for the other arguments."""
         return statistics(pixels, self.total(loads, tick))
 
 

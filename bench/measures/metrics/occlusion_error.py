@@ -62,14 +62,14 @@ def method_error(
     """Compare a method of ambient occlusion with rays of its own radius and fall-off, from the same fp32 G-buffer.
 
     Args:
-        device: draws the scene, with the deferred pipeline.
+        device: the device that draws the scene, with the deferred pipeline.
         chosen: the method and its settings; its effect is an `AmbientOcclusion`.
         scene: the scene, drawn from its own view.
-        size: of the image.
+        size: the size of the image.
         pixels: the number of pixels, chosen at random among the covered pixels; without hair, whose normal the
             G-buffer does not store.
         rays: the number of rays for each pixel.
-        seed: of the random choice and the rays.
+        seed: the seed of the random choice and the rays.
 
     Raises:
         MissingError: embreex is not installed.
@@ -85,10 +85,10 @@ def method_error(
 
 
 def compared(
-    found: Float[np.ndarray, " pixels"], exact: Float[np.ndarray, " pixels"], error: Float[np.ndarray, " pixels"]
+    visibilities: Float[np.ndarray, " pixels"], exact: Float[np.ndarray, " pixels"], error: Float[np.ndarray, " pixels"]
 ) -> OcclusionError:
     """Compare visibilities with those of rays, given the rays' standard errors."""
-    difference, noise = found - exact, float(np.mean(error**2))
+    difference, noise = visibilities - exact, float(np.mean(error**2))
     square = difference**2
     rms = float(np.sqrt(max(np.mean(square) - noise, 0.0)))
     # rms = sqrt(mean of squares): its error is that of the mean over 2 rms

@@ -65,7 +65,7 @@ class Statistics:
 
 @dataclass(frozen=True)
 class Worst:
-    """The normal that came back farthest off, what it came back as, both float32, and by how many degrees."""
+    """The normal with the largest error, its decoded normal, both float32, and the angle between them in degrees."""
 
     normal: Float[np.ndarray, " 3"]
     decoded: Float[np.ndarray, " 3"]
@@ -108,7 +108,7 @@ class ErrorTotal:
             self.worst = worst
 
     def add_total(self, other: ErrorTotal) -> None:
-        """Add the total of further chunks."""
+        """Add the total of other chunks."""
         self.add((other.figures, other.histogram, other.worst))
 
     def as_text(self) -> str:
@@ -121,7 +121,7 @@ class ErrorTotal:
 
 
 def total_of(text: str) -> ErrorTotal:
-    """The total that a text of `ErrorTotal.as_text` stands for."""
+    """Return the total that `ErrorTotal.as_text` wrote as a text."""
     record, total = json.loads(text), ErrorTotal()
     steps, counts = np.frombuffer(zlib.decompress(base64.b64decode(record["counts"])), "<i8").reshape(2, -1)
     total.figures = Figures(*map(Fraction, record["sums"]))

@@ -1,9 +1,10 @@
-"""Visibility of points of a scene by rays: what methods of ambient occlusion are judged by.
+"""Visibility of points of a scene, measured by rays: the reference for methods of ambient occlusion.
 
 The visibility of a point with normal n is V = (1/pi) times the integral of (1 - w(t)) cos over the hemisphere of n. A
-ray goes t far until it meets a surface, and w is the share of light that a surface at that distance takes away. The
-textbook has w = 1 at all distances. A method with a radius has its own w, and rays without it would measure the
-fall-off in place of the method. Rays are drawn with the density of the cosine, so V is the mean of 1 - w.
+ray travels a distance t until it meets a surface, and w is the share of light that a surface at that distance takes
+away. The textbook definition has w = 1 at all distances. A method with a radius has its own w, and rays without it
+would measure the fall-off in place of the method. Rays are drawn with the density of the cosine, so V is the mean of
+1 - w.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class Visible(NamedTuple):
     """The visibility of points, measured by rays.
 
     Attributes:
-        visibility: of each point.
+        visibility: the visibility of each point.
         error: its standard error.
         bent: the mean direction from which light arrives, times how much light arrives.
     """

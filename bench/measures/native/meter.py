@@ -26,13 +26,13 @@ BLOCK = 256
 
 
 class _Codec(ctypes.Structure):
-    """What row.c calls so."""
+    """The structure `Codec` of row.c."""
 
     _fields_ = (("decode", ctypes.c_void_p), ("given", ctypes.c_void_p))
 
 
 class _Chunk(ctypes.Structure):
-    """What row.c calls so."""
+    """The structure `Chunk` of row.c."""
 
     _fields_ = (
         ("planes", ctypes.c_void_p * 6),
@@ -72,10 +72,10 @@ def decoder(round_trip: Callable[..., Vec3], given: Sequence[Any] = ()) -> ctype
 
     Args:
         round_trip: (normals, view positions, *given) -> decoded normals; elementwise.
-        given: named tuples of float32, like its further arguments; their values do not matter.
+        given: named tuples of float32, like the other arguments of `round_trip`; their values do not matter.
 
     Raises:
-        NotElementwiseError, NoCompilerError: it cannot be compiled here.
+        NotElementwiseError, NoCompilerError: the round trip cannot be compiled here.
     """
     types = [type(numbers)(*[FLOAT] * len(numbers)) for numbers in given]
     function = c_function("round_trip", round_trip, FLOATS, FLOATS, *types)
@@ -88,7 +88,7 @@ class NativeMeter:
 
     Args:
         compiled: the round trip, from `decoder`.
-        given: its further arguments.
+        given: the other arguments of the round trip.
 
     Raises:
         NoCompilerError: the statistics cannot be compiled here.

@@ -1,8 +1,8 @@
 """The corners of codes' cells: where the worst normals of most codecs are.
 
-A cell is what is stored as one code. Its corners are found by asking the storage where each number's share begins and
-ends, so any rounding and any format will do; a code just inside is decoded, and the normal is a candidate. Nobody
-relies on that: what is then measured is the error that this normal itself makes.
+A cell is the set of numbers that are stored as one code. Its corners are found by asking the storage where the range
+of each number begins and ends, so any rounding and any format will do; a code just inside is decoded, and the normal
+is a candidate. The result does not rely on this, because the error of this normal itself is measured afterwards.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def way_to_corners(exact: ExactCodec) -> str:
 
 
 def corners(exact: ExactCodec, way: str) -> np.ndarray:
-    """Normals at the worst corners of cells, shape (3, count), as `way_to_corners` says; not for NONE."""
+    """Return normals at the worst corners of cells, shape (3, count), by a way of `way_to_corners`, except NONE."""
     if way == NEAREST:
         return _across_faces(exact)
     tables = sides(exact)

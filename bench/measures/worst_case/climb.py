@@ -38,7 +38,7 @@ class Starts:
         return self[np.argsort(-self.chords, kind="stable")[:count]]
 
     def filled(self, count: int) -> Starts:
-        """`count` of them, each as often as it takes: climbs differ by where in the block they start."""
+        """Return `count` starts, repeated as needed: climbs differ by the place in the block where they start."""
         return self[np.arange(count) % len(self.chords)]
 
     def __getitem__(self, which: slice | np.ndarray) -> Starts:
@@ -96,7 +96,7 @@ def _climb(ground: Ground, starts: Starts, first: Any) -> Starts:
 
 
 def _climb_from(ground: Ground, starts: Starts, sizes: np.ndarray) -> Starts:
-    """As many starts as are climbed from at once, moved by steps of these sizes to begin with."""
+    """Return starts after a climb in steps that begin with these sizes; at most `ground.lanes` starts."""
     chords, places = starts.chords, starts.places
     errors, lane = ground.errors(chords), np.arange(len(chords))
     for step in range(STEPS):

@@ -1,7 +1,7 @@
-"""A codec in float64, which stands for the exact map: what the searches for worst cases and odd codes ask of it.
+"""A codec in float64, which stands for the exact map, for the searches for worst cases and odd codes.
 
-Everything is done in blocks of one size, so that it is compiled once for an encoding: functions from codes to normals,
-from normals to codes, and from normals to how far off they come back. Scales of fixed-point formats are arguments.
+All functions work in blocks of one size, so that they are compiled once for an encoding: from codes to normals, from
+normals to codes, and from normals to the errors of their round trips. Scales of fixed-point formats are arguments.
 """
 
 from __future__ import annotations
@@ -175,16 +175,16 @@ class ExactCodec:
         return self._in_blocks(self._programs.normals, code)
 
     def stored(self, code: np.ndarray) -> np.ndarray:
-        """Numbers as they come back from the storage."""
+        """Return numbers after a round trip through the storage."""
         return self._in_blocks(self._programs.stored, code)
 
     def codes(self, n: np.ndarray) -> np.ndarray:
-        """The codes of unit normals as they are stored."""
+        """Return the stored codes of unit normals."""
         return self._in_blocks(self._programs.codes, n)
 
     def chords(self, n: np.ndarray) -> np.ndarray:
-        """The squared distance of unit normals from what they are decoded as, at length 1: 4 where that is no
-        direction, -1 for normals outside the domain."""
+        """Return the squared distances of unit normals from their decoded directions, at length 1: 4 if the decoded
+        vector has no direction, -1 for normals outside the domain."""
         return self._in_blocks(self._programs.chords, n)
 
     def _in_blocks(self, function, planes: np.ndarray) -> np.ndarray:

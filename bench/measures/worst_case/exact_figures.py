@@ -71,7 +71,7 @@ def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T
 def held(codec: Codec, domain: str | None, s: Statistics, sup_deg: float | None) -> Row:
     """Return the bounds, and how much of each is reached; the maximum is compared by the supremum if it is known.
 
-    If float32 normals cannot tell errors of that size, the shares and the check against the bounds are left out.
+    If float32 normals cannot resolve errors of that size, the shares and the check against the bounds are left out.
     """
     if not domain:
         return {}

@@ -1,9 +1,9 @@
-"""The largest rotation that a tangent frame codec can make, in float64, and the tangent frame that it turns so far.
+"""The largest rotation that a tangent frame codec makes, in float64, and the tangent frame that it rotates so far.
 
-Tangent frames are unit quaternions with a hand. The worst of many that are spread evenly are climbed from, in ever
-smaller steps; a last climb starts from the best alone, with steps of every size. What is found is a rotation that some
-tangent frame really suffers, so it is never above the supremum; `moved_deg` says by how much the last round of climbing
-still raised it.
+Tangent frames are unit quaternions with a hand. Many are spread evenly, and climbs start from the worst of them, in
+ever smaller steps; a last climb starts from the best result alone, with steps of every size. The result is a rotation
+that some tangent frame really undergoes, so it is never above the supremum; `moved_deg` says by how much the last
+round of climbing still raised it.
 
 A rotation by theta moves the three axes by 8 sin^2(theta / 2) in all, the sum of their squared distances.
 """
@@ -41,7 +41,7 @@ class WorstFrame:
 
     Attributes:
         angle_deg: the supremum as it was found.
-        quaternion: x, y, z, w of the tangent frame that is turned so far.
+        quaternion: x, y, z, w of the tangent frame with this rotation.
         hand: its handedness, 1 or -1.
         moved_deg: how much the last round of climbing still raised it.
     """

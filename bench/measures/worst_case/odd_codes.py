@@ -98,7 +98,7 @@ class _Numbers:
 
 
 def _made_within(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray], index: np.ndarray) -> np.ndarray:
-    """Return those of some codes that are made by normals at the middle, the edges and the corners of their cells."""
+    """Return the codes among `index` that normals at the middle, the edges and the corners of their cells make."""
     is_made = np.zeros(len(index), bool)
     for where in _stencil(exact):
         left = np.flatnonzero(~is_made)

@@ -23,5 +23,5 @@ def supremum(codec: Codec, is_half: bool) -> Worst:
 
 
 def name_of(codec: Codec, is_half: bool) -> str:
-    """Return what a supremum is recorded by."""
+    """Return the name under which a supremum is recorded."""
     return f"{codec.name} {'hemisphere' if is_half else 'sphere'}"

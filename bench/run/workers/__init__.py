@@ -1,1 +1,1 @@
-"""Measuring in several processes, on this machine or on others: what `--on` names."""
+"""Measuring in several processes, on this machine or on others, as selected by `--on`."""

@@ -35,7 +35,7 @@ def marks_of(needs: Iterable[str]) -> frozenset[str]:
 
 
 def named(chosen: Iterable[str]) -> str:
-    """Name what marks are of."""
+    """Return the names in marks: the devices and tools that they describe."""
     return ", ".join(sorted(mark.rpartition(" ")[0] for mark in chosen))
 
 

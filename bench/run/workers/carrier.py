@@ -28,7 +28,7 @@ class Task:
     is_packed: bool = False
 
     def arguments(self) -> tuple[Order | str, frozenset[str], list[str]]:
-        """Return what `tasks.measure` is called with."""
+        """Return the arguments for `tasks.measure`."""
         order = self.order if self.is_packed else self.order.id
         return order, self.needs, [step_name(self.order.table, step.key) for step in self.steps]
 
@@ -74,10 +74,10 @@ class Carrier(Protocol):
         ...
 
     def arrivals(self) -> Sequence[tuple[Task, Answer | None]]:
-        """Wait a moment, and return tasks with their answers; None for one that is to be sent again.
+        """Wait a moment, and return tasks with their answers; None for a task that must be sent again.
 
         Raises:
-            UsageError, MissingError: what measuring raised; or the workers, or their scheduler, do not stay.
+            UsageError, MissingError: a measurement failed, or the workers or their scheduler were lost.
         """
         ...
 

@@ -22,10 +22,11 @@ def chunk_size(waiting: int, workers: int) -> int:
 
 
 def tasks_of(ask: Asked, steps: Sequence[Step], workers: int) -> list[Task]:
-    """Group steps as they travel; those with the most needs first, as who can measure all begins with what few can.
+    """Group steps into tasks, the steps with the most needs first, so that a worker that can measure all steps begins
+    with those that few workers can measure.
 
     Raises:
-        UsageError: for values and files that cannot travel.
+        UsageError: a value or a file cannot be sent.
     """
     order, groups = order_of(ask), dict[frozenset[str], list[Step]]()
     for step in steps:

@@ -97,7 +97,7 @@ class LocalWorkers:
 
 
 def _begin(send: Send) -> None:
-    """Do what takes seconds before anybody waits for it, and say that it is done."""
+    """Do what takes seconds before anybody waits for it, and report that it is done."""
     from .about import marks
 
     keep_what_is_freed()
@@ -106,7 +106,7 @@ def _begin(send: Send) -> None:
 
 
 def _measure(send: Send, *arguments: Any) -> None:
-    """Send what a task brings."""
+    """Measure a task, and send its answer."""
     from .tasks import measure
 
     send(measure(*arguments))

@@ -27,7 +27,7 @@ class Order:
     """The data from which a worker makes a table's steps.
 
     Attributes:
-        id: the same for the same work, whoever asks.
+        id: an identifier, the same for the same work of any user.
         table: the table's name.
         options: sets of options, each with the typed values by name.
         pictures: whether images are wanted.
@@ -99,7 +99,7 @@ def _is_below(path: Path) -> bool:
 
 
 def order_of(ask: Asked) -> Order:
-    """Pack what is asked, as it travels. Raises UsageError for values and files that cannot."""
+    """Return a request as an order that can be sent. Raises UsageError for values and files that cannot be sent."""
     packing = Packing()
     try:
         options = tuple(_packed(values, packing) for values in (ask.options, *ask.others))

@@ -1,4 +1,4 @@
-"""Steps measured by workers; what no worker measures is measured here."""
+"""Steps measured by workers; this process measures the steps that no worker measures."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ class Pool:
         self._carrier = carrier
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Found:
-        """Yield each step with its rows, as they come. In the end this process measures those that a clock is read for,
-        while nothing else is under way, and those that no worker measures.
+        """Yield each step with its rows, as they come. At the end this process measures the timed steps, while
+        nothing else is under way, and the steps that no worker measures.
 
         Raises:
-            UsageError, MissingError: what measuring raised; or the workers, or their scheduler, do not stay.
+            UsageError, MissingError: a measurement failed, or the workers or their scheduler were lost.
         """
         own, others = _own_and_others(ask, steps)
         refused = dict[str, list[Step]]()
@@ -48,7 +48,7 @@ class Pool:
             yield from HERE.measure(ask, own, tick)
 
     def _measured(self, ask: Asked, tasks: Sequence[Task], refused: dict[str, list[Step]]) -> Found:
-        """Yield what workers measure, or were lost with; add the steps that they refuse, by the reason."""
+        """Yield each measured or lost step with its rows; add refused steps to `refused`, by reason."""
         again: list[Task] = []
         for task, answer in self._answers(tasks):
             for line in answer.told:
@@ -69,7 +69,7 @@ class Pool:
             yield from self._measured(ask, again, refused)
 
     def _answers(self, tasks: Sequence[Task]) -> Iterator[tuple[Task, Answer]]:
-        """Yield each task with its answer, as they come; refuse what no worker can measure for a minute."""
+        """Yield each task with its answer, as they come; refuse the rest if no worker is able for WAIT_S seconds."""
         under_way, waiting, able_at = dict[Task, None](), _Waiting(tasks), time.monotonic()
         while needed := {task.needs for task in under_way} | waiting.needs:
             if any(map(self._carrier.count, needed)):
@@ -94,7 +94,7 @@ class Pool:
 
 
 class _Waiting:
-    """Tasks that wait for a worker, apart by what they need."""
+    """Tasks that wait for a worker, grouped by their needs."""
 
     def __init__(self, tasks: Iterable[Task]):
         self._lines: dict[frozenset[str], deque[Task]] = {}
@@ -109,7 +109,7 @@ class _Waiting:
         return chain.from_iterable(self._lines.values())
 
     def taken(self, room: Callable[[frozenset[str]], int]) -> Iterator[Task]:
-        """Take the first tasks, as many as there is room for."""
+        """Yield the first tasks, as many as there is room for, and remove them."""
         for needs, line in self._lines.items():
             for _ in range(min(room(needs), len(line))):
                 yield line.popleft()
@@ -135,7 +135,7 @@ def _write(ask: Asked, pictures: dict[str, bytes]) -> None:
 
 
 def _lost_row(table: Table, step: Step, lost: int) -> Row:
-    """Make a row without figures: what its key says, and the reason, which is told."""
+    """Return a row without figures: the values in its key, and the reason, which is also reported."""
     why = f"{lost} workers were lost while they measured it"
     leave_out(f"{table.name}, {step.name}: {why}")
     reasons = {column.name: why for column in table.of_role(Role.REASON)}

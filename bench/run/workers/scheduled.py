@@ -1,5 +1,5 @@
-"""Workers of a dask scheduler. Dask sends each task to a worker that has its marks, and to another one if that is lost.
-It connects anew if the scheduler comes back, and encrypts as it is set up to."""
+"""Workers of a dask scheduler. Dask sends each task to a worker that has its marks, and to another if that worker is
+lost. Dask reconnects if the scheduler comes back, and encrypts connections if it is configured to."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Scheduled:
 
 
 def _answer(future: Any) -> Answer | None:
-    """Take what a task brings; None where that is lost, as with its scheduler. Raises what measuring raised."""
+    """Return a task's answer; None if it was lost, for example with its scheduler. Raises the errors of tasks."""
     if future.status == "error":
         error = future.exception(timeout=ANSWER_S)
         if isinstance(error, KilledWorker):

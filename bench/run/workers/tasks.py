@@ -27,7 +27,7 @@ TOLD = "normalbench: "
 
 @dataclass(frozen=True)
 class Laid:
-    """An order on this worker: its folder, what it asks, and its steps by name."""
+    """An order on this worker: its folder, its request, and its steps by name."""
 
     order: Order
     folder: Path
@@ -39,10 +39,10 @@ _laid: dict[str, Laid] = {}
 
 
 def measure(order: Order | str, needs: Set[str], wanted: Sequence[str]) -> Answer:
-    """Measure steps of an order.
+    """Measure steps of an order, and return the answer.
 
     Args:
-        order: itself, or the id of one that was sent before.
+        order: the order, or the id of an order that was sent before.
         needs: the marks that this worker has to have.
         wanted: the names of steps.
     """
@@ -114,7 +114,7 @@ def _laid_of(order: Order) -> Laid:
 
 @contextlib.contextmanager
 def _in_folder(folder: Path) -> Iterator[None]:
-    """Read the user's words as they were typed: in the folder that stands for the user's."""
+    """Run a block in the folder that stands for the user's, so that the user's words are read as they were typed."""
     before = Path.cwd()
     os.chdir(folder / "typed")
     try:

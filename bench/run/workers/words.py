@@ -15,10 +15,10 @@ _ADDRESS = re.compile(r"(?:tcp|tls)://(?:[\w.-]+|\[[0-9a-fA-F:]+\]):(?P<port>\d{
 
 
 def place_named(word: str) -> int | str:
-    """Read a word of `--on`: so many processes of this machine, or a scheduler's address.
+    """Return the number of processes on this machine, or the address of a scheduler, that a word of `--on` names.
 
     Raises:
-        UsageError: it stands for nothing.
+        UsageError: the word names neither.
     """
     if match := _LOCAL.fullmatch(word.strip()):
         try:

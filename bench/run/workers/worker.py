@@ -1,6 +1,6 @@
-"""A worker: joins a scheduler of dask, and measures what it is sent, one task at a time in the main thread.
+"""A worker, which joins a dask scheduler and measures the tasks that it receives, one by one in the main thread.
 
-Where the scheduler goes away, the worker waits for it to come back. What it compiled stays.
+If the scheduler goes away, the worker waits for it to come back, for up to a minute. What it has compiled is kept.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ Job = tuple["Future[Any]", Callable[..., Any], tuple[Any, ...], dict[str, Any]]
 
 
 class MainThread(Executor):
-    """Runs what it is given in the thread that calls `serve`: a GL context belongs to one thread for good, and dask
-    makes new ones."""
+    """An executor that runs jobs in the thread that calls `serve`, because a GL context stays with one thread and
+    dask starts new threads."""
 
     def __init__(self) -> None:
         self._jobs: queue.SimpleQueue[Job | None] = queue.SimpleQueue()
@@ -47,7 +47,7 @@ class MainThread(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Nothing: the next connection goes on with the same thread."""
+        """Do nothing: the next connection uses the same thread."""
 
     def serve(self) -> None:
         """Run jobs until `end`."""
@@ -67,7 +67,7 @@ class MainThread(Executor):
                 return self._jobs.get(timeout=LOOKS_S)
 
     def end(self) -> None:
-        """Take no further jobs."""
+        """Make `serve` return after the jobs that are already queued."""
         self._jobs.put(None)
 
 
@@ -125,7 +125,7 @@ class Connection(threading.Thread):
 
 
 def why(error: BaseException) -> str:
-    """Say why a scheduler could not be reached."""
+    """Return why a scheduler could not be reached."""
     nobody = "" if isinstance(error, MISCONFIGURED) else "no scheduler responded; start one there with: dask scheduler"
     return ": ".join(filter(None, (nobody, str(error))))
 
@@ -163,7 +163,7 @@ def worker_command(address: str) -> int:
 
 
 def quiet() -> None:
-    """Have dask say nothing of lost connections, versions and large tasks."""
+    """Silence dask's messages, such as warnings about lost connections, versions and large tasks."""
     # Its import sets levels of its own.
     import distributed  # noqa: F401
 

@@ -116,13 +116,13 @@ class Channel:
 
     @property
     def float_words(self) -> str:
-        """Exponent and mantissa, and whether there is a sign, as `float_bits` is given them."""
+        """The arguments of `float_bits`: the bits of exponent and mantissa, and whether the float has a sign."""
         assert self.form
         return f"{self.form.exponent}, {self.form.mantissa}, {'true' if self.form.is_signed else 'false'}"
 
     @property
     def share_words(self) -> str:
-        """The largest integer and whether there is a sign, as `fixed_code` is given them."""
+        """The arguments of `fixed_code`: the largest integer, and whether the number has a sign."""
         return f"{self.scale}, {'true' if self.share == 'signed' else 'false'}"
 
     def rounded(self, x: str) -> str:
@@ -216,18 +216,18 @@ class Channels:
             for i, rounding in enumerate(self.numbers.roundings)
         ]
 
-    def _first_bit(self, at: int) -> int:
+    def _first_bit(self, index: int) -> int:
         bits = self.numbers.storage.bits
-        before = self.numbers.skipped + sum(bits[:at])
-        return self.part * self.parts - before - bits[at] if self.part else before
+        before = self.numbers.skipped + sum(bits[:index])
+        return self.part * self.parts - before - bits[index] if self.part else before
 
-    def _pieces(self, at: int) -> tuple[Piece, ...]:
+    def _pieces(self, index: int) -> tuple[Piece, ...]:
         """Return the bits of a number, by the channels that hold them."""
         if not self.part:
             return ()
         bits = self.numbers.storage.bits
-        start = self.numbers.skipped + sum(bits[:at])
-        end = start + bits[at]
+        start = self.numbers.skipped + sum(bits[:index])
+        end = start + bits[index]
         pieces = []
         for part in range(start // self.part, -(-end // self.part)):
             low, high = max(start, part * self.part), min(end, (part + 1) * self.part)
@@ -338,9 +338,9 @@ class Channels:
                 words[:, place // WORD] |= bits << np.uint32(place % WORD + piece.left)
         return words
 
-    def bits_in(self, words: np.ndarray, at: int) -> np.ndarray:
+    def bits_in(self, words: np.ndarray, index: int) -> np.ndarray:
         """The bits of a number in texels, uint32 of shape (count,): `texel_words` the other way."""
-        channel = self.channels[at]
+        channel = self.channels[index]
         if not channel.pieces:
             word = words[:, channel.first // WORD]
             return word >> np.uint32(channel.first % WORD) & np.uint32((1 << channel.bits) - 1)
@@ -359,7 +359,7 @@ class Channels:
 
 
 def mask_text(bits: int) -> str:
-    """An unsigned integer with so many of the lowest bits set."""
+    """Return the text of an unsigned integer whose lowest `bits` bits are set."""
     return f"{(1 << bits) - 1}u"
 
 

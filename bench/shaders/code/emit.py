@@ -31,14 +31,14 @@ ROOT = Path(__file__).with_name("codec.glsl")
 
 @dataclass(frozen=True)
 class Language:
-    """A language that codes are written in; the module of its name in `run` runs its files.
+    """A language that functions are written in. The module of the same name in `run`, if any, runs its files.
 
     Attributes:
-        title: what a reader calls it.
-        ending: of its files.
-        writer: what writes it from a tree.
-        advice: what a file's reader must see to.
-        has_preprocessor: whether a file can be included twice, and is to be taken once.
+        title: its name for readers.
+        ending: the extension of its files.
+        writer: the class that writes it from a tree.
+        advice: a line for users of a file, on versions and compiler options.
+        has_preprocessor: whether it has a preprocessor, so that files need include guards.
     """
 
     title: str
@@ -76,12 +76,12 @@ def _template() -> Template:
 
 @lru_cache(1)
 def program_of(codec: Any, prefix: str) -> Program:
-    """The six functions of a codec of any kind as a tree, and what they need; the last one is kept, as a codec is
-    written in all languages one after the other.
+    """Return the six functions of a codec of any kind as a tree, with all that they need. The last result is cached,
+    because a codec is written in all languages one after the other.
 
     Raises:
-        ShaderError: its GLSL cannot be read, or is of half arithmetic or a chain.
-        TranslationError: its GLSL has what cannot be translated.
+        ShaderError: its GLSL cannot be read, or it uses half arithmetic or is a chain.
+        TranslationError: its GLSL contains something that cannot be translated.
     """
     encoding, kind = codec.encoding, kind_of(codec)
     defines = kind.defines(codec)

@@ -30,10 +30,10 @@ class Code:
     """A codec's code in one language, without its head.
 
     Attributes:
-        codec, language: what it is of; `language` is a key of LANGUAGES.
-        prefix: what its names begin with.
+        codec, language: the codec and the language, a key of LANGUAGES.
+        prefix: the beginning of its names.
         body: its text.
-        interface: how its functions are called.
+        interface: the interface of its functions.
     """
 
     codec: Any
@@ -53,8 +53,9 @@ class Code:
 
     @property
     def guard(self) -> str:
-        """The include guard for a language with a preprocessor: a prefix that somebody chose, else the codec with its
-        storage. Codecs of one kind usually have the same names; if two are included, a compiler should say so."""
+        """The include guard for a language with a preprocessor: the prefix unless it is the default, else the codec
+        with its storage. Codecs of one kind usually have the same names; if two are included, a compiler should
+        report it."""
         return stem_of(self.codec) if self.prefix == usual_prefix(self.codec) else self.prefix
 
     def files(self, head: Iterable[str]) -> dict[str, bytes]:
@@ -64,8 +65,8 @@ class Code:
 
 
 def commented(body: str, language: str, guard: str, head: Iterable[str]) -> str:
-    """The text of a file under a comment of these paragraphs; one that is indented stays as it is. Languages with a
-    preprocessor take the text once, however often it is included: `guard` says what it is."""
+    """Return the text of a file under a comment of these paragraphs; indented paragraphs are not wrapped. If the
+    language has a preprocessor, the text gets an include guard that is named after `guard`."""
     comment = "".join(in_a_comment(f"// {line}").rstrip() + "\n" for paragraph in head for line in _lines(paragraph))
     if not LANGUAGES[language].has_preprocessor:
         return f"{comment}\n{body}"
@@ -73,10 +74,10 @@ def commented(body: str, language: str, guard: str, head: Iterable[str]) -> str:
     return f"{comment}\n#ifndef {name}\n#define {name}\n\n{body}\n#endif\n"
 
 
-def _lines(said: str) -> list[str]:
-    if said.startswith("  "):
-        return [said]
-    return textwrap.wrap(said, WIDTH - MARK, subsequent_indent="  ", break_on_hyphens=False) or [""]
+def _lines(paragraph: str) -> list[str]:
+    if paragraph.startswith("  "):
+        return [paragraph]
+    return textwrap.wrap(paragraph, WIDTH - MARK, subsequent_indent="  ", break_on_hyphens=False) or [""]
 
 
 def file_name(codec: Any, language: str) -> str:
@@ -101,16 +102,16 @@ def stem_of(codec: Any) -> str:
 
 
 def code_of(codec: Any, language: str, prefix: str = "") -> Code:
-    """A codec's code in a language.
+    """Return a codec's code in a language.
 
     Args:
-        codec: one whose storage holds what its encoding makes.
+        codec: a codec whose storage holds the code of its encoding.
         language: a key of LANGUAGES.
-        prefix: what every name begins with; the kind where it is empty.
+        prefix: the beginning of every name; if empty, the default of the codec's kind.
 
     Raises:
-        UsageError: the encoding has what cannot be translated.
-        ShaderError: its GLSL cannot be read, or is of half arithmetic or a chain.
+        UsageError: the codec can only be measured, or its encoding contains something that cannot be translated.
+        ShaderError: its GLSL cannot be read, or it uses half arithmetic or is a chain.
     """
     _check_written(codec)
     prefix = prefix or usual_prefix(codec)
@@ -125,13 +126,13 @@ def code_of(codec: Any, language: str, prefix: str = "") -> Code:
     return Code(codec, language, prefix, folded(body), interface)
 
 
-def _untranslatable_reason(codec: Any, said: str) -> str:
+def _untranslatable_reason(codec: Any, reason: str) -> str:
     """Why a file is not translated; the place is in the user's file where that is GLSL."""
     encoding = codec.encoding
     source = getattr(encoding, "source", None)
     if source is None or not UserFile(str(source)).is_translated:
-        return said if re.match(r"\S+:\d+: ", said) else f"{encoding.glsl}: {said}"
-    what = re.sub(r"^\S*?:?\d+:(\d+:)? ", "", said).replace("is not a type that is known here", "parameters or types")
+        return reason if re.match(r"\S+:\d+: ", reason) else f"{encoding.glsl}: {reason}"
+    what = re.sub(r"^\S*?:?\d+:(\d+:)? ", "", reason).replace("is not a type that is known here", "parameters or types")
     return f"{source}: it can be measured, but not written in other languages: {what}"
 
 

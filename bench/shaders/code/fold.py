@@ -59,5 +59,5 @@ def _best_break(line: str, depth: int) -> int:
         open_at = {place: depth + _opened(line[:place]) for place in places}
         inside = [place for place in places if open_at[place] >= (pattern is COMMA)]
         if inside:
-            return min(inside, key=lambda at: (open_at[at], -at))
+            return min(inside, key=lambda end: (open_at[end], -end))
     return 0

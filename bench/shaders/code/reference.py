@@ -1,4 +1,4 @@
-"""The required results of a codec's functions: those of its JAX twin, or of OpenGL for users' encodings without one."""
+"""The required results of a codec's functions: from its JAX twin, or from OpenGL if a user's encoding has no twin."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ VECTORS = {2: Vec2, 3: Vec3, 4: Vec4}
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Values of a codec and what the catalogue makes of them.
+    """Values of a codec and the catalogue's results for them.
 
     Attributes:
-        n, view: float32 of shape (count, 3 or 4): see `code_kind.py`; of normals unit normals and positions.
+        n, view: float32 of shape (count, 3 or 4): see `code_kind.py`; for normals, unit normals and positions.
         stored: the codes as they come back from the storage, (count, size).
         integers: the stored bits of each number, uint32 of shape (count, components).
         words: the texels, uint32 of shape (count, words).
-        texels: what a shader reads from the render target, float32 of shape (count, 4).
-        decoded: (count, 3) of normals.
+        texels: the values that a shader reads from the render target, float32 of shape (count, 4).
+        decoded: the decoded values; for normals, (count, 3).
     """
 
     n: np.ndarray
@@ -84,7 +84,7 @@ def _step_by_step(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _stored_numbers(channels: Channels, integers: np.ndarray, code: np.ndarray) -> np.ndarray:
-    """The numbers that bits stand for, each product and sum rounded: a compiler may round the two of them once."""
+    """Return the numbers that bits stand for. Each product and sum is rounded; compilers may round the two once."""
     stored = code.copy()
     for index, channel in enumerate(channels.channels):
         texel = values_of(channel, integers[:, index])
@@ -129,7 +129,7 @@ def _texels(channels: Channels, integers: np.ndarray, words: np.ndarray) -> np.n
 
 
 def values_of(channel: Channel, integers: np.ndarray) -> np.ndarray:
-    """The texel's numbers that bits stand for, float32 of shape (count,)."""
+    """Return the numbers that a texel's bits stand for, float32 of shape (count,)."""
     if channel.form:
         return floats_of(integers, channel.form)
     if channel.share:
@@ -139,7 +139,7 @@ def values_of(channel: Channel, integers: np.ndarray) -> np.ndarray:
 
 
 def signed(channel: Channel, integers: np.ndarray) -> np.ndarray:
-    """Bits as integers in the order of the numbers that they stand for, int64: how many steps two are apart."""
+    """Return bits as integers in the order of their numbers, int64: the difference of two is a number of steps."""
     whole = integers.astype(np.int64)
     has_sign = channel.form.is_signed if channel.form else channel.kind == "snorm" and not channel.is_offset
     if not has_sign:

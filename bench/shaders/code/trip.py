@@ -22,11 +22,11 @@ Trip = Callable[[np.ndarray, np.ndarray], Ran]
 
 @contextmanager
 def by_wgsl(codec: Codec) -> Iterator[Trip]:
-    """A codec's WGSL on the Vulkan device, compiled once.
+    """Yield a function that runs a codec's WGSL, compiled once, on the Vulkan device.
 
     Raises:
         MissingError: wgpu or a Vulkan driver is missing; what to install.
-        ShaderError: half arithmetic or a chain, or the device refuses the file; one line.
+        ShaderError: the codec uses half arithmetic or is a chain, or the device refuses the file; one line.
     """
     code = _wgsl_code(codec)
     with folder() as place:

@@ -1,4 +1,4 @@
-"""Whether a codec's code gives what the catalogue gives: the file is read again, run, and compared."""
+"""A comparison of a codec's code with the catalogue: the file is read again and run, and the results are compared."""
 
 from __future__ import annotations
 
@@ -134,10 +134,10 @@ def interface_of(codec: Any, prefix: str, program: Program) -> Interface:
 
 
 def agreement(codec: Any, language: str, path: Path, interface: Interface) -> Agreement:
-    """Run a file and compare it.
+    """Run a file and return its agreement with the catalogue.
 
     Raises:
-        MissingError: what runs the language is not installed.
+        MissingError: the tool that runs the language is not installed.
         ShaderError: the file does not compile or run.
     """
     expected = reference(codec)

@@ -21,7 +21,7 @@ from .compiler import Compiler, DriverError, MissingDriverError, loaded_files
 
 
 def own_output() -> Any:
-    """Standard output for the results alone: what the driver prints goes to standard error."""
+    """Return standard output, reserved for results: the driver's own output goes to standard error."""
     own = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     return own
@@ -38,11 +38,11 @@ def compiled(driver: Any, job: dict[str, Any], planes: int) -> dict[str, Any]:
 
 
 def main(compiler: Callable[[], Any] = Compiler, fingerprints: Callable[[], dict[str, str]] = loaded_files) -> int:
-    """Compile every job that standard input holds.
+    """Compile every job on standard input.
 
     Args:
-        compiler: makes a driver, with what `Compiler` has.
-        fingerprints: which files the driver consists of, as `loaded_files`.
+        compiler: makes a driver with the interface of `Compiler`.
+        fingerprints: returns the driver's files, as `loaded_files` does.
     """
     given = json.load(sys.stdin)
     out = own_output()

@@ -1,4 +1,4 @@
-"""A Vulkan driver of Mesa, with what its compiler reports about a shader.
+"""A Vulkan driver of Mesa, and its compiler's report on a shader.
 
 No GPU is needed: RADV offers a null device for a family named by RADV_FORCE_FAMILY, and Intel's drivers take the
 null device of null_i915.c. This runs in a child process (`child`), because drivers crash.
@@ -78,7 +78,7 @@ def _instance(vk: Any) -> Any:
 
 
 def uses_halves(code: bytes) -> bool:
-    """Whether a SPIR-V module computes in 16 bits: its capabilities, which come first, say so."""
+    """Whether a SPIR-V module computes in 16 bits, according to its capabilities, which come first."""
     words = struct.unpack(f"<{len(code) // 4}I", code)
     index = 5
     while index < len(words) and words[index] & 0xFFFF == OP_CAPABILITY:
@@ -89,11 +89,11 @@ def uses_halves(code: bytes) -> bool:
 
 
 class Compiler:
-    """A logical device that compiles, and reports its result.
+    """A logical device that compiles shaders and reports the results.
 
     Attributes:
         device: the driver's name for it.
-        version: Mesa's.
+        version: Mesa's version.
 
     Raises:
         MissingDriverError: there is no Vulkan loader, or no driver.
@@ -222,9 +222,9 @@ class Compiler:
         return vk.vkCreateComputePipelines(self._device, None, 1, [info], None)[0]
 
     def _graphics_pipeline(self, code: bytes, vertex: bytes) -> Any:
-        """A pipeline into float targets, which numbers reach as they are: a conversion is the storage's own cost.
+        """Return a pipeline with float targets, which convert no numbers: a conversion counts as the storage's cost.
 
-        Each part has a name for as long as the call lasts: the bindings do not hold what a structure points to.
+        Each part has a name until the call ends, because the bindings do not keep the parts of a structure alive.
         """
         vk = self._vk
         stages = [self._shader_stage(vk.VK_SHADER_STAGE_VERTEX_BIT, vertex)]
@@ -287,7 +287,8 @@ class Compiler:
             yield str(statistic.name), getattr(statistic.value, fields[statistic.format])
 
     def _disassembly(self, executable: Any) -> str:
-        """Asked of the driver itself: the bindings have no way to hand over where the text shall go."""
+        """Return the disassembly; empty if the driver gives none. The driver is called directly, because the bindings
+        cannot pass the buffers for the text."""
         vk, ffi = self._vk, self._vk.ffi
         name = "vkGetPipelineExecutableInternalRepresentationsKHR"
         ask = ffi.cast(f"PFN_{name}", vk.lib.vkGetDeviceProcAddr(self._device, name.encode()))

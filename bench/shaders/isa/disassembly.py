@@ -103,7 +103,7 @@ def packed(assembly: str) -> int:
 
 
 def loops(assembly: str) -> list[range]:
-    """The instructions of each loop, by their places: from the label that a jump goes back to, to that jump."""
+    """Return the instruction indices of each loop: from the label that a jump goes back to, to that jump."""
     begins: dict[str, int] = {}
     spans: list[range] = []
     place = 0
@@ -120,7 +120,7 @@ def loops(assembly: str) -> list[range]:
 
 
 def jumps(assembly: str) -> tuple[int, int]:
-    """(branches, loops): conditional jumps ahead, over what not every wave runs; and jumps back."""
+    """Return (branches, loops): conditional jumps ahead, over code that not every wave runs; and jumps back."""
     ahead = back = 0
     for is_conditional, is_back in _jumps(assembly):
         back += is_back

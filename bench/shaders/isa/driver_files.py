@@ -1,4 +1,4 @@
-"""The places of Mesa's drivers on this machine, and the environment in which they compile as they do for everybody."""
+"""The places of Mesa's drivers on this machine, and an environment in which they compile with default settings."""
 
 from __future__ import annotations
 

@@ -34,7 +34,8 @@ _FLOATS = {"HF", "F", "DF"}
 
 
 class Instruction(NamedTuple):
-    """One line of a listing: its name, its function ("math rsq") or what it waits for, its lanes and operands."""
+    """An instruction of a listing: whether it has a predicate, its name, its second word ("rsq" in "math rsq"), its
+    lanes and its operands."""
 
     is_predicated: bool
     name: str
@@ -56,28 +57,28 @@ def names(assembly: str) -> list[str]:
 
 
 @cache
-def kind(one: Instruction) -> str:
+def kind(instruction: Instruction) -> str:
     """The kind of an instruction. Raises ValueError for one that is of none."""
-    if one.name in _SENDS:
+    if instruction.name in _SENDS:
         return "memory"
-    if one.name in _CONTROL_FLOW:
+    if instruction.name in _CONTROL_FLOW:
         return "control_flow"
-    if one.name in _WAITING:
+    if instruction.name in _WAITING:
         return "waiting"
-    if one.name == "math":
+    if instruction.name == "math":
         # The quotient and the rest of integers are not transcendental, but the same unit computes them.
         return "transcendental"
-    if one.name not in _ALU | _CONVERSIONS:
-        raise ValueError(f"unknown instruction {one.name}")
-    if one.lanes == 1:
+    if instruction.name not in _ALU | _CONVERSIONS:
+        raise ValueError(f"unknown instruction {instruction.name}")
+    if instruction.lanes == 1:
         return "scalar"
-    return "conversion" if one.name in _CONVERSIONS or _is_conversion(one) else "other_alu"
+    return "conversion" if instruction.name in _CONVERSIONS or _is_conversion(instruction) else "other_alu"
 
 
-def _is_conversion(one: Instruction) -> bool:
+def _is_conversion(instruction: Instruction) -> bool:
     """Whether it moves between floats and integers, or between floats of two sizes."""
-    types = _TYPE.findall(one.operands.split("{")[0])
-    if one.name != "mov" or len(types) < 2:
+    types = _TYPE.findall(instruction.operands.split("{")[0])
+    if instruction.name != "mov" or len(types) < 2:
         return False
     return types[0] != types[1] and bool(_FLOATS & {*types[:2]})
 
@@ -106,7 +107,7 @@ def packed(_: str) -> None:
 
 def rates(family: str) -> Mapping[str, int]:
     """Return the issue slots of an instruction of each kind, by Mesa's model of the units (brw_ir_performance.cpp):
-    from generation 8 on, 8 lanes occupy the unit of `math` for 4 cycles and the others for 2; before, both for 2."""
+    from generation 8 on, 8 lanes keep the `math` unit busy for 4 cycles and other units for 2; before, all for 2."""
     return {**dict.fromkeys(KINDS, 1), "waiting": 0, "transcendental": 1 if family == "hsw" else 2}
 
 
@@ -116,7 +117,7 @@ def kinds_in_order(assembly: str, _: str) -> list[str]:
 
 
 def loops(assembly: str) -> list[range]:
-    """The instructions of each loop, by their places: from the label that a `while` goes back to, to that `while`."""
+    """Return the instruction indices of each loop: from the label that a `while` goes back to, to that `while`."""
     begins: dict[str, int] = {}
     spans: list[range] = []
     place = 0

@@ -48,12 +48,12 @@ class Job:
 
 @dataclass(frozen=True)
 class Kernel:
-    """A shader as it is compiled for one number of lanes.
+    """A shader compiled for one number of lanes.
 
     Attributes:
-        simd_width: the lanes that an instruction works on.
-        statistics: the driver's, by its own names.
-        assembly: the disassembly, empty where the driver has none.
+        simd_width: the number of lanes that an instruction works on.
+        statistics: the driver's statistics, by its own names.
+        assembly: the disassembly; empty if the driver gives none.
     """
 
     simd_width: int
@@ -123,7 +123,7 @@ def missing(library: str = RADV) -> str:
 
 
 def _null_device(library: str) -> None:
-    """Builds what a driver is told of a GPU that is not there, where it needs it. Raises NullDeviceError."""
+    """Build the null device, except for RADV, which has its own. Raises NullDeviceError."""
     if library != RADV:
         null_device.library()
 
@@ -156,7 +156,8 @@ def driver_versions() -> dict[str, str]:
 
 
 def _driver_version(library: str) -> str:
-    """A driver as it names itself for its first family, with Mesa's version; or what is missing, in one line."""
+    """Return a driver's version, and the device name that Mesa's drivers report for their first family; or the reason
+    why the driver cannot compile, in one line."""
     if reason := missing(library):
         return reason
     first = next(name for name, family in FAMILIES.items() if family.library == library)
@@ -233,7 +234,7 @@ def _as_compiled(value: dict[str, Any] | None) -> Compiled | None:
 
 
 def _is_kernel(value: Any) -> bool:
-    """Whether that is what a child says of one kernel."""
+    """Whether a value has the form of a child's result for one kernel."""
     if not isinstance(value, dict) or set(value) != {"simd_width", "statistics", "assembly"}:
         return False
     width, numbers, assembly = value["simd_width"], value["statistics"], value["assembly"]

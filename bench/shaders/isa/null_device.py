@@ -1,6 +1,7 @@
-"""An Intel GPU that is not there: null_i915.c, built once into the user's cache folder.
+"""A stand-in for an Intel GPU: null_i915.c, built once into the user's cache folder.
 
-The library's name there says what it was built of and what it holds: another source, or a damaged file, is built again.
+The library's name contains hashes of its sources and of its content. It is built again if a source changes or the
+file is damaged.
 """
 
 from __future__ import annotations
@@ -30,20 +31,20 @@ SAID = "NORMALBENCH_NULL_I915"
 class NullDeviceError(Exception):
     """The null device cannot be built; one line. `is_missing` is true if something must be installed."""
 
-    def __init__(self, said: str, is_missing: bool = False):
-        super().__init__(said)
+    def __init__(self, message: str, is_missing: bool = False):
+        super().__init__(message)
         self.is_missing = is_missing
 
 
 def library() -> Path:
-    """The shared library that stands for a GPU. Raises NullDeviceError."""
+    """Return the shared library that stands in for a GPU. Raises NullDeviceError."""
     folder = _library_folder()
     stem = f"{SOURCE.stem}-{kept.key_of(SOURCE.read_bytes(), SHARED.read_bytes(), platform.machine())[:16]}"
     return _kept_library(folder, stem) or _built_library(folder, stem)
 
 
 def _kept_library(folder: Path, stem: str) -> Path | None:
-    """Return the library that was built before; None if others own the folder, which the build reports."""
+    """Return a library that was built before; None if it must be built. The build reports folders of other owners."""
     try:
         paths = sorted(folder.glob(f"{stem}-*.so"))
     except OSError:

@@ -1,4 +1,4 @@
-"""Processes of `isa_child`: what they are given, what they say line by line, and why they ended."""
+"""Child processes that compile: their input, their output line by line, and the reasons why they ended."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ Lines = Callable[[], dict[str, Any] | None]
 
 @dataclass(frozen=True)
 class Driver:
-    """The driver's description for the loader, and the event that tells its children that nobody waits any more.
+    """A driver: its path for the loader, and the event that tells its children to stop.
 
-    `command` starts a child if it is not one of CHILD.
+    `command` starts a child; if it is empty, CHILD does.
     """
 
     path: Path
@@ -41,10 +41,11 @@ class Driver:
 def child(
     variables: Mapping[str, str], driver: Driver, given: dict[str, Any]
 ) -> Iterator[tuple[Lines, Callable[[], str]]]:
-    """A child over what it is given, for the GPU that the variables name: a function that gives its next line, None at
-    its end or when it has been silent for too long, and one that says why it ended. Killed when the block ends.
+    """Yield two functions for a child process that reads `given`, for the GPU that the variables name. The first
+    returns the child's next line, or None at its end or after too long a silence; the second returns why the child
+    ended. The child is killed when the block ends.
 
-    What it reads and complains into are files without names: nothing is left of them, however this process ends.
+    Its input and its error output are unnamed files, so nothing is left of them, however this process ends.
     """
     with tempfile.TemporaryFile("w+", encoding="utf-8") as work, tempfile.TemporaryFile() as errors:
         json.dump(given, work)
@@ -77,7 +78,7 @@ class _Heard:
         self._lines, self._stop, self._is_silent = lines, stop, False
 
     def following(self) -> dict[str, Any] | None:
-        """Return the next line; None at the end, when nothing has come for SECONDS, or when nobody waits any more."""
+        """Return the next line; None at the end, after SECONDS of silence, or once the children are told to stop."""
         until = time.monotonic() + SECONDS
         while not self._stop.is_set() and time.monotonic() < until:
             try:

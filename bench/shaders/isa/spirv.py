@@ -24,9 +24,9 @@ UNROLL, DONT_UNROLL = 1, 2
 
 @dataclass(frozen=True)
 class Module:
-    """A shader as SPIR-V, and how many instructions its functions have once optimised.
+    """A shader as SPIR-V, and the number of instructions of its optimised functions.
 
-    Those are None without spirv-opt, and where a loop is left, which would count once however often it runs.
+    The number is None without spirv-opt, or if a loop remains, which would count once however often it runs.
     """
 
     binary: bytes
@@ -53,9 +53,9 @@ class ToolError(ShaderError):
     """A tool that crashes or does not end, whatever it is given."""
 
 
-def title(said: str) -> str:
+def title(output: str) -> str:
     """The name of a compiler's version, in a few words."""
-    return "glslang " + said.splitlines()[0].split(":")[-1].strip()
+    return "glslang " + output.splitlines()[0].split(":")[-1].strip()
 
 
 def titles() -> str:
@@ -64,9 +64,9 @@ def titles() -> str:
     return title(compiler()) + (f", {OPTIMISER} {_version_number(optimiser)}" if optimiser else "")
 
 
-def _version_number(said: str) -> str:
+def _version_number(output: str) -> str:
     """The first word of a version that is a number: "SPIRV-Tools v2023.1 v2022.4 ..." """
-    return next((word for word in said.split() if word.strip("v")[:1].isdigit()), said.splitlines()[0])
+    return next((word for word in output.split() if word.strip("v")[:1].isdigit()), output.splitlines()[0])
 
 
 def compiled(source: Source, stage: str, counted: bool = True) -> Module:
@@ -122,8 +122,8 @@ def _glslang_binary(source: Source, stage: str) -> bytes:
 
 
 def _optimised(binary: bytes) -> bytes | None:
-    """The module with loops of a known length unrolled, so that a polynomial counts as long as it is; None where the
-    optimiser fails, for the compilers do without it."""
+    """Return the module with loops of known length unrolled, so that all instructions of a polynomial count; None if
+    the optimiser fails, because the compilers do not need it."""
     try:
         module = tools.optimised(_asking_to_unroll(binary))
     except tools.ToolError:

@@ -1,9 +1,9 @@
-"""A file of WGSL on a Vulkan device, in a process that may end: naga panics at some files.
+"""A WGSL file on a Vulkan device, in a process that may crash: some files make naga panic.
 
     python -m normalbench.bench.shaders.languages.by_naga FOLDER
 
-given.wgsl of the folder makes made.bin of given.bin: rows of four numbers, three given and two made for each normal.
-Where that cannot be, the last line says why, and the status is not 0.
+The folder's given.wgsl computes made.bin from given.bin: rows of four numbers, three input rows and two output rows
+for each normal. If it fails, the last line says why, and the status is not 0.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ ENTRY, GROUP, ROW = "normalbench_second", 64, 16
 
 
 def main(folder: Path) -> None:
-    """Run the file of a folder on a Vulkan device, and write what it gives there."""
+    """Run the file in a folder on a Vulkan device, and write its results there."""
     import wgpu
 
     all_adapters = adapters()

@@ -1,9 +1,9 @@
-"""A module of SPIR-V by OpenGL, in a process that may end: drivers crash at some modules.
+"""A SPIR-V module on OpenGL, in a process that may crash: some modules crash drivers.
 
     python -m normalbench.bench.shaders.languages.by_spirv FOLDER
 
-made.spv of the folder, of second.hlsl, makes made.bin of given.bin: rows of four numbers, three given and two made for
-each normal. Where that cannot be, the last line says why, and the status is not 0.
+The folder's made.spv, compiled from second.hlsl, computes made.bin from given.bin: rows of four numbers, three input
+rows and two output rows for each normal. If it fails, the last line says why, and the status is not 0.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def _instructions(words: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
 
 
 def main(folder: Path) -> int:
-    """Run the module of a folder, and write what it gives there; the status that the process ends with."""
+    """Run the module in a folder, write its results there, and return the exit status of the process."""
     context = device().context
     if EXTENSION not in context.extensions:
         raise NoDeviceError(f"the OpenGL driver has no {EXTENSION}")

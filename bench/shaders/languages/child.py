@@ -1,12 +1,14 @@
-"""A user's file translated, in a process that may hang or die.
+"""The translation of a user's file, in a process that may hang or die.
 
     python -m normalbench.bench.shaders.languages.child FOLDER WORD LANGUAGE KIND PART
 
-FOLDER is an empty one to work in. WORD names it: see `user_files.py`. LANGUAGE is what reads it, a name of `BY_NAME`;
-empty for its own. KIND is what its code is of: see `encodings.kinds`. PART is the declarations that are left out, as
-the 3:4 of four equal parts is the last; 0:0 for none. Prints a line of JSON: `left_out`, these; `error`,
-what is wrong with the file, `pairs`, the names of several, and `alone`, what is known of an encoder or a decoder alone;
-`missing`, what to install; else what `Translated` has.
+FOLDER is an empty folder to work in. WORD names the file: see `user_files.py`. LANGUAGE is the reader, a name of
+`BY_NAME`; empty for the file's own language. KIND is the kind of the encoded values: see `encodings.kinds`. PART
+selects declarations to leave out: 3:4 is the last of four equal parts, 0:0 is none.
+
+Prints a line of JSON. If PART selects any: `left_out`, these declarations. If something is wrong with the file:
+`error`, the message, `pairs`, the names of several pairs, and `alone`, the facts about an encoder or a decoder
+without a partner. If a tool is missing: `missing`, what to install. Otherwise the fields of `Translated`.
 """
 
 from __future__ import annotations
@@ -73,7 +75,7 @@ def answer(
     once_read: Callable[[Source], None] = lambda _: None,
     part: Part = (0, 0),
 ) -> dict[str, Any]:
-    """Return what there is to say of a file; see above. `once_read` is called before any compiler is."""
+    """Return the answer for a file; see the module. `once_read` is called before any compiler runs."""
     try:
         source = Source(file)
         source.part = part
@@ -106,7 +108,7 @@ def _alone(error: NoPairError) -> dict[str, Any]:
 
 
 def _wall_in(source: Source, folder: Path) -> None:
-    """Leave this process, and what it starts, the compilers, a folder to write, and the files that it has read."""
+    """Restrict this process and its children to the compilers, the files already read and a writable folder."""
     if not landlock.is_available():
         return
     # Temporary files lie there from here on.
@@ -157,14 +159,14 @@ def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Pa
     return facts | {"notes": [*([by_glslang] if facts["read_by"] == GLSLANG else []), *notes]}
 
 
-def _check_refused(found: Read, asked: tuple[str, str] | None) -> None:
+def _check_refused(parsed: Read, asked: tuple[str, str] | None) -> None:
     """Raise TranslationError if a refused function could be one of the two, which explains the missing pair."""
-    if why := next((why for name, why in found.refused.items() if name in (asked or ()) or role(name)), ""):
+    if why := next((why for name, why in parsed.refused.items() if name in (asked or ()) or role(name)), ""):
         raise TranslationError(why) from None
 
 
 def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, by: str, kind: Kind) -> dict[str, Any]:
-    """As `_translation_facts`, of a code of something else than normals."""
+    """Return facts as `_translation_facts` does, for an encoding of something other than normals."""
     language = language_of(source.file, by)
     parsed = language.read(source, folder)
     if asked and not all(wiring_of(text).is_plain for text in asked):
@@ -211,7 +213,7 @@ def _adapter_texts(
 
 
 def _pair_facts(
-    found: Read, pair: Pair, text: str, folder: Path, by: str, asked: tuple[str, str] | None = None
+    parsed: Read, pair: Pair, text: str, folder: Path, by: str, asked: tuple[str, str] | None = None
 ) -> dict[str, Any]:
     """Return the facts of `Translated` about two functions, or about one alone.
 
@@ -223,7 +225,7 @@ def _pair_facts(
         return _function_texts(part, reader, pair, prefix, folder)
 
     names = (pair.encode.name, pair.decode.name)
-    return _facts_of_texts(found, text, names, _row_name(found.source, pair, asked), by, texts) | {
+    return _facts_of_texts(parsed, text, names, _row_name(parsed.source, pair, asked), by, texts) | {
         "components": pair.components,
         "packed": pair.encode.kind if pair.is_packed else "",
         "functions": [(function.name, function.takes_view) for function in (pair.encode, pair.decode)],
@@ -236,27 +238,27 @@ _Texts = Callable[[Language, Source, str], list[str]]
 
 
 def _facts_of_texts(
-    found: Read, text: str, names: Collection[str], name: str, by: str, texts: _Texts
+    parsed: Read, text: str, names: Collection[str], name: str, by: str, texts: _Texts
 ) -> dict[str, Any]:
-    """Return the facts of `Translated` about functions, except those of their kind.
+    """Return the facts of `Translated` about functions, except facts that depend on their kind.
 
     Args:
-        text: the text behind the user's own.
+        text: the text after the user's own.
         names: the names of the functions that are called.
         name: the name of the encoding in rows.
     """
     prefix = "user_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
-    source = found.source.with_text(reached(found.source.text + text, names))
+    source = parsed.source.with_text(reached(parsed.source.text + text, names))
     # Where an overload that is refused was meant, another one or a built-in function would do something else.
-    used = words_of(source.text) if found.refused else set()
-    if why := next((why for name, why in found.refused.items() if name in used), ""):
+    used = words_of(source.text) if parsed.refused else set()
+    if why := next((why for name, why in parsed.refused.items() if name in used), ""):
         raise TranslationError(why)
     try:
         by, glsl_texts = _texts_by_whoever_reads_it(source, by, texts, prefix)
     except TranslationError as error:
         # What was cut out for another reason is not defined for that one.
         unknown = _UNDEFINED.search(str(error))
-        why = found.lost.get(unknown[1], found.lost.get(ANY, "")) if unknown else ""
+        why = parsed.lost.get(unknown[1], parsed.lost.get(ANY, "")) if unknown else ""
         raise TranslationError(why or str(error)) from None
     return {
         "name": name,
@@ -270,41 +272,41 @@ def _facts_of_texts(
     }
 
 
-def _pair_and_text(found: Read, asked: tuple[str, str] | None, path: Path) -> tuple[Pair, str, str]:
+def _pair_and_text(parsed: Read, asked: tuple[str, str] | None, path: Path) -> tuple[Pair, str, str]:
     """The pair that is measured; the text of its two functions, where they call others; and how it is asked for."""
     first, other = wirings = [wiring_of(text) for text in asked] if asked else (Wiring(""), Wiring(""))
     names = (first.function, other.function) if asked else None
     if not (first.is_plain and other.is_plain):
-        return _wired_pair(wirings, found)
-    own = functions_in(found.source.own_text)
+        return _wired_pair(wirings, parsed)
+    own = functions_in(parsed.source.own_text)
     try:
-        pair = pair_of(found.functions, names, str(path), own)
+        pair = pair_of(parsed.functions, names, str(path), own)
         # The file's own come before those that it includes.
-        several = [] if names or {pair.encode.name, pair.decode.name} & set(own) else _own_candidates(found, own)
+        several = [] if names or {pair.encode.name, pair.decode.name} & set(own) else _own_candidates(parsed, own)
         if not several:
             return pair, "", pair.named
     except SeveralPairsError:
         raise
     except NoPairError:
-        several = candidates([function for function in found.functions if not names or function.name in names])
+        several = candidates([function for function in parsed.functions if not names or function.name in names])
         if not several:
             raise
     if len(several) == 1:
-        return _wired_pair(several[0], found)
+        return _wired_pair(several[0], parsed)
     raise SeveralPairsError(str(path), [":".join(map(str, wirings)) for wirings in several])
 
 
-def _own_candidates(found: Read, own: Collection[str]) -> list[tuple[Wiring, Wiring]]:
-    return candidates([function for function in found.functions if function.name in own])
+def _own_candidates(parsed: Read, own: Collection[str]) -> list[tuple[Wiring, Wiring]]:
+    return candidates([function for function in parsed.functions if function.name in own])
 
 
-def _wired_pair(wirings: Sequence[Wiring], found: Read) -> tuple[Pair, str, str]:
-    text, pair = wired(wirings, found.functions)
+def _wired_pair(wirings: Sequence[Wiring], parsed: Read) -> tuple[Pair, str, str]:
+    text, pair = wired(wirings, parsed.functions)
     return pair, text, ":".join(map(str, wirings))
 
 
 def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: str) -> tuple[str, list[str]]:
-    """Return the compiler that read the functions, if it is not that of their language; and the functions as texts."""
+    """Return the compiler that read the functions, empty for their language's own, and the functions as texts."""
     try:
         return by, texts(language_of(source.file, by), source, prefix)
     except TranslationError:
@@ -315,11 +317,11 @@ def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: s
         raise
 
 
-def _others(found: Sequence[Function], pair: Pair) -> list[str]:
+def _others(functions: Sequence[Function], pair: Pair) -> list[str]:
     """Return a line on each other pair with a 32-bit code or more parameters, but not on pairs of plain numbers."""
-    others = [] if pair.is_packed else packed_pairs(found)
+    others = [] if pair.is_packed else packed_pairs(functions)
     packed = {other.named: f", which packs into {_A[other.encode.kind]}," for other in others}
-    wired = dict.fromkeys(f"{first.function}:{other.function}" for first, other in candidates(_but(found, pair)))
+    wired = dict.fromkeys(f"{first.function}:{other.function}" for first, other in candidates(_but(functions, pair)))
     named = {**dict.fromkeys(wired, ""), **packed}
     measured = {pair.encode.name.removesuffix("_wired"), pair.decode.name.removesuffix("_wired")}
     left = {
@@ -330,8 +332,8 @@ def _others(found: Sequence[Function], pair: Pair) -> list[str]:
     return [f"{pair_name}{what} {IF_NAMED}" for pair_name, what in list(left.items())[:MOST_OTHERS]]
 
 
-def _but(found: Sequence[Function], pair: Pair) -> list[Function]:
-    return [function for function in found if function.name not in (pair.encode.name, pair.decode.name)]
+def _but(functions: Sequence[Function], pair: Pair) -> list[Function]:
+    return [function for function in functions if function.name not in (pair.encode.name, pair.decode.name)]
 
 
 def _read_with(source: Source) -> list[str]:

@@ -17,10 +17,10 @@ _OF_STRIDE = re.compile(r"^([ \t]*)((?:(?:override|abstract|stage|clone|static)\
 
 
 def shader_text(text: str, ending: str) -> str:
-    """Return what is a shader in a file's text, each line where it stood.
+    """Return the shader in a file's text, with each line in its place.
 
     Args:
-        ending: of the file's name, in small letters.
+        ending: the file's extension, in lower case.
     """
     if ending in SCRIPTS:
         whole = _WHOLE.fullmatch(without_comments(text))
@@ -41,7 +41,7 @@ def _block(text: str, start: int) -> tuple[int, int]:
 
 
 def only(text: str, spans: list[tuple[int, int]]) -> str:
-    """A text with blanks for what is in none of some spans."""
+    """Return a text in which everything outside of some spans is blank."""
     parts, last = [], 0
     for start, end in spans:
         parts += [blank(text[last:start]), text[start:end]]

@@ -49,14 +49,14 @@ def _define_options(source: Source) -> list[str]:
     return [f"-D{macro}" for macro in macros(source)]
 
 
-def _check(source: Source, status: int, said: str) -> None:
+def _check(source: Source, status: int, message: str) -> None:
     """Raise TranslationError if glslang refuses a source."""
     if not status:
         return
-    match = _ERROR.search(said)
+    match = _ERROR.search(message)
     if not match:
-        why = next((line for line in said.splitlines() if "error" in line.lower()), f"status {status}, no message")
+        why = next((line for line in message.splitlines() if "error" in line.lower()), f"status {status}, no message")
         raise TranslationError(f"{source.path}: {tools.GLSLANG}: {why}")
     token, what = match[2], match[3].strip()
-    said = f"{what.lower()} {token}" if what == "Expected" else f"{token}: {what}" if token else what
-    raise TranslationError(source.explained(int(match[1]), said, token))
+    message = f"{what.lower()} {token}" if what == "Expected" else f"{token}: {what}" if token else what
+    raise TranslationError(source.explained(int(match[1]), message, token))

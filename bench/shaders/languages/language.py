@@ -33,12 +33,12 @@ class Language:
 
     Attributes:
         tools: the compilers that it needs.
-        read: a source, and a folder to work in, to what a compiler reads of it.
-        shader: a source, a function of it and a folder to work in, to a fragment shader in GLSL: input 0 is what the
-            function is given, input 1 the view-space position, output 0 the result.
-        adapter: makes a function that calls another one, in the language that a program of both is written in.
-        placed: a source and functions of it to these with the places of what they are given and give.
-        others: compilers that read what its own refuses, or check what it has read.
+        read: (source, folder to work in) -> the part of the source that a compiler reads.
+        shader: (source, function, folder to work in) -> the function as a fragment shader in GLSL: input 0 is the
+            function's own input, input 1 the view-space position, output 0 the result.
+        adapter: makes a function that calls another function, in the language of a program that has both.
+        placed: (source, functions) -> the functions with the places of their inputs and outputs.
+        others: other compilers, which read sources that its own refuses, or check what its own has read.
     """
 
     tools: tuple[str, ...]
@@ -63,13 +63,13 @@ BY_NAME: Mapping[str, Language] = MappingProxyType(
 
 
 def language_of(file: UserFile, by: str = "") -> Language:
-    """Return the language of a file, or what a name says that reads it."""
+    """Return the language of a file, or the language of the reader `by`."""
     return BY_NAME[by or name_of(file)]
 
 
 def name_of(file: UserFile) -> str:
-    """Return what the language of a file is called: as its name says, by its ending, or by its text where the ending is
-    of several."""
+    """Return the name of a file's language: as the user names it, by the file's extension, or by its text if several
+    languages have that extension."""
     ending = file.path.suffix.lower()
     language = file.settings.language or TRANSLATED.get(ending, GLSL_NAME if ending == GLSL else "")
     if language:

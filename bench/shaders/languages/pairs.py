@@ -44,12 +44,12 @@ BY_PARAMETER = "{} returns nothing; write a function that returns what it writes
 
 @dataclass(frozen=True)
 class Place:
-    """A number or a vector in what a function is given or gives.
+    """A number or a vector in a function's input or output.
 
     Attributes:
-        path: how a program names it: s.normalWS of a parameter s; empty for a result as a whole.
+        path: its name in a program: s.normalWS of a parameter s; empty for a whole result.
         kind: the type of its numbers: float, uint, int or bool.
-        size: how many there are, 1 to 4.
+        size: the number of its components, 1 to 4.
     """
 
     path: str
@@ -116,7 +116,7 @@ class Function:
 
     @property
     def takes_a_normal(self) -> bool:
-        """Whether it is of a normal, whatever it gives."""
+        """Whether it takes a normal, and nothing else except a view-space position."""
         return self.given in ((NORMAL,), (NORMAL, NORMAL))
 
     @property
@@ -146,7 +146,7 @@ class Function:
 
     @property
     def may_decode(self) -> bool:
-        """Whether it gives a normal, of a code and of a view-space position if of anything else."""
+        """Whether it returns a normal, and takes a code and nothing else except a view-space position."""
         return self.result == NORMAL and self.given[:1] > (0,) and self.given[1:] in ((), (NORMAL,))
 
 
@@ -164,7 +164,7 @@ class Pair:
 
     @property
     def is_packed(self) -> bool:
-        """Whether their code is one integer or one float of 32 bits, which is stored as it stands."""
+        """Whether the code is one 32-bit integer or float, which is stored unchanged."""
         return self.encode.packs
 
     @property
@@ -174,20 +174,20 @@ class Pair:
 
 
 class NoPairError(Exception):
-    """No two functions are an encoder and its decoder.
+    """No encoder and decoder were found.
 
     Attributes:
-        alone: the known facts about the one of the two that exists; empty if neither does.
+        alone: the known facts about an encoder or a decoder without a partner; empty if there is neither.
     """
 
     alone: Mapping[str, Any] = MappingProxyType({})
 
 
 class SeveralPairsError(NoPairError):
-    """There are several such pairs.
+    """Several pairs of an encoder and its decoder were found.
 
     Attributes:
-        named: each, as it is asked for.
+        named: the name by which each pair is requested.
     """
 
     def __init__(self, file: str, named: Sequence[str]):
@@ -197,27 +197,27 @@ class SeveralPairsError(NoPairError):
 
 
 def pair_of(
-    found: Sequence[Function], asked: tuple[str, str] | None = None, file: str = "", own: Collection[str] = ()
+    functions: Sequence[Function], asked: tuple[str, str] | None = None, file: str = "", own: Collection[str] = ()
 ) -> Pair:
-    """The pair among functions.
+    """Return the encoder and its decoder among functions.
 
     Args:
-        file: what messages call the file.
-        asked: the names of the two that are meant; None to find them.
-        own: the names of those that the file defines itself, and does not include.
+        file: the file's name in messages.
+        asked: the names of the two functions that are requested; None to find them.
+        own: the names of the functions that the file defines itself, rather than includes.
 
     Raises:
-        NoPairError: none fits.
-        SeveralPairsError: several do; the message names them.
+        NoPairError: no pair fits.
+        SeveralPairsError: several pairs fit; the message names them.
     """
-    some = [function for function in found if not asked or function.name in asked]
+    some = [function for function in functions if not asked or function.name in asked]
     pairs = [pair for pair in _fitting(some) if asked in (None, (pair.encode.name, pair.decode.name))]
     packed = [pair for pair in packed_pairs(some) if asked in (None, (pair.encode.name, pair.decode.name))]
     if asked:
-        return _asked(found, asked, [*pairs, *packed])
+        return _asked(functions, asked, [*pairs, *packed])
     mine = [pair for pair in pairs if pair.encode.name in own and pair.decode.name in own]
     named = _by_name(mine) or _by_name(pairs) or packed
-    if not named and (other := _of_something_else(found, file, (kinds.FRAME,))):
+    if not named and (other := _of_something_else(functions, file, (kinds.FRAME,))):
         # Of frames whose helpers are of normals.
         raise NoPairError(other)
     best = named or _by_size(mine) or _by_size(pairs)
@@ -226,30 +226,30 @@ def pair_of(
     best = [pair for pair in best if speaks_of_normals(pair)] or [pair for pair in best if not speaks_of_others(pair)]
     # Overloads differ in the view alone.
     names = list(dict.fromkeys(pair.named for pair in best))
-    if names and (meant := _by_parameter(found, best)):
+    if names and (meant := _by_parameter(functions, best)):
         raise NoPairError(BY_PARAMETER.format(meant))
     if len(names) == 1 and (named or not _is_half_named(best[0])):
         return best[0]
     if names:
         raise SeveralPairsError(file, names)
-    if too_many(*_sides(found)):
-        encoders, decoders = map(len, _sides(found))
+    if too_many(*_sides(functions)):
+        encoders, decoders = map(len, _sides(functions))
         message = f"{encoders} functions may encode and {decoders} may decode, but no two have matching names"
         raise NoPairError(f"{message}; name two: {file}:ENCODE:DECODE")
-    if other := _of_something_else(found, file):
+    if other := _of_something_else(functions, file):
         raise NoPairError(other)
     wanted = "float2 (or float3) ENCODE(float3 n) and float3 DECODE(float2 code)"
-    raise NoPairError(f"{_none_fits(found)}; the two functions must be {wanted}")
+    raise NoPairError(f"{_none_fits(functions)}; the two functions must be {wanted}")
 
 
 def _is_half_named(pair: Pair) -> bool:
-    """Whether one name alone says what its function is: the other may be of something else."""
+    """Whether only one name says what its function does: the other function may be for something else."""
     return bool(role(pair.encode.name)) != bool(role(pair.decode.name))
 
 
-def _fitting(found: Sequence[Function]) -> Iterator[Pair]:
+def _fitting(functions: Sequence[Function]) -> Iterator[Pair]:
     """Yield the pairs whose types fit; if these would be too many, only pairs of functions with the same stem."""
-    encoders, decoders = _sides(found)
+    encoders, decoders = _sides(functions)
     needs_name = too_many(encoders, decoders)
     for encode, decode in itertools.product(encoders, decoders):
         is_named = not needs_name or stem(encode.name) == stem(decode.name)
@@ -257,9 +257,9 @@ def _fitting(found: Sequence[Function]) -> Iterator[Pair]:
             yield Pair(encode, decode)
 
 
-def _sides(found: Sequence[Function]) -> tuple[list[Function], list[Function]]:
-    return [function for function in found if function.may_encode], [
-        function for function in found if function.may_decode
+def _sides(functions: Sequence[Function]) -> tuple[list[Function], list[Function]]:
+    return [function for function in functions if function.may_encode], [
+        function for function in functions if function.may_decode
     ]
 
 
@@ -268,21 +268,21 @@ def too_many(encoders: Sequence[Function], decoders: Sequence[Function]) -> bool
     return len(encoders) * len(decoders) > MOST_PAIRED
 
 
-def packed_pairs(found: Sequence[Function]) -> list[Pair]:
+def packed_pairs(defined: Sequence[Function]) -> list[Pair]:
     """The pairs whose code is one value of 32 bits, of an encoder and a decoder by their names."""
-    sides = [function for function in found if function.packs], [function for function in found if function.unpacks]
+    sides = [function for function in defined if function.packs], [function for function in defined if function.unpacks]
     alike = (both for both in itertools.product(*sides) if stem(both[0].name) == stem(both[1].name))
     return _by_name([Pair(encoder, other) for encoder, other in alike if encoder.kind == other.takes])
 
 
-def _asked(found: Sequence[Function], asked: tuple[str, str], pairs: Sequence[Pair]) -> Pair:
+def _asked(functions: Sequence[Function], asked: tuple[str, str], pairs: Sequence[Pair]) -> Pair:
     if pairs:
         return pairs[0]
-    missing = [name for name in asked if name not in {candidate.name for candidate in found}]
+    missing = [name for name in asked if name not in {candidate.name for candidate in functions}]
     if missing:
-        known = ", ".join(dict.fromkeys(candidate.name for candidate in found)) or "none"
+        known = ", ".join(dict.fromkeys(candidate.name for candidate in functions)) or "none"
         raise NoPairError(f"no function is named {missing[0]}; there are: {known}")
-    for function in found:
+    for function in functions:
         if function.name in asked and function.gives_by_parameter:
             raise NoPairError(BY_PARAMETER.format(function.name))
     encode, decode = asked
@@ -296,38 +296,39 @@ def _by_name(pairs: Sequence[Pair]) -> list[Pair]:
     return same or named
 
 
-def _by_parameter(found: Sequence[Function], best: Sequence[Pair]) -> str:
-    """The function that is the partner by its name of one in the best pairs, but returns nothing; else empty.
+def _by_parameter(functions: Sequence[Function], best: Sequence[Pair]) -> str:
+    """Return the function that is, by its name, the partner of a function in the best pairs, but returns nothing;
+    else empty.
 
-    What returns a code in its place is likely a helper of it.
+    A function that returns a code in its place is probably one of its helpers.
     """
     if any(stem(pair.encode.name) == stem(pair.decode.name) for pair in best):
         return ""
     sides = {(role(function.name), stem(function.name)) for pair in best for function in (pair.encode, pair.decode)}
     other = {"encode": "decode", "decode": "encode"}
-    voids = (function.name for function in found if function.gives_by_parameter)
+    voids = (function.name for function in functions if function.gives_by_parameter)
     return next((name for name in voids if (other.get(role(name)), stem(name)) in sides), "")
 
 
 def speaks_of_normals(pair: Pair) -> bool:
-    """Whether the names of a pair say that it is of normals, and not of colours or motion."""
+    """Whether the names of a pair say that it is for normals."""
     return name_speaks_of_normals(pair.named)
 
 
 def name_speaks_of_normals(name: str) -> bool:
-    """Whether a function's name says that it is of normals."""
+    """Whether a function's name says that it is for normals."""
     return any(word in name.lower() for word in NORMALS)
 
 
 def has_side_of_colours(pair: Pair) -> bool:
-    """Whether the name of one function alone speaks of normals, and that of the other function of colours."""
+    """Whether the name of one function is about normals, and the name of the other function about colours."""
     sides = pair.encode.name, pair.decode.name
     is_of_colours = [bool(OF_COLOURS & words_in(name)) and not name_speaks_of_normals(name) for name in sides]
     return any(is_of_colours) and speaks_of_normals(pair)
 
 
 def speaks_of_others(pair: Pair) -> bool:
-    """Whether the names of a pair say that it is of something else than normals."""
+    """Whether the names of a pair say that it is for something other than normals."""
     named = f"{pair.encode.name} {pair.decode.name}"
     kind = kind_spoken_of(named)
     # A code of two numbers is of a direction, such as that to a light.
@@ -368,39 +369,40 @@ def role(name: str) -> str:
 
 @cache
 def stem(name: str) -> str:
-    """A function's name without what says that it encodes or decodes."""
+    """Return a function's name without the words that say that it encodes or decodes."""
     if ways := _ways(name):
         return " ".join(sorted(" ".join(words) for words in ways))
     return re.sub("|".join((*DECODES, *ENCODES, "_")), "", name.lower())
 
 
-def alone(found: Sequence[Function]) -> Pair | None:
-    """The one function of a file that encodes or decodes, and the other one without a name; None of other files."""
-    encoders = [function for function in found if function.may_encode and role(function.name) == "encode"]
-    decoders = [function for function in found if function.may_decode and role(function.name) == "decode"]
+def alone(functions: Sequence[Function]) -> Pair | None:
+    """Return the only function of a file that encodes or decodes, paired with a function without a name; None if the
+    file has more or none."""
+    encoders = [function for function in functions if function.may_encode and role(function.name) == "encode"]
+    decoders = [function for function in functions if function.may_decode and role(function.name) == "decode"]
     if len(encoders) + len(decoders) != 1:
         return None
     size = encoders[0].result if encoders else decoders[0].given[0]
     return Pair(*(encoders or [Function("", size, (NORMAL,))]), *(decoders or [Function("", NORMAL, (size,))]))
 
 
-def _of_something_else(found: Sequence[Function], file: str, among: Collection[kinds.Kind] = kinds.KINDS) -> str:
+def _of_something_else(functions: Sequence[Function], file: str, among: Collection[kinds.Kind] = kinds.KINDS) -> str:
     """Return a message if function names show that a file without a pair is of something else; else empty."""
-    for name in (function.name for function in found if role(function.name)):
+    for name in (function.name for function in functions if role(function.name)):
         if (kind := kind_spoken_of(name)) and kind in among and not name_speaks_of_normals(name):
             return OF_OTHERS.format(name, kind.plural, kinds.NORMAL.plural, kind.command.format(file))
     return ""
 
 
-def _none_fits(found: Sequence[Function]) -> str:
-    encoders = [candidate.name for candidate in found if candidate.may_encode and role(candidate.name) != "decode"]
-    decoders = [candidate.name for candidate in found if candidate.may_decode and role(candidate.name) != "encode"]
-    for function in found:
+def _none_fits(functions: Sequence[Function]) -> str:
+    encoders = [candidate.name for candidate in functions if candidate.may_encode and role(candidate.name) != "decode"]
+    decoders = [candidate.name for candidate in functions if candidate.may_decode and role(candidate.name) != "encode"]
+    for function in functions:
         if function.gives_by_parameter and role(function.name):
             return BY_PARAMETER.format(function.name)
     others = [
         candidate
-        for candidate in found
+        for candidate in functions
         if candidate.takes_a_normal and not candidate.result and role(candidate.name) == "encode"
     ]
     if others and not encoders:

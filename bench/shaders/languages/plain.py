@@ -1,6 +1,6 @@
-"""A fragment shader of one function, as compilers write GLSL, made a part of another shader.
+"""A fragment shader for one function, in the GLSL of compilers, as a part of another shader.
 
-Its inputs become parameters and its output the result of its `main`, and every name of it begins with a prefix.
+Its inputs become parameters, its output becomes the result of its `main`, and all its names begin with a prefix.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import re
 
 
 class NotPlainError(Exception):
-    """A function that reads what is not its input: a texture, a constant buffer, the pixel's position."""
+    """A function that reads more than its inputs: a texture, a constant buffer, the pixel's position."""
 
 
 _LEFT_OUT = re.compile(r"^[ \t]*#(?:version|extension|line)\b.*$|^layout\(\w+_major\) (?:uniform|buffer);$", re.M)
@@ -39,11 +39,11 @@ HAS_A_NORMAL = "an encoder has only the normal and the view-space position"
 
 
 def plain(shader: str, prefix: str, given: str, has: str = HAS_A_NORMAL) -> str:
-    """The shader as a function PREFIX_main of PREFIX_0 and view, without a head.
+    """Return the shader as a function PREFIX_main of PREFIX_0 and view, without a head.
 
     Args:
-        given: the type of its first input in GLSL; its second has three numbers.
-        has: what it may read, in words.
+        given: the GLSL type of its first input; its second input has three numbers.
+        has: the inputs that it may read, in words.
 
     Raises:
         NotPlainError: it reads something else.
@@ -63,7 +63,7 @@ def plain(shader: str, prefix: str, given: str, has: str = HAS_A_NORMAL) -> str:
 
 
 def _function_text(text: str, prefix: str, given: str, result: str) -> str:
-    """A text whose `main`, its last function, gives what it wrote."""
+    """Return a text in which `main`, its last function, returns its output."""
     before, _, main = text.partition("void main()")
     body = re.sub(r"\breturn;", f"return {prefix}_out;", main.strip().removeprefix("{").removesuffix("}"))
     head = f"{result} {prefix}_main({given} {prefix}_0, vec3 view)"

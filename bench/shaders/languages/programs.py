@@ -49,7 +49,7 @@ class TranslationError(Exception):
 
 
 def template(name: str, **words: object) -> str:
-    """A file of this folder with words in place of its own."""
+    """Return a file of this folder with some of its words replaced."""
     return re.sub(rf"\b(?:{'|'.join(words)})\b", lambda match: str(words[match[0]]), _text(name))
 
 
@@ -63,10 +63,10 @@ UNIT_WAYS = (" * 2.0 - 1.0", " * 0.5 + 0.5")
 
 
 def pair(name: str, components: int, encoder: Function, decoder: Function, is_unit: bool) -> str:
-    """The two functions NAME_encode and NAME_decode that every program calls, of two functions that stand before them.
+    """Return the functions NAME_encode and NAME_decode that every program calls; they call two functions above them.
 
     Args:
-        is_unit: whether these two give and take codes in [0, 1], which become [-1, 1] on their way out, and come back.
+        is_unit: whether these two use codes in [0, 1], which are converted to [-1, 1] on output and back on input.
     """
     way_out, way_back = UNIT_WAYS if is_unit else ("", "")
     words = {f"NAME_{side}": f"{name}_{side}" for side in ("encode", "decode")}
@@ -80,19 +80,19 @@ HANDS: Mapping[str, str] = MappingProxyType(
 )
 
 
-def shaped(name: str, found: ShapedPair, is_unit: bool) -> str:
+def shaped(name: str, shaped_pair: ShapedPair, is_unit: bool) -> str:
     """The two functions of a kind that every program calls, of adapters NAME_e_main and the like before them.
 
     Args:
         is_unit: as of `pair`.
     """
-    text = _text(found.shape.template)
+    text = _text(shaped_pair.shape.template)
     words = {word: word.replace("NAME", name, 1) for word in re.findall(r"\bNAME_\w+", text)}
-    back = {part: found.decode.size(part) for part in ("hand", "tangent", "bitangent")}
+    back = {part: shaped_pair.decode.size(part) for part in ("hand", "tangent", "bitangent")}
     back["tangent"] //= 4
     hand = next((part for part, size in back.items() if size), "")
     way_out, way_back = UNIT_WAYS if is_unit else ("", "")
-    return template(found.shape.template, WAY_OUT=way_out, WAY_BACK=way_back, HAND=HANDS[hand], **words)
+    return template(shaped_pair.shape.template, WAY_OUT=way_out, WAY_BACK=way_back, HAND=HANDS[hand], **words)
 
 
 # What a half of 16 bits holds at most, as shaders write it.
@@ -107,7 +107,7 @@ _BITS: Mapping[str, tuple[str, str]] = MappingProxyType(
 
 
 def packed_pair(name: str, encoder: Function, decoder: Function) -> str:
-    """As `pair`, of two functions whose code is one value of 32 bits: its halves are the two numbers."""
+    """Return functions like those of `pair`, for a code that is one 32-bit value: its halves are the two numbers."""
     words = {f"NAME_{side}": f"{name}_{side}" for side in ("encode", "decode", "halves", "whole")}
     way_out, way_back = _BITS[encoder.kind]
     words |= {"ENCODED": way_out.format(encoder.called("n")), "LARGEST": LARGEST}

@@ -1,4 +1,4 @@
-"""The functions that Slang's compiler finds in a text, with what they take and give."""
+"""The functions that Slang's compiler finds in a text, with their inputs and outputs."""
 
 from __future__ import annotations
 
@@ -15,11 +15,10 @@ FLOATS, NUMBERS = ("half", "float"), ("float", "uint", "int", "bool")
 
 
 def functions_of(compiled: Compiled, names: Mapping[str, str]) -> list[Function]:
-    """Return the functions of these names, with all overloads; a name that exists only in another branch gives none.
+    """Return the functions of these names, with all overloads. Names that exist only in another branch are skipped.
 
     Args:
-        names: for each function's name, the name that the text defines: the library does not tolerate names of its
-            own.
+        names: for each function's name, its name in the text: the library does not tolerate its own names there.
     """
     reflection = api().reflection(compiled.request)
     handles = [(name, api().find(reflection, spelled.encode())) for name, spelled in names.items()]
@@ -72,7 +71,7 @@ def _parameter(variable: int) -> Parameter:
 
 
 def _places(path: str, kind: int) -> Iterator[Place]:
-    """Yield the numbers and vectors of a type; those of a structure one by one."""
+    """Yield the numbers and vectors of a type; for a structure, those of each field."""
     library = api()
     scalar = SCALARS.get(library.scalar(kind), "")
     scalar = "float" if scalar in FLOATS else scalar

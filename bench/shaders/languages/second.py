@@ -1,7 +1,8 @@
-"""A second way to run a translated encoder, which shares neither reader nor writer with the first where two exist.
+"""A second way to run a translated encoder. If possible, it shares neither reader nor writer with the first way.
 
-HLSL, Slang and GLSL go through Slang's compiler to SPIR-V, WGSL through naga to Vulkan. What they give is compared with
-what is measured, by OpenGL from GLSL: a translation that compiles can still be wrong. Files run as shaders alone.
+HLSL, Slang and GLSL go through Slang's compiler to SPIR-V, WGSL through naga to Vulkan. The results are compared with
+the measured results, which GLSL on OpenGL computes: a translation that compiles can still be wrong. Files run only as
+shaders.
 """
 
 from __future__ import annotations
@@ -124,9 +125,9 @@ def _spirv_runner(source: Source, encoder: Translated, folder: Path) -> Callable
     return lambda _: _run(words, folder)
 
 
-def _refusal_text(source: Source, said: str) -> str:
+def _refusal_text(source: Source, printed: str) -> str:
     try:
-        slang.check(source, said, 1)
+        slang.check(source, printed, 1)
     except TranslationError as error:
         return f"{tools.SLANG} does not read it: {error}"
     return f"{tools.SLANG} does not read it"

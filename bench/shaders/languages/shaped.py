@@ -1,8 +1,8 @@
-"""The two functions of a file that encode and decode something else than normals, and adapters that call them.
+"""The two functions of a file that encode and decode something other than normals, and adapters that call them.
 
     float4 Encode_e(float4 n, float3 view)      float4 Decode_d(float4 n, float3 view)
 
-are what a program calls, whatever the user's functions are given and give: see `shapes.py`.
+A program calls the adapters, whatever the user's functions take and return: see `shapes.py`.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ Adapter = Callable[[Function, str, Mapping[str, str], Sequence[Place | None]], s
 
 @dataclass(frozen=True)
 class Fitted:
-    """A function as a shape has it.
+    """A function that matches a shape.
 
     Attributes:
-        function: it.
-        given: by what it is given, the part that this is; of what is a structure's and no part, nothing.
-        made: by the part, what it gives.
+        function: the function.
+        given: the shape's argument for each input of the function, without structure fields that match none.
+        made: the output of the function for each argument of the shape.
     """
 
     function: Function
@@ -98,7 +98,7 @@ LETTERS = "dtb"
 
 
 def _adapted(fitted: Fitted, letter: str, results: Sequence[str], adapter: Adapter) -> tuple[Function, str]:
-    """A function of seven numbers that gives four, and its text."""
+    """Return a function that takes seven numbers and returns four, and its text."""
     name = f"{fitted.function.name.replace('::', '_')}_{letter}"
     given = {place.path: part.sizes[place.size] for place, part in fitted.given.items()}
     places = {part.name: place for part, place in fitted.made.items()}
@@ -107,7 +107,7 @@ def _adapted(fitted: Fitted, letter: str, results: Sequence[str], adapter: Adapt
 
 
 def shaped_pair(
-    found: Sequence[Function],
+    functions: Sequence[Function],
     kind: Kind,
     asked: tuple[str, str] | None = None,
     file: str = "",
@@ -119,23 +119,23 @@ def shaped_pair(
         NoPairError: none fits.
         SeveralPairsError: several do; the message names them.
     """
-    every = list(_all_pairs(found, kind, asked))
+    every = list(_all_pairs(functions, kind, asked))
     if asked and not every:
-        raise NoPairError(_why_not(found, kind, asked))
+        raise NoPairError(_why_not(functions, kind, asked))
     mine = [pair for pair in every if {pair.encode.function.name, pair.decode.function.name} <= set(own)]
     best = _likeliest(mine, kind) or _likeliest(every, kind)
     named = {pair.named: pair for pair in reversed(best if not asked else every)}
     if len(named) > 1:
         raise SeveralPairsError(file, list(reversed(named)))
     if not named:
-        raise NoPairError(_why_none(found, kind, file))
+        raise NoPairError(_why_none(functions, kind, file))
     return next(iter(named.values()))
 
 
-def _all_pairs(found: Sequence[Function], kind: Kind, asked: tuple[str, str] | None) -> Iterator[ShapedPair]:
+def _all_pairs(functions: Sequence[Function], kind: Kind, asked: tuple[str, str] | None) -> Iterator[ShapedPair]:
     for shape in SHAPES[kind]:
-        encoders = [function for function in found if _may_be(function, "encode", asked)]
-        decoders = [function for function in found if _may_be(function, "decode", asked)]
+        encoders = [function for function in functions if _may_be(function, "encode", asked)]
+        decoders = [function for function in functions if _may_be(function, "decode", asked)]
         forward = [fit for function in encoders if (fit := _fitted(function, shape.parts, (shape.code,), shape))]
         back = [fit for function in decoders if (fit := _fitted(function, (shape.code,), shape.parts, shape))]
         code = shape.code.name
@@ -150,25 +150,25 @@ def _may_be(function: Function, side: str, asked: tuple[str, str] | None) -> boo
 
 
 def _fitted(
-    function: Function, given: Sequence[CodeArgument], made: Sequence[CodeArgument], shape: Shape
+    function: Function, given: Sequence[CodeArgument], returned: Sequence[CodeArgument], shape: Shape
 ) -> Fitted | None:
-    """A function as one of what it is given and gives; None where it is not."""
+    """Return a function matched to these inputs and outputs; None if it does not match."""
     inputs = _assigned(inputs_of(function), [*given, *shape.settings])
-    outputs = _assigned(outputs_of(function), made)
+    outputs = _assigned(outputs_of(function), returned)
     if inputs is None or outputs is None:
         return None
     return Fitted(function, inputs, {part: place for place, part in outputs.items()})
 
 
 def _assigned(places: Sequence[Place], parts: Sequence[CodeArgument]) -> dict[Place, CodeArgument] | None:
-    """Return the part that each place is: by its name, then by the order; None if a part or a place is left over.
+    """Return the part for each place, by its name, then by the order; None if a needed part or a place is left over.
 
-    Further fields of a structure may be left over.
+    Fields of a structure may be left over.
     """
     assigned: dict[Place, CodeArgument] = {}
     likely = sorted(
         ((_likeness(place, part), place, part) for place in places for part in parts if _fits(place, part)),
-        key=lambda one: -one[0],
+        key=lambda candidate: -candidate[0],
     )
     for letters, place, part in likely:
         if letters and place not in assigned and part not in assigned.values():
@@ -204,18 +204,18 @@ def _is_of_colours(pair: ShapedPair, kind: Kind) -> bool:
     return kind is not LIGHT and bool(OF_COLOURS & words_in(pair.named))
 
 
-def _why_not(found: Sequence[Function], kind: Kind, asked: tuple[str, str]) -> str:
+def _why_not(functions: Sequence[Function], kind: Kind, asked: tuple[str, str]) -> str:
     """Return why two functions that were requested are not a pair."""
-    names = {function.name for function in found}
+    names = {function.name for function in functions}
     if missing := [name for name in asked if name not in names]:
         return f"no function is named {missing[0]}; there are: {', '.join(dict.fromkeys(names)) or 'none'}"
     return f"{asked[0]} and {asked[1]} are not a pair for {kind.plural}; the two functions must be {_wanted(kind)}"
 
 
-def _why_none(found: Sequence[Function], kind: Kind, file: str) -> str:
+def _why_none(functions: Sequence[Function], kind: Kind, file: str) -> str:
     """Why no functions of a file are a pair of a kind."""
     wanted = f"the two functions must be {_wanted(kind)}"
-    sides = {side: [function for function in found if role(function.name) == side] for side in ("encode", "decode")}
+    sides = {side: [function for function in functions if role(function.name) == side] for side in ("encode", "decode")}
     spoken = [function for several in sides.values() for function in several]
     of_kind = [function for function in spoken if not _other_kind(function.name, kind)]
     if spoken and not of_kind:

@@ -1,8 +1,8 @@
-"""The inputs and outputs of the two functions of a user's encoding, for each kind of value but normals.
+"""The inputs and outputs of the two functions of a user's encoding, for each kind of value except normals.
 
 A program calls the functions of every kind in one way, by adapters `float4 NAME(float4 n, float3 view)`: a
-`CodeArgument` gives the place of a value among these seven numbers. GLSL around the adapters then has the functions
-that the catalogue's encodings have.
+`CodeArgument` gives the place of a value among these seven numbers. GLSL around the adapters then provides the same
+functions as the catalogue's encodings.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from ....encodings import kinds
 
 @dataclass(frozen=True, eq=False)
 class CodeArgument:
-    """A number or a vector that a function is given or gives.
+    """A number or a vector that a function takes or returns.
 
     Attributes:
-        name: of it.
-        sizes: by how many numbers it may have, it in the seven numbers of an adapter; vec4 stands for that type.
-        words: what parameters of it are called, in lower case; one of a letter is the whole name.
-        is_needed: whether a function has it in any case.
+        name: its name.
+        sizes: by its number of components, its place in the seven numbers of an adapter; vec4 stands for that type.
+        words: the names of parameters for it, in lower case; a single letter must be the whole name.
+        is_needed: whether every function must have it.
     """
 
     name: str
@@ -44,11 +44,11 @@ class Shape:
     Attributes:
         parts: the encoded values.
         code: their code.
-        settings: further inputs that both functions may have.
+        settings: other inputs that both functions may have.
         results: the names of the parts that each adapter of a decoder returns, with 0 for a part that is missing.
         template: the GLSL file around the adapters.
         wanted: the form of the two functions, for messages.
-        has_sign: whether its numbers may be in [-1, 1]: then [0, 1] is another way to write them.
+        has_sign: whether the code's numbers may be in [-1, 1]; then the code may also be in [0, 1].
     """
 
     parts: tuple[CodeArgument, ...]

@@ -1,9 +1,9 @@
-"""Slang, and HLSL and GLSL that others do not read, to GLSL, by Slang's own compiler.
+"""The translation of Slang, HLSL and GLSL to GLSL by Slang's own compiler.
 
-A file of an engine has much that an encoder does not need: other stages, resources, functions of headers that are not
-there. So the compiler is first given the heads of the functions alone. What it refuses of them, and of what is no
-function, is cut out, again and again, until it reads the rest and says which functions there are. Then it is given
-those that the encoder or the decoder needs.
+A file of an engine contains much that an encoder does not need: other stages, resources, functions of headers that
+are missing. So the compiler first reads only the heads of the functions. Functions and other declarations that it
+refuses are cut out, again and again, until it reads the rest and reports which functions there are. Then it reads the
+functions that the encoder or the decoder needs.
 """
 
 from __future__ import annotations
@@ -55,14 +55,14 @@ INSTEAD = "; #include a file next to it"
 
 
 class RefusedWordError(TranslationError):
-    """A text has a word that no compiler is given.
+    """A text has a word that must not reach a compiler.
 
     Attributes:
-        place: its line and column in the text, and what is wrong with it.
+        place: the line and column of the word, and what is wrong with it.
     """
 
-    def __init__(self, said: str, place: tuple[int, int, str]):
-        super().__init__(said)
+    def __init__(self, message: str, place: tuple[int, int, str]):
+        super().__init__(message)
         self.place = place
 
 
@@ -91,7 +91,7 @@ def _diagonals(text: str) -> Iterator[int]:
 
 
 def _text_of_no_stage(text: str) -> str:
-    """GLSL without what is its own compiler's, and without what a stage is given and gives."""
+    """Return GLSL without directives for its own compiler, and without the inputs and outputs of a stage."""
     text = with_known_directives(_VERSION.sub(r"#define __VERSION__ \1", text))
     return without(text, [item for item in items(text) if _OF_A_STAGE.match(text[item.start : item.end].lstrip())])
 
@@ -100,10 +100,10 @@ GLSL = ("-allow-glsl",)
 
 
 def _readable_part(source: Source, first: Callable[[str], str], folder: Path, options: tuple[str, ...]) -> Read:
-    """The live part of a source without what is refused of it, its bodies aside; and the functions that it has.
+    """Return the live part of a source without refused items, and its functions. Function bodies are not checked.
 
     Args:
-        first: its text to the part of it that is looked at.
+        first: (text) -> the text to read.
     """
     source = source.without_missing()
     source = _live_part(source.with_text(first(source.text)), folder, options).without_part()
@@ -159,7 +159,7 @@ def _live_part(source: Source, folder: Path, options: tuple[str, ...]) -> Source
 
 
 def _names_in_head(text: str, item: Item) -> list[str]:
-    """Return the names that an item may give a function: that of its function, else all names before "("."""
+    """Return the names that an item may give a function: its function's name, else all names before "("."""
     before, brace, _ = text[item.start : item.end].partition("{")
     if item.function:
         return [item.name]
@@ -172,10 +172,10 @@ def _any_name(why: str) -> list[str]:
 
 
 def _items_at(source: Source, messages: Iterable[tuple[int, int, str]]) -> dict[Item, str]:
-    """The items that messages are of, each with the first message; what a directive says is of none.
+    """Return the items that messages are about, each with its first message. Messages about directives are ignored.
 
     Args:
-        messages: line, column and what is wrong there.
+        messages: the line, the column and the text of each message.
     """
     starts = [0, *(match.end() for match in re.finditer("\n", source.text))]
     known = items(source.text)
@@ -204,7 +204,7 @@ def shader(source: Source, function: Function, folder: Path, options: tuple[str,
 
 
 def shader_of_glsl(source: Source, function: Function, folder: Path) -> str:
-    """As `shader`, of a source in GLSL."""
+    """Return a function of a GLSL source as a fragment shader, as `shader` does."""
     if line := next(_diagonals(source.text), 0):
         what = "a matrix from one value is not what GLSL defines; write out its elements"
         raise TranslationError(source.explained(line, what))
@@ -239,26 +239,26 @@ def _explained(error: RefusedError) -> str:
     return error.why + (INSTEAD if error.word in OTHER_FILES else "")
 
 
-def check(source: Source, said: str, status: int) -> None:
-    """Raise TranslationError if Slang's compiler ended with an error status; `said` is its output."""
+def check(source: Source, printed: str, status: int) -> None:
+    """Raise TranslationError if Slang's compiler ended with an error status; `printed` is its output."""
     if status:
-        raise TranslationError(_explanation(source, said))
+        raise TranslationError(_explanation(source, printed))
 
 
-def _explanation(source: Source, said: str) -> str:
-    """The first error, at the user's line and column; what is refused may be so for want of what is not there."""
+def _explanation(source: Source, printed: str) -> str:
+    """Return the first error, at the user's line and column, and a missing include, which may be its cause."""
     behind = f" ({source.missing[0]})" if source.missing else ""
-    for number, column, what in _messages(said):
+    for number, column, what in _messages(printed):
         return source.explained(number, what, column=column) + behind
-    return f"{source.path}: {COMPILER}: {' '.join(said.split())[:300] or 'it ended without a message'}"
+    return f"{source.path}: {COMPILER}: {' '.join(printed.split())[:300] or 'it ended without a message'}"
 
 
-def _messages(said: str) -> Iterator[tuple[int, int, str]]:
+def _messages(printed: str) -> Iterator[tuple[int, int, str]]:
     """Yield the line, column and message of each error, except the error that the entry point is missing."""
-    errors = list(_ERROR.finditer(said))
+    errors = list(_ERROR.finditer(printed))
     starts = [error.start() for error in errors]
-    for error, end in zip(errors, [*starts[1:], len(said)], strict=False):
-        span = _SPAN.search(said, error.end(), end)
+    for error, end in zip(errors, [*starts[1:], len(printed)], strict=False):
+        span = _SPAN.search(printed, error.end(), end)
         number, column, what = (span if span and span[1] == error[1] else error).groups()
         if ENTRY not in what:
             yield int(number), int(column), what.strip().rstrip(".")

@@ -1,4 +1,4 @@
-"""A user's file with what it includes, and where each of its lines stands."""
+"""A user's file with its includes, and the place of each line."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _searched(folder: Path) -> list[Path]:
 
 
 def _option_for(name: str) -> str:
-    """The option that gives a file that is not there."""
+    """Return the option that names the folder of a missing file."""
     first, _, rest = name.lstrip("/").partition("/")
     is_virtual = rest and (name.startswith("/") or first == "Packages")
     return f"--include {f'{first}=' * bool(is_virtual)}FOLDER"
@@ -115,10 +115,10 @@ class _Text(NamedTuple):
     """A file as it is read.
 
     Attributes:
-        lines: without comments.
-        includes: by the place of a line, what it includes.
-        guard: the places of the lines that keep it from being compiled twice; empty where nothing does.
-        imports: the places of those that import a module, which is read once.
+        lines: its lines, without comments.
+        includes: the included file, by the index of the line.
+        guard: the indices of the lines that keep it from being compiled twice, or a marker; empty if nothing does.
+        imports: the indices of the lines that import a module, which is read once.
     """
 
     lines: list[str]
@@ -156,14 +156,14 @@ def _renamed(lines: list[Line], names: set[str], mark: str) -> Iterator[Line]:
 
 
 class _Branches:
-    """The branches of #if and #else in which a line stands, each by a number of its own."""
+    """The branches of #if and #else that contain a line, each with a number of its own."""
 
     def __init__(self) -> None:
         self.now: tuple[int, ...] = ()
         self._numbers = itertools.count()
 
     def follow(self, line: str) -> None:
-        """Go past a line."""
+        """Update the branches for the text after a line."""
         match = _CONDITION.match(line) if "#" in line else None
         if not match:
             return
@@ -203,7 +203,9 @@ class Source:
         # By a file that guards itself, the branches in which it has been read.
         self._read_in: dict[Path, list[tuple[int, ...]]] = {}
         self._branches, self._count, self._lines_left = _Branches(), 0, MOST_LINES
-        # What may be read: what lies below one of these.
+        if missing := next((root for _, root in self.settings.roots if not Path(root).is_dir()), ""):
+            raise UsageError(f"--include {missing}: no such folder; name the folder that holds the included files")
+        # Only files below one of these may be read.
         self._tops = [self._folders[-1], *(_resolved(Path(root)) for _, root in self.settings.roots)]
         try:
             self.lines = list(self._all_lines())
@@ -226,7 +228,7 @@ class Source:
             yield from self._of_two()
 
     def _of_two(self) -> Iterator[Line]:
-        """The encoder's file and the decoder's, each as if it were alone: what both define gets another name in one."""
+        """Yield the lines of the encoder's file and the decoder's, each read as if alone, with clashes renamed."""
         encode, decode = (name.partition("::")[0] for name in self.file.functions or ("", ""))
         if encode == decode:
             raise UsageError(f"{self.file}: both functions are called {encode}; rename one")
@@ -344,7 +346,7 @@ class Source:
         return [f"{line.path}:{line.number}: {line.wrong}" for line in self.lines if line.wrong]
 
     def without_part(self) -> Source:
-        """Return a copy without those of its declarations that `part` selects."""
+        """Return a copy without the declarations that `part` selects."""
         number, count = self.part
         if not count:
             return self
@@ -369,7 +371,7 @@ class Source:
         """The line of a number, or the last one."""
         return self.lines[min(max(number, 1), len(self.lines)) - 1]
 
-    def explained(self, number: int, said: str, token: str = "", column: int = 0) -> str:
+    def explained(self, number: int, message: str, token: str = "", column: int = 0) -> str:
         """Return a compiler's message about a line of `text`, with the user's file, line and column.
 
         Args:
@@ -380,9 +382,9 @@ class Source:
         if wrong := self._line(number).wrong:
             return f"{path}:{line}: {wrong}"
         if number > len(self.lines):
-            return f"{path}:{line}: at the end of the file: {said}"
+            return f"{path}:{line}: at the end of the file: {message}"
         column = column or self._column(number, token)
-        return f"{path}:{line}{f':{column}' if column else ''}: {said}"
+        return f"{path}:{line}{f':{column}' if column else ''}: {message}"
 
     def _column(self, number: int, token: str) -> int:
         """Return the column of a word in a line, counted from 1; 0 unless the word occurs exactly once."""

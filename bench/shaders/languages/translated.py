@@ -47,8 +47,8 @@ class Translated:
         named: the two as a user names them, ENCODE:DECODE.
         read_by: the compiler that read it, if not its language's own: see `BY_NAME`.
         shaped: for an encoding of something other than normals: `template`, the file around it, `settings`, the
-            further inputs of its functions, and `parts`, how many numbers of each part they take and return: see
-            `shapes.py`.
+            other inputs of its functions, and `parts`, the number of components of each part that they take and
+            return: see `shapes.py`.
     """
 
     name: str
@@ -72,25 +72,25 @@ class AloneError(UsageError):
     """A file has an encoder or a decoder alone.
 
     Attributes:
-        made: the file, whose other function gives nothing.
+        made: the translation of the file, in which the missing function returns 0.
     """
 
-    def __init__(self, said: str, made: Translated):
-        super().__init__(said)
-        self.made = made
+    def __init__(self, message: str, translation: Translated):
+        super().__init__(message)
+        self.made = translation
 
 
 def translated(file: UserFile, by: str = "", kind: Kind = kinds.NORMAL) -> Translated:
     """Return the encoder of a user's file.
 
     Args:
-        by: what reads the file, if not the compiler of its own language: see `BY_NAME`.
-        kind: what its code is of.
+        by: the compiler that reads the file, if not its own language's: see `BY_NAME`.
+        kind: the kind of the encoded values.
 
     Raises:
         UsageError: it cannot be read or translated; one line with the user's file, and line and column if known.
-        SeveralEncodersError: it has several, and none is named.
-        MissingError: what to install.
+        SeveralEncodersError: it has several encoders, and none is named.
+        MissingError: a compiler is missing; what to install.
     """
     source = Source(file)
     read = [str(path) for path in source.files.values()]
@@ -114,7 +114,7 @@ def _tool_stamps(file: UserFile, by: str) -> list[str]:
 
 @cache
 def own() -> str:
-    """A hash of what makes the translation: this folder, the reader and the writer of WGSL, and what judges texts."""
+    """Return a hash of the sources that decide a translation: this folder, the translator, the compilers' tools."""
     return kept.key_of(*(file.read_bytes() for file in sources_of_this()))
 
 
@@ -194,8 +194,8 @@ def _answer_without_killer(file: UserFile, by: str, kind: Kind) -> dict[str, Any
             return {name: value for name, value in answer.items() if name not in ("left_out", "alone")} | more | notes
 
 
-def _one_line(said: Any) -> str:
-    return "".join(letter if letter.isprintable() else " " for letter in str(said))
+def _one_line(message: Any) -> str:
+    return "".join(letter if letter.isprintable() else " " for letter in str(message))
 
 
 def glsl_file(name: str, text: str, mark: str = "") -> Path:

@@ -74,8 +74,8 @@ def _free(place: Place) -> str:
     return value if place.size == 1 else f"vec{place.size}<{TYPES[place.kind]}>({value})"
 
 
-def adapter(function: Function, name: str, given: Mapping[str, str], made: Sequence[Place | None]) -> str:
-    """As `wiring.adapter`, in WGSL."""
+def adapter(function: Function, name: str, given: Mapping[str, str], places: Sequence[Place | None]) -> str:
+    """Return an adapter in WGSL, as `wiring.adapter` does in HLSL."""
     words = {"n": "normalbench_n", "view": "normalbench_more", "vec4": "vec4f"}
     of_structs = [
         parameter for parameter in function.parameters if any("." in place.path for place in parameter.places)
@@ -86,8 +86,8 @@ def adapter(function: Function, name: str, given: Mapping[str, str], made: Seque
     values = {path: with_words(value, words) for path, value in given.items()}
     arguments = [values.get(parameter.name, f"wired_{parameter.name}") for parameter in function.parameters]
     lines.append(f"let {RESULT} = {function.name}({', '.join(arguments)});")
-    parts = ["0.0" if place is None else f"{RESULT}.{place.path}".rstrip(".") for place in made]
-    parts += ["0.0"] * (4 - sum(place.size if place else 1 for place in made))
+    parts = ["0.0" if place is None else f"{RESULT}.{place.path}".rstrip(".") for place in places]
+    parts += ["0.0"] * (4 - sum(place.size if place else 1 for place in places))
     body = "\n    ".join([*lines, f"return vec4f({', '.join(parts)});"])
     return f"fn {name}({words['n']}: vec4f, {words['view']}: vec3f) -> vec4f {{\n    {body}\n}}\n"
 
@@ -105,10 +105,10 @@ def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: AR
     return _checked(source, lambda: GlslWriter("wgsl", {}).program(program)) + entry_text
 
 
-def _checked(source: Source, made):
-    """Return what `made` returns. Raises TranslationError, at the user's line and column."""
+def _checked(source: Source, make):
+    """Return what `make` returns. Raises TranslationError, at the user's line and column."""
     try:
-        return made()
+        return make()
     except tree.TranslationError as error:
         placed = _PLACED.fullmatch(str(error))
         if not placed:

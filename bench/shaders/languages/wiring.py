@@ -1,10 +1,10 @@
-"""Two functions that are given and give more than a normal and its code, called as an encoder and its decoder.
+"""Two functions with more inputs and outputs than a normal and its code, called as an encoder and its decoder.
 
     Pack(s.normalWS=n; s.roughness=0.5)->o1.xyz
     Unpack(o1.xyz=e)->s.normalWS
 
-says what a function is given, and where the code or the normal is in what it gives: `n` is the normal, `e` the code,
-`view` the view-space position. `->(n.xy; face)` is a code of two places. What is not bound is as `FREE` has it.
+gives a function's inputs, and the place of the code or the normal in its output: `n` is the normal, `e` the code,
+`view` the view-space position. `->(n.xy; face)` is a code in two places. Inputs that are not bound are as in `FREE`.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Wiring:
 
 
 def wiring_of(text: str) -> Wiring:
-    """The wiring that a text says. Raises NoPairError."""
+    """Return the wiring that a text describes. Raises NoPairError."""
     match = TEXT.fullmatch(text)
     parts = [part.partition("=") for part in re.split(r"[;,]", match["bound"] or "") if part.strip()] if match else []
     if not match or not all(
@@ -87,13 +87,13 @@ def wiring_of(text: str) -> Wiring:
     )
 
 
-def wired(pair: Sequence[Wiring], found: Sequence[Function]) -> tuple[str, Pair]:
-    """Return HLSL text of two functions that call two others as they are wired, and the pair of these two.
+def wired(pair: Sequence[Wiring], functions: Sequence[Function]) -> tuple[str, Pair]:
+    """Return HLSL text of two functions that call two others as they are wired, and the new functions as a pair.
 
     Raises:
         NoPairError: a wired place does not exist, or does not hold a normal or a code.
     """
-    encode, decode = (_function_of(side, found) for side in pair)
+    encode, decode = (_function_of(side, functions) for side in pair)
     for wiring, not_given, given in zip(pair, (CODE, N), (N, CODE), strict=True):
         if any(value.partition(".")[0] == not_given for _, value in wiring.bound):
             raise NoPairError(f"{wiring}: it is given {given}, not {not_given}")
@@ -115,10 +115,10 @@ def wired(pair: Sequence[Wiring], found: Sequence[Function]) -> tuple[str, Pair]
     )
 
 
-def _function_of(wiring: Wiring, found: Sequence[Function]) -> Function:
-    several = [function for function in found if function.name == wiring.function]
+def _function_of(wiring: Wiring, functions: Sequence[Function]) -> Function:
+    several = [function for function in functions if function.name == wiring.function]
     if not several:
-        known = ", ".join(dict.fromkeys(function.name for function in found)) or "none"
+        known = ", ".join(dict.fromkeys(function.name for function in functions)) or "none"
         raise NoPairError(f"no function is named {wiring.function}; there are: {known}")
     places = {place for place, _ in wiring.bound}
     return next((function for function in several if places <= set(_all_paths(function))), several[0])
@@ -141,7 +141,7 @@ def outputs_of(function: Function) -> list[Place]:
 
 
 def _output(function: Function, path: str) -> Place:
-    """A place of what a function gives, or a part of it. Raises NoPairError."""
+    """Return an output of a function, or a part of one, by its path. Raises NoPairError."""
     for place in outputs_of(function):
         if path == place.path:
             return place
@@ -168,12 +168,12 @@ def _uses_view(wiring: Wiring) -> bool:
     return any(value.partition(".")[0] == VIEW for _, value in wiring.bound)
 
 
-def _caller(function: Function, wiring: Wiring, given: str, called: str, made: str) -> str:
-    """A function that calls another one as it is wired.
+def _caller(function: Function, wiring: Wiring, given: str, called: str, returned: str) -> str:
+    """Return a function that calls another function as it is wired.
 
     Args:
-        given: the type of what it is given, which is called so.
-        made: the type of what it gives.
+        given, called: the type and the name of its input.
+        returned: the type of its result.
     """
     known = set(_all_paths(function))
     if unknown := next((place for place, _ in wiring.bound if place not in known), ""):
@@ -182,19 +182,19 @@ def _caller(function: Function, wiring: Wiring, given: str, called: str, made: s
         )
     bound = {path: _value(function, path, value) for path, value in wiring.bound}
     view = f", float3 {_local(VIEW)}_given" if _uses_view(wiring) else ""
-    head = f"{made} {_name(function)}({given} {_local(called)}_given{view})"
+    head = f"{returned} {_name(function)}({given} {_local(called)}_given{view})"
     result = ", ".join(_local(path) if path else RESULT for path in _made_paths(function, wiring))
-    return _body(function, head, bound, f"{made}({result})")
+    return _body(function, head, bound, f"{returned}({result})")
 
 
-def _body(function: Function, head: str, bound: Mapping[str, str], made: str) -> str:
-    """Return a function with this head that calls another one and returns `made`, an expression of its results.
+def _body(function: Function, head: str, bound: Mapping[str, str], expression: str) -> str:
+    """Return a function with this head that calls another one and returns `expression`, an expression of its results.
 
     Args:
         bound: by place, the values of the called function's inputs.
     """
     asked = {place.partition(".")[0] for place in bound}
-    parameters = list(itertools.takewhile(lambda one: not one.has_default or one.name in asked, function.parameters))
+    parameters = list(itertools.takewhile(lambda p: not p.has_default or p.name in asked, function.parameters))
     lines = [f"{parameter.kind} {_local(parameter.name)} = ({parameter.kind})0;" for parameter in parameters]
     lines += [
         f"{_local(place.path)} = {FREE[place.kind]};"
@@ -205,23 +205,23 @@ def _body(function: Function, head: str, bound: Mapping[str, str], made: str) ->
     lines += [f"{_local(place)} = {value};" for place, value in bound.items()]
     call = f"{function.name}({', '.join(_local(parameter.name) for parameter in parameters)})"
     lines.append(f"{function.kind} {RESULT} = {call};" if function.results else f"{call};")
-    body = "\n    ".join([*lines, f"return {made};"])
+    body = "\n    ".join([*lines, f"return {expression};"])
     return f"{head} {{\n    {body}\n}}\n"
 
 
-def adapter(function: Function, name: str, given: Mapping[str, str], made: Sequence[Place | None]) -> str:
-    """A function of this name of four numbers, n, and of three, view, that calls another one and gives four.
+def adapter(function: Function, name: str, given: Mapping[str, str], places: Sequence[Place | None]) -> str:
+    """Return a function of four numbers, n, and three, view, that calls another function and returns four numbers.
 
     Args:
-        given: by its place, what the other one is given, of n and view as GLSL says it.
-        made: the places of what it gives, one behind another; None is 0.
+        given: by the path of each input of the other function, its value as a GLSL expression of n and view.
+        places: the places of the other function's outputs, in order; None is 0.
     """
     words = {"n": f"{_local(N)}_given", "view": f"{_local(VIEW)}_given", "vec4": "float4"}
     bound = {path: with_words(value, words) for path, value in given.items()}
     of_result = {place.path for place in function.results}
-    paths = [place and _of_result(place.path, of_result) for place in made]
+    paths = [place and _of_result(place.path, of_result) for place in places]
     parts = [("0.0" if path is None else _local(path) if path else RESULT) for path in paths]
-    parts += ["0.0"] * (4 - sum(place.size if place else 1 for place in made))
+    parts += ["0.0"] * (4 - sum(place.size if place else 1 for place in places))
     return _body(
         function, f"float4 {name}(float4 {words['n']}, float3 {words['view']})", bound, f"float4({', '.join(parts)})"
     )
@@ -244,7 +244,7 @@ def _of_result(path: str, of_result: set[str]) -> str:
 
 
 def _local(path: str) -> str:
-    """A parameter, or what is in it, as a variable."""
+    """Return the variable for a parameter or a part of one, or for a part of the result."""
     return f"{RESULT}{path}" if path.startswith(".") else f"wired_{path}"
 
 
@@ -269,10 +269,10 @@ def _value(function: Function, path: str, value: str) -> str:
 _Ways = Iterator[tuple[tuple[str, ...], tuple[tuple[str, str], ...]]]
 
 
-def candidates(found: Sequence[Function]) -> list[tuple[Wiring, Wiring]]:
-    """The ways in which functions whose names say so may be an encoder and its decoder, the likeliest first."""
-    encoders = [function for function in found if role(function.name) == "encode" and function.parameters]
-    decoders = [function for function in found if role(function.name) == "decode" and function.parameters]
+def candidates(functions: Sequence[Function]) -> list[tuple[Wiring, Wiring]]:
+    """Return the ways in which functions may, by their names, be an encoder and its decoder; likeliest first."""
+    encoders = [function for function in functions if role(function.name) == "encode" and function.parameters]
+    decoders = [function for function in functions if role(function.name) == "decode" and function.parameters]
     alike = [(encoder, other) for encoder in encoders for other in decoders if stem(encoder.name) == stem(other.name)]
     both = _of_normals(alike)
     if not both and not too_many(encoders, decoders):
@@ -286,7 +286,7 @@ def _of_normals(pairs: Sequence[tuple[Function, Function]]) -> list[tuple[Functi
 
 
 def _is_of_other_names(wirings: tuple[Wiring, Wiring]) -> bool:
-    """Whether a code comes from a place of one name and goes to one of another: GBuffer2 is meant for gbuffer2."""
+    """Whether the code's places have different names in the two functions; GBuffer2 counts as gbuffer2."""
     encode, decode = wirings
     outputs = {place.partition(".")[0].lower() for place in encode.made}
     given = {place.partition(".")[0].lower() for place, value in decode.bound if value.partition(".")[0] == CODE}
@@ -308,7 +308,7 @@ def _wirings(encode: Function, decode: Function) -> Iterator[tuple[Wiring, Wirin
 
 
 def _named(function: Function, path: str, size: int) -> tuple[str, ...]:
-    """A place of what a function gives, as a wiring says it: nothing where it gives nothing else."""
+    """Return an output as a wiring names it; empty for a result that is the only output."""
     return (path,) if path else ("xyz"[:size],) if len(outputs_of(function)) > 1 else ()
 
 

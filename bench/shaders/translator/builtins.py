@@ -1,4 +1,4 @@
-"""Functions that every shading language has, by their GLSL names: what they give for what they are given."""
+"""Functions that every shading language has, by their GLSL names, and the types of their results."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ OPERATIONS: Mapping[str, str] = MappingProxyType(
 
 
 def counted(loop: For) -> dict[str, Range]:
-    """The counter of a loop from a number up to another, and what it is in the loop."""
+    """Return the counter of a loop that counts up between two numbers, with its range; empty for other loops."""
     match loop:
         case For(
             Declare("int" | "uint", name, Literal(_, first)),

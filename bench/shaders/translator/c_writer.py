@@ -1,8 +1,8 @@
 """A writer of C99, which has no vectors: each vector operation is written once per component.
 
-The file defines what GLSL leaves undefined. Conversion to an integer makes NaN 0 and clamps what is out of range,
-as in Direct3D. x / 0 is x and x % 0 is 0, as in WGSL. Shifts are modulo 32, integer sums wrap, and an array index
-out of range becomes the nearest valid one. NaN has one bit pattern.
+The file defines what GLSL leaves undefined. Conversion to an integer turns NaN into 0 and clamps values that are out
+of range, as in Direct3D. x / 0 is x and x % 0 is 0, as in WGSL. Shifts are modulo 32, integer sums wrap, and an array
+index out of range becomes the nearest valid index. NaN has one bit pattern.
 """
 
 from __future__ import annotations
@@ -278,12 +278,12 @@ class CWriter(Writer):
             field, inner = inner.fields[FIELDS.index(field)], inner.value
         return f"{self._place(inner)}.{field}"
 
-    def _within(self, at: Expression, count: int) -> str:
+    def _within(self, index: Expression, count: int) -> str:
         """An index that an array of some elements has."""
-        known = self._range(at)
+        known = self._range(index)
         if known and known[0] >= 0 and known[1] < count:
-            return self._text(at)
-        return self._helper("at", self._text(at), str(count))[0]
+            return self._text(index)
+        return self._helper("at", self._text(index), str(count))[0]
 
     # Values: a vector is the list of its components.
 
@@ -370,7 +370,7 @@ class CWriter(Writer):
         return self._temporary(self._kind(kind), part[0]), PRIMARY
 
     def _temporary(self, kind: str, text: str) -> str:
-        """A value under a name of its own, before the statement."""
+        """Return the name of a new variable for a value, which is computed before the statement."""
         name = self._fresh_name()
         self._hoisted.append(f"{self._indent}const {kind} {name} = {text};\n")
         return name
@@ -412,7 +412,7 @@ class CWriter(Writer):
         return max(map(self._count_of, kinds))
 
     def _is_safe(self, value: Binary) -> bool:
-        """Whether C defines what an operation of whole numbers gives."""
+        """Whether C defines the result of an operation on whole numbers."""
         right = self._range(value.right)
         if value.operator in SHIFTS:
             is_left_safe = (

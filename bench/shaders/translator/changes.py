@@ -1,7 +1,7 @@
-"""Functions that change what they are given, as functions that give it back: not every language has the former.
+"""Functions that change their arguments, rewritten to return the changes: some languages lack such arguments.
 
-`void f(vec4 e, out vec3 n, inout float x)` becomes `f_made f(vec4 e, float x)`, a structure of n and x, and f(a, b, c)
-becomes `f_made made = f(a, c); b = made.n; c = made.x`.
+`void f(vec4 e, out vec3 n, inout float x)` becomes `f_made f(vec4 e, float x)`, a structure of n and x, and
+f(a, b, c) becomes `f_made made = f(a, c); b = made.n; c = made.x`.
 """
 
 from __future__ import annotations
@@ -52,10 +52,10 @@ class _Changing:
 
 
 def given_back(program: Program) -> Program:
-    """A program in which no function changes what it is given; the functions are changed.
+    """Return a program in which no function changes its arguments; the functions are rewritten in place.
 
     Raises:
-        TranslationError: one that does is called within an expression.
+        TranslationError: a function that changes its arguments is called within an expression.
     """
     changing = {f.name: _changing(f) for f in program.functions if any(p.is_changed for p in f.parameters)}
     for function in program.functions:
@@ -73,7 +73,7 @@ def _changing(function: Function) -> _Changing:
 
 
 def _unused(name: str, taken: set[str]) -> str:
-    """A name that is not taken, which then is."""
+    """Return a name that is not taken, and add it to the taken names."""
     ways = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
     free_name = next(way for way in ways if way not in taken)
     taken.add(free_name)
@@ -122,11 +122,11 @@ def _bodies(statement: Statement) -> list[list[Statement]]:
 
 @dataclass
 class _Calls:
-    """Calls of functions that change what they are given, in a function.
+    """The calls in a function to functions that change their arguments.
 
     Attributes:
-        changing: those functions, by name.
-        names: all that the function has.
+        changing: the called functions, by name.
+        names: all names in the function.
     """
 
     changing: Mapping[str, _Changing]
@@ -140,7 +140,7 @@ class _Calls:
             yield from self._apart(statement)
 
     def _apart(self, statement: Statement) -> Iterator[Statement]:
-        """A statement, and what a call that is all of its value is written as."""
+        """Yield a statement, or its replacement if its whole value is a call of a function that changes arguments."""
         value = statement.call if isinstance(statement, Perform) else getattr(statement, "value", None)
         is_plain = not isinstance(statement, Assign) or statement.operator == "="
         if is_plain and isinstance(value, Call) and value.name in self.changing:

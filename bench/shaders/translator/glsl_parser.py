@@ -351,7 +351,7 @@ class GlslParser(Parser):
         return Construct(chosen.kind, list(choices))
 
     def _field_values(self, value: Expression) -> list[Expression]:
-        """Return a structure's fields, if it is a name or is made of its fields: others would be computed per field."""
+        """Return a structure's fields, if it is a name or a constructor; any other would be computed for each field."""
         whole = value
         while isinstance(whole, Member):
             whole = whole.value
@@ -369,14 +369,16 @@ class GlslParser(Parser):
         values = [self._converted(value, scalar_of(kind)) for value in self._arguments()]
         return Elements(f"{kind}[{len(values)}]", values)
 
-    def _index_expression(self, value: Expression, at: Expression) -> Expression:
+    def _index_expression(self, value: Expression, index: Expression) -> Expression:
         """An element; of an array that has no name, one of its values."""
-        return self._element_of(value, at) if isinstance(value, Elements) else super()._index_expression(value, at)
+        return (
+            self._element_of(value, index) if isinstance(value, Elements) else super()._index_expression(value, index)
+        )
 
-    def _element_of(self, array: Elements, at: Expression) -> Expression:
+    def _element_of(self, array: Elements, index: Expression) -> Expression:
         choice = array.values[-1]
         for number, value in reversed([*enumerate(array.values[:-1])]):
-            choice = self._choice_of(Binary("bool", "==", at, Literal(at.kind, str(number))), value, choice)
+            choice = self._choice_of(Binary("bool", "==", index, Literal(index.kind, str(number))), value, choice)
         return choice
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:

@@ -122,7 +122,7 @@ class Parser:
         return token
 
     def _skip(self, text: str) -> bool:
-        """Whether the next token is this text, which then is taken."""
+        """Take the next token if it is this text, and return whether it is."""
         if self._next_token.text != text or self._next_token is END:
             return False
         self._at += 1
@@ -158,10 +158,10 @@ class Parser:
         raise self._error(f"{token.text} is not known here")
 
     def _declared(self, name: str, kind: str, stands_for: Expression | None = None) -> str:
-        """Make a name known in the innermost scope, and give what the tree calls it.
+        """Make a name known in the innermost scope, and return its name in the tree.
 
-        What hides another name of the program gets a name of its own: in the tree nothing is hidden, so whoever
-        writes or renames it needs no scopes.
+        A name that would hide another name of the program gets a new name. Nothing is hidden in the tree, so code
+        that writes or renames it needs no scopes.
         """
         called = self._unused(name) if stands_for is None and self._would_hide(name) else name
         self._scopes[-1][name] = stands_for or Name(kind, called)
@@ -242,7 +242,7 @@ class Parser:
         return left if sizes[0] >= sizes[1] else right
 
     def _alike(self, a: Expression, b: Expression, sizes_too: bool = True) -> tuple[Expression, Expression]:
-        """Two values of one scalar type, whole numbers made into what the other is."""
+        """Return two values converted to one scalar type. With `sizes_too`, their sizes must be equal."""
         scalars = scalar_of(a.kind), scalar_of(b.kind)
         if scalars[0] != scalars[1]:
             widest = "float" if "float" in scalars else "uint"
@@ -297,8 +297,8 @@ class Parser:
             else:
                 return value
 
-    def _index_expression(self, value: Expression, at: Expression) -> Expression:
-        return Index(self._element_kind(value.kind), value, at)
+    def _index_expression(self, value: Expression, index: Expression) -> Expression:
+        return Index(self._element_kind(value.kind), value, index)
 
     def _member(self, value: Expression, word: Token) -> Expression:
         size, names = size_of(value.kind), word.text
@@ -337,7 +337,7 @@ class Parser:
         return None
 
     def _arguments(self) -> list[Expression]:
-        """Read the arguments in parentheses; the opening one is already taken."""
+        """Read arguments up to the closing parenthesis; the opening parenthesis is already taken."""
         arguments: list[Expression] = []
         if self._skip(")"):
             return arguments
@@ -348,7 +348,7 @@ class Parser:
         return arguments
 
     def _called(self, name: str, arguments: list[Expression], place: Place | None = None) -> Expression:
-        """A call; `place` is where the name stands."""
+        """Return a call of a function; `place` is the place of its name."""
         if name in self._functions:
             return self._own_call(name, arguments)
         if name == "mod" and len(arguments) == 2:
@@ -378,9 +378,10 @@ class Parser:
         return self._all_alike(arguments) if len(arguments) > 1 and name != FETCH else arguments
 
     def _modulus(self, rounding: str, x: Expression, y: Expression) -> Expression:
-        """x - y floor(x / y), or with trunc, which other languages' remainders are not where x is negative.
+        """Return x - y floor(x / y), or with trunc: other languages' remainders differ where x is negative.
 
-        What is more than a name is given to a function of the program's: it would be written, and computed, twice.
+        Operands other than names and numbers are passed to a new function of the program, because they would be
+        written, and computed, twice.
         """
         x, y = self._alike(x, y, sizes_too=False)
         kind = self._product_kind(x.kind, y.kind)
@@ -477,7 +478,7 @@ class Parser:
         return statement
 
     def _assignment(self) -> Statement:
-        """An assignment, a count up or down, or a call, without what ends it."""
+        """Read an assignment, an increment, a decrement or a call, without the character that ends it."""
         for mark in ("++", "--"):
             if self._skip(mark):
                 target = self._behind(self._primary())

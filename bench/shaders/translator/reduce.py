@@ -1,4 +1,4 @@
-"""A program reduced to what some of its functions need, under names that collide with nothing."""
+"""The reduction of a program to the parts that some of its functions need, under names that do not collide."""
 
 from __future__ import annotations
 
@@ -46,15 +46,15 @@ def reduced(
     bound: Mapping[str, float] = MappingProxyType({}),
     pair: tuple[str, str] = PAIR,
 ) -> Program:
-    """Reduce a program to what the functions of some names need.
+    """Reduce a program to some of its functions and the parts that they need.
 
     Args:
         program: the whole program, which is changed.
         roots: new names of functions by their present names.
         prefix: the prefix of every name.
         own: the prefix of an encoding's own functions, which `prefix` replaces.
-        bound: settings of the encoder and the decoder that are numbers.
-        pair: which of `roots` are called with the same settings.
+        bound: the values of the encoder's and the decoder's settings that become constants.
+        pair: the new names of functions that are called with the same settings.
 
     Raises:
         TranslationError: one of these functions could not be read.
@@ -186,10 +186,10 @@ def _parameter_names(function: Function) -> list[str]:
     return [p.name for p in function.parameters]
 
 
-def _reads(setting: str, function: Function, at: Mapping[str, int], unread: set[str]) -> bool:
+def _reads(setting: str, function: Function, indices: Mapping[str, int], unread: set[str]) -> bool:
     """Whether a function does more with a setting than hand it to functions that do not read it."""
     calls = (node for node in inside(function.body) if isinstance(node, Call) and node.name in unread)
-    handed_on = {id(node) for call in calls for node in inside(call.arguments[at[call.name]])}
+    handed_on = {id(node) for call in calls for node in inside(call.arguments[indices[call.name]])}
     return any(isinstance(n, Name) and n.name == setting and id(n) not in handed_on for n in inside(function.body))
 
 
@@ -228,7 +228,7 @@ def _without(own: str, name: str) -> str:
 
 
 def _free_name(name: str, taken: Collection[str]) -> str:
-    """A name that is not taken: this one, or this one with a number."""
+    """Return this name, with a number if it is taken."""
     ways = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
     return next(way for way in ways if way not in taken)
 
@@ -258,7 +258,7 @@ def _rename_constants(constants: list[Declare], functions: list[Function], prefi
 
 
 def _replace(functions: list[Function], names: Mapping[str, str]) -> None:
-    """Give what is outside of functions other names, but in a function that has a variable of such a name."""
+    """Rename globals in functions, except in a function with a variable of the old name."""
     for function in functions:
         own = {*_parameter_names(function), *(node.name for node in inside(function.body) if isinstance(node, Declare))}
         _replace_in(function.body, {old: new for old, new in names.items() if old not in own})

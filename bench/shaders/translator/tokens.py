@@ -100,7 +100,7 @@ def tokens(text: str, first: int = 1) -> list[Token]:
 
 
 class Preprocessor:
-    """Macros without arguments and conditions of whole numbers; numbers in macros stay names, and are kept apart.
+    """A preprocessor for macros without arguments and conditions on whole numbers. Macros for numbers remain names.
 
     Attributes:
         constants: macros that stand for a number or for an array of numbers, by name: their tokens.
@@ -178,7 +178,7 @@ class Preprocessor:
         return int(stands[0].text)
 
     def _expanded_tokens(self, token: Token) -> Iterator[Token]:
-        """A token, or what a macro of its name stands for, in its place."""
+        """Yield a token, or the tokens of the macro with its name, in its place."""
         if token.kind != "word" or token.text not in self._macros:
             yield token
             return

@@ -23,10 +23,10 @@ class TranslationError(Exception):
 
 @contextmanager
 def one_error_type(placed: Callable[[str], Exception] = TranslationError) -> Iterator[None]:
-    """Room for deep trees; whatever a reader or a writer stumbles over is raised as a TranslationError.
+    """Make room for deep trees, and raise any unexpected error of a reader or a writer as a TranslationError.
 
     Args:
-        placed: makes the error of what is wrong, with the place if that is known.
+        placed: makes the error from a message, with the place if it is known.
     """
     with _room:
         try:
@@ -80,7 +80,7 @@ def size_of(kind: str) -> int:
 
 
 def vector(scalar: str, size: int) -> str:
-    """The type of so many of a scalar."""
+    """Return the type of a vector of `size` components; for one component, the scalar type."""
     return scalar if size == 1 else f"{SCALARS[scalar]}vec{size}"
 
 
@@ -127,7 +127,7 @@ class Choice(Expression):
 
 @dataclass
 class Call(Expression):
-    """A built-in function or one of the program's; `is_own` says which."""
+    """A call of a built-in function, or of a function of the program if `is_own`."""
 
     name: str
     arguments: list[Expression]
@@ -170,7 +170,7 @@ class Elements(Expression):
 
 @dataclass
 class Statement:
-    """A statement; `above` holds the comments before it, `behind` the one at its end, both without comment marks."""
+    """A statement; `above` holds the comments before it, `behind` the comment at its end, without comment marks."""
 
     above: list[str] = field(default_factory=list, kw_only=True)
     behind: str = field(default="", kw_only=True)
@@ -198,7 +198,7 @@ class Assign(Statement):
 
 @dataclass
 class Perform(Statement):
-    """A call for what it changes."""
+    """A call as a statement, for the changes that it makes."""
 
     call: Call
 
@@ -219,7 +219,7 @@ class If(Statement):
 
 @dataclass
 class For(Statement):
-    """`start` and `step` are None where nothing stands there."""
+    """A loop; `start` and `step` are None if they are empty."""
 
     start: Statement | None
     condition: Expression
@@ -247,8 +247,8 @@ class Return(Statement):
 
 @dataclass
 class Parameter:
-    """`is_changed` where the caller sees what is assigned to it: GLSL's inout; and not `is_given` where it begins as
-    nothing: GLSL's out."""
+    """A parameter; `is_changed` if the caller sees assignments to it (GLSL's inout), and not `is_given` if it also
+    begins without a value (GLSL's out)."""
 
     kind: str
     name: str
@@ -298,7 +298,7 @@ class Program:
 
 
 def plain_name(function: Function) -> str:
-    """A function's name as it was written: what is read has its parameters' types behind it."""
+    """Return a function's name as it was written, without the types of its parameters."""
     return function.name.partition("(")[0]
 
 

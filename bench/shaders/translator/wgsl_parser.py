@@ -1,7 +1,7 @@
 """WGSL read as a tree: functions without side effects, and constants.
 
-A module may have more: entry points, bindings, functions of pointers. They are left out, and what needs one of them has
-the reason in place of its body.
+A module may contain more: entry points, bindings, functions of pointers. They are left out, and a function that needs
+any of them has the reason in place of its body.
 """
 
 from __future__ import annotations
@@ -159,7 +159,7 @@ class WgslParser(Parser):
             yield range(begin, len(self._tokens))
 
     def _known_by(self, declared: range) -> tuple[Token, str]:
-        """The word that a declaration is made by, such as fn, and its name; the parser stands at the word."""
+        """Return the word that begins a declaration, such as fn, and the declared name; move the parser to the word."""
         self._at = declared.start
         while self._next_token.text == "@":
             self._at += 2
@@ -178,7 +178,7 @@ class WgslParser(Parser):
             self._at += 1
 
     def _know_all(self, declarations: Sequence[range]) -> None:
-        """Makes everything outside of functions known: WGSL uses it before it stands."""
+        """Make everything outside functions known: WGSL may use a name before its declaration."""
         known = {declared: self._known_by(declared) for declared in declarations}
         for word, name in known.values():
             if word.text in SET_FROM_OUTSIDE:
@@ -213,7 +213,7 @@ class WgslParser(Parser):
         return text in self._unread or bool(OF_A_PIPELINE.fullmatch(text))
 
     def _know_types(self, declared: Mapping[str, range]) -> None:
-        """Make aliases and structures known, each after those that it is made of."""
+        """Make aliases and structures known, each after the types that it is made of."""
         for name, span in declared.items():
             self._known_by(span)
             self._types[name] = self._at
@@ -404,7 +404,7 @@ class WgslParser(Parser):
         return statement
 
     def _simple(self, first: Token) -> Statement:
-        """A statement of one line, without what ends it."""
+        """Read a statement of one line, without the character that ends it."""
         if first.text in ("break", "continue"):
             return Leave(self._take().text)
         if self._skip("return"):
@@ -420,7 +420,7 @@ class WgslParser(Parser):
         return If(condition, chosen, [self._if()] if self._skip("if") else self._block())
 
     def _loop(self) -> Statement:
-        """loop { BODY continuing { ... break if CONDITION; } }; what continues stands behind the body."""
+        """Read loop { BODY continuing { ... break if CONDITION; } }; the continuing part is added to the body."""
         self._take("{")
         self._scopes.append({})
         body: list[Statement] = []
@@ -521,7 +521,7 @@ class WgslParser(Parser):
     # What expressions are made of.
 
     def _arguments(self) -> list[Expression]:
-        """As in GLSL; a comma may stand behind the last."""
+        """Read arguments as in GLSL; a comma may follow the last argument."""
         arguments: list[Expression] = []
         while not self._skip(")"):
             arguments.append(self._expression())
@@ -561,7 +561,7 @@ class WgslParser(Parser):
         return Call(kind, BITS[pair], [value]) if pair in BITS else Construct(kind, [value])
 
     def _made_of(self, token: Token) -> Expression:
-        """A type's constructor; without its element's type that is what it is given."""
+        """Read a type's constructor. A missing element type is the type of the arguments."""
         self._at -= 1
         if token.text in GENERIC and self._text_ahead(1) == "(":
             self._at += 2
@@ -600,7 +600,7 @@ class WgslParser(Parser):
         return Elements(self._array_kind(kinds[0], Literal("int", str(len(values)))), values)
 
     def _array_kind(self, kind: str, length: Expression) -> str:
-        """As in GLSL. Raises TranslationError for an array of arrays."""
+        """Return the type of an array, as in GLSL. Raises TranslationError for an array of arrays."""
         if "[" in kind:
             raise self._error("an array of arrays is not read; write one array, with the index computed")
         return super()._array_kind(kind, length)
@@ -623,7 +623,7 @@ class WgslParser(Parser):
         return self._constructed(kind, [Literal("int", "0")])
 
     def _constructed(self, kind: str, arguments: list[Expression]) -> Expression:
-        """As in GLSL, but for floats out of an integer's range: they become its nearest."""
+        """Return a constructor as in GLSL, but floats out of an integer's range become its nearest value."""
         scalar, names = scalar_of(kind), CONVERSIONS
         if scalar in names and any(scalar_of(argument.kind) == "float" for argument in arguments):
             arguments = [
@@ -650,13 +650,15 @@ class WgslParser(Parser):
             return Member(kind, value, word.text)
         return super()._member(value, word)
 
-    def _index_expression(self, value: Expression, at: Expression) -> Expression:
+    def _index_expression(self, value: Expression, index: Expression) -> Expression:
         """An element; an index beyond an array is its last."""
-        return super()._index_expression(value, at if isinstance(at, Literal) else self._clamped_index(value.kind, at))
+        return super()._index_expression(
+            value, index if isinstance(index, Literal) else self._clamped_index(value.kind, index)
+        )
 
-    def _clamped_index(self, kind: str, at: Expression) -> Expression:
+    def _clamped_index(self, kind: str, index: Expression) -> Expression:
         count = int(kind.partition("[")[2].rstrip("]")) if "[" in kind else int(kind[-1])
-        whole = at if at.kind == "uint" else Construct("uint", [at])
+        whole = index if index.kind == "uint" else Construct("uint", [index])
         return Call("uint", "min", [whole, Literal("uint", str(count - 1))])
 
     def _named_call(self, token: Token, arguments: list[Expression]) -> Expression:
@@ -681,7 +683,7 @@ class WgslParser(Parser):
         return all(isinstance(n, Literal) or (isinstance(n, Name) and n.name in self._abstract) for n in leaves)
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
-        """As in GLSL, but where that defines nothing: quotients and remainders of whole numbers, and shifts."""
+        """Return an operation as in GLSL, but define quotients and remainders of whole numbers, and shifts."""
         scalar = scalar_of(left.kind)
         if mark in SHIFTS:
             by = right if isinstance(right, Literal) else self._masked_shift(right)

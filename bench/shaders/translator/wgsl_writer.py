@@ -154,7 +154,7 @@ class WgslWriter(Writer):
 
 
 def _broad(value: Expression, size: int) -> Expression:
-    """A value with so many components; a scalar as many times."""
+    """Return a value with `size` components; a scalar is repeated."""
     if size_of(value.kind) == size:
         return value
     return Construct(vector(value.kind, size), [value])

@@ -133,7 +133,7 @@ class Writer:
         return f"struct {struct.name} {{\n{fields}}};"
 
     def _fields(self, struct: Struct) -> dict[str, str]:
-        """A structure's types by the names of its fields, as they are called here."""
+        """Return the types of a structure's fields, by the fields' names in the language."""
         return {self._field(name): kind for name, kind in struct.kinds.items()}
 
     def _field(self, name: str) -> str:
@@ -141,7 +141,7 @@ class Writer:
         return f"{name}_" if name in self.reserved else name
 
     def _table(self, table: TexelTable) -> str:
-        """A table's declaration, below what has to be bound there. Tables are bound in the order of their names."""
+        """Return a table's declaration, below a note on its texture. Tables are bound in the order of their names."""
         declared = self._declared_table(table, self._bindings)
         self._bindings += 1
         return self._table_note(table.name) + declared
@@ -217,7 +217,7 @@ class Writer:
         return "".join(self._statement(self._plainer(each), indent) for each in statements)
 
     def _plainer(self, statement: Statement) -> Statement:
-        """A statement without what the language lacks."""
+        """Return a statement without features that the language lacks."""
         if self.assigns_to_parts:
             return statement
         match statement:
@@ -237,7 +237,7 @@ class Writer:
         return Block(parts, above=statement.above, behind=statement.behind)
 
     def _loop_without_head(self, loop: For) -> Statement:
-        """A loop whose condition or step takes more than an expression; `continue` goes on with the step."""
+        """Return a loop whose condition or step is more than an expression; `continue` goes on with the step."""
         name = self._unused("is_first")
         first = Name("bool", name)
         self._assigned.add(name)
@@ -273,7 +273,7 @@ class Writer:
         return text.rstrip("\n") + self._block(" else", statement.other, indent).removeprefix(indent)
 
     def _simple_text(self, statement: Statement) -> str:
-        """A statement of one line, without what ends it."""
+        """Return the text of a statement of one line, without the semicolon."""
         match statement:
             case Declare():
                 return self._local_text(statement)
@@ -313,7 +313,7 @@ class Writer:
         return self._renamed.get(name, name)
 
     def _text(self, value: Expression, least: int = 0) -> str:
-        """A value, in parentheses where what stands around it binds more tightly."""
+        """Return the text of a value, in parentheses if the expression around it binds more tightly."""
         text, level = self._text_and_level(value)
         return f"({text})" if level < least else text
 
@@ -402,7 +402,7 @@ def _applied(kind: str, assigned: Assign) -> Expression:
 
 
 def _splat(value: Expression, kind: str) -> Expression:
-    """A scalar as a vector of a kind; a vector as it is."""
+    """Return a scalar as a vector of a kind, and a vector as it is."""
     return value if size_of(value.kind) == size_of(kind) else Construct(kind, [value])
 
 
@@ -438,7 +438,7 @@ def base_of(assigned: Assign) -> str:
 
 
 def shortest(text: str) -> str:
-    """The shortest number that is the same float of 32 bits; as it is written where it is not finite as one."""
+    """Return the shortest number that is the same 32-bit float; the given text if that float is not finite."""
     # Here, because reading a user's file needs no arrays.
     import numpy as np
 

@@ -1,1 +1,1 @@
-"""Codecs as they are named: the catalogue's, tuned ones, and users' own."""
+"""Codecs by name: the catalogue's, tuned variants of these, and users' own."""

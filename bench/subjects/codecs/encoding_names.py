@@ -13,8 +13,8 @@ from .looked_at import Looked, choose_or_look
 def encodings_named(names: Names) -> list[Encoding]:
     """Return the encodings that names stand for: the catalogue's, tuned ones, or files that end in one of ENDINGS.
 
-    A file's encoding is looked at first, in a process of its own: what does not compile, does not end or is not finite
-    is named on standard error and left out.
+    A file's encoding gets a first look in a separate process: if it does not compile, does not end or is not finite,
+    it is named on standard error and left out.
 
     Raises:
         UsageError: an unknown name, or nothing left.

@@ -2,7 +2,7 @@
 
     python -m normalbench.bench.subjects.codecs.first_look FILE [DOMAIN]
 
-With DOMAIN the look is close: DOMAIN is what the author says that the encoding is made for, or "any".
+With DOMAIN the look is close: DOMAIN is the domain that the author made the encoding for, or "any".
 
 Prints a line of JSON on the GLSL, and another on the Python twin if there is one. On the GLSL: `error`, the
 compiler's message; `broken`, if it is not finite or does not end; `missing`, if there is no GL device; otherwise
@@ -10,10 +10,10 @@ compiler's message; `broken`, if it is not finite or does not end; `missing`, if
 a list of likely mistakes, `hole`, a direction outside the domain where it is not finite, and `is_unit`, if its
 codes fill [0, 1]. A close look adds `like`, the encodings of the catalogue that both its functions match, `bad`,
 directions that decode to other directions, `spared`, lines on ranges that may be unused, and `lattice`, the bits
-that it rounds to by itself and whether in [0, 1]. A code that is an integer adds `packed_bits`, how many of its
-bits are used. A translation adds `by`, the language whose compiler reads it correctly, `pair`, the only one of
-several pairs that round-trips, which was looked at, `language`, the language it is written in if its extension says
-another, and `notes`, lines. On the twin: `error`, its exception; `apart`, where it contradicts the GLSL.
+that it rounds to by itself and whether in [0, 1]. A code that is an integer adds `packed_bits`, the number of its
+bits that are used. A translation adds `by`, the language whose compiler reads it correctly, `pair`, the only one of
+several pairs that round-trips, `language`, the language it is written in if its extension is another's, and `notes`,
+lines. On the twin: `error`, its exception; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def _alike(failing: Mapping[str, str]) -> dict[str, str]:
 
 
 def _is_pair(pair: str) -> bool:
-    """Whether the names of two functions, ENCODE:DECODE, are alike but for what each does."""
+    """Whether two function names, ENCODE:DECODE, differ only in the words for encoding and decoding."""
     match = TWO_NAMES.fullmatch(pair)
     return bool(match) and [*map(role, match.groups())] == ["encode", "decode"] and stem(match[1]) == stem(match[2])
 
@@ -194,7 +194,7 @@ def _undone(file: UserFile, by: str) -> tuple[str, str]:
 
 
 def _look_at_one(file: UserFile, domain: str, by: str) -> dict[str, Any]:
-    """Look at a file of which one pair is meant. Raises SeveralEncodersError."""
+    """Return the findings on a file that has, or names, a single pair. Raises SeveralEncodersError."""
     try:
         encoding, gl = read_encoding(file, NOT_ASKED, by=by), device()
         broken = _endless(gl, encoding)
@@ -221,15 +221,15 @@ def _look_at_one(file: UserFile, domain: str, by: str) -> dict[str, Any]:
         return {"error": _of_compiler(file, str(error))}
 
 
-def _of_one(file: UserFile, made: Translated) -> dict[str, Any]:
+def _of_one(file: UserFile, translation: Translated) -> dict[str, Any]:
     """Describe an encoder or a decoder without a partner; as `alone` give its side, its name, and the encodings of the
     catalogue that it matches."""
     side, (name, _) = next(
-        (side, function) for side, function in zip(SIDES, made.functions, strict=True) if function[0]
+        (side, function) for side, function in zip(SIDES, translation.functions, strict=True) if function[0]
     )
     try:
         gl = device()
-        like = names_alone(gl, probe_of(gl, encoding_alone(file, made)), side == SIDES[0])
+        like = names_alone(gl, probe_of(gl, encoding_alone(file, translation)), side == SIDES[0])
     except (NoDeviceError, ShaderError) as error:
         like, sentence = [], f"it is not compared with the catalogue: {' '.join(str(error).split())[:300]}"
     else:
@@ -238,7 +238,7 @@ def _of_one(file: UserFile, made: Translated) -> dict[str, Any]:
 
 
 def _is_unit(probe: Probe) -> bool:
-    """Whether the codes of all directions fill [0, 1], or those of the directions that round-trip."""
+    """Whether the codes of all directions, or of the directions that round-trip, fill [0, 1]."""
     n = directions()
     codes = probe.encode(n)
     kept = np.isfinite(codes).all(axis=1)
@@ -257,12 +257,12 @@ def _second_look(file: UserFile, gl: Device, encoding: Encoding) -> dict[str, An
     return second_look(file, gl, encoding, directions(), lambda by: read_encoding(file, NOT_ASKED, by=by))
 
 
-def _of_compiler(file: UserFile, said: str) -> str:
+def _of_compiler(file: UserFile, message: str) -> str:
     """A compiler's message with the user's file at its begin."""
-    line = " ".join(said.partition("=\n")[2].split()) or " ".join(said.split())
+    line = " ".join(message.partition("=\n")[2].split()) or " ".join(message.split())
     if file.is_translated:
-        said = re.sub(r"\S+\.glsl:(\d+)", r"line \1", line)[:LONGEST]
-        return f"{file}: its translation to GLSL does not compile on this device: {said}"
+        message = re.sub(r"\S+\.glsl:(\d+)", r"line \1", line)[:LONGEST]
+        return f"{file}: its translation to GLSL does not compile on this device: {message}"
     named = line if file.path.name in line else f"{file}: {line}"
     hint = of_hlsl(read_shader(file.path))
     return (named if len(named) <= LONGEST else f"{named[:LONGEST]} ...") + (f" ({hint})" if hint else "")
@@ -307,16 +307,16 @@ def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
     }
 
 
-def twin_look(file: UserFile, found: Mapping[str, Any]) -> dict[str, Any]:
+def twin_look(file: UserFile, findings: Mapping[str, Any]) -> dict[str, Any]:
     """Return the findings on a file's Python twin; see above.
 
     Args:
-        found: the first look's findings on its shader: the twin is of the same functions.
+        findings: the first look's findings on its shader: the twin is of the same functions.
     """
     n = directions()
     view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(n), 1))
     try:
-        encoding = read_encoding(file_with(file, found), by=found.get("by", ""))
+        encoding = read_encoding(file_with(file, findings), by=findings.get("by", ""))
         check_twin(encoding)
         codes = _by_twin(encoding.encode, n, view)
         decoded = _by_twin(encoding.decode, codes, view)

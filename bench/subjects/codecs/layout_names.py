@@ -1,4 +1,4 @@
-"""Layouts as they are named: presets, or TOML files, which may name a user's own encoder."""
+"""Layouts by name: presets, or TOML files, which may name a user's own encoder."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def layouts_named(names: Names) -> list[Layout]:
 
     Raises:
         UsageError: an unknown name, a file that is not a layout, or an encoder that cannot be measured.
-        MissingError: the compiler of an encoder's language is not there.
+        MissingError: the compiler of an encoder's language is not installed.
     """
     # The first look at an encoder takes seconds: layouts that name the same one share it.
     shared = cache(_encoding_named)
@@ -99,7 +99,7 @@ def _from_here(path: Path, word: str) -> str:
 
 
 def _check_inside(folder: Path, file: str) -> None:
-    """As for what an encoder includes: neither its name nor a link leads out of the folder."""
+    """Raise LayoutError if a file is outside a folder, by its name or by a link, as for an encoder's includes."""
     place = Path(os.path.normpath(file))
     if place.is_absolute() or place.parts[:1] == (os.pardir,) or not _leads_inside(folder, place):
         raise LayoutError(f"{file} is not in the layout's folder or below it; copy it there")

@@ -30,12 +30,12 @@ def choose_or_look(
     look: Callable[[UserFile], Looked[T]],
     what_names: Callable[[T], str] = lambda _: "the file",
 ) -> list[T]:
-    """Return the codes that names stand for: known ones, or users' files, of each of its pairs that undo themselves, up
-    to MOST_PAIRS. What is wrong with a file is named on standard error, and the file is left out.
+    """Return the encodings that names stand for: known encodings, or users' files. A file with several pairs stands
+    for the pairs that round-trip, up to MOST_PAIRS. Faulty files are reported on standard error and left out.
 
     Args:
-        look: looks at a file, several at once.
-        what_names: what gives a file's code its name.
+        look: takes a first look at a file; it is called for several files at once.
+        what_names: returns what gives a file's encoding its name, in words.
 
     Raises:
         UsageError: an unknown name, or nothing left.

@@ -1,4 +1,4 @@
-"""Codecs as they are named on the command line, checked before anything is measured."""
+"""Codecs by their names on the command line, checked before anything is measured."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ def codecs_named(
     arithmetics: Names = (FLOAT,),
     known_roundings: Sequence[str] = ROUNDINGS,
 ) -> list[Codec]:
-    """Return every combination of names, users' encodings from files among them.
+    """Return a codec for every combination of names, including users' encodings from files.
 
     Args:
-        known_roundings: what names of roundings may be.
+        known_roundings: the valid names of roundings.
 
     Raises:
         UsageError: an unknown name.
@@ -54,7 +54,7 @@ def codecs_named(
 
 
 def _with_chains(words: Names) -> list[Encoding]:
-    """Return encodings by name; CODEC+ENCODING is that encoding of what comes back from a codec. Raises UsageError."""
+    """Return encodings by name; CODEC+ENCODING encodes the normals that a codec decodes. Raises UsageError."""
     own = [word for word in words if isinstance(word, Given)]
     chains = [word for word in words if isinstance(word, str) and _is_chain(word)]
     single = tuple(word for word in words if word not in chains)
@@ -95,7 +95,7 @@ def with_arithmetics(encodings: Sequence[Encoding], names: Iterable[Word]) -> li
 
 
 def _computes_halves(encodings: Iterable[Encoding]) -> bool:
-    """Whether this machine computes in 16 bits what declares them; a line says so where it does not."""
+    """Whether this machine computes encodings that declare 16-bit numbers in 16 bits; if not, report it in a line."""
     if any(encoding.is_also_half and not has_twin(encoding) for encoding in encodings):
         from .half.compute import half_device
 
@@ -131,10 +131,10 @@ def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
 
 
 def check_twin(encoding: Encoding) -> None:
-    """Trace the Python half of a user's encoding on one normal; those of the catalogue are covered by tests.
+    """Trace the Python twin of a user's encoding on one normal; tests cover the twins of the catalogue.
 
     Raises:
-        UsageError: it raises, or its code does not have the declared size; one line with its file.
+        UsageError: the twin raises an exception, or its code does not have the declared size; one line with its file.
     """
     if ENCODINGS.get(encoding.name) is encoding:
         return

@@ -1,4 +1,4 @@
-"""Whether a translated encoder, by OpenGL, gives what its second way gives: see `languages/second.py`."""
+"""A comparison of a translated encoder, run by OpenGL, with its second way: see `languages/second.py`."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def _difference(
 def _first_apart(
     function: Function, given: np.ndarray, mine: np.ndarray, theirs: np.ndarray, tolerance: float
 ) -> int | None:
-    """Return the index of a value whose two results differ by more than rounding; None if there are none, or few."""
+    """Return the index of a value whose two results differ by more than rounding; None if at most a few do."""
     with np.errstate(all="ignore"):
         bound = tolerance * np.maximum(1, np.abs(theirs))
         is_near = (np.abs(mine - theirs) <= bound) | (mine == theirs) | (np.isnan(mine) & np.isnan(theirs))

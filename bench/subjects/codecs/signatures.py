@@ -1,7 +1,9 @@
-"""The two functions of a user's GLSL file: vec2 mine_encode(vec3 n, vec3 view) and vec3 mine_decode(vec2 e, vec3 view).
-Either may do without the view.
+"""The two functions of a user's GLSL file.
 
-What is written in another way is named with what it should be, before a compiler sees it.
+    vec2 mine_encode(vec3 n, vec3 view)      vec3 mine_decode(vec2 e, vec3 view)
+
+Either function may leave out the view. Functions in another form are reported, with the right form, before a compiler
+sees them.
 """
 
 from __future__ import annotations
@@ -41,10 +43,10 @@ class Encode(NamedTuple):
 
 
 def encode_of(file: UserFile, text: str) -> Encode:
-    """The encode of a file's text.
+    """Return the encode function of a file's text.
 
     Raises:
-        UsageError: the text does not define the two functions as they must be.
+        UsageError: the text does not define the two functions in the right form.
     """
     code = COMMENT.sub(" ", text)
     if "/*" in code:
@@ -79,7 +81,7 @@ def _given_and_read(code: str) -> str:
         is_named = members is not None and instance.strip()
         declarations = instance if is_named else declared if members is None else members
         what = "the uniform {}" if members is None else "the block {}" if is_named else "{} of a block"
-        unvalued = takewhile(lambda one: "=" not in one, re.split("[;,]", declarations))
+        unvalued = takewhile(lambda text: "=" not in text, re.split("[;,]", declarations))
         names = [words[-1] for declaration in unvalued if (words := re.findall(r"\w+", SIZE.sub(" ", declaration)))]
         if read := next((name for name in names if _is_read(name, rest)), ""):
             return what.format(read)
@@ -102,17 +104,17 @@ def _types(parameters: str) -> list[str]:
     return [" ".join(word for word in parameter[:-1] if word not in ("in", "const")) for parameter in words]
 
 
-def _no_encode(found: list[tuple[str, ...]]) -> str:
+def _no_encode(signatures: list[tuple[str, ...]]) -> str:
     """Why none of some functions is an encode."""
-    if not found:
+    if not signatures:
         return NO_FUNCTION
-    kind, name, _ = found[0]
+    kind, name, _ = signatures[0]
     wanted = f"{kind if kind in CODES else 'vec2 (or vec3)'} {name}(vec3 n, vec3 view)"
-    return _should_be(found[0], wanted)
+    return _should_be(signatures[0], wanted)
 
 
 def _check_decode(file: UserFile, code: str, name: str, kind: str) -> None:
-    """Raise UsageError if there is a decode, but none of the right types."""
+    """Raise UsageError if decode is defined, but not with the right types."""
     signatures = [match.groups() for match in re.finditer(FUNCTION.format(name=f"{name}_decode"), code)]
     if signatures and not any(
         signature[0] == "vec3" and _types(signature[2]) in ([kind], [kind, "vec3"]) for signature in signatures
@@ -122,7 +124,7 @@ def _check_decode(file: UserFile, code: str, name: str, kind: str) -> None:
 
 
 def _should_be(function: tuple[str, ...], wanted: str) -> str:
-    """A function as it stands, as it must be, and what is wrong with it."""
+    """Return a message with a function as it is and as it must be, and what is wrong with it."""
     kind, name, parameters = function
     signature = f"{kind} {name}({' '.join(parameters.split())})"
     signature = "".join(letter if letter.isprintable() else "?" for letter in signature)
@@ -131,6 +133,6 @@ def _should_be(function: tuple[str, ...], wanted: str) -> str:
 
 
 def of_hlsl(text: str) -> str:
-    """Say what to do with GLSL that has HLSL types; empty if it has none."""
+    """Return advice on GLSL with HLSL types; empty if the text has no HLSL types."""
     match = HLSL.search(COMMENT.sub(" ", text))
     return f"{match[0]} is HLSL: {FROM_HLSL}" if match else ""

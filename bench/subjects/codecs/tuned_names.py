@@ -20,7 +20,7 @@ def tuned(word: str) -> Encoding:
     """Return the encoding that a name with parameters stands for.
 
     Raises:
-        UsageError: an unknown encoding or parameter, an invalid value or one out of range, a file that is not a
+        UsageError: an unknown encoding or parameter, an invalid value, a value out of range, or a file that is not a
             table.
     """
     typed_name = word.partition(MARK)[0]

@@ -54,7 +54,7 @@ def looked_at(file: UserFile) -> Looked[Encoding]:
     """Return a file's encoding after the first look, and lines to report about it.
 
     Raises:
-        UsageError, MissingError: there is no encoding.
+        UsageError, MissingError: the file has no encoding that can be measured here.
         SeveralEncodersError: the file has several pairs that round-trip.
     """
     looks = _look(file)
@@ -78,8 +78,8 @@ class OneFunctionError(UsageError):
         like: the encodings of the catalogue that it is of.
     """
 
-    def __init__(self, said: str, side: str, function: str, *like: str):
-        super().__init__(said)
+    def __init__(self, message: str, side: str, function: str, *like: str):
+        super().__init__(message)
         self.side, self.function, self.like = side, function, like
 
 
@@ -115,11 +115,11 @@ def examined(file: UserFile, domain: str = ANY) -> Examined:
     """Return the findings on a file.
 
     Args:
-        domain: the normals that its author says it is made for; "any" to find out.
+        domain: the domain that its author made it for; "any" to find out.
 
     Raises:
         UsageError: the file is not an encoding, or does not compile.
-        MissingError: there is no GL device to look at it with.
+        MissingError: there is no GL device to run it on.
     """
     check_word(str(file), ENCODINGS)
     known = spelled("encoding", str(file), ENCODINGS)
@@ -159,7 +159,7 @@ def _functions_in(file: UserFile, by: str) -> str:
 
 
 def what_names(encoding: Encoding) -> str:
-    """The words for what gives an encoding its name: its file, or its two functions."""
+    """Return in words what gives an encoding its name: its file, or its two functions."""
     return "the file" if encoding.source and encoding.name.startswith(encoding.source.name) else "its two functions"
 
 
@@ -168,7 +168,7 @@ def read_encoding(file: UserFile, fault: str = "", is_unit: bool = False, by: st
 
     Args:
         file: its name, followed by its functions if they are needed.
-        fault: why the Python file must not be used; whatever would measure it says so.
+        fault: why the Python file must not be used; any attempt to measure it reports this.
         is_unit: whether its codes are in [0, 1].
         by: the language whose compiler reads it, if not its own.
 
@@ -184,9 +184,9 @@ def read_encoding(file: UserFile, fault: str = "", is_unit: bool = False, by: st
     return replace(encoding, source=source, is_unit=is_unit and not text.is_packed)
 
 
-def encoding_alone(file: UserFile, made: Translated) -> Encoding:
-    """The encoding of a file that has one of the two functions alone; its other one gives nothing."""
-    text = _Text(made.name, made.components, made.glsl(False), made.prefix)
+def encoding_alone(file: UserFile, translation: Translated) -> Encoding:
+    """Return the encoding of a file that has only one of the two functions; the other function returns 0."""
+    text = _Text(translation.name, translation.components, translation.glsl(False), translation.prefix)
     return _encoding(file, text, *_lacking_functions(NO_TWIN))
 
 
@@ -214,7 +214,7 @@ def _of_unit(encode: Callable[..., Any], decode: Callable[..., Any]) -> tuple[Ca
 
 
 class _Text(NamedTuple):
-    """An encoding's name, how many numbers its code has, its GLSL, and what the names of its functions begin with."""
+    """An encoding's name, components, GLSL file and function prefix; and whether it is packed or declares halves."""
 
     name: str
     components: int
@@ -289,7 +289,7 @@ def _twin_functions(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]
 
 
 def _guarded(path: Path, function: Callable[..., Any], kinds: tuple[type, ...]) -> Callable[..., Any]:
-    """A user's function that raises NoTwinError where it fails or gives something else."""
+    """Return a user's function that raises NoTwinError if it fails or returns another type."""
     wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
 
     def guarded(*given: Any) -> Any:
@@ -330,7 +330,7 @@ class Looks:
     is_asked: bool = False
 
     def encoding(self) -> Encoding:
-        """The encoding that was looked at."""
+        """Return the encoding that was looked at."""
         read = read_encoding(self.file, self.fault, self.is_unit, self.glsl.get("by", ""))
         read = replace(read, packed_bits=self.glsl.get("packed_bits", read.packed_bits))
         return self.domain.measured(read)
@@ -363,7 +363,7 @@ class Looks:
         return UNIT.format(f"the codes of {made_for}" if made_for else "its codes")
 
     def _of_domain(self) -> Iterator[str]:
-        """Why it is taken to be made for other normals than all, and where it is not finite."""
+        """Yield why it is assumed to be made only for some normals, or where it is not finite."""
         domain, hole = self.domain, self.glsl.get("hole")
         if self.is_asked and hole:
             yield f"it is meant for {domain.made_for}; elsewhere {hole}"
@@ -373,11 +373,11 @@ class Looks:
 
 
 def _look(file: UserFile, domain: str = "") -> Looks:
-    """A first look in a process of its own; see `first_look`.
+    """Return the findings of a first look in a separate process; see `first_look`.
 
     Raises:
-        UsageError: it cannot be translated, or its shader does not let that process end well.
-        MissingError: the compiler of its language is not there.
+        UsageError: the file cannot be translated, or its shader crashes the process or does not end.
+        MissingError: the compiler of its language is not installed.
     """
     try:
         done = forks.finished(FIRST_LOOK, [str(file), *([domain] if domain else [])], TIME_LIMIT)
@@ -399,12 +399,12 @@ def _look(file: UserFile, domain: str = "") -> Looks:
     return Looks(file, lines[0], twin, twin.get("error", ""), said_of_it, is_asked)
 
 
-def file_with(file: UserFile, found: Mapping[str, Any]) -> UserFile:
-    """A file with what a first look found of it: the language that its ending does not say, and of several pairs the
-    only one that undoes itself."""
-    if "language" in found:
-        file = file.with_language(found["language"])
-    return file.with_pair(found["pair"]) if "pair" in found else file
+def file_with(file: UserFile, findings: Mapping[str, Any]) -> UserFile:
+    """Return a file with the findings of a first look: its language, if the extension is another's, and the only pair
+    of several that round-trips."""
+    if "language" in findings:
+        file = file.with_language(findings["language"])
+    return file.with_pair(findings["pair"]) if "pair" in findings else file
 
 
 def _said_of(file: UserFile, by: str) -> tuple[str, ...]:
@@ -415,22 +415,22 @@ def _said_of(file: UserFile, by: str) -> tuple[str, ...]:
     return tuple(f"only {name} is measured; move {other} into a separate file" for other in others)
 
 
-def twin_is_looked_at(file: UserFile, found: dict[str, Any]) -> bool:
+def twin_is_looked_at(file: UserFile, findings: dict[str, Any]) -> bool:
     """Whether a shader with these findings has a twin and is usable."""
-    return not {"error", "broken"} & set(found) and file.twin.exists()
+    return not {"error", "broken"} & set(findings) and file.twin.exists()
 
 
-def _answers(said: str) -> Iterator[dict[str, Any]]:
-    for line in said.splitlines():
+def _answers(output: str) -> Iterator[dict[str, Any]]:
+    for line in output.splitlines():
         try:
             yield json.loads(line)
         except ValueError:
             return
 
 
-def _check(file: UserFile, found: dict[str, Any]) -> None:
+def _check(file: UserFile, findings: dict[str, Any]) -> None:
     """Raise UsageError if a shader does not compile, or is not finite."""
-    if "error" in found:
-        raise UsageError(found["error"])
-    if "broken" in found:
-        raise UsageError(f"{file}: {found['broken']}")
+    if "error" in findings:
+        raise UsageError(findings["error"])
+    if "broken" in findings:
+        raise UsageError(f"{file}: {findings['broken']}")

@@ -1,4 +1,4 @@
-"""Depths of users' images: which channel they are in, what its numbers stand for, and which pixels are surface."""
+"""Depths of users' images: their channel, the meaning of its numbers, and the pixels that are surface."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def read_depths(path: Path, channel: str | None) -> Pixels:
 
 
 def depth_image(path: Path, pixels: Pixels, reading: DepthReading) -> DepthImage:
-    """Return the pixels of a file as depths, read as `reading` says. Raises UsageError if they cannot be read so."""
+    """Return the pixels of a file as depths, interpreted by `reading`. Raises UsageError if they do not fit it."""
     code = reading.depths_are
     numbers = pixels.planes[0].astype(np.float64)
     if code != VIEW:
@@ -111,7 +111,7 @@ def depth_image(path: Path, pixels: Pixels, reading: DepthReading) -> DepthImage
 
 
 def _check_code(path: Path, numbers: np.ndarray, code: str) -> None:
-    """Raise UsageError if numbers cannot be those of a depth encoding, which are in [0, 1]."""
+    """Raise UsageError if numbers are outside the range of a depth encoding, [0, 1]."""
     valid_numbers = numbers[~np.isnan(numbers)]
     if len(valid_numbers) and not 0 <= valid_numbers.min() <= valid_numbers.max() <= 1:
         what = f"its numbers are {valid_numbers.min():.3g} to {valid_numbers.max():.3g}, but those of {code} are 0 to 1"
@@ -119,7 +119,7 @@ def _check_code(path: Path, numbers: np.ndarray, code: str) -> None:
 
 
 def _channel(path: Path, names: Sequence[str], asked: str | None) -> str:
-    """Return the channel of depths: the one asked for, the one named like depths, or the only one."""
+    """Return the channel of depths: the requested channel, the channel named like depths, or the only channel."""
     shown = ", ".join(names[:40])
     if asked is not None:
         if asked not in names:

@@ -43,7 +43,7 @@ def environment_of(path: Path) -> Environment:
 
 
 def _colours(path: Path, names: Sequence[str]) -> Sequence[str]:
-    """Red, green and blue; alpha and what else is there are not read. Raises UsageError."""
+    """Return the names of the red, green and blue channels; others are ignored. Raises UsageError without them."""
     channels = {name.upper(): name for name in reversed(names)}
     if not set(COLOURS) <= set(channels):
         raise refused(path, f"it has {', '.join(names[:40])}", "it must have channels R, G and B; save it in colour")

@@ -1,4 +1,4 @@
-"""Environments as they are named: those there are, and users' files."""
+"""Environments by name: those of the catalogue, and users' files."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ OTHERS: Mapping[str, str] = MappingProxyType(
 
 
 def environment_named(word: str) -> Environment:
-    """Return the environment that a word stands for: one of the catalogue, or a file. A sun in it is taken out as a
-    light; a lamp of the catalogue is not.
+    """Return the environment that a word names: an entry of the catalogue, or a file. A sun in it becomes a light; a
+    lamp of the catalogue does not.
 
     Raises:
         UsageError: an unknown name, or a file that is not an environment; one line.

@@ -1,4 +1,4 @@
-"""Scenes under an environment that was asked for."""
+"""Scenes under a requested environment."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from .environment_names import environment_named
 
 
 def scenes_under(word: str | None, makers: Iterable[SceneMaker]) -> Iterator[SceneMaker]:
-    """Yield scenes with the environment that a word names and a sun in it as a light; unchanged if the word is None.
+    """Yield scenes under the environment that a word names, with its sun as a light; unchanged if the word is None.
 
     Raises:
-        UsageError: there is no such environment, or a scene is not metallic-roughness.
+        UsageError: an unknown environment, or a scene that is not metallic-roughness.
     """
     if word is None:
         yield from makers

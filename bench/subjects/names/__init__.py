@@ -1,1 +1,1 @@
-"""The subjects that tables share, by the names that people give them."""
+"""The subjects that tables share, by the names that users give them."""

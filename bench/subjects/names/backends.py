@@ -1,4 +1,4 @@
-"""Back ends as they are named: those that a table has, of all that there are."""
+"""Backends by name, and the choice of those that a table supports."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ def backends_named(names: Names, has: Collection[str]) -> list[str]:
 
 
 def backends_here(names: Names, has: Collection[str]) -> list[str]:
-    """Return those of the named backends that a table has and this machine runs.
+    """Return the named backends that a table supports, after a check of this machine.
 
     Raises:
         UsageError: as `backends_named`.
-        MissingError: JAX is broken, or only GLSL is asked for and there is no GL device.
+        MissingError: JAX is broken, or only GLSL is requested and there is no OpenGL device.
     """
     # It imports JAX, which charts that name back ends do not need.
     from ...ground.machine.devices import require_device, require_jax

@@ -1,4 +1,4 @@
-"""Effects as they are named: `gtao`, or with settings `gtao:size=half:slices=4`."""
+"""Effects by name: `gtao`, or with settings `gtao:size=half:slices=4`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def effects_named(names: Names) -> list[ChosenEffect]:
 
 
 def name_of(effects: Iterable[ChosenEffect]) -> str | None:
-    """Return the name in rows of the effects in one image; None if there are no effects."""
+    """Return the name that rows give to the effects of an image; None if there are no effects."""
     return ",".join(effect.name for effect in effects) or None
 
 

@@ -20,11 +20,11 @@ PLAIN = "plain"
 
 def light_buffers_named(names: Iterable[Word]) -> list[LightCodec]:
     """Return the light codecs that names stand for; `linear:1` and `linear:range=1` cover [0, 1], and
-    `linear/unorm:10:10:10` uses other bits. Bits alone, as in `ufloat:6:9`, store light as it is.
+    `linear/unorm:10:10:10` uses other bits. Bits alone, as in `ufloat:6:9`, store light unencoded.
 
     Raises:
         UsageError: an unknown name, a range that is invalid or that the encoding does not have, or a storage that
-            does not hold the code.
+            does not fit the encoding.
     """
     words = list(names)
     typed_codecs = {word: _said_codec(word) for word in words if isinstance(word, str) and (":" in word or "/" in word)}
@@ -48,7 +48,7 @@ def _said_codec(word: str) -> LightCodec:
 
 
 def _plain_codec(name: str, word: str) -> LightCodec:
-    """Light as it is, which goes by its formats' names."""
+    """Return the codec that stores light unencoded. Raises UsageError if the name is not that of plain light."""
     if name != PLAIN:
         known = [*LIGHT_ENCODINGS]
         raise UsageError(f"light buffer {word}: expected one of {', '.join(known)}, as in linear/unorm:10:10:10")

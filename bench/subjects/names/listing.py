@@ -94,7 +94,7 @@ def _rule_text(storage: Storage) -> str:
 
 
 def _texel_text(storage: Storage) -> str:
-    """Say how a storage places its numbers in a texel."""
+    """Return a phrase on how a storage places its numbers in a texel."""
     texel = f"{storage.texel_bytes} bytes"
     return f"{texel}, across channels" if storage.is_packed else f"{texel}, one channel each"
 

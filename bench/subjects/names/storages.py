@@ -1,4 +1,4 @@
-"""Storages as they are named on the command line: by name, as APIs spell formats, or by their bits."""
+"""Storages as named on the command line: by name, by an API's format name, or by their bits."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ VERTEX = re.compile(r"(?P<kind>unorm|snorm|float)(?:(?P<bits>\d+(?:-\d+)+)|(?P<s
 def storages_named(
     names: Iterable[Word], known: Mapping[str, Storage] = STORAGES, what: str = "storage"
 ) -> list[Storage]:
-    """Return the storages of names; by their bits as well, and in ranges of such: unorm:4:4..8:8.
+    """Return the storages that names stand for. Bits are names too, and so are ranges of bits: unorm:4:4..8:8.
 
     Args:
-        known: what "all" stands for, and what messages list.
-        what: what they are called in messages.
+        known: the storages that "all" stands for and that messages list.
+        what: the word for a storage in messages.
 
     Raises:
-        UsageError: an unknown name, or bits that cannot be; one line.
+        UsageError: an unknown name, or invalid bits; one line.
     """
     own = [word for word in names if isinstance(word, Given)]
     storages = storages_said(word for word in names if isinstance(word, str))
@@ -53,20 +53,20 @@ def roundings_named(names: Names, known: Collection[str] = ROUNDINGS) -> list[st
 
 
 def storages_said(names: Iterable[str], others: Collection[str] = ()) -> dict[str, Storage | None]:
-    """Return names, each of a range by itself, and the storage that each says; None where it says none.
+    """Return the storage that each name gives by its bits or format, with ranges expanded; None for any other name.
 
     Args:
         others: names that stand for something else.
 
     Raises:
-        UsageError: bits that cannot be; one line.
+        UsageError: invalid bits; one line.
     """
     words = [word for name in names for word in _in_range(name)]
     return {word: None if word in others else _storage_of(word) for word in words}
 
 
 def _storage_of(word: str) -> Storage | None:
-    """The storage that a word says, whatever is known by name."""
+    """Return the storage that a word gives by its bits or by a format; None for any other word. Raises UsageError."""
     try:
         return storage_of(word) or storage_of(_rule_of(word) or spelled("storage", word, FORMATS) or "")
     except ValueError as error:

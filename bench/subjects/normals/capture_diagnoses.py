@@ -65,7 +65,7 @@ class Pixels:
         return float(np.mean(along > BEYOND * np.sqrt(1 + half * half * (self.across**2 + self.up**2))))
 
     def least_away(self, to_view: np.ndarray, fov: float | None) -> tuple[float, float]:
-        """The smallest such share, and the angle of view that has it: of `fov`, or of all where that is None."""
+        """Return the smallest share by `away` and its angle of view: `fov`, or any of FIELDS if that is None."""
         fields = FIELDS if fov is None and self.has_places else (fov or 0.0,)
         return min((self.away(to_view, field), field) for field in fields)
 
@@ -91,7 +91,7 @@ class Finding(NamedTuple):
     """A likely mistake in the space that normals are read in.
 
     Attributes:
-        said: a line without its remedy.
+        said: the message, one line without the remedy.
         remedy: a matrix (3, 3) to use instead, an angle of view, or None if no known remedy helps.
     """
 
@@ -100,11 +100,11 @@ class Finding(NamedTuple):
 
 
 def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: bool) -> Finding | None:
-    """Return the likely mistake in the space that the normals are read in; None if there is no mistake.
+    """Return the likely mistake in the space that the normals are read in; None if too few normals face away.
 
     Args:
         to_view: the matrix that turns the file's normals to view space, as the frame is read.
-        fov: the vertical angle of view in degrees as it was given, if it was.
+        fov: the vertical angle of view in degrees; None if it was not given.
         is_world: whether `to_view` is a view matrix.
     """
     share, _ = pixels.least_away(to_view, fov)

@@ -1,4 +1,4 @@
-"""Captured frames as sets of normals: which channels, what they mean, what is background, and what is refused."""
+"""Captured frames as sets of normals: the choice and the meaning of channels, the background, and the checks."""
 
 from __future__ import annotations
 
@@ -89,13 +89,13 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
 
 
 def captured(path: Path, reading: Reading, within: np.ndarray | None = None) -> Captured:
-    """The normals of an image file.
+    """Return the normals of an image file.
 
     Args:
-        within: where there is surface as far as is known already, of the image's shape.
+        within: mask of the pixels that may show a surface, of the image's shape; None for all pixels.
 
     Raises:
-        UsageError: it cannot be read, or does not hold unit normals as `reading` says.
+        UsageError: the file cannot be read, or does not hold unit normals as described by `reading`.
     """
     reading = checked(reading)
     turns, notes = turns_of(reading)
@@ -139,7 +139,7 @@ def is_in_object_space(path: Path, reading: Reading) -> bool:
 
 
 def _roundings(pixels: Pixels, reading: Reading) -> Sequence[Rounding]:
-    """Return what normals were rounded to; empty if that is unknown, as under a curve."""
+    """Return the roundings of a file's normals; empty if they are unknown, as under a curve."""
     if pixels.roundings or pixels.steps is None or reading.curve != "linear":
         return pixels.roundings
     return (Rounding(pixels.steps / 2),)
@@ -185,10 +185,10 @@ def _layer_channels(names: Sequence[str]) -> Iterator[tuple[str, list[str]]]:
 
 
 def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list[str]:
-    """Return three channels: those asked for, or those named like normals, or the only ones, or R, G and B.
+    """Return three channels: the requested ones, or those named like normals, or the only ones, or R, G and B.
 
     Raises:
-        UsageError: there are no such channels, or several that could be meant.
+        UsageError: channels are missing, or the choice is ambiguous.
     """
     layers = dict(_layer_channels(names))
     shown = ", ".join(names[:40]) + (", ..." if len(names) > 40 else "")
@@ -214,7 +214,7 @@ def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list
 
 
 def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
-    """Return where a mask says that there is surface, bool of the image's shape."""
+    """Return the pixels that a mask marks as surface, bool of the image's shape."""
     asked = reading.mask
     if asked is None:
         return np.ones(shape, bool)
@@ -310,20 +310,20 @@ def _checked_unit(
     )
 
 
-def _readings_that_fit(found: np.ndarray, curve: str, unpacked: bool) -> Iterator[str]:
-    """Options with which normals are unit that are not as they are read.
+def _readings_that_fit(components: np.ndarray, curve: str, unpacked: bool) -> Iterator[str]:
+    """Yield options other than the current ones with which nearly all normals have unit length.
 
     Args:
-        found: the components, (3, count), by `curve`.
+        components: the components, (3, count), decoded by `curve`.
     """
     if curve != "linear":
         return
-    is_share = bool((found >= 0).all() and (found <= 1).all())
+    is_share = bool((components >= 0).all() and (components <= 1).all())
     for name, apply in CURVES.items():
         for unpack in (True, False):
             if (name, unpack) == (curve, unpacked) or not (is_share or (name, unpack) == ("linear", False)):
                 continue
-            read = apply(found) * 2 - 1 if unpack else found
+            read = apply(components) * 2 - 1 if unpack else components
             lengths = _plane_lengths(read)
             # A grey background of packed normals has no length when unpacked.
             surface = lengths[lengths >= BACKGROUND]
@@ -399,31 +399,31 @@ def _rotation_and_remarks(text: str) -> tuple[np.ndarray, list[str]]:
     return linear / size, [f"the rows of --view-matrix are {size:.4g} long: the scale is ignored"] * is_scaled
 
 
-def _numbers_of(text: str, said: str) -> np.ndarray:
+def _numbers_of(text: str, option: str) -> np.ndarray:
     """A matrix of 3 or 4 rows."""
     if re.search(r"[^-+0-9.eE,;\s]", text):
         try:
             text = file_text(Path(text))[:4096]
         except (OSError, ValueError) as error:
-            raise UsageError(f"{said}: neither numbers nor a text file of numbers: {error}") from error
+            raise UsageError(f"{option}: neither numbers nor a text file of numbers: {error}") from error
     try:
         numbers = [float(word) for word in re.split(r"[\s,;\[\]()]+", text) if word]
     except ValueError as error:
-        raise UsageError(f"{said}: neither numbers nor a text file of numbers") from error
+        raise UsageError(f"{option}: neither numbers nor a text file of numbers") from error
     if len(numbers) not in (9, 16):
-        raise UsageError(f"{said}: {len(numbers)} numbers; 9 or 16, row by row")
+        raise UsageError(f"{option}: {len(numbers)} numbers; 9 or 16, row by row")
     side = math.isqrt(len(numbers))
     return np.array(numbers).reshape(side, side)
 
 
-def _check_affine(matrix: np.ndarray, said: str) -> None:
-    """Raise UsageError for a matrix of 4 x 4 numbers that translates row vectors, or projects."""
+def _check_affine(matrix: np.ndarray, option: str) -> None:
+    """Raise UsageError if a matrix of 4 x 4 numbers is for row vectors or contains a projection."""
     below, beside = matrix[3, :3], matrix[:3, 3]
     if below.any() and not beside.any():
         turned = typed(matrix[:3, :3].T)
-        raise UsageError(f"{said}: its translation is in the last row, for row vectors; use --view-matrix {turned}")
+        raise UsageError(f"{option}: its translation is in the last row, for row vectors; use --view-matrix {turned}")
     if below.any():
-        raise UsageError(f"{said}: its last row is not 0, 0, 0, 1, as with a projection; give only the view matrix")
+        raise UsageError(f"{option}: its last row is not 0, 0, 0, 1, as with a projection; give only the view matrix")
 
 
 def typed(matrix: np.ndarray) -> str:
@@ -434,7 +434,8 @@ def typed(matrix: np.ndarray) -> str:
 def _which_way(
     n: np.ndarray, covered: np.ndarray, to_view: np.ndarray | None, reading: Reading, chosen: Sequence[str]
 ) -> list[str]:
-    """Say what is likely wrong with the space of normals, (3, height, width) or (3, count), and its remedy."""
+    """Return a line on the likely mistake in the space of normals, (3, height, width) or (3, count), and its remedy;
+    empty if no mistake is found."""
     if to_view is None:
         return []
     is_world = SPACES[reading.space] is None
@@ -443,15 +444,15 @@ def _which_way(
     return [f"{finding.said}: {_remedy_text(finding.remedy, is_world, chosen)}"] if finding else []
 
 
-def _remedy_text(found: np.ndarray | float | None, is_world: bool, chosen: Sequence[str]) -> str:
-    if found is SWAPPED:
+def _remedy_text(remedy: np.ndarray | float | None, is_world: bool, chosen: Sequence[str]) -> str:
+    if remedy is SWAPPED:
         return f"read it with --channels {','.join(reversed(chosen))}"
-    if isinstance(found, np.ndarray):
+    if isinstance(remedy, np.ndarray):
         space = next(
-            (name for name, known in SPACES.items() if known is not None and np.array_equal(known, found)), None
+            (name for name, known in SPACES.items() if known is not None and np.array_equal(known, remedy)), None
         )
-        return f"read it with --space {space}" if space else f"read it with --space world --view-matrix {typed(found)}"
-    if found is not None:
+        return f"read it with --space {space}" if space else f"read it with --space world --view-matrix {typed(remedy)}"
+    if remedy is not None:
         return "check --fov, which is the vertical angle"
     if is_world:
         return "check --view-matrix"

@@ -1,4 +1,4 @@
-"""The normals that encodings are made for."""
+"""The domains of encodings: the normals that an encoding must represent."""
 
 from __future__ import annotations
 

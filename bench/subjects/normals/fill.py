@@ -19,15 +19,15 @@ class Fill:
     """A compiled function that makes planes of normals.
 
     Args:
-        made: (number, *given) -> a normal of float32; elementwise.
-        types: the types of `given`, numbers that a float64 holds.
+        made: function (number, *given) -> a normal of float32; elementwise.
+        types: the types of `given`, whose values a float64 can represent.
 
     Raises:
-        NotElementwiseError, NoCompilerError: it cannot be compiled here.
+        NotElementwiseError, NoCompilerError: the function cannot be compiled here.
     """
 
-    def __init__(self, made: Callable[..., Vec3], types: Sequence[np.dtype]):
-        function = c_function("made", made, LANE, *types)
+    def __init__(self, normal_of: Callable[..., Vec3], types: Sequence[np.dtype]):
+        function = c_function("made", normal_of, LANE, *types)
         self._library = library(source(SOURCE, function, [*map(c_type, types)]), "fill")
 
     def __call__(self, count: int, *given: int) -> Vec3:

@@ -1,4 +1,4 @@
-"""Sets of normals as they are named: those there are, and users' captures and meshes."""
+"""Sets of normals by name: those of the catalogue, and users' captures and meshes."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def normal_sets_named(
 ) -> list[NormalSet]:
     """Return the sets that names stand for: those of the catalogue, captures, or meshes seen by a camera.
 
-    If something to be measured `needs_rays`, a capture without rays is named on standard error.
+    If `needs_rays`, a note on standard error names captures without an angle of view.
 
     Raises:
         UsageError: an unknown name, a file that cannot be read, or an option that applies to no file.
@@ -85,13 +85,13 @@ def lacking_rays(pairs: Iterable[tuple[Encoding, NormalSet]]) -> list[str]:
 
 
 def check_rays(sets: Iterable[NormalSet], needs_rays: bool) -> None:
-    """Raise UsageError if something to be measured needs rays and a set has none."""
+    """Raise UsageError if an encoding to be measured needs view rays and a set has none."""
     if needs_rays and (lacking := next((normal_set for normal_set in sets if not normal_set.has_rays), None)):
         raise UsageError(f"--normals {lacking.name}: an encoding cannot be measured on it: {LACKS_RAYS}")
 
 
 def _check_kind(word: str) -> None:
-    """Raise UsageError for a file of a kind that is not read, for a folder, and for an unknown part of a file."""
+    """Raise UsageError for a file of an unsupported kind, for a folder, and for an unknown part of a file."""
     vertices.check_part(word)
     if (ending := Path(word).suffix.lower()) in OTHERS:
         raise UsageError(f"{word}: {OTHERS[ending]}")
@@ -100,7 +100,7 @@ def _check_kind(word: str) -> None:
 
 
 def say_count_is_unused(options: Any) -> None:
-    """Say that --count changes nothing where it is given for files alone."""
+    """Tell the user that --count has no effect if it is given and every normal set is a file."""
     known = fields_of(type(options))
     if not isinstance(options, Reading) or "count" not in known:
         return
@@ -112,13 +112,13 @@ def say_count_is_unused(options: Any) -> None:
 
 
 def _is_of_normals(options: type) -> bool:
-    """Whether the `count` of options is that of normals in a set, not of what is made of them."""
+    """Whether the `count` of options is the number of normals in a set, not of something made from them."""
     return get_type_hints(options, include_extras=True)["count"] == Count
 
 
-def given(made: NormalSet) -> Callable[[int, int], NormalSet]:
-    """A set that is what it is, whatever count and seed are asked for."""
-    return lambda *_: made
+def given(normal_set: NormalSet) -> Callable[[int, int], NormalSet]:
+    """Return a maker that returns a fixed set for any count and seed."""
+    return lambda *_: normal_set
 
 
 def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:

@@ -53,17 +53,17 @@ class NormalSet:
 
     Attributes:
         name: the catalogue's key.
-        title: its name for people.
-        area: steradians it covers uniformly, or None if it is not uniform.
-        count: how many normals, background included.
+        title: the name that people see.
+        area: steradians that the set covers uniformly, or None if it is not uniform.
+        count: number of normals, including the background.
         shape: (height, width) of a set that is an image, else None.
         seed: the seed that the set was made with.
         chunk: start index -> Chunk.
-        background: how many of them are not on a surface and do not count; None if that does not apply.
-        not_finite: how many of a file's were NaN or infinite, which do not count either.
+        background: number of normals that are not on a surface and do not count; None if that does not apply.
+        not_finite: number of a file's normals that were NaN or infinite, which do not count either.
         code_space: for a file, the space that its normals are in: "view", "world" or "object".
         own_error_deg: for a file whose normals are rounded, the mean angle of that error.
-        of: for a part of a set, the numbers of its chunks; None for all.
+        of: for a part of a set, the indices of its chunks; None for all.
     """
 
     name: str
@@ -127,10 +127,10 @@ def _unit_interval(index, step: int, offset):
 
 
 def _direction(lane, start, offset_u, offset_v, *, whole: bool) -> Vec3:
-    """Directions of equal area: z uniform in [-1, 1] or [0, 1], the angle around it uniform (Archimedes).
+    """Return directions uniform by area: z is uniform in [-1, 1] or [0, 1], as is the angle around it (Archimedes).
 
-    Computed in float64 and rounded once, so that x, y and z carry independent rounding errors as any normal does: some
-    encodings subtract z from 1, and live or die by them.
+    Computed in float64 and rounded once, so that x, y and z have independent rounding errors, as any normal does.
+    Encodings that subtract z from 1 are sensitive to these errors.
     """
     u, v = (_unit_interval(start + lane, step, by) for step, by in zip(STEPS, (offset_u, offset_v), strict=True))
     # 1 - z^2 as a product, which does not cancel near the poles.
@@ -149,7 +149,7 @@ def _uniform_chunk(start, count, *offsets, whole: bool) -> Chunk:
 
 @cache
 def _fill(whole: bool) -> Fill | None:
-    """Return what makes directions faster than XLA's code; None where nothing can be compiled."""
+    """Return a function that makes directions faster than XLA's code; None if it cannot be compiled."""
     try:
         return Fill(partial(_direction, whole=whole), [np.dtype(np.uint32)] * 3)
     except (NoCompilerError, NotElementwiseError):
@@ -213,13 +213,13 @@ def from_arrays(name: str, title: str, n, view, covered, shape=None, not_finite:
 
 
 def _chunks(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> list[Chunk]:
-    """A set as whole chunks; what is missing of the last does not count."""
+    """Return a set in whole chunks; the padding of the last chunk does not count."""
     count, missing = len(n), -len(n) % CHUNK
     n, view = (np.pad(np.asarray(a, np.float32), ((0, missing), (0, 0)), mode="edge") for a in (n, view))
     planes = Chunk(
         Vec3(*map(np.array, from_array(n))), Vec3(*np.ascontiguousarray(view.T)), np.pad(covered[:, 0], (0, missing))
     )
-    return [jax.tree.map(lambda a, at=start: a[at : at + CHUNK], planes) for start in range(0, count, CHUNK)]
+    return [jax.tree.map(lambda a, first=start: a[first : first + CHUNK], planes) for start in range(0, count, CHUNK)]
 
 
 def axes(count: int = 0, seed: int = 0) -> NormalSet:

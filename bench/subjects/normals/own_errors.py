@@ -31,10 +31,10 @@ BITS, DIFFERENT, NEAR = range(5, 13), 64, 0.1
 
 
 def own_error_deg(n: np.ndarray, roundings: Sequence[Rounding]) -> float | None:
-    """The mean angle in degrees by which normals of length 1, (count, 3), are off; None where nothing is known of it.
+    """Return the mean angular error in degrees of unit normals, (count, 3); None if it is unknown.
 
     Args:
-        roundings: what they were rounded to, one after the other.
+        roundings: the roundings of the normals, in the order in which they were applied.
     """
     some = _some(n)
     if not roundings or not len(some):
@@ -55,10 +55,10 @@ def all_roundings(n: np.ndarray, roundings: Sequence[Rounding]) -> tuple[Roundin
 
 
 def octahedral_grid(n: np.ndarray, roundings: Sequence[Rounding] = ()) -> list[Rounding]:
-    """The octahedral map that normals were packed by, as Draco's are; none where they were packed by none.
+    """Return the grid of the octahedral map that packed the normals, as Draco does; empty if no map did.
 
-    On the octahedron |x| + |y| + |z| = 1 the two numbers of a map's code are two of x, y and z, and the third is what
-    is missing of 1: all three are multiples of a step.
+    On the octahedron |x| + |y| + |z| = 1 the two numbers of a map's code are two of x, y and z, and the third makes
+    up the sum of 1. All three are therefore multiples of a step.
     """
     on = n / np.sum(np.abs(n), axis=1, keepdims=True)
     if len(np.unique(np.round(on, 6), axis=0)) < DIFFERENT:

@@ -1,6 +1,6 @@
-"""Pixels of users' files by the names of their channels: images by OpenImageIO, and NPY.
+"""Pixels of users' files by channel name: images, which OpenImageIO reads, and NPY files.
 
-Sizes are taken from headers and refused before anything is allocated.
+Sizes are read from headers and checked before anything is allocated.
 """
 
 from __future__ import annotations
@@ -72,9 +72,9 @@ class Pixels:
     """Some channels of a file.
 
     Attributes:
-        planes: (channels, height, width) or (channels, count), float32; float64 where the file has that.
-        full: what stands for 1 in a file of whole numbers, None in one of floats.
-        roundings: what normals that are meant already were rounded to.
+        planes: (channels, height, width) or (channels, count), float32; float64 if the file has float64.
+        full: the integer that stands for 1 in a file of integers; None in a file of floats.
+        roundings: the roundings that a file declares for its normals.
     """
 
     planes: np.ndarray
@@ -93,10 +93,10 @@ class Pixels:
 
 
 def read_pixels(path: Path, choose: Choice) -> Pixels:
-    """The channels of a file that `choose` picks of their names.
+    """Return the channels of a file that `choose` selects by name.
 
     Raises:
-        UsageError: it is damaged, too large, or of a kind that is not read; and what `choose` raises.
+        UsageError: the file is damaged, too large or of an unsupported kind, or `choose` raises it.
     """
     return {**READERS, **CLOUDS}[path.suffix.lower()](path, choose)
 
@@ -120,7 +120,7 @@ def has_normals_alone(path: Path) -> bool:
 
 
 def refused(path: Path, what: str, remedy: str = "save it again") -> UsageError:
-    """Return an error that says in one line what is wrong with a file."""
+    """Return an error that describes in one line the problem with a file."""
     return UsageError(f"{path}: {what}; {remedy}")
 
 
@@ -132,12 +132,12 @@ def _bytes(path: Path) -> bytes:
 
 
 def check_sides(path: Path, sides: tuple[int, int], channels: int) -> None:
-    """Raises UsageError where an image is larger than is read."""
+    """Raise UsageError if an image has too many pixels or channels."""
     check_pixels(path, math.prod(sides), channels)
 
 
 def check_pixels(path: Path, pixels: int, channels: int) -> None:
-    """Raises UsageError where an image is larger than is read."""
+    """Raise UsageError if there are too many pixels or channels."""
     if channels > MAX_CHANNELS:
         raise refused(path, f"{channels} channels", f"at most {MAX_CHANNELS} are supported")
     if pixels > MAX_PIXELS or pixels * channels > MAX_NUMBERS:
@@ -148,10 +148,10 @@ def check_pixels(path: Path, pixels: int, channels: int) -> None:
 
 
 def read_image(path: Path, choose: Choice, check: Check = check_sides) -> Pixels:
-    """The channels of an image that `choose` picks of their names; `check` has seen its header before anything is read.
+    """Return the channels of an image that `choose` selects by name; `check` tests the header before pixels are read.
 
     Raises:
-        UsageError: it is damaged, too large, or of a kind that is not read; and what `choose` and `check` raise.
+        UsageError: the image is damaged, too large or of an unsupported kind, or `choose` or `check` raises it.
     """
     kind, start = FORMATS[path.suffix.lower()]
     data = _bytes(path)
@@ -188,7 +188,7 @@ def _in_a_process(path: Path, kind: str, out: Path, mode: str, *names: str) -> N
 
 
 def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]], check: Check) -> list[str]:
-    """The names of all channels. Raises UsageError for what is too large or of a kind that is not read."""
+    """Return the names of all channels. Raises UsageError if a part is too large or of an unsupported kind."""
     for part in parts:
         where = f"part {part['name']!r}: " if len(parts) > 1 else ""
         if part["deep"]:
@@ -214,11 +214,11 @@ def _check_alike(path: Path, kind: str, parts: list[dict[str, Any]], chosen: Seq
         raise refused(path, f"{', '.join(chosen)} are in parts of different sizes or types")
 
 
-def _planes(found: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
-    """Channels of (..., channels) as planes; of float64 and as they are where that is what they are."""
-    kind = np.float64 if found.dtype.itemsize == 8 else np.float32
+def _planes(array: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
+    """Return the chosen channels of (..., channels) as planes: float64 for numbers of 8 bytes, else float32."""
+    kind = np.float64 if array.dtype.itemsize == 8 else np.float32
     with np.errstate(invalid="ignore"):
-        return np.stack([found[..., channel].astype(kind) for channel in chosen])
+        return np.stack([array[..., channel].astype(kind) for channel in chosen])
 
 
 # PLY
@@ -258,12 +258,12 @@ def read_plane(path: Path, choose: Choice) -> Pixels:
     return _npy_pixels(path, array if array.ndim == 3 else array[..., None], choose)
 
 
-def _npy_pixels(path: Path, found: np.ndarray, choose: Choice) -> Pixels:
+def _npy_pixels(path: Path, array: np.ndarray, choose: Choice) -> Pixels:
     """Channels of an array of (..., channels)."""
-    check_pixels(path, math.prod(found.shape[:-1]), found.shape[-1])
-    names = [str(channel) for channel in range(found.shape[-1])]
+    check_pixels(path, math.prod(array.shape[:-1]), array.shape[-1])
+    names = [str(channel) for channel in range(array.shape[-1])]
     chosen = [names.index(name) for name in choose(names)]
-    return Pixels(_planes(found, chosen), np.iinfo(found.dtype).max if found.dtype.kind == "u" else None)
+    return Pixels(_planes(array, chosen), np.iinfo(array.dtype).max if array.dtype.kind == "u" else None)
 
 
 def _npy_array(path: Path) -> np.ndarray:

@@ -1,7 +1,7 @@
-"""Reads image files by OpenImageIO in a process of its own.
+"""A program that reads image files by OpenImageIO in a process of its own.
 
-A file may be made to crash the library, to fill the memory or never to end, and the library writes warnings of its own:
-all of that stays in here. As a program:
+A crafted file may crash the library, fill the memory or never finish, and the library writes warnings of its own. The
+separate process contains all of that. As a program:
 
     python -m normalbench.bench.subjects.normals.pixel_process header KIND FILE OUT   # a JSON list of the parts
     python -m normalbench.bench.subjects.normals.pixel_process pixels KIND FILE OUT NAME ...   # an NPY file of channels
@@ -112,7 +112,7 @@ def answer(mode: str, kind: str, path: str, out: Path, names: list[str]) -> None
 
 
 def main() -> int:
-    """Write what the arguments ask for; the exit status."""
+    """Write the file that the arguments request and return the exit status."""
     mode, kind, path, out, *names = sys.argv[1:]
     limit_addresses(MAX_MEMORY)
     # Each thread takes address space, and processes beside this one take the cores.

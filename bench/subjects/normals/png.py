@@ -1,7 +1,7 @@
-"""A check for what libpng ignores in a PNG file (ISO/IEC 15948): rows beyond those that its header declares.
+"""A check for rows beyond those that a PNG header declares (ISO/IEC 15948), which libpng ignores.
 
-It refuses missing rows, wrong checksums and unknown filters. But if the header declares fewer rows or narrower ones
-than there are, libpng reads the image without an error: sheared, or a part of it.
+The library refuses missing rows, wrong checksums and unknown filters. But if the header declares fewer or narrower
+rows than the file has, libpng reads the image without an error: sheared, or only a part of it.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ MAX_SIDE = 1_000_000
 
 
 def sides(data: bytes) -> tuple[int, int]:
-    """Width and height as the header says them; nothing for a file without one."""
+    """Return the width and height in the header; (0, 0) for a file without a header."""
     return struct.unpack(">II", data[16:24]) if len(data) >= 24 else (0, 0)
 
 
 def has_surplus(data: bytes) -> bool:
-    """Whether an image has more rows than its header says; no more of them is unpacked than that.
+    """Whether an image has more rows than its header declares; at most one byte beyond these rows is unpacked.
 
-    What OpenImageIO refuses is not looked for: ask it first.
+    Errors that OpenImageIO detects are not checked: read the file with it first.
     """
     size = _rows_size(data)
     try:

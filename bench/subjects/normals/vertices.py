@@ -52,10 +52,10 @@ class Vertices:
     """The vertices of a file.
 
     Attributes:
-        normals: those that point somewhere, each different vertex once: unit, (count, 3), object space.
-        zero, not_finite: how many others have no length, and how many are NaN or infinite.
-        own: what they were rounded to.
-        notes: what was left out.
+        normals: the normals that have a direction, once per distinct vertex: unit, (count, 3), object space.
+        zero, not_finite: number of other normals without a length, and number of those that are NaN or infinite.
+        own: the rounding of the file's normals.
+        notes: remarks on vertices and meshes that were left out.
     """
 
     normals: np.ndarray

@@ -1,1 +1,1 @@
-"""Scenes as they are named, and captured frames as scenes."""
+"""Scenes by name, and captured frames as scenes."""

@@ -1,4 +1,4 @@
-"""Captured frames as scenes: what images say of each pixel, read by the readers of normals and of depths."""
+"""Captured frames as scenes: the surface in each pixel, from images read in the same way as normals and depths."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class CapturedFrame:
 
 
 def captured_frame(frame: FrameFile) -> CapturedFrame:
-    """Return the frame that a description stands for. Raises UsageError, in one line, for images that do not fit."""
+    """Return the frame that a file describes. Raises UsageError, in one line, for images that do not match."""
     reader = _Reader(frame)
     pixels = reader.pixels()
     pixels, every, fov = _fewer(pixels, frame.fov)
@@ -60,13 +60,13 @@ def captured_frame(frame: FrameFile) -> CapturedFrame:
 
 
 def _view(frame: FrameFile, fov: float, to_world: np.ndarray) -> View:
-    """The camera at the origin, turned as in the world where a matrix says how."""
+    """Return the view from the origin; the columns of `to_world` are its axes."""
     (_, up, back) = (tuple(map(float, axis)) for axis in to_world.T)
     return View((0.0, 0.0, 0.0), (-back[0], -back[1], -back[2]), fov, frame.near, frame.far, (up[0], up[1], up[2]))
 
 
 def _fewer(pixels: PixelSurfaces, fov: float) -> tuple[PixelSurfaces, int, float]:
-    """Return as many pixels as can be drawn, the step between them, and the angle of view of what is left."""
+    """Return a regular subset of pixels that is small enough to draw, its step, and its vertical angle of view."""
     height, width = pixels.depth.shape
     every = math.isqrt(max(height * width - 1, 0) // MOST_PIXELS) + 1
     rows, columns = height // every, width // every
@@ -111,7 +111,7 @@ class _Reader:
         return PixelSurfaces(depth=depth, normal=normal, roughness=roughness, **quantities)
 
     def _asked(self, name: str, read: Callable[[], Any]) -> Any:
-        """Return what `read` reads of an entry. Raises UsageError that names the entry."""
+        """Return the result of `read` for an entry. Raises a UsageError that names the entry."""
         try:
             return read()
         except UsageError as error:
@@ -156,25 +156,25 @@ class _Reader:
         self._asked(name, lambda: _check_range(name, quantity[covered]))
         return quantity if name == "emissive" else np.clip(quantity, 0.0, 1.0)
 
-    def _image(self, name: str, said: dict[str, Any], covered: np.ndarray) -> np.ndarray:
-        path = Path(said["file"])
-        pixels = _planes(path, name, said)
+    def _image(self, name: str, entry: dict[str, Any], covered: np.ndarray) -> np.ndarray:
+        path = Path(entry["file"])
+        pixels = _planes(path, name, entry)
         check_size(path, pixels.shape, covered.shape)
         _check_finite(path, pixels.planes, covered)
         if pixels.steps:
             self._coarse.setdefault(pixels.steps.bit_length(), []).append(name)
-        curve = choose_one("curve", said.get("curve", "linear"), CURVES)
-        if name == "base_color" and "curve" not in said and pixels.full == READS_AS_COLOUR:
+        curve = choose_one("curve", entry.get("curve", "linear"), CURVES)
+        if name == "base_color" and "curve" not in entry and pixels.full == READS_AS_COLOUR:
             self._note(
                 name, ['8 bits without "curve" are read as linear; for images meant for screens use "curve": "srgb"']
             )
         image = CURVES[curve](np.where(covered, pixels.planes, 0) / np.float32(pixels.full or 1))
-        image = np.moveaxis(image * np.float32(said.get("scale", 1.0)), 0, -1).astype(np.float32)
+        image = np.moveaxis(image * np.float32(entry.get("scale", 1.0)), 0, -1).astype(np.float32)
         return image if ENTRIES[name] is COLOUR else image[..., 0]
 
-    def _stood_in(self, name: str, found: np.ndarray | None, shape: tuple[int, ...]) -> np.ndarray:
-        if found is not None:
-            return found
+    def _stood_in(self, name: str, quantity: np.ndarray | None, shape: tuple[int, ...]) -> np.ndarray:
+        if quantity is not None:
+            return quantity
         sides = (*shape, 3) if ENTRIES[name] is COLOUR else shape
         return np.full(sides, STAND_INS[name], np.float32)
 
@@ -197,10 +197,12 @@ def _to_view(turns: Turns) -> np.ndarray:
 
 
 def upright(to_world: np.ndarray) -> np.ndarray:
-    """View space to a world that is right-handed with y up, as environments are, and has the axes of another.
+    """Return the matrix from view space to a right-handed world with y up, as environments are.
+
+    Its axes are those of the original world, reordered and possibly mirrored.
 
     Args:
-        to_world: to that other world, whose axis that is most along the camera's up is taken for its up.
+        to_world: the matrix from view space to the original world, whose axis closest to the camera's up becomes y.
     """
     axis = int(np.argmax(abs(to_world[:, 1])))
     y = np.sign(to_world[axis, 1]) * to_world[axis]
@@ -221,13 +223,13 @@ def _out_of_reach(path: Path, image: DepthImage, camera: Camera) -> UsageError:
     return refused(path, f"no depth is within near and far; depths are {reach}", "see --depths-are and --depth-unit")
 
 
-def _planes(path: Path, name: str, said: dict[str, Any]) -> Pixels:
+def _planes(path: Path, name: str, entry: dict[str, Any]) -> Pixels:
     """The channels of a quantity. Raises UsageError."""
     if path.suffix.lower() not in READERS:
         raise UsageError(f"{path}: not an image; {', '.join(READERS)} are read")
     if ENTRIES[name] is COLOUR:
-        return read_pixels(path, lambda names: _colours(path, names, said.get("channels")))
-    return read_plane(path, lambda names: [_one(path, names, said.get("channel"))])
+        return read_pixels(path, lambda names: _colours(path, names, entry.get("channels")))
+    return read_plane(path, lambda names: [_one(path, names, entry.get("channel"))])
 
 
 def _colours(path: Path, names: Sequence[str], asked: str | None) -> list[str]:
@@ -257,9 +259,9 @@ def _check_finite(path: Path, planes: np.ndarray, covered: np.ndarray) -> None:
         raise refused(path, what, "exclude them with a mask of the normals")
 
 
-def _check_range(name: str, found: np.ndarray) -> None:
-    """Raise UsageError for numbers that a quantity cannot have."""
-    low, high = float(found.min()), float(found.max())
+def _check_range(name: str, numbers: np.ndarray) -> None:
+    """Raise UsageError for values that are impossible for a quantity."""
+    low, high = float(numbers.min()), float(numbers.max())
     if name == "emissive":
         if not 0 <= low <= high <= MOST_LIGHT:
             raise UsageError(f"its numbers are {low:.3g} to {high:.3g}; light must be 0 to {MOST_LIGHT:g}")
@@ -267,6 +269,6 @@ def _check_range(name: str, found: np.ndarray) -> None:
         raise UsageError(f"its numbers are {low:.3g} to {high:.3g}, but must be 0 to 1; rescale them with --scale")
 
 
-def lines_of(frame: FrameFile, found: CapturedFrame) -> Iterator[str]:
+def lines_of(frame: FrameFile, capture: CapturedFrame) -> Iterator[str]:
     """Yield the lines to report about a frame on standard error."""
-    yield from (f"{frame.path}: {note}" for note in found.notes)
+    yield from (f"{frame.path}: {note}" for note in capture.notes)

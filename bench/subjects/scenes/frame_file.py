@@ -70,9 +70,9 @@ class FrameFile:
     view_matrix: str | None
     entries: Mapping[str, Any]
 
-    def error(self, name: str, said: object) -> UsageError:
+    def error(self, name: str, message: object) -> UsageError:
         """Return a one-line error about an entry, in which options have their names as keys."""
-        return UsageError(f"{self.path}: {name}: {as_keys(str(said))}")
+        return UsageError(f"{self.path}: {name}: {as_keys(str(message))}")
 
 
 def as_keys(text: str) -> str:
@@ -87,7 +87,7 @@ def as_keys(text: str) -> str:
 
 
 def read_frame_file(path: Path) -> FrameFile:
-    """A description. Raises UsageError, in one line, for what is missing in it or not known."""
+    """Return the description in a file. Raises UsageError, in one line, for missing, unknown or invalid entries."""
     document = _document(path)
     attributes = {
         spelled("attribute", name, KNOWN) or name: value for name, value in document.items() if value is not None
@@ -133,14 +133,14 @@ def _document(path: Path) -> dict[str, Any]:
     return document
 
 
-def _check_names(path: Path, place: str, found: Mapping[str, Any], known: tuple[str, ...]) -> None:
-    unknown = [name for name in found if name not in known]
+def _check_names(path: Path, place: str, entries: Mapping[str, Any], known: tuple[str, ...]) -> None:
+    unknown = [name for name in entries if name not in known]
     if unknown:
         raise UsageError(f"{path}: {place}{unknown_name('key', unknown, known)}")
 
 
 def _how(name: str) -> str:
-    """Say how to write what is missing."""
+    """Return the instruction for writing a missing entry."""
     if name in CAMERA:
         return f'write "{name}": NUMBER'
     return f'write "{name}": {{"file": "FILE", "{"channel" if "channel" in ENTRIES[name] else "channels"}": "..."}}'
@@ -165,7 +165,7 @@ def _check_camera(path: Path, fov: float, near: float, far: float) -> None:
 
 
 def _matrix(path: Path, value: object) -> str | None:
-    """Return the numbers of a matrix as they are typed, or the path of the file that holds them."""
+    """Return the numbers of a matrix as comma-separated text, or the path of the file that holds them."""
     if value is None:
         return None
     if isinstance(value, list):

@@ -20,7 +20,7 @@ def mesh_file(path: Path) -> MeshFile:
 
 
 def read_or_refused(read: Callable[[], T]) -> T:
-    """Return what `read` reads of a mesh file. Raises as `mesh_file` does."""
+    """Return the result of `read` for a mesh file. Raises as `mesh_file` does."""
     try:
         return read()
     except MissingPackageError as error:

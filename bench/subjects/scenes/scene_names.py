@@ -1,4 +1,4 @@
-"""Scenes as they are named: those there are, users' mesh files, and captured frames."""
+"""Scenes by name: those of the catalogue, users' mesh files, and captured frames."""
 
 from __future__ import annotations
 
@@ -51,5 +51,5 @@ def scene_makers_named(names: Names) -> list[SceneMaker]:
 
 
 def _given(scene: Scene, _: Setting) -> Scene:
-    """A scene that is what it is, whatever is asked for."""
+    """Return a fixed scene, whatever the setting."""
     return scene

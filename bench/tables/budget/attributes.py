@@ -251,7 +251,7 @@ def _reflectances() -> Iterator[Code]:
 
 
 def _short(limit: float) -> float:
-    """A range in the digits that a layout says it with."""
+    """Return a range rounded to the digits with which a layout writes it."""
     return float(f"{limit:.6g}")
 
 

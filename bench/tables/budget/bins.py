@@ -17,16 +17,16 @@ class Bin:
     """A render target.
 
     Attributes:
-        name: what it is called here; a format, and how it is used.
-        format: of the layout.
-        bytes: a pixel.
-        channels: how many it has, by what they hold and in how many bits; none where all of its bits are shared.
-        fields: bits that codes share in any sizes; 0 where each number has a channel.
-        copies: how many there may be.
-        blends: whether decals blend into it; a fourth channel is then their factor and holds nothing.
-        fuss: what an engineer would rather do without: 0 for plain channels.
-        shares: whether codes share its channels of the first one's size bit by bit.
-        is_usual: whether it is tried where no formats are named.
+        name: name of the target here: its format, and how it is used.
+        format: format of the target in a layout.
+        bytes: bytes per pixel.
+        channels: number of channels by kind and bits; empty if encodings share all of its bits.
+        fields: number of bits that encodings share in fields of any size; 0 if each number has a channel.
+        copies: maximum number of such targets in a layout.
+        blends: whether decals blend into it; its fourth channel is then the blend factor and stores nothing else.
+        fuss: penalty for what an engineer would rather avoid: 0 for plain channels.
+        shares: whether encodings share, bit by bit, its UNORM channels of the first channel's size.
+        is_usual: whether it is tried if no formats are named.
     """
 
     name: str
@@ -72,7 +72,7 @@ class Bin:
         return [(UNORM, next(size for size in sizes if size >= bits)) for bits in code.bits]
 
     def _need_of_exact(self, code: Code) -> Mapping[Channel, float] | None:
-        """Whole channels, the narrowest that each of its parts fits into; of bytes only as many bits as it has."""
+        """Return the narrowest whole channel for each part of an encoding; None if they do not fit."""
         sizes = sorted(bits for kind, bits in self.channels if kind == UNORM)
         taken: dict[Channel, float] = {}
         for bits in code.bits:
@@ -146,11 +146,11 @@ LAST = {
 }
 
 
-def _blended(one: Bin) -> Bin:
+def _blended(plain: Bin) -> Bin:
     # The factor is the shader's fourth number, which lies nowhere where there are fewer channels.
-    channels = {channel: count - (channel == LAST.get(one.format)) for channel, count in one.channels.items()}
+    channels = {channel: count - (channel == LAST.get(plain.format)) for channel, count in plain.channels.items()}
     kept = {channel: count for channel, count in channels.items() if count}
-    return replace(one, name=f"{one.name}_blended", channels=kept, blends=True, shares=False)
+    return replace(plain, name=f"{plain.name}_blended", channels=kept, blends=True, shares=False)
 
 
 # What a render target of each format costs of WebGPU's 32 bytes a sample, and to how many bytes it is aligned (WebGPU,

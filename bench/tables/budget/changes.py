@@ -18,14 +18,13 @@ NUMBERS = ("metallic", "f0", "roughness", "ao")
 
 
 def holds_other_quantities(layout: Layout) -> bool:
-    """Whether a layout keeps a diffuse colour and an F0, or a specular power, in place of what metal/rough surfaces
-    have."""
+    """Whether a layout stores a diffuse colour and F0, or a specular power, instead of metallic-roughness values."""
     words = {word.component for word in layout.words}
     return "metallic" not in words and bool(words & {"f0.r", "power"})
 
 
 def completed(layout: Layout) -> Layout:
-    """Return a layout with what it lacks of a metal/rough surface in floats next to it."""
+    """Return a layout with the metallic-roughness attributes that it lacks added in float targets."""
     if holds_other_quantities(layout):
         return layout
     lacks = [COMPONENTS[name][0] for name in NUMBERS if COMPONENTS[name][0] not in layout.components]
@@ -55,10 +54,10 @@ def alone(layout: Layout, attribute: str) -> Layout:
     return replace(layout, name=f"{layout.name}_{attribute}", targets=tuple(held), light="", **changes)
 
 
-def _only(layout: Layout, at: int, target: Target, components: Sequence[str]) -> Target:
+def _only(layout: Layout, index: int, target: Target, components: Sequence[str]) -> Target:
     """Return a target with the words of some components only; the bits or channels of its other words become free."""
     words = []
-    for text in spelt_out(place_of(layout.name, at, target), target):
+    for text in spelt_out(place_of(layout.name, index, target), target):
         bits = text.partition(":")[2] if "(" not in text else text.rpartition(")")[2].partition(":")[2]
         is_kept = any(component in text for component in components) and not text.startswith(OTHER)
         words.append(text if is_kept else FREE + (f":{bits}" if bits else ""))
@@ -69,19 +68,19 @@ Errors = Mapping[str, Mapping[str, float]]
 
 
 def said(
-    mine: Errors, found: Solution, errors_of: Callable[[str, str], Mapping[str, float]], classes: Sequence[str]
+    mine: Errors, proposal: Solution, errors_of: Callable[[str, str], Mapping[str, float]], classes: Sequence[str]
 ) -> str:
-    """The changes that bring the worst class most, one after the other, each with what that class has then.
+    """Return the changes that improve the worst class the most, in order, each with the predicted PSNR after it.
 
     Args:
         mine: by attribute, the error of each class.
-        found: a proposal of as many bytes.
-        errors_of: the errors of an attribute's code, by both names.
-        classes: those whose worst counts.
+        proposal: a proposal of the same size.
+        errors_of: function from the names of an attribute and its encoding to the error of each class.
+        classes: the classes whose worst error counts.
     """
     theirs = {
         placed.code.attribute: (placed.code.name, errors_of(placed.code.attribute, placed.code.name))
-        for placed in found.placed
+        for placed in proposal.placed
     }
     now = dict(mine)
     start = _worst(now, classes)

@@ -81,7 +81,7 @@ def _judged(scenes: str) -> str:
 
 
 def _ticks(points: Sequence[Row]) -> tuple[tuple[float, str], ...]:
-    """Every second whole number."""
+    """Return a tick for each even number in the range of the points."""
     low, high = (bound(point["x"] for point in points) for bound in (min, max))
     return tuple((float(tick), str(tick)) for tick in range(2 * math.ceil(low / 2), math.floor(high) + 1, 2))
 

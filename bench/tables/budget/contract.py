@@ -37,7 +37,7 @@ NAMES = dict.fromkeys(name for word in (*KNOWN, *EXACT, "depth", "all", "none") 
 
 
 def as_known(words: Iterable[Word]) -> Names:
-    """Return words of attributes, joined by + or :, with each name as it is known here."""
+    """Return words of attributes, joined by + or :, with each known name in its own spelling."""
     known = re.compile(r"[^+:]+")
     return tuple(
         known.sub(lambda match: spelled("attribute", match[0], NAMES) or match[0], str(word)) for word in words
@@ -45,10 +45,10 @@ def as_known(words: Iterable[Word]) -> Names:
 
 
 def attributes_held(words: Names, speed: float) -> list[Attribute]:
-    """Return the attributes that words stand for, motion up to a speed in pixels a frame.
+    """Return the attributes that words stand for, with motion up to a speed in pixels per frame.
 
     Raises:
-        UsageError: an unknown one, two of one name, or no normal.
+        UsageError: an unknown attribute, one named twice, or no normal.
     """
     attributes = [_attribute(str(word), speed) for word in words]
     held = [attribute for attribute in attributes if attribute]

@@ -97,9 +97,9 @@ class Slots:
                     self._alone[_key(code, target)] = alone(code, target)
         self.count(self._alone.values())
 
-    def of_code(self, code: Code, one: Bin) -> float:
+    def of_code(self, code: Code, target_bin: Bin) -> float:
         """Return the slots that an encoding takes by itself in a target, after `count_codes`."""
-        return self.once(self._alone[_key(code, one)])
+        return self.once(self._alone[_key(code, target_bin)])
 
     def columns(self, layout: Layout, overdraw: float, readers: float) -> Row:
         """Return the cost columns for the family with the highest cost per pixel; empty if no cost is known."""
@@ -120,25 +120,25 @@ def _price(family: str, pack: Row | None, unpack: Row | None) -> Price | None:
     return Price(family, *slots) if len(slots) == 2 else None
 
 
-def _key(code: Code, one: Bin) -> tuple[str, str, str]:
-    how = FIELDS if one.fields else BYTES if SHARED in (one.need(code) or {}) else OWN
+def _key(code: Code, target_bin: Bin) -> tuple[str, str, str]:
+    how = FIELDS if target_bin.fields else BYTES if SHARED in (target_bin.need(code) or {}) else OWN
     return code.attribute, code.name, how
 
 
-def alone(code: Code, one: Bin) -> Layout:
+def alone(code: Code, target_bin: Bin) -> Layout:
     """A layout that holds a code in a target, and a normal in floats where it is of another attribute."""
-    placed, name = Placed(code, one, 0), f"{code.attribute} {code.name}"
+    placed, name = Placed(code, target_bin, 0), f"{code.attribute} {code.name}"
     if code.attribute == NORMAL:
         return layout_of(name, Solution((placed,), {}))
-    targets = (target_of(one, [placed]), Target("rgba32f", "normal.x normal.y normal.z -"))
+    targets = (target_of(target_bin, [placed]), Target("rgba32f", "normal.x normal.y normal.z -"))
     return Layout(name, name, targets, ENCODINGS["xyz"], "this project", space="world")
 
 
 def within(problem: Problem, most: float, slots: Slots, solve: Solve) -> list[Solution]:
-    """The best layouts whose whole code takes at most so many slots; none where none is found.
+    """Return the best layouts that need at most `most` slots as a whole; empty if none is found.
 
-    A program knows what each code takes by itself. A whole layout takes more, to join bits, or less, where codes share
-    a byte: that difference is taken from the last layout that was found.
+    A program knows the slots of each encoding by itself. A whole layout needs more slots, to join bits, or fewer, if
+    encodings share a byte. That difference is taken from the last layout that was found.
     """
     slots.count_codes(problem)
     best: list[Solution] = []
@@ -173,14 +173,14 @@ def least(problem: Problem, slots: Slots, solve: Solve) -> Solution | None:
         return None
     sums = [_total(slots, first) + more for more in BEYOND]
     others = [solution for most in sums for solution in solve(replace(problem, cost=slots.of_code, most_cost=most))]
-    return min((first, *others), key=lambda one: whole(slots, one))
+    return min((first, *others), key=lambda candidate: whole(slots, candidate))
 
 
-def _total(slots: Slots, found: Solution) -> float:
+def _total(slots: Slots, solution: Solution) -> float:
     """Return the sum of the slots that the encodings of a layout take separately."""
-    return sum(slots.of_code(placed.code, placed.bin) for placed in found.placed)
+    return sum(slots.of_code(placed.code, placed.bin) for placed in solution.placed)
 
 
-def whole(slots: Slots, found: Solution) -> float:
+def whole(slots: Slots, solution: Solution) -> float:
     """Return the slots to pack and unpack a layout once."""
-    return slots.once(layout_of("", found))
+    return slots.once(layout_of("", solution))

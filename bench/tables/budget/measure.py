@@ -1,4 +1,4 @@
-"""The budget table: for each number of bytes a layout, what an image makes of it, and where its error comes from."""
+"""The budget table: for each size a layout, the quality of its images, and the sources of its error."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def measure(device: Device, question: Question, tick: Tick) -> list[Row]:
 
 
 class Judged:
-    """The scenes of a question, and what codes do to them."""
+    """The scenes of a question, and the errors that encodings cause in them."""
 
     def __init__(self, question: Question, judges: Sequence[Exact], tick: Tick):
         self._question, self._judges, self._tick = question, judges, tick
@@ -111,7 +111,7 @@ class Judged:
                     mine.update({_class_of(judge, n): e for n, e in errors.items()})
 
     def _shows(self, attribute: Attribute) -> bool:
-        """Whether a scene shows what the codes of an attribute lose."""
+        """Whether any encoding of an attribute causes an error in a scene."""
         mine = (errors for (name, _), errors in self._errors.items() if name == attribute.name)
         return any(e > NOTHING for errors in mine for e in errors.values())
 
@@ -158,8 +158,8 @@ class Judged:
             yield Problem(held, self._errors, classes or self.classes, asked.bins, asked.rules, self._together)
 
     def _held_back_db(self, asked: Own) -> float | None:
-        """Return the PSNR of the mean error over scenes: each has the worst of its classes by a layout that the other
-        scenes chose. None if there is one scene."""
+        """Return the PSNR of the mean error over scenes. Each scene counts with its worst class, in a layout that the
+        other scenes chose. None if there is only one scene."""
         errors = []
         for scene in dict.fromkeys(map(_scene_of, self.classes)):
             inside = [name for name in self.classes if _scene_of(name) == scene]
@@ -170,7 +170,7 @@ class Judged:
         return psnr_db(float(np.mean(errors))) if len(errors) > 1 else None
 
     def _kept(self, problem: Problem, count: int) -> list[Solution]:
-        """Up to so many of the best layouts: of whole numbers only where they gain much."""
+        """Return up to `count` of the best layouts; integer targets are used only if they gain much."""
         plain = _in_channels(problem)
         solutions = self._in_slots(plain, count)
         if len(plain.bins) == len(problem.bins):
@@ -184,13 +184,13 @@ class Judged:
         return others
 
     def _in_slots(self, problem: Problem, count: int) -> list[Solution]:
-        """Up to so many of the best layouts, whose code keeps to --most-instructions where that is asked."""
+        """Return up to `count` of the best layouts, within --most-instructions if it is set."""
         most, best = self._question.most_instructions, partial(finalists, count=count)
         return best(problem) if most is None else within(problem, most, self._slots, best)
 
     def _best(self, name: str, asked: Own, depth: DepthEncoding | None = None) -> tuple[Solution, Layout, Row] | None:
-        """The best layout, drawn whole. Where its image is not what was predicted, the pairs of codes that make it are
-        measured, and it is solved anew with them."""
+        """Return the best layout and the row of its images. If these differ from the prediction, measure the layout's
+        pairs of encodings and solve again with the results."""
         best = self._best_drawn(name, asked, depth)
         if best and self._is_off(best[0], best[2]) and self._measure_pairs(best[0]):
             return self._best_drawn(name, asked, depth)
@@ -210,13 +210,13 @@ class Judged:
                 break
         return best
 
-    def _is_off(self, found: Solution, row: Row) -> bool:
-        """Whether the image of the worst class is not what was predicted."""
-        return not row["skipped"] and abs(psnr_db(found.worst_of(self.classes)) - row["worst_db"]) > OFF_DB
+    def _is_off(self, solution: Solution, row: Row) -> bool:
+        """Whether the worst class in the image differs from its prediction by more than OFF_DB."""
+        return not row["skipped"] and abs(psnr_db(solution.worst_of(self.classes)) - row["worst_db"]) > OFF_DB
 
-    def _measure_pairs(self, found: Solution) -> bool:
-        """Measures what pairs of a layout's codes make together; whether there is one that is new and counts."""
-        codes, before = [placed.code for placed in found.placed if placed.code.trip], len(self._together)
+    def _measure_pairs(self, solution: Solution) -> bool:
+        """Measure the joint errors of pairs of a layout's encodings; return whether any new pair counts."""
+        codes, before = [placed.code for placed in solution.placed if placed.code.trip], len(self._together)
         for first, second in combinations(codes, 2):
             pair = frozenset((first.key, second.key))
             beyond: dict[str, float] = {}
@@ -225,7 +225,7 @@ class Judged:
                 for name, e in both.items():
                     key = _class_of(judge, name)
                     beyond[key] = e - self._errors[first.key].get(key, 0.0) - self._errors[second.key].get(key, 0.0)
-            if any(abs(e) > LEAST_SHARE * found.errors[name] for name, e in beyond.items() if name in self.classes):
+            if any(abs(e) > LEAST_SHARE * solution.errors[name] for name, e in beyond.items() if name in self.classes):
                 self._together[pair] = beyond
         return len(self._together) > before
 
@@ -297,9 +297,9 @@ class Judged:
             improved | self._predicted(solution, improved) | note | {"kind": IMPROVED, "limit": layout.bytes_per_pixel}
         )
 
-    def _next(self, rules: Rules, found: Solution) -> Row:
+    def _next(self, rules: Rules, solution: Solution) -> Row:
         """Return how many more bytes bring a gain, and the gain; empty if a few more bytes bring none."""
-        worst = found.worst_of(self.classes)
+        worst = solution.worst_of(self.classes)
         now = psnr_db(worst)
         for size in MORE if worst > HALF_STEP else ():
             more = self._solved(replace(rules, bytes=rules.bytes + size))
@@ -323,7 +323,8 @@ class Judged:
         return f"{few}: {smallest}{self._dropped(problem)}"
 
     def _dropped(self, problem: Problem) -> str:
-        """Say which attributes to leave out so that a layout fits, smallest loss in the image first."""
+        """Return a sentence on the attributes to leave out so that a layout fits, smallest loss first; empty if
+        nothing helps."""
         losses = {
             attribute.name: loss for attribute in problem.attributes if (loss := self._loss(attribute)) is not None
         }
@@ -340,8 +341,8 @@ class Judged:
         return f". It fits {', and '.join([*light, *without])}" if dropped else ""
 
     def _loss(self, attribute: Attribute) -> float | None:
-        """Return the error of the worst class without an attribute: 0 of what no image reads; None of what an image
-        cannot do without."""
+        """Return the error of the worst class without an attribute: 0 if no image reads the attribute, None if images
+        cannot do without it."""
         if not attribute.is_seen:
             return 0.0
         if attribute.name not in WITHOUT:
@@ -370,23 +371,23 @@ class Judged:
             f"{most} issue slots are too few: the cheapest layout of {problem.rules.bytes} bytes {slots} on {families}"
         )
 
-    def _predicted(self, found: Solution, row: Row) -> Row:
+    def _predicted(self, solution: Solution, row: Row) -> Row:
         """Return the predicted figures of a layout, and the sources of the error in the worst class of its image."""
-        worst = row["worst_class"] or max(self.classes, key=lambda name: found.errors.get(name, 0.0))
-        total = found.errors[worst]
-        shares = {placed.code.attribute: self._errors.get(placed.key, {}).get(worst, 0.0) for placed in found.placed}
+        worst = row["worst_class"] or max(self.classes, key=lambda name: solution.errors.get(name, 0.0))
+        total = solution.errors[worst]
+        shares = {placed.code.attribute: self._errors.get(placed.key, {}).get(worst, 0.0) for placed in solution.placed}
         for pair, beyond in self._together.items():
-            if pair <= {placed.key for placed in found.placed}:
+            if pair <= {placed.key for placed in solution.placed}:
                 shares[" with ".join(sorted(name for name, _ in pair))] = beyond.get(worst, 0.0)
         largest = sorted(shares.items(), key=lambda pair: -pair[1])
         parts = [f"{name} {100 * e / total:.0f} %" for name, e in largest if total and abs(e) / total >= 0.01]
-        frames = [e for name, e in found.errors.items() if name.endswith(f" {FRAME}")]
+        frames = [e for name, e in solution.errors.items() if name.endswith(f" {FRAME}")]
         return {
             "predicted_db": psnr_db(max(frames, default=0.0)),
-            "predicted_worst_db": psnr_db(found.worst_of(self.classes)),
+            "predicted_worst_db": psnr_db(solution.worst_of(self.classes)),
             "error_from": ", ".join(parts) or None,
-            "blends": ", ".join(placed.code.attribute for placed in found.placed if placed.bin.blends) or None,
-            "codes": "; ".join(f"{placed.code.attribute} {placed.code.name}" for placed in found.placed),
+            "blends": ", ".join(placed.code.attribute for placed in solution.placed if placed.bin.blends) or None,
+            "codes": "; ".join(f"{placed.code.attribute} {placed.code.name}" for placed in solution.placed),
             "by_contract": ", ".join(self.unseen) or None,
         }
 
@@ -443,14 +444,14 @@ class Judged:
     def _contract_bytes(self, layout: Layout) -> int:
         return math.ceil(layout.bytes_per_pixel + self._beside(layout))
 
-    def _changes(self, layout: Layout, found: Solution) -> str:
+    def _changes(self, layout: Layout, proposal: Solution) -> str:
         """Return the changes from a proposal that would improve a layout most."""
         whole, mine = changes.completed(layout), {}
         for name in COMPONENTS:
             # A number that carries a sign of the normal does not stand alone.
             with suppress(*UNMEASURABLE):
                 mine[name] = self._errors_alone(whole, name)
-        return changes.said(mine, found, lambda name, code: self._errors.get((name, code), {}), self.classes)
+        return changes.said(mine, proposal, lambda name, code: self._errors.get((name, code), {}), self.classes)
 
     def _errors_alone(self, layout: Layout, attribute: str) -> dict[str, float]:
         only = changes.alone(layout, attribute)

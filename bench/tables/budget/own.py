@@ -1,4 +1,4 @@
-"""The attributes and targets of a user's layout: what a proposal for the same has to hold and may use."""
+"""The attributes that a proposal for a user's layout must hold, and the targets that it may use."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SIGNED = "_snorm"
 
 @dataclass(frozen=True)
 class Own:
-    """A layout's own attributes, the targets that it has, and what a proposal for it must keep to."""
+    """A layout's own attributes, its targets, and the rules for a proposal in its place."""
 
     attributes: Sequence[Attribute]
     bins: Sequence[Bin]
@@ -109,13 +109,13 @@ def _attributes(layout: Layout) -> Iterator[Attribute]:
         yield _as_it_is(MODEL if component == "shading_model" else f"{component} {number}", layout, [pair])
 
 
-def _texts(layout: Layout, at: int, target: Target) -> Iterator[tuple[str, Word]]:
-    texts = [t for t in spelt_out(place_of(layout.name, at, target), target) if not t.startswith(FREE)]
-    yield from zip(texts, all_placed(layout.name, at, target), strict=True)
+def _texts(layout: Layout, index: int, target: Target) -> Iterator[tuple[str, Word]]:
+    texts = [t for t in spelt_out(place_of(layout.name, index, target), target) if not t.startswith(FREE)]
+    yield from zip(texts, all_placed(layout.name, index, target), strict=True)
 
 
 def _as_it_is(name: str, layout: Layout, pairs: Sequence[tuple[str, Word]]) -> Attribute:
-    """Words that keep what they have."""
+    """Return an attribute whose words keep their bits and their kind of channel."""
     kinds, bits = [], []
     for _, word in pairs:
         storage = layout.targets[word.target].storage

@@ -147,9 +147,9 @@ def _of_held(options: BudgetOptions) -> BudgetOptions:
     return options
 
 
-def _read_alone(said: Names, names: Sequence[str]) -> frozenset[str]:
+def _read_alone(attributes: Names, names: Sequence[str]) -> frozenset[str]:
     """Return the attributes that a pass reads without the rest. Raises UsageError for attributes that are not held."""
-    return frozenset() if said == ("none",) else frozenset(names_held("--read-alone", said, names))
+    return frozenset() if attributes == ("none",) else frozenset(names_held("--read-alone", attributes, names))
 
 
 def _webgpu_cost(light: str) -> int:

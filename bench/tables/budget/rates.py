@@ -51,7 +51,7 @@ FRAME = "frame"
 
 @dataclass(frozen=True)
 class Stage:
-    """A scene, at a size, as figures are taken of it."""
+    """A scene and the size at which it is measured."""
 
     maker: SceneMaker
     setting: Setting
@@ -67,7 +67,7 @@ class Stage:
 
 
 class Exact:
-    """The exact image of a stage, and what others are compared with. Open while codes are measured."""
+    """The exact image of a stage, with which other images are compared. It stays open with the stack."""
 
     def __init__(self, device: Device, stack: ExitStack, stage: Stage):
         self.stage, self._device = stage, device

@@ -27,7 +27,7 @@ NAMED = 3
 
 
 def told(row: Row) -> Iterator[str]:
-    """Yield the answer for a limit, where its error comes from, what more bytes gain, its rules and its cost."""
+    """Yield the answer for a size limit, the sources of its error, the gain of more bytes, its rules and its cost."""
     if row["skipped"]:
         yield f"{row['skipped'].rstrip('.')}."
         return
@@ -38,7 +38,7 @@ def told(row: Row) -> Iterator[str]:
 
 
 def in_short(row: Row) -> Iterator[str]:
-    """Yield the answer of a row with figures, and what it costs."""
+    """Yield the answer of a row with figures, and its cost."""
     yield _answer(row)
     slots = "not counted on this machine"
     if row["pack_slots"] is not None:
@@ -157,7 +157,7 @@ def _unmeasured(row: Row) -> tuple[str, ...]:
 
 
 def conditions(row: Row) -> str:
-    """Return what the figures hold for, and what was not measured."""
+    """Return the conditions of the figures, and the attributes that were not measured."""
     images = f"Images: {row['scene'].replace(',', ', ')} at {row['size']}."
     return " ".join(filter(None, [_free(row), images, *_unmeasured(row)]))
 

@@ -387,13 +387,13 @@ TARGET_FUSS, ODD_FUSS, JOINED_FUSS, CURVE_FUSS = 0.5, 0.1, 0.05, 0.05
 WORST = 1e3
 
 
-def fuss(code: Code, one: Bin) -> float:
+def fuss(code: Code, target_bin: Bin) -> float:
     """Return the penalty for what an engineer would rather avoid about an encoding in a target."""
-    is_shared = one.fields or SHARED in (one.need(code) or {})
+    is_shared = target_bin.fields or SHARED in (target_bin.need(code) or {})
     curve = CURVE_FUSS * any("(" in word for word in code.words)
     if not is_shared:
         return curve
-    joined = sum(bits > one.part for bits in code.bits) if not one.fields else 0
+    joined = sum(bits > target_bin.part for bits in code.bits) if not target_bin.fields else 0
     return curve + ODD_FUSS * sum(bits % 8 != 0 for bits in code.bits) + JOINED_FUSS * joined
 
 
@@ -403,8 +403,10 @@ def solved(problem: Problem) -> Solution | None:
 
 
 def finalists(problem: Problem, count: int) -> list[Solution]:
-    """Up to so many layouts of other codes each, the plainest first, none of them worse than the best by more than what
-    counts as equal: in the worst class, and then in the sum of all; none where none keeps to the rules."""
+    """Return up to `count` layouts of different encodings, the plainest first; empty if no layout keeps to the rules.
+
+    No layout is worse than the best by more than EQUAL_DB, in the worst class and then in the sum of all classes,
+    unless its error stays below UNSEEN."""
     program = _Program(problem)
     best = _best(program)
     if best is None:

@@ -76,10 +76,10 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     yield from _compared(rows)
 
 
-def _compared(rows: Sequence[Row], said: Sequence[str] = ()) -> Iterator[Sheet]:
+def _compared(rows: Sequence[Row], sentences: Sequence[str] = ()) -> Iterator[Sheet]:
     shown = [{name: row[name] for name in SHOWN} for row in rows if row["worst_db"] is not None]
     if shown:
-        yield Sheet("layouts, by bytes", shown, TABLE.drops(shown), said=tuple(said))
+        yield Sheet("layouts, by bytes", shown, TABLE.drops(shown), said=tuple(sentences))
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:

@@ -37,65 +37,65 @@ def _by_target(solution: Solution) -> Iterator[tuple[Bin, list[Placed]]]:
         yield placed[0].bin, placed
 
 
-def target_of(one: Bin, placed: Sequence[Placed]) -> Target:
+def target_of(target_bin: Bin, placed: Sequence[Placed]) -> Target:
     """Return the target for the encodings that are placed in a bin."""
-    if one.fields:
+    if target_bin.fields:
         # The widest first, so that the numbers of a code begin at the top.
         order = sorted(placed, key=lambda p: (p.code.is_exact, -p.code.total_bits))
-        return Target(one.format, " ".join(_in_fields(one, order)))
-    return Target(one.format, " ".join(_in_channels(one, placed)))
+        return Target(target_bin.format, " ".join(_in_fields(target_bin, order)))
+    return Target(target_bin.format, " ".join(_in_channels(target_bin, placed)))
 
 
-def _in_fields(one: Bin, placed: Sequence[Placed]) -> list[str]:
+def _in_fields(target_bin: Bin, placed: Sequence[Placed]) -> list[str]:
     """The words of a target of whole numbers: each code in a channel, where they fit so; else one after the other."""
     channels: list[list[Code]] = []
     for p in placed:
-        home = next((c for c in channels if sum(code.total_bits for code in (*c, p.code)) <= one.part), None)
+        home = next((c for c in channels if sum(code.total_bits for code in (*c, p.code)) <= target_bin.part), None)
         if home is None:
             channels.append(home := [])
         home.append(p.code)
     used = [sum(code.total_bits for code in codes) for codes in channels]
-    is_apart = len(channels) * one.part <= one.fields and max(used) <= one.part
+    is_apart = len(channels) * target_bin.part <= target_bin.fields and max(used) <= target_bin.part
     words = []
     for index, codes in enumerate(channels):
         words += [f"{word}:{bits}" for code in codes for word, bits in zip(code.words, code.bits, strict=True)]
-        if is_apart and used[index] < one.part and index + 1 < len(channels):
-            words.append(f"{FREE}:{one.part - used[index]}")
+        if is_apart and used[index] < target_bin.part and index + 1 < len(channels):
+            words.append(f"{FREE}:{target_bin.part - used[index]}")
     return words
 
 
-def _in_channels(one: Bin, placed: Sequence[Placed]) -> Iterator[str]:
-    """The words of a target whose numbers have channels, in the order of the channels; last what shares bytes."""
-    if any(kind == SRGB for kind, _ in one.channels) and not any(p.code.kind == SRGB for p in placed):
+def _in_channels(target_bin: Bin, placed: Sequence[Placed]) -> Iterator[str]:
+    """Yield the words of a target with channels, in the order of the channels; words in shared channels come last."""
+    if any(kind == SRGB for kind, _ in target_bin.channels) and not any(p.code.kind == SRGB for p in placed):
         # What lies beside an unused colour lies in the fourth channel.
         yield from [FREE] * 3
     waiting: dict[tuple[str, int], list[str]] = {}
     shared: list[str] = []
     for p in placed:
-        if SHARED in (one.need(p.code) or {}):
+        if SHARED in (target_bin.need(p.code) or {}):
             shared += [f"{word}:{bits}" for word, bits in zip(p.code.words, p.code.bits, strict=True)]
             continue
         if p.code.kind == SRGB or len(p.code.words) != len(p.code.bits):
             yield p.code.words[0].partition(".")[0]
             continue
-        channels = one.channels_of(p.code)
+        channels = target_bin.channels_of(p.code)
         for word, channel in zip(p.code.words, channels, strict=True):
             waiting.setdefault(channel, []).append(word)
-    order = list(one.channels)
+    order = list(target_bin.channels)
     for index, channel in enumerate(order):
         words = waiting.pop(channel, [])
         yield from words
-        is_shared = channel == (UNORM, one.part)
+        is_shared = channel == (UNORM, target_bin.part)
         bits = sum(int(word.rpartition(":")[2]) for word in shared) if is_shared else 0
         yield from shared if is_shared else ()
         if channel[0] != SRGB and waiting and index + 1 < len(order):
-            if bits % one.part:
-                yield f"{FREE}:{one.part - bits % one.part}"
-            yield from [FREE] * (one.channels[channel] - len(words) - -(-bits // one.part))
+            if bits % target_bin.part:
+                yield f"{FREE}:{target_bin.part - bits % target_bin.part}"
+            yield from [FREE] * (target_bin.channels[channel] - len(words) - -(-bits // target_bin.part))
 
 
 def file_of(row: Mapping[str, Any]) -> str:
-    """The layout of a row as a file that `--layout` reads, with what it is worth in its comment."""
+    """Return the layout of a row as a file that `--layout` reads, with its scores in comments."""
     normal = next(code for code in row["codes"].split("; ") if code.startswith(f"{NORMAL} "))
     lines = [
         f"# {row['bytes_per_pixel']} bytes per pixel; {row['scene']} at {row['size']}: {row['worst_class']} "

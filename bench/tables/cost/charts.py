@@ -1,4 +1,4 @@
-"""The chart of what codecs cost against what they lose."""
+"""The chart of cost against error."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ HEIGHT = 420
 
 
 def front_chart(name: str, label: str, panels: Sequence[Panel]) -> Chart:
-    """Draw cost against error. Points that another one beats are grey; steps join the others of the same bit count.
+    """Return a chart of cost against error. Dominated points are grey; steps join the others of the same bit count.
 
     Panels of one kind and several machines are one panel, with a switch between the machines.
 

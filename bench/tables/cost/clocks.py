@@ -131,9 +131,9 @@ def _points(size: tuple[int, int], numbers: int) -> np.ndarray:
 def time_rows(
     device: Device, chosen: Sequence[CostCase], size: tuple[int, int], repeats: int, tick: Callable[[str], None]
 ) -> Iterator[Row]:
-    """Nanoseconds a megapixel of each case: the median of repeated differences, and how wide its interval is.
+    """Yield the nanoseconds per megapixel of each case: the median of repeated differences, and its interval's width.
 
-    Each repetition goes over all cases, so that what else the machine does is spread over all of them.
+    Each repetition covers all cases, so that other load on the machine is spread over all of them.
     """
     facts = {
         "size": f"{size[0]}x{size[1]}",
@@ -172,8 +172,10 @@ def summary(column: str, taken: Sequence[float]) -> dict[str, float]:
 
 
 def median_interval(taken: Sequence[float]) -> tuple[float, float]:
-    """Return the order statistics that enclose the median of the sampled quantity with a probability of at least
-    SURE: of nine the second and the eighth, of fewer than six the smallest and the largest, which are less sure."""
+    """Return the order statistics that enclose the median of the sampled quantity with a probability of SURE or more.
+
+    For nine samples these are the second and the eighth. For fewer than six they are the smallest and the largest,
+    with a lower probability."""
     ordered, count = sorted(taken), len(taken)
     # The chance that fewer than k of the samples lie below the median.
     beyond = np.cumsum([math.comb(count, k) for k in range(count)]) / 2.0**count

@@ -72,7 +72,7 @@ def executed_slots(
     if len(loops) > len(turns):
         return None
     # A compiler unrolls what runs a known and small number of times; the others stay, in their order.
-    rank = sorted(range(len(turns)), key=lambda at: (turns[at][1] > 0, turns[at][0]), reverse=True)
+    rank = sorted(range(len(turns)), key=lambda number: (turns[number][1] > 0, turns[number][0]), reverse=True)
     left = [turns[index][0] for index in sorted(rank[: len(loops)])]
     by_place = zip(sorted(loops, key=lambda loop: loop.start), left, strict=True)
     times = [1.0] * len(kinds)

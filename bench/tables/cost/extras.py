@@ -37,12 +37,12 @@ SOURCES = "source"
 
 
 def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Mapping[str, Any]:
-    """Find cost against error, disassemblies, and where costs are in another order than the article's.
+    """Return the charts of cost against error and the disassemblies.
 
     Args:
-        folder: the run's.
-        tables: its rows by table.
-        remarks: what does not fit is added to these.
+        folder: the folder of the run.
+        tables: the run's rows by table.
+        remarks: receives remarks on codecs that the charts leave out.
     """
     kernels, family = folder / TABLE.files["disassembly"], usual_family(tables)
     return {
@@ -100,7 +100,7 @@ def _row_of_each(rows: Sequence[Row]) -> dict[CodecKey, Row]:
 
 
 def _counted(tables: Mapping[str, Sequence[Row]]) -> list[Row]:
-    """The rows that have instructions: of fragment shaders, or of what else a family has where it has none."""
+    """Return the rows with instruction counts for the usual stage of their family: fragment shaders if possible."""
     rows = [r for r in tables.get(TABLE.name, ()) if r.get("family") and is_number(r.get("instructions"))]
     return [row for row in rows if row.get("stage") == usual_stage(str(row["family"]))]
 
@@ -128,7 +128,7 @@ def _panels(
 def _points(
     costs: Sequence[Row], operation: str, errors: Mapping[Codec, float], lost: dict[str, dict[str, None]]
 ) -> Iterator[Point]:
-    """Yield a point for each codec whose cost is known, and add the other codecs to `lost` by the reason."""
+    """Yield a point for each codec whose cost is known; add the other codecs to `lost`, grouped by reason."""
     known, where = Costs(costs), Where("isa", costs[-1].get("family"), costs[-1].get("stage"))
     for codec, error in errors.items():
         label = CodecKey(codec.encoding.name, codec.storage.name, codec.rounding).label
@@ -142,7 +142,7 @@ def _points(
 
 
 def _codec(row: Row) -> Codec | None:
-    """The codec of a row, for its cost and its bits; None where the row does not say how the code is stored."""
+    """Return the codec of a row, for its cost and its bits; None if the row's storage or encoding is not known."""
     try:
         storage = storage_of(str(row.get("storage")))
     except ValueError:

@@ -87,7 +87,7 @@ class CostCase:
 
 
 def cases(encodings: Iterable[Encoding], packings: Iterable[Packing], operations: Sequence[str]) -> list[CostCase]:
-    """Every operation of each encoding, and what the packings add to it."""
+    """Return a case for each operation of each encoding and of each packing."""
     cost_cases = [CostCase(e, None, name, partial(_operation, e, name)) for e in encodings for name in operations]
     for packing in packings:
         by_name = {"encode": packing.pack, "decode": packing.unpack}
@@ -228,7 +228,7 @@ def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str) -> str:
 
 
 def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
-    """A row with what its kernel has more than the empty one, and its disassembly."""
+    """Return a row with the difference between its kernel and the empty kernel, and the kernel's disassembly."""
     if isinstance(outcome, Failure):
         return row | {"skipped": outcome.reason}, ""
     if isinstance(empty, Failure):
@@ -250,7 +250,7 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
 
 
 def _driver_text(outcome: Compiled, family: str) -> str:
-    """The compiler of a count and its version; Mesa says the number alone."""
+    """Return the name and version of the compiler that counted; Mesa itself reports only the version."""
     return outcome.version if _takes_cuda(family) else f"Mesa {outcome.version}"
 
 
@@ -328,8 +328,8 @@ def counted(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tuple[s
 
 
 def known_counts(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tuple[str, str], Row]:
-    """Return the rows of `counted` with only `recorded.COLUMNS`. Recorded figures are not counted again if this
-    machine's compilers are the ones that recorded them, which one operation shows."""
+    """Return the rows of `counted` with only `recorded.COLUMNS`. Recorded figures are used if one operation shows
+    that this machine has the compilers that recorded them."""
     known = dict(recorded(chosen, family, stage))
     if not known:
         return counted(chosen, family, stage)
@@ -352,7 +352,7 @@ def nobody(_: str) -> None:
 
 
 def static_notes(rows: Iterable[Row]) -> list[str]:
-    """Why counts of some rows are not what a lane runs: a line for loops and one for branches."""
+    """Return why the counts of some rows differ from what a lane runs: a line for loops and a line for branches."""
     notes = {
         "loops": "contains a loop; its body counts once, however often it runs",
         "branches": "contains a branch; both sides count",
@@ -373,7 +373,7 @@ def file_name(name: Any) -> str:
 
 
 def listing(row: Row, assembly: str) -> tuple[Path, str]:
-    """A disassembly's file name, by what the row is about, and its text: what it costs, then the whole kernel."""
+    """Return the file name of a row's disassembly, and the text: the cost, then the whole kernel."""
     name = file_name(row["encoding"] or row["storage"])
     costs = ", ".join(f"{row[column]} {column}" for column in ("instructions", *LISTED) if row[column] is not None)
     head = f"; {row['encoding'] or row['storage']} {row['operation']}, {row['stage']}, {row['family']}\n"

@@ -1,7 +1,6 @@
-"""Instructions of the catalogue's encodings and packings, as compilers of another machine counted them: for machines
-that have none.
+"""Recorded instruction counts of the catalogue's encodings and packings, for machines without compilers.
 
-`python -m tests.recorded_costs` counts them anew, and writes recorded.json next to this file.
+`python -m tests.recorded_costs` counts them again, and writes recorded.json next to this file.
 """
 
 from __future__ import annotations
@@ -31,8 +30,8 @@ class Counted(Protocol):
 
 
 def recorded(chosen: Sequence[Any], family: str, stage: str) -> Iterator[tuple[Any, dict[str, Any]]]:
-    """Operations with their `COLUMNS`, and as `recorded_by` what counted them. Only those whose GLSL is still what was
-    counted; none of a family that was not."""
+    """Yield operations with their `COLUMNS`, and with the compiler that counted them as `recorded_by`. Operations
+    whose GLSL has changed since, or whose family was not counted, are left out."""
     known = _kept()["families"].get(family, {"stage": "", "by": "", "counts": {}})
     for case in chosen if known["stage"] == stage else ():
         counts = known["counts"].get(case.name)

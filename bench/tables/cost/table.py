@@ -1,4 +1,4 @@
-"""The cost table: what encoding and decoding cost."""
+"""The cost table: the cost of encoding and decoding."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ COLUMNS = (
     Column("size", "Width and height of the target in pixels.", HOW),
     Column("repeats", "Number of repetitions that the median is taken over.", HOW),
     Column("software", "Whether the OpenGL device is a software rasteriser.", HOW),
-    Column("clock", "What measured the time.", HOW, drops=15),
+    Column("clock", "Clock that measured the time.", HOW, drops=15),
     shared.DEVICE,
     Column("driver", "The compiler of the counts.", HOW, drops=1),
     Column("compiler", "The compiler from GLSL to SPIR-V.", HOW, drops=1),

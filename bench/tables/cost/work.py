@@ -45,7 +45,7 @@ def measures(options: CostOptions) -> list[str]:
 
 
 def packings(names: Names) -> list[Packing]:
-    """Return what `--storage` names: packings, and storages by their bits alone. Raises UsageError."""
+    """Return the packings that `--storage` names, by name or by the bits of a storage. Raises UsageError."""
     storages = storages_said(map(str, names), PACKINGS)
     known = {**PACKINGS, **{word: packings_of(storage) for word, storage in storages.items() if storage}}
     if few := next((word for word, several in known.items() if not several), None):
@@ -67,7 +67,7 @@ def chosen_families(names: Names) -> list[str]:
 
 @dataclass
 class Costing:
-    """The request as values, and what this machine turns out to lack."""
+    """The request as values, and what this machine is found to lack."""
 
     options: CostOptions
     encodings: list[Encoding]
@@ -222,7 +222,7 @@ def _texts(done: Measured) -> list[tuple[Row, str]]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """List what encoding and decoding take on one family: the cheapest, and the most expensive."""
+    """Yield a sentence with the instructions on one family of the cheapest encodings and of the most expensive."""
     listed = [row for row in rows if row["measure"] == "isa" and row["encoding"] and row["instructions"] is not None]
     family = next((row["family"] for row in sorted(listed, key=lambda row: row["family"] != families.USUAL)), None)
     counts: dict[str, dict[str, int]] = {}
@@ -260,14 +260,14 @@ def _write(done: Measured, _: Tick) -> None:
         write_sources(done.outputs.disassembly / SOURCES, done.steps[0].case.asked.encodings)
 
 
-def _front_charts(found: Any) -> Iterator[Chart]:
+def _front_charts(run: Any) -> Iterator[Chart]:
     """Draw instructions against each error of a run."""
-    for index, front in enumerate(found.fronts):
+    for index, front in enumerate(run.fronts):
         yield front_chart(f"cost-{index}", front.label, front.panels)
 
 
 def _listing(step: Step, row: Row) -> str | None:
-    """The kernel that a row was counted in; None of what no compiler made."""
+    """Return the kernel in which a row was counted; None if no compiler made a kernel for the row."""
     return step.case.asked.texts.get(TABLE.name_of(row))
 
 

@@ -1,4 +1,4 @@
-"""The curves table: what quantities of a material come back as from a storage, by JAX and by GLSL."""
+"""The curves table: the error of material quantities that were stored and decoded, by JAX and by GLSL."""
 
 from __future__ import annotations
 

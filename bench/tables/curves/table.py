@@ -1,4 +1,4 @@
-"""The table of curves: what numbers of a material lose, such as a roughness or a channel of a colour."""
+"""The table of curves: the error of stored material numbers, such as a roughness or a channel of a colour."""
 
 from __future__ import annotations
 
@@ -58,8 +58,8 @@ COLUMNS = (
     Column("display_mean", f"Mean difference {DISPLAY}. {NO_COLOURS}", better="less", drops=2),
     Column("display_max", f"Largest difference {DISPLAY}. {NO_COLOURS}", better="less"),
     Column("least", "The smallest value that does not decode to the same result as 0.", better="less", drops=3),
-    Column("zero", "What 0 decodes to.", drops=1),
-    Column("one", "What the largest value decodes to, as a fraction of the range.", drops=1),
+    Column("zero", "Decoded value of 0.", drops=1),
+    Column("one", "Decoded value of the largest value, as a fraction of the range.", drops=1),
     Column("count", "How many values were measured.", HOW, drops=6),
     shared.DEVICE,
     shared.ROUNDED_BY,

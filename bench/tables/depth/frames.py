@@ -29,9 +29,9 @@ class DepthFrame:
     """A frame through a camera.
 
     Attributes:
-        points: those that are measured: at the pixels' middles, or without an angle of view on the view axis.
-        background: how many pixels are not between near and far.
-        every: 1, or what share of them is measured: every second, third and so on.
+        points: the measured points: at pixel centres, or on the view axis if the angle of view is unknown.
+        background: number of pixels that are not between near and far.
+        every: interval between measured pixels: 1 for all, 2 for every second, and so on.
     """
 
     points: Points
@@ -53,10 +53,10 @@ def seen(frame: DepthImage, camera: Camera) -> DepthFrame:
 
 
 def frames_named(options: DepthOptions) -> list[DepthImage]:
-    """The frames that --depths names; none where it names none.
+    """Return the frames that --depths names; empty if the option is not given.
 
     Raises:
-        UsageError: a file that cannot be read, or an option that does not go with it.
+        UsageError: a file that cannot be read, or options that cannot be used together.
     """
     if options.depths is None:
         _check_unused(options)
@@ -73,7 +73,7 @@ def _read(word: Word, reading: DepthReading) -> Pixels:
 
 
 def _checked(words: Names, options: DepthOptions) -> DepthOptions:
-    """The options with what the numbers are by its known name. Raises UsageError."""
+    """Return the options with the known spelling of `depths_are`. Raises UsageError."""
     names = [Path(str(word)).name for word in words]
     if not words:
         raise UsageError("--depths: no file named; name at least one, such as depth.exr")
@@ -105,7 +105,7 @@ def _check_unused(options: DepthOptions) -> None:
 
 
 def _pixels_of(array: np.ndarray) -> Pixels:
-    """A caller's own array, (height, width), as what is read of a file."""
+    """Return a caller's own array, (height, width), in the form in which files are read."""
     return Pixels(array[None], np.iinfo(array.dtype).max if array.dtype.kind == "u" else None)
 
 

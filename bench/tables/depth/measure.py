@@ -1,4 +1,4 @@
-"""The depth table: how far off a position is that was rebuilt from a stored depth, by JAX and by GLSL."""
+"""The depth table: the error of positions rebuilt from stored depth, by JAX and by GLSL."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class DepthCase:
 
     @property
     def points(self) -> Points:
-        """The points to measure: those of every distance, one distance after the other, or those of the frame."""
+        """The points to measure: those of all distances in order, or those of the frame."""
         if self.frame:
             return seen(self.frame, self.camera).points
         return all_points(self.camera, self.distances, self.count, self.seed)
@@ -244,15 +244,15 @@ def _frame_columns(frame: DepthImage, camera: Camera) -> Row:
     }
 
 
-def _figures(case: DepthCase, found: Measured, part: slice) -> Row:
+def _figures(case: DepthCase, measured: Measured, part: slice) -> Row:
     return {
-        "relative_mean": float(found.relative[part].mean()),
-        "relative_max": float(found.relative[part].max()),
-        "error_mean": float(found.errors[part].mean()),
-        "error_max": float(found.errors[part].max()),
-        "half_step": _known(found.half_steps[part].max()),
-        "bound": _known(found.bounds[part].max()),
-        "signs_lost": int(found.lost[part].sum()) if case.codec.encoding.signed else None,
+        "relative_mean": float(measured.relative[part].mean()),
+        "relative_max": float(measured.relative[part].max()),
+        "error_mean": float(measured.errors[part].mean()),
+        "error_max": float(measured.errors[part].max()),
+        "half_step": _known(measured.half_steps[part].max()),
+        "bound": _known(measured.bounds[part].max()),
+        "signs_lost": int(measured.lost[part].sum()) if case.codec.encoding.signed else None,
     }
 
 

@@ -1,4 +1,4 @@
-"""The depth table: how far off a position is that was rebuilt from a stored depth."""
+"""The depth table: the error of positions rebuilt from stored depth."""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
 
 
 def _ranges(options: DepthOptions) -> list[tuple[float, float]]:
-    """Every near plane with every far plane. Raises UsageError where they do not go together."""
+    """Return every near plane with every far plane. Raises UsageError if a far plane is too close."""
     nears, fars = _numbers("--near", options.near), _numbers("--far", options.far)
     for far in fars:
         for near in nears:
@@ -258,11 +258,11 @@ def _curve(case: measure.DepthCase) -> list[Row]:
 
 @dataclass(frozen=True)
 class Surface:
-    """A scene's depths, or a frame's.
+    """The depths of a scene or of a frame.
 
     Attributes:
-        name: what pictures are called by.
-        depths: view depth, float32 of shape (height, width), row 0 on top; 0 where there is nothing.
+        name: name in the file names of pictures.
+        depths: view depth, float32 of shape (height, width), row 0 on top; 0 where there is no surface.
         fov: the camera's vertical field of view in degrees.
     """
 

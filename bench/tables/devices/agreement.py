@@ -36,7 +36,7 @@ def codec_name(row: Row) -> str:
 
 
 def by_device(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """Rows by what their device is called."""
+    """Return rows grouped by the name of their device."""
     groups: dict[str, list[Row]] = {}
     for row in rows:
         groups.setdefault(device_of(row), []).append(row)

@@ -1,4 +1,4 @@
-"""The chart of what codecs take on readers' devices."""
+"""The chart of encoding and decoding times on readers' devices."""
 
 from __future__ import annotations
 

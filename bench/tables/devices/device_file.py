@@ -163,7 +163,7 @@ class DeviceFile(BaseModel):
 
     @cached_property
     def digest(self) -> str:
-        """A fingerprint of what it says."""
+        """A fingerprint of the file's contents."""
         return hashlib.sha256(self.model_dump_json().encode()).hexdigest()[:16]
 
     @property
@@ -174,7 +174,7 @@ class DeviceFile(BaseModel):
 
 @dataclass(frozen=True)
 class Read:
-    """A file that was read, and where it was."""
+    """A file that was read, and its path."""
 
     path: Path
     file: DeviceFile
@@ -224,17 +224,17 @@ def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return entries
 
 
-def _checked_file(found: Any) -> DeviceFile:
+def _checked_file(content: Any) -> DeviceFile:
     """Return the checked file. Raises ValueError if it is not a device file, or has another version."""
-    if not isinstance(found, dict) or "normalbench_device" not in found:
+    if not isinstance(content, dict) or "normalbench_device" not in content:
         raise ValueError('not a device file; use one that "Save this device" saved in the live section of a page')
-    version = found["normalbench_device"]
+    version = content["normalbench_device"]
     if type(version) is not int or version != FORMAT:
         raise ValueError(
             f"normalbench_device: {_short_text(version)} is not supported; this program reads version {FORMAT}"
         )
     try:
-        return DeviceFile.model_validate(found)
+        return DeviceFile.model_validate(content)
     except ValidationError as error:
         raise ValueError(_first_fault(error)) from None
 

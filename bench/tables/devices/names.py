@@ -1,4 +1,4 @@
-"""Short names of devices and browsers, from what a browser says of them.
+"""Short names of devices and browsers, from what a browser reports.
 
 A browser gives the GPU as text: the driver's own name or, on most systems, ANGLE's, `ANGLE (vendor, GPU, API)`. The
 version of the API and of the driver are left out of the short name, unless devices would share it.

@@ -21,7 +21,7 @@ SAVED = 'the live section of a page saves one by "Save this device"'
 
 @dataclass(frozen=True)
 class Device:
-    """A device's file, and what rows call the device."""
+    """A device's file, and the name of the device in rows."""
 
     name: str
     file: DeviceFile
@@ -51,7 +51,7 @@ def files_named(words: Names) -> list[Path]:
     """Return the files that words name; a folder stands for its *.json.
 
     Raises:
-        UsageError: none is named, a folder has none, or there are too many.
+        UsageError: no file is named, a folder contains no *.json file, or there are too many files.
     """
     paths: dict[Path, None] = {}
     for word in map(str, words):
@@ -78,10 +78,10 @@ def checked_number(paths: list[Path]) -> list[Path]:
     return paths
 
 
-def devices(found: Iterable[Read]) -> list[Device]:
+def devices(read_files: Iterable[Read]) -> list[Device]:
     """The devices of files: of one GPU in one browser the newest file alone; the others are named on standard error."""
     newest: dict[tuple[str, str], Read] = {}
-    for read in found:
+    for read in read_files:
         other = newest.setdefault(read.file.identity, read)
         if other is not read:
             kept, dropped = (read, other) if read.file.made > other.file.made else (other, read)

@@ -1,4 +1,4 @@
-"""The table of readers' devices: what they make of each codec, next to the run's own codes, and what else they do."""
+"""The table of readers' devices: their results for each codec next to the run's codes, and facts about them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CODEC, FACT = "codec", "fact"
 
 @dataclass(frozen=True, kw_only=True)
 class DevicesOptions(Options):
-    """Options for which device files are read, and what is shown of them."""
+    """Options for `devices`: the device files to read, and what is shown of them."""
 
     devices: Annotated[
         Names,
@@ -31,7 +31,7 @@ class DevicesOptions(Options):
 COLUMNS = (
     Column("device", "A short name of the GPU, from the browser's name for it.", KEY),
     Column("browser", "The browser and its major version.", KEY),
-    Column("row_of", f"What the row is of: a {CODEC}, or a {FACT}.", Role.RAW, shown=False),
+    Column("row_of", f"Subject of the row: a {CODEC} or a {FACT}.", Role.RAW, shown=False),
     shared.ENCODING,
     shared.STORAGE,
     Column("rounding", "How the stored numbers are rounded.", KEY),
@@ -63,10 +63,10 @@ COLUMNS = (
     Column(
         "decode_ms", "Milliseconds per megapixel to read and decode, minus an empty pass.", TIME, "ms", "less", drops=8
     ),
-    Column("timer", "What measured the time.", HOW, drops=2),
+    Column("timer", "Clock that measured the time.", HOW, drops=2),
     Column("normals", "How many normals the device encoded.", HOW, drops=10),
     Column("name", "The subject of the fact.", KEY, option="facts"),
-    Column("value", "What the device does, as text.", HOW, option="facts"),
+    Column("value", "Result on the device, as text.", HOW, option="facts"),
     Column("number", "The same as a number, if it is one, for gates and comparisons.", option="facts"),
     Column("made", "When the device was saved, in UTC.", HOW, drops=5),
     Column("program", "The version of normalbench that made the page.", HOW, drops=6),

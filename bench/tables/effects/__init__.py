@@ -1,1 +1,1 @@
-"""The effects table: what a code of the G-buffer does to effects that read it."""
+"""The effects table: how encodings in the G-buffer affect effects that read it."""

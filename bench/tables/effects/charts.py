@@ -41,7 +41,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:
-    """Return which effect suffers the most and which the least, each with its codec."""
+    """Return which effect has the lowest PSNR and which the highest, each with its codec."""
     worst = min(points, key=lambda point: point["y"])
     best = max(points, key=lambda point: point["y"])
     return (

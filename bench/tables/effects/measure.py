@@ -1,4 +1,4 @@
-"""The effects table: what a code of the G-buffer does to effects that read it."""
+"""The effects table: how encodings in the G-buffer affect effects that read it."""
 
 from __future__ import annotations
 
@@ -62,10 +62,10 @@ class Drawn(Frame):
 
     Attributes:
         own: the effect's own image, (height, width, channels).
-        normals: what the G-buffer gives back, (height, width, 3).
-        covered: where the effect is; bool of shape (height, width).
-        hits: where the first ray of each pixel meets something, (height, width, 4), as `Effect.hits` says; None of an
-            effect without rays.
+        normals: the normals decoded from the G-buffer, (height, width, 3).
+        covered: mask of the pixels that the effect covers, bool of shape (height, width).
+        hits: point that the first ray of each pixel hits, (height, width, 4), as described in `Effect.hits`; None
+            for an effect without rays.
     """
 
     own: np.ndarray
@@ -132,9 +132,9 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
         return {"method_rms": errors.rms, "method_mean": errors.mean}
 
 
-def _effect_times(case: EffectsCase, made: Rendering, repeats: int) -> Row:
+def _effect_times(case: EffectsCase, rendered: Rendering, repeats: int) -> Row:
     """Time the effect's passes, and the frame."""
-    columns = time_columns(*made.timings(repeats))
+    columns = time_columns(*rendered.timings(repeats))
     names = [f"ms_{stage.name}" for stage in case.effect.passes()]
     row: Row = {name: columns[name] for name in (*names, "ms_frame", "clock")}
     return row | {"ms_effect": sum(row[name] for name in names)}
@@ -200,7 +200,8 @@ def _case_columns(case: EffectsCase) -> Row:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Rows by effect, pipeline and scene as they come; normal codes by their bits, the best first, then depth codes."""
+    """Return rows by effect, pipeline and scene in their first order: encodings of normals by bits, the best first,
+    then those of depth."""
     groups = list(dict.fromkeys(group_of(row) for row in rows))
 
     def place(row: Row) -> tuple[int, bool, int, bool, float]:

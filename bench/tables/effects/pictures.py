@@ -40,9 +40,9 @@ def write(folder: Path, row: Row, drawn: Drawn, exact: Drawn) -> None:
 
 
 def own_picture(own: np.ndarray, peak: float) -> np.ndarray:
-    """An effect's own image as people look at it, uint8 of shape (height, width, 3): sRGB, from the peak on white.
+    """Return an effect's own image for display, uint8 of shape (height, width, 3): sRGB, white from `peak` upward.
 
-    Visibility is shown as it is.
+    An image of one channel, such as visibility, is a linear grey.
     """
     share = np.clip(np.nan_to_num(own) / peak, 0.0, 1.0)
     if own.shape[-1] == 1:

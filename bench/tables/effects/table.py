@@ -1,4 +1,4 @@
-"""The effects table: what a code of the G-buffer does to effects that read it."""
+"""The effects table: how encodings in the G-buffer affect effects that read it."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ COLUMNS = (
     Column("ms_*", "Median milliseconds of that pass.", TIME, "ms", "less"),
     Column(
         "clock",
-        "What measured the time. Times of a software rasteriser compare passes; they are not GPU times.",
+        "Clock that measured the time. Times of a software rasteriser compare passes; they are not GPU times.",
         HOW,
         drops=2,
     ),

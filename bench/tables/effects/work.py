@@ -88,7 +88,7 @@ def _depth_codec(name: str) -> DepthCodec:
 
 
 def cases(options: EffectsOptions, device: Device) -> list[EffectsCase]:
-    """A case for each effect, pipeline, scene and content of the G-buffer; what cannot be is named.
+    """Return a case for each effect, pipeline, scene and content of the G-buffer; impossible cases are reported.
 
     Raises:
         UsageError: unknown names, counts and sizes beyond what is possible, or nothing left.

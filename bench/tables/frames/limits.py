@@ -1,8 +1,9 @@
-"""The limit of tangent frames: how small the errors of N codes can be, whatever the codes.
+"""The limit of tangent frames: the smallest possible errors of any N codes.
 
-By Haar's measure a ball of rotations by up to theta is (theta - sin theta) / pi of all of them. The ball that is the
-Nth part bounds what any code can be nearest to, so no N codes have a maximum below its theta, nor a mean or a mean
-square below the ball's own. A mirrored frame is not a rotation: each of the two hands has half of the codes.
+By Haar's measure the rotations by up to theta are a share of (theta - sin theta) / pi of all rotations. At best each
+code is the nearest to a ball with a share of 1 / N, so no N codes have a maximum error below the theta of this ball,
+or a mean or mean square error below the ball's own. A mirrored frame is not a rotation: each handedness has half of
+the codes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The frames table: what tangent frame codes lose of normals, tangents and rotations, by JAX and by GLSL."""
+"""The frames table: the errors of tangent frame encodings in normals, tangents and rotations, by JAX and by GLSL."""
 
 from __future__ import annotations
 
@@ -100,26 +100,26 @@ class FrameTotal:
     squares: np.ndarray = field(default_factory=lambda: np.zeros(3))
     largest: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
-    def add(self, given: Frames, found: Frames) -> None:
-        """Frames, and what they came back as."""
-        angles = frame_angles(given, found)
+    def add(self, given: Frames, decoded: Frames) -> None:
+        """Add the errors of frames and their decodes."""
+        angles = frame_angles(given, decoded)
         valid = np.isfinite(angles).all(axis=0)
         angles = np.where(valid, angles, 180.0)
         self.count += len(given.normals)
         self.invalid += int(np.count_nonzero(~valid))
-        self.hands_lost += int(np.count_nonzero(given.normals[:, 3] != found.normals[:, 3]))
+        self.hands_lost += int(np.count_nonzero(given.normals[:, 3] != decoded.normals[:, 3]))
         self.sums = self.sums + angles.sum(axis=1)
         self.squares = self.squares + (angles**2).sum(axis=1)
         self.largest = np.maximum(self.largest, angles.max(axis=1))
 
 
-def frame_angles(given: Frames, found: Frames) -> np.ndarray:
+def frame_angles(given: Frames, other: Frames) -> np.ndarray:
     """Return the angles between normals, between tangents, and of the rotation between the two frames, whatever
     their handedness: float64 degrees of shape (3, count), NaN where a value is not a number.
 
     A rotation by theta moves the three axes by 8 sin^2(theta / 2) in total, the sum of their squared distances.
     """
-    (n, t), (other_n, other_t) = (_unit_axes(frames) for frames in (given, found))
+    (n, t), (other_n, other_t) = (_unit_axes(frames) for frames in (given, other))
     apart = [n - other_n, t - other_t, np.cross(n, t) - np.cross(other_n, other_t)]
     squares = [np.sum(a * a, axis=1) for a in apart]
     sines = np.sqrt(np.stack([squares[0] / 4, squares[1] / 4, sum(squares) / 8]))

@@ -40,10 +40,10 @@ class FrameSet:
 
     Attributes:
         name: the catalogue's key, or a file's name.
-        count: how many.
-        seed: what the set was made with.
+        count: number of frames.
+        seed: the seed that the set was made with.
         is_uniform: whether it covers all frames evenly.
-        chunk: start index -> float32 Frames, CHUNK of them or what is left.
+        chunk: start index -> float32 Frames: CHUNK frames, or the rest.
     """
 
     name: str
@@ -79,9 +79,9 @@ def rotations(count: int, seed: int) -> FrameSet:
 
 
 def frames_from(normals: np.ndarray, with_hands: np.ndarray) -> Frames:
-    """Frames of unit normals (count, 3) and of tangents with their bitangents' signs (count, 4), as glTF has them.
+    """Return frames of unit normals (count, 3) and of tangents with their bitangents' signs (count, 4), as in glTF.
 
-    Tangents are brought to right angles with the normal; along it, any direction at right angles stands in.
+    Tangents are made orthogonal to the normal; a tangent along the normal is replaced by an orthogonal direction.
     """
     across = with_hands[:, :3] - normals * np.sum(normals * with_hands[:, :3], axis=1, keepdims=True)
     lost = np.linalg.norm(across, axis=1) < 1e-9
@@ -115,7 +115,7 @@ def frame_sets_named(names: Names, count: int, seed: int) -> list[FrameSet]:
 
 
 def _as_in_files(mesh: Mesh) -> np.ndarray:
-    """Tangents and hands as `frames_from` takes them: the bitangents of a file's own tangents go against v."""
+    """Return tangents and hands for `frames_from`; the bitangents of a file's own tangents point against v."""
     return tangents(mesh) * (1.0, 1.0, 1.0, 1.0 if mesh.authored is None else -1.0)
 
 

@@ -1,4 +1,4 @@
-"""The table of tangent frames: what their codes lose."""
+"""The table of tangent frames: the errors of their encodings."""
 
 from __future__ import annotations
 

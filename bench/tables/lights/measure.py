@@ -46,7 +46,7 @@ class Sums:
         return banding(adder, self.peaks)
 
     def chromaticity(self, adder: Adder) -> Iterator[Row]:
-        """A highlight's colour rebuilt, by codes that hold what it is rebuilt from."""
+        """Return the rows of a highlight's colour, for encodings with the channel from which it is rebuilt."""
         return chromaticity(adder) if adder.encoding.has_alpha else iter(())
 
 

@@ -99,7 +99,7 @@ class Adder:
         return Sum(array(light), array(texels))
 
     def device(self, lights: np.ndarray, count: int | None = None) -> Sum | None:
-        """And by the GL device; None without one. Raises FormatError."""
+        """Return the sum of the first `count` lights by the OpenGL device; None without one. Raises FormatError."""
         return self._passes.accumulate(lights[:count]) if self._passes else None
 
     @cached_property
@@ -143,13 +143,13 @@ class Adder:
         return f", {np.abs(np.round(codes) - exact).max():.2f} steps off"
 
 
-def steps_apart(storage: Storage, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+def steps_apart(storage: Storage, texels: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Texels' distance in steps of the format, of shape (..., channels that it has)."""
     if storage.kind == "unorm":
-        return np.abs(steps_of(storage, one) - steps_of(storage, other))
+        return np.abs(steps_of(storage, texels) - steps_of(storage, other))
     apart = []
     for i in range(storage.channels):
-        a, b = one[..., i].astype(np.float64), other[..., i].astype(np.float64)
+        a, b = texels[..., i].astype(np.float64), other[..., i].astype(np.float64)
         form = storage.float_form(i)
         exponent = np.floor(np.log2(np.maximum(np.abs(a), 2.0 ** (1 - form.one))))
         apart.append(np.abs(a - b) / np.exp2(exponent - form.mantissa))
@@ -157,7 +157,7 @@ def steps_apart(storage: Storage, one: np.ndarray, other: np.ndarray) -> np.ndar
 
 
 def steps_of(storage: Storage, texels: np.ndarray) -> np.ndarray:
-    """Texels of fixed point as the codes that they stand for, whole or not, of shape (..., channels)."""
+    """Return fixed-point texels in steps of the format, whole or not, of shape (..., channels)."""
     curved = [np.asarray(to_srgb(jnp.asarray(texels[..., i], jnp.float32))) for i in range(storage.curved)]
     straight = [texels[..., i] for i in range(storage.curved, storage.channels)]
     scales = [storage.scale(channel) for channel in range(storage.channels)]
@@ -165,7 +165,7 @@ def steps_of(storage: Storage, texels: np.ndarray) -> np.ndarray:
 
 
 def has_light_twin(codec: LightCodec) -> bool:
-    """Whether a light code is there in JAX. Raises what its Python half raises."""
+    """Whether a light encoding has a JAX version. Raises the errors of its Python code."""
     try:
         jax.eval_shape(codec.encode, Vec4(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 4))
     except NoTwinError:
@@ -182,16 +182,16 @@ def worst_rounding(adder: Adder, light: np.ndarray) -> np.ndarray | None:
     return np.abs(stored.light - below).max(axis=0) if stored else None
 
 
-def _channel_labels(found: list[tuple[Any, ...]]) -> dict[tuple[Any, ...], str]:
-    """Channels that agree in everything go by one name: rgba, or rgb and a."""
+def _channel_labels(by_channel: list[tuple[Any, ...]]) -> dict[tuple[Any, ...], str]:
+    """Return a label for each group of channels with equal figures: rgba, or rgb and a."""
     names: dict[tuple[Any, ...], str] = {}
-    for channel, what in zip(CHANNELS, found, strict=False):
+    for channel, what in zip(CHANNELS, by_channel, strict=False):
         names[what] = names.get(what, "") + channel
     return names
 
 
 def equal_lights(adder: Adder, sums: Sequence[float], counts: Sequence[int]) -> Iterator[Row]:
-    """N equal lights that sum to S, blended one by one: what is left of S."""
+    """Yield the result and the error of blending N equal lights with the sum S one by one, and the error's bound."""
     for total in sums:
         ramp = np.repeat(np.linspace(0, min(total, adder.encoding.limit), GRADIENT)[:, None], 4, axis=1)
         half_step = worst_rounding(adder, ramp)
@@ -210,8 +210,8 @@ def equal_lights(adder: Adder, sums: Sequence[float], counts: Sequence[int]) -> 
                 yield row | {"error": _off(by_model, total), "gl_error": _off(by_gl, total), "bound": bound}
 
 
-def _off(found: float | None, total: float) -> float | None:
-    return None if found is None else found - total
+def _off(summed: float | None, total: float) -> float | None:
+    return None if summed is None else summed - total
 
 
 def falloff(distance: np.ndarray, radius: float) -> np.ndarray:
@@ -260,7 +260,7 @@ def random_lights(adder: Adder, total: float, counts: Sequence[int], seed: int) 
 
 
 def _partial_sums(light: np.ndarray) -> np.ndarray:
-    """On the way to the brightest pixel of each channel, of light of shape (width, 4): (GRADIENT, 4)."""
+    """Return partial sums to the brightest pixel of each channel, (GRADIENT, 4), of light of shape (width, 4)."""
     shares = np.linspace(0, 1, GRADIENT // 4)[:, None, None]
     return (shares * light[light.argmax(axis=0)]).reshape(-1, 4)
 

@@ -1,4 +1,4 @@
-"""The lights table: what light buffers lose."""
+"""The lights table: the errors of light buffers."""
 
 from __future__ import annotations
 

@@ -103,7 +103,8 @@ def _finish(rows: Sequence[Row]) -> list[Row]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Say how far off sums of the most random lights are, in buffers that blend and in those that are read first."""
+    """Yield a sentence with the errors of sums of the most random lights, in buffers that blend and in those that are
+    read first."""
     sums = _random(rows)
     most = max((row["lights"] for row in sums), default=0)
     errors: dict[str, list[str]] = {}
@@ -126,7 +127,7 @@ def _random(rows: Sequence[Row]) -> list[Row]:
 
 
 def _errors(row: Row) -> list[float]:
-    """Return the errors of the model and of the device, as far as they are known, the smaller one first."""
+    """Return the known errors of the model and of the device, the smaller error first."""
     return sorted(row[name] for name in ("model_rms", "gl_rms") if row[name] is not None)
 
 

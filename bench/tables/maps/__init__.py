@@ -1,1 +1,1 @@
-"""The maps table: what block compression loses of a normal map."""
+"""The maps table: the error of block-compressed normal maps."""

@@ -25,7 +25,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
         yield _chart(index, group, [row for row in usable if group_of(row) == group])
 
 
-def _chart(at: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
+def _chart(index: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
     """Angles of each code in each format, a line for each, in the order of the rows, the first on top."""
     lines = [
         {"codec": f"{row['encoding']} {row['block']}", "line": _line_name(row)}
@@ -36,7 +36,7 @@ def _chart(at: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
     names, shapes = tuple(name for _, name, _ in MARKED), tuple(shape for *_, shape in MARKED)
     tips = (("line", "code"), ("what", "angle"), ("x", "degrees"))
     return Chart(
-        name=f"maps-{at}",
+        name=f"maps-{index}",
         title=_finding_sentence(group[0], rows),
         subtitle=f"Error of block compression on {group[0]}, decoded by {group[1]}",
         description="The mean angle, the 99th percentile and the largest angle, in degrees, for each encoding and "

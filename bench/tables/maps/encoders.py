@@ -37,9 +37,9 @@ class Encoder:
     """A package that compresses textures.
 
     Attributes:
-        package: its name in pip; empty if there is no package.
+        package: name of the package in pip; empty if there is no package.
         modules: modules to import.
-        said: its effort, as a row shows it.
+        said: effort of the compression, as shown in a row.
         make: (the modules, texels) -> blocks, row by row.
         undo: (the modules, blocks, size) -> texels, float32 of shape (height, width, 4); None if nothing needs it.
     """
@@ -133,7 +133,7 @@ def _astc_bytes(modules: Sequence[Any], given: Texels) -> bytes:
 
 
 def _astc_texels(modules: Sequence[Any], blocks: bytes, size: tuple[int, int]) -> np.ndarray:
-    """In the precision that the specification asks for, 16-bit floats."""
+    """Return the texels of ASTC blocks, decoded in the precision of the specification, 16-bit floats."""
     (astc,) = modules
     image = astc.ASTCImage(astc.ASTCType.F32, *size)
     _astc_context(astc, "rgba").decompress(blocks, image, astc.ASTCSwizzle())

@@ -61,13 +61,13 @@ class BlockFormat:
 
     Attributes:
         name: the catalogue's key.
-        title: what a reader calls it.
-        channels: how many it has.
-        encoder: makes blocks of images.
-        decode: from blocks, uint8 of shape (count, 16), to texels in [0, 1], (count, 16, channels), as the
-            specification says; None where the encoder's package does that.
-        internal_format: the GL enum.
-        swizzles: those that it is used with.
+        title: the name that people see.
+        channels: number of channels.
+        encoder: encoder from images to blocks.
+        decode: function from blocks, uint8 of shape (count, 16), to texels in [0, 1], (count, 16, channels), as
+            specified; None if the encoder's package decodes.
+        internal_format: the OpenGL enum; 0 if the format is uncompressed.
+        swizzles: names of the swizzles that are usual for it.
     """
 
     name: str
@@ -120,16 +120,17 @@ FORMATS: Mapping[str, BlockFormat] = MappingProxyType(
 )
 
 
-def swizzles_of(made: BlockFormat, components: int, asked: list[Swizzle]) -> list[Swizzle]:
-    """Return the swizzles to measure a code of so many numbers by; none if it has no room.
+def swizzles_of(block_format: BlockFormat, components: int, asked: list[Swizzle]) -> list[Swizzle]:
+    """Return the swizzles with which to measure an encoding; empty if the format has too few channels.
 
     Args:
-        asked: what somebody named; empty for those that the format is used with.
+        components: number of numbers in a code.
+        asked: the requested swizzles; empty for those that are usual for the format.
     """
-    if made.channels < components:
+    if block_format.channels < components:
         return []
-    asked = asked or [SWIZZLES[name] for name in made.swizzles]
+    asked = asked or [SWIZZLES[name] for name in block_format.swizzles]
     fit = [swizzle for swizzle in asked if len(swizzle.read) == components]
     # Where there is nothing to choose, the numbers lie in the channels in their order.
-    is_plain = not made.is_compressed or made.channels == components
+    is_plain = not block_format.is_compressed or block_format.channels == components
     return [s for s in SWIZZLES.values() if s.read == CHANNELS[:components]] if is_plain else fit

@@ -1,4 +1,4 @@
-"""The maps table: what block compression loses of a normal map."""
+"""The maps table: the error of block-compressed normal maps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures of what blocks make of a normal map."""
+"""Pictures of normal maps after block compression."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The maps table: what block compression loses of a normal map."""
+"""The maps table: the error of block-compressed normal maps."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ COLUMNS = (
     Column("block", f"The texture format. {_listed_text(BLOCKS)}.", KEY),
     Column("swizzle", f"The channels that hold the code. {_listed_text(SWIZZLES)}.", KEY),
     Column("normals", "The image of normals that was measured.", KEY),
-    Column("decoder", f"What decoded the blocks. {_listed_text(DECODERS)}.", KEY, drops=5),
+    Column("decoder", f"Decoder of the blocks. {_listed_text(DECODERS)}.", KEY, drops=5),
     Column("bits_per_texel", "Bits per texel in memory.", unit="bits", better="less"),
     _angle_column("angle_mean_deg", "Mean angle between normal and decode."),
     _angle_column("angle_rms_deg", "Root mean square of the angle."),
@@ -121,7 +121,7 @@ COLUMNS = (
     shared.CODE_SPACE,
     Column("background", "Texels without a surface. They hold (0, 0, 1) and are not counted.", HOW, drops=7),
     Column("encoder", "The package that encoded the blocks, and its effort.", HOW, drops=1),
-    Column("device", "What decoded the blocks.", HOW, drops=1),
+    Column("device", "Decoder of the blocks on this machine.", HOW, drops=1),
     shared.EXACT,
     shared.SKIPPED,
 )

@@ -121,7 +121,7 @@ def _key(case: MapCase) -> Row:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Say each format's best encoding, the most accurate first."""
+    """Yield a sentence for each set of normals with the best encoding of each format, the most accurate first."""
     known = having(rows, "angle_rms_deg")
     for normals in dict.fromkeys(row["normals"] for row in known):
         part = [row for row in known if row["normals"] == normals]

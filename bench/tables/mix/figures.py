@@ -66,7 +66,7 @@ class Figures:
         return row | (self._power_columns(operation, held, right.mean[held], mixed) if operation in AVERAGES else {})
 
     def _power_columns(self, operation: str, held: np.ndarray, mean: np.ndarray, mixed: np.ndarray) -> Row:
-        """Errors of the specular power that Toksvig's formula gives, in percent."""
+        """Return the errors in percent of the specular power that Toksvig's formula gives."""
         texels = np.nan_to_num(self._texels.astype(np.float64))
         decoded = MEANS[operation](texels, self._mixes)[held]
         exact, mixed_power, after = (toksvig_power(_lengths(v), self._power) for v in (mean, mixed, decoded))
@@ -83,7 +83,7 @@ def excused(operation: str, alone_deg: float) -> float:
 
 
 def _worst_columns(texels: np.ndarray, right: np.ndarray, mixed: np.ndarray) -> Row:
-    """The two of the texels (count, 3) that are farthest apart, what is right and what came back, as text."""
+    """Return the two texels, of (count, 3), that are farthest apart, the right normal and the result, as text."""
     first, other = np.unravel_index(np.argmin(texels @ texels.T), (len(texels), len(texels)))
     named = {"worst_first": texels[min(first, other)], "worst_second": texels[max(first, other)]}
     named |= {"worst_right": right, "worst_result": mixed}
@@ -100,9 +100,9 @@ def outside(name: str, domain: str) -> str:
 
 
 def error_of_percent(which: np.ndarray) -> float:
-    """Return the standard error of a share, in percent, by the rule of succession: it is not 0 even if the count is 0.
+    """Return the standard error of a share, in percent, by the rule of succession: not 0 even if the count is 0.
 
-    With k of n it is that of a share of (k + 1) / (n + 2), whose uncertainty is a beta distribution's.
+    For k of n it is the standard error of a share of (k + 1) / (n + 2), whose uncertainty is a beta distribution's.
     """
     count, share = which.size, (np.count_nonzero(which) + 1) / (which.size + 2)
     return 100.0 * float(np.sqrt(share * (1 - share) / (count + 3)))

@@ -1,4 +1,4 @@
-"""Normals that are mixed after they are decoded; and, of exact normals, what every operation should give. NumPy."""
+"""Mixes of decoded normals, which are the right results of every operation if the normals are exact; in NumPy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rows of `mix`: what each operation makes of a codec's texels, by the model and by the GL device."""
+"""The rows of `mix`: the result of each operation on a codec's texels, by the model and by the OpenGL device."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ SAME = 2.0**-20
 
 @dataclass(frozen=True)
 class MixCase:
-    """A codec on one set of patches by one back end; a row for each operation.
+    """A codec on one set of patches by one backend, with a row for each operation.
 
     Attributes:
         codec, mixes, backend, operations: what is measured.
-        power: what Toksvig's formula starts from.
-        domain: the normals that are mixed, where they are fewer than the encoding holds.
-        worst_case: whether the worst mix is searched for.
+        power: the specular power to which Toksvig's formula is applied.
+        domain: the domain of the normals to mix, if it is smaller than that of the encoding.
+        worst_case: whether to search for the worst mix.
     """
 
     codec: Codec
@@ -151,20 +151,20 @@ def _blocked_image(image: np.ndarray, height: int, width: int) -> np.ndarray:
     return split.transpose(1, 3, 0, 2, 4).reshape(TEXELS, height * width, -1)
 
 
-def _compared(case: MixCase, codes: np.ndarray, found: Mapping[str, Decoded]) -> dict[str, Row]:
+def _compared(case: MixCase, codes: np.ndarray, decoded: Mapping[str, Decoded]) -> dict[str, Row]:
     """Return by operation the way of mixing that best explains the device's numbers, and the share that agrees.
 
     The model mixes the codes that the device stored.
     """
     if not has_twin(case.codec.encoding):
-        return {name: {} for name in found}
+        return {name: {} for name in decoded}
     model = Modelled(case.codec, case.mixes)
     given = model.given(codes)
     return {
         name: _way_columns(model, name, given, mixed, case.mixes.patches.count)
         if name in BY_MODEL
         else {"agree_percent": _agreed_percent(model.of_normals(name, model.decoded(codes)), mixed.normals, case)}
-        for name, mixed in found.items()
+        for name, mixed in decoded.items()
     }
 
 
@@ -173,17 +173,17 @@ def _agreed_percent(model: np.ndarray, normals: np.ndarray, case: MixCase) -> fl
     return percent(angles_between(model[:count], normals[:count]) <= AGREE_DEG)
 
 
-def _way_columns(made: Modelled, operation: str, given: Given, found: Decoded, count: int) -> Row:
+def _way_columns(model: Modelled, operation: str, given: Given, decoded: Decoded, count: int) -> Row:
     best, least, numbers, off = MODEL, np.inf, np.empty(0), 0.0
     for way in WAYS[operation]:
-        tried = made.mixed(operation, given, way)
-        apart = np.abs(tried.T[:count] - found.codes[:count, : len(tried)]).max(axis=1)
+        tried = model.mixed(operation, given, way)
+        apart = np.abs(tried.T[:count] - decoded.codes[:count, : len(tried)]).max(axis=1)
         missed = float(np.mean(~(apart <= SAME)))
         if missed < least:
             best, least, numbers, off = way, missed, tried, float(apart.max())
         if not least:
             break
-    agreed = percent(angles_between(made.decoded(numbers)[:count], found.normals[:count]) <= AGREE_DEG)
+    agreed = percent(angles_between(model.decoded(numbers)[:count], decoded.normals[:count]) <= AGREE_DEG)
     own = f"its own arithmetic, up to {off:.2g} off"
     return {"mixed_by": str(best) if agreed >= EXPLAINED else own, "agree_percent": agreed}
 

@@ -1,7 +1,7 @@
-"""The model of a device that mixes texels: what a filter, a mip level, a resolve and a blend leave in a channel.
+"""The model of a device that mixes texels: the result of a filter, a mip level, a resolve and a blend in a channel.
 
-Stored numbers are mixed, in the arithmetic of float32 that a device has, and what is written is rounded as the format
-rounds. Where numbers are laid across channels, it is the bytes that are mixed. A `Way` says how a device mixes.
+Stored numbers are mixed in a device's float32 arithmetic, and written results are rounded as the format requires. If
+numbers are packed across channels, their bytes are mixed. A `Way` describes how a device mixes.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class Texels:
         self._signs = codec.encoding.sign_bits
 
     def of(self, code: np.ndarray) -> np.ndarray:
-        """Texels of a code's numbers, float32 of shape (numbers, ...), as they come back from the storage or go in.
+        """Return the texels of a code's numbers, float32 of shape (numbers, ...), before or after storage.
 
         Returns:
             planes (channels and sign, ...); the sign is a depth of 1 or -1.
@@ -108,7 +108,7 @@ class Texels:
         return np.concatenate([numbers * F32(0.5) + F32(0.5) if self._codec.storage.is_biased else numbers, signs])
 
     def code(self, texels: np.ndarray) -> np.ndarray:
-        """The numbers that texels stand for, as floats: a row each, signs last, not decoded yet."""
+        """Return the numbers in texels as floats: a row for each number, signs last, not decoded."""
         signs = np.where(np.signbit(texels[len(texels) - self._signs :]), F32(-1), F32(1))
         if self._codec.storage.is_packed:
             return np.concatenate([self._unpacked_numbers(texels), signs])
@@ -144,7 +144,7 @@ class Texels:
         return np.stack(numbers[: self._components])
 
     def written(self, texels: np.ndarray, rounding: str) -> np.ndarray:
-        """Texels as the target keeps them; the depth's sign is kept as it is."""
+        """Return texels as the target stores them; the depth's sign is unchanged."""
         channels = len(texels) - self._signs
         if rounding == CUT:
             return np.concatenate([self._cut_planes(texels[:channels]), texels[channels:]])
@@ -196,10 +196,10 @@ class Texels:
         return np.where(scale > 0, np.maximum(sum(parts) / np.maximum(scale, 1), -1), mixed).astype(F32)
 
 
-def _scaled_product(a: np.ndarray, b: np.ndarray, one: np.ndarray) -> np.ndarray:
-    """a b / one of whole numbers as shifts make it, which go down: of negative products too."""
+def _scaled_product(a: np.ndarray, b: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Return a b / one for integers as shifts compute it, which round down: negative products too."""
     product = a * b
-    return np.floor((product + np.floor(product / (one + 1)) + np.copysign((one + 1) / 2, product)) / (one + 1))
+    return np.floor((product + np.floor(product / (scale + 1)) + np.copysign((scale + 1) / 2, product)) / (scale + 1))
 
 
 def _filtered_texels(texels: Texels, quad: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:
@@ -243,7 +243,7 @@ class Given:
 
     Attributes:
         planes: texels of the patches, (planes, TEXELS, patches).
-        second, detail: what a shader writes of the second normal and of the detail, not yet rounded, (planes, patches).
+        second, detail: a shader's output for the second normal and the detail, not yet rounded, (planes, patches).
     """
 
     planes: np.ndarray

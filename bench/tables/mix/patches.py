@@ -59,21 +59,21 @@ class Patches:
         return 1 << (bits + 1) // 2, 1 << bits // 2
 
     def held_by(self, domain: str) -> np.ndarray:
-        """Return the patches of which an encoding of a domain can represent all texels, bool of shape (patches,)."""
+        """Return which patches have all texels in a domain, bool of shape (patches,)."""
         is_held = np.arange(self.normals.shape[1]) < self.count
         return np.logical_and(is_held, np.all(in_domain(self.normals, self.views, domain), axis=0))
 
 
 @dataclass(frozen=True, eq=False)
 class Mixes:
-    """Patches, and by which weights their texels are mixed.
+    """Patches, and the weights with which their texels are mixed.
 
     Attributes:
-        patches: what is mixed.
-        shares, quarters: where a filter and an upsampling read, float64 of shape (patches, 2).
-        counts: how many samples of a pixel have the first normal, (patches,); `samples` is how many there are.
-        alphas: of a blend, (patches,).
-        decals: what is laid over the first texel, unit, (patches, 3); `details` is the right result of each alpha.
+        patches: the patches.
+        shares, quarters: positions that a filter and an upsampling read, float64 of shape (patches, 2).
+        counts: number of a pixel's `samples` that have the first normal, (patches,).
+        alphas: blend factors, (patches,).
+        decals: normals laid over the first texel, unit, (patches, 3); `details` has the right result of each alpha.
     """
 
     patches: Patches
@@ -174,7 +174,8 @@ def _set_arrays(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def _chosen_directions(normals: NormalSet, count: int, seed: int) -> np.ndarray:
-    """Some of a set's normals or each of them several times, evenly, in random order: alphas go by rows of patches."""
+    """Return `count` of a set's normals, evenly chosen or repeated, in random order, because alphas depend on the
+    row of a patch."""
     n, _, covered = _set_arrays(normals)
     n = unit_rows(n[covered].astype(np.float64))
     return n[np.random.default_rng([seed, 2]).permutation(np.arange(count) * len(n) // count)]
@@ -253,5 +254,5 @@ def _steepest_deg(normals: np.ndarray) -> np.ndarray:
 
 
 def rounded(n: np.ndarray) -> np.ndarray:
-    """As float32 has them, which is what encoders are given."""
+    """Return normals rounded to float32, the input precision of encoders."""
     return n.astype(np.float32).astype(np.float64)

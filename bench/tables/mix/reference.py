@@ -1,4 +1,4 @@
-"""The right normal of each operation, and what a mix does to a length and to a specular power; float64 in NumPy."""
+"""The right normal of each operation, and the effect of mixing on length and on specular power; float64 in NumPy."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ def unit_rows(v: np.ndarray) -> np.ndarray:
 
 
 def lerp_angle(theta, t):
-    """The angle of a mix of two unit normals from the first, in radians; any shapes that broadcast.
+    """Return the angle in radians between a mix of two unit normals and the first; any shapes that broadcast.
 
-    A filter gives this and not the angle t theta of a walk at constant speed (slerp): the difference is what geometry
-    alone does. theta is the angle between the two, t the second one's share.
+    theta is the angle between the two normals, t the share of the second. A filter gives this angle, not the t theta
+    of a rotation at constant speed (slerp): the difference comes from geometry alone.
     """
     # |a (1 - t) + b t| leans from a by atan2(t sin theta, 1 - t + t cos theta)
     return np.arctan2(t * np.sin(theta), 1.0 - t + t * np.cos(theta))
@@ -50,10 +50,10 @@ def reoriented(base: np.ndarray, detail: np.ndarray) -> np.ndarray:
 
 
 def toksvig_power(length: np.ndarray, power: float) -> np.ndarray:
-    """The specular power that a mean normal of some length stands for; any shape.
+    """Return the specular power for a mean normal of a given length; any shape.
 
     Source: M. Toksvig, Mipmapping Normal Maps, Journal of Graphics Tools 10(3), 2005. Lengths above 1, which only
-    rounding makes, count as 1.
+    rounding causes, count as 1.
     """
     # s' = f s with f = |n| / (|n| + s (1 - |n|))
     short = np.clip(length, 0.0, 1.0)

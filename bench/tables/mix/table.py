@@ -1,4 +1,4 @@
-"""The mix table: what happens to a code when texels meet."""
+"""The mix table: the effect of mixing texels on an encoding."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ DONE: Mapping[str, str] = {
 
 
 def _excess(row: Row) -> float:
-    """The largest error less geometry's, and less what the texels alone explain: once read, once written."""
+    """Return the largest error minus that of geometry and twice that of the texels alone: a read and a write."""
     return row["angle_max_deg"] - row["geometry_max_deg"] - 2 * excused(row["operation"], row["alone_max_deg"])
 
 
@@ -54,7 +54,7 @@ def _fault_reason(row: Row) -> str:
 
 
 def _severity(row: Row) -> tuple[bool, float]:
-    """Whether there is garbage, and the excess error as a multiple of reach_max_deg: larger is worse."""
+    """Return whether there is garbage, and the excess error as a multiple of reach_max_deg: larger is worse."""
     return bool(row["garbage_percent"]), _excess(row) / max(row["reach_max_deg"], 1e-6)
 
 

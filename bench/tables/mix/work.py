@@ -150,7 +150,7 @@ def _ways(rows: Sequence[Row]) -> list[Row]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Say which codes survive each use by every backend."""
+    """Yield a sentence on the encodings that survive each use by every backend."""
     verdict_lines = list(lines(rows))
     uses = {"filtering": "filterable", "blending": "blendable", "MSAA resolve": "resolvable"}
     uses["filtering across an edge"] = f"filterable{ACROSS}"
@@ -166,10 +166,10 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         )
 
 
-def _surviving(made: Sequence[Row], column: str) -> str:
+def _surviving(rows: Sequence[Row], column: str) -> str:
     """Return the codes that a verdict holds for by every backend."""
-    failing = {codec_name(line) for line in made if line[column] != "yes"}
-    surviving = {codec_name(line): line for line in made if codec_name(line) not in failing}
+    failing = {codec_name(line) for line in rows if line[column] != "yes"}
+    surviving = {codec_name(line): line for line in rows if codec_name(line) not in failing}
     halves = [line["encoding"] for line in surviving.values() if _is_of_half(line["encoding"])]
     of_half = f" ({listed(halves)} only for z >= 0)" if halves else ""
     return codecs(list(surviving.values()), listed) + of_half if surviving else "none of them"

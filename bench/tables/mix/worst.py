@@ -98,10 +98,10 @@ def _random_rotations(degrees: np.ndarray, random: np.random.Generator) -> np.nd
     return c * np.eye(3) + s * cross + (1 - c) * k[:, :, None] * k[:, None, :]
 
 
-def _chosen_mixes(first: np.ndarray, one: Mixes, other: Mixes) -> Mixes:
-    """The one's mixes where `first` holds, (patches,), and the other's elsewhere."""
-    normals = np.where(first[:, None], one.patches.normals, other.patches.normals)
-    patches = replace(one.patches, normals=normals)
-    named = {name: (getattr(one, name), getattr(other, name)) for name in OF_EACH}
+def _chosen_mixes(first: np.ndarray, mixes: Mixes, other: Mixes) -> Mixes:
+    """Return the mixes of `mixes` where `first`, (patches,), is true, and those of `other` elsewhere."""
+    normals = np.where(first[:, None], mixes.patches.normals, other.patches.normals)
+    patches = replace(mixes.patches, normals=normals)
+    named = {name: (getattr(mixes, name), getattr(other, name)) for name in OF_EACH}
     arrays = {name: np.where(first.reshape(-1, *[1] * (a.ndim - 1)), a, b) for name, (a, b) in named.items()}
-    return replace(one, patches=patches, **arrays)
+    return replace(mixes, patches=patches, **arrays)

@@ -52,11 +52,11 @@ class WobbleTotal:
         self.points += int(np.count_nonzero(frame.counts))
         self.squares += float(np.sum(frame.error[frame.counts] ** 2))
 
-    def add_pair(self, one: Frame, other: Frame) -> None:
-        """Add what changes from a frame to the next."""
-        both = one.counts & other.counts
-        change = _row_lengths(other.error - one.error)[both]
-        jumped = reduce(np.logical_or, (other.codes != one.codes).T)[both]
+    def add_pair(self, frame: Frame, other: Frame) -> None:
+        """Add the changes from one frame to the next."""
+        both = frame.counts & other.counts
+        change = _row_lengths(other.error - frame.error)[both]
+        jumped = reduce(np.logical_or, (other.codes != frame.codes).T)[both]
         self.pairs += len(change)
         self.changes += float(np.sum(change**2))
         self.jumps += int(np.count_nonzero(jumped))
@@ -109,13 +109,13 @@ class Motion:
 
 
 def code_wobble(trip: Trip, domain: str, motion: Motion, count: int, seed: int) -> Row:
-    """The columns of a code that is followed while something turns.
+    """Return the columns of a codec's normals that are followed during a rotation.
 
     Args:
-        trip: the codec.
-        domain: what its encoding is made for; other normals do not count.
-        motion: what turns.
-        count, seed: of turning.points.
+        trip: round trip of the codec.
+        domain: domain of its encoding; normals outside it do not count.
+        motion: the rotation.
+        count, seed: arguments of turning.points.
     """
     total, followed = WobbleTotal(), motion.followed(count)
     for points in turning.points(motion.space, followed, seed):

@@ -45,11 +45,11 @@ def spheres_of(power: np.ndarray, covered: np.ndarray) -> np.ndarray:
 
 
 def spots(linear: np.ndarray, spheres: np.ndarray) -> Spots:
-    """The highlights of a frame: centroids weighted by light.
+    """Return the highlights of a frame: centroids weighted by light, and peaks.
 
     Args:
         linear: the image of `lit_scene`, (height, width, 3).
-        spheres: as `spheres_of` gives them.
+        spheres: the result of `spheres_of`.
     """
     from scipy import ndimage
 

@@ -201,7 +201,7 @@ class Differences:
 
     @property
     def wobble_db(self) -> float:
-        """PSNR of what changes of their differences."""
+        """PSNR of the changes of the images' errors from frame to frame."""
         return psnr_db(float(np.mean(self.moving)))
 
 
@@ -289,12 +289,12 @@ def turned(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
     return (rows.astype(np.float64) @ matrix.T).astype(np.float32)
 
 
-def _of_highlights(found: Filmed, exact: Filmed) -> Row:
+def _of_highlights(filmed: Filmed, exact: Filmed) -> Row:
     """The columns of highlights; `found.worst` is the sphere whose highlights move the most."""
-    moved, flickered = highlights.wobble(found.spots, exact.spots[0])
+    moved, flickered = highlights.wobble(filmed.spots, exact.spots[0])
     if not np.isfinite(moved).any():
         return {}
-    found.worst = int(np.nanargmax(moved)) + 1
+    filmed.worst = int(np.nanargmax(moved)) + 1
     row: Row = {"highlight_px": _root_mean(moved), "peak_percent": _root_mean(flickered)}
     for power, pixels, percent in zip(POWERS, moved, flickered, strict=True):
         row |= {f"highlight_px_{power:g}": _root_mean([pixels]), f"peak_percent_{power:g}": _root_mean([percent])}
@@ -302,7 +302,7 @@ def _of_highlights(found: Filmed, exact: Filmed) -> Row:
 
 
 def _root_mean(squares: Sequence[float] | np.ndarray) -> float | None:
-    """The root of the mean of what is a number; None where nothing is."""
+    """Return the root of the mean of the finite values; None if no value is finite."""
     finite = np.asarray(squares)[np.isfinite(squares)]
     return float(np.sqrt(np.mean(finite))) if len(finite) else None
 

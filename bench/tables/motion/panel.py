@@ -1,7 +1,7 @@
-"""Steps that crawl: a slow panel that mirrors thin strips, which the camera goes around.
+"""Crawling steps: a slightly curved panel that mirrors thin strips while the camera moves around it.
 
-A step of a code stays on the surface, or moves over it, while what the surface reflects goes by. The eye sees that
-sooner than it sees the step.
+A step of an encoding stays on the surface, or moves over it, while the reflection moves past. People notice this
+sooner than the step itself.
 """
 
 from __future__ import annotations
@@ -71,7 +71,8 @@ class Exact:
 
 @contextmanager
 def going_around(device: Device, axis: str, turn: float, frames: int) -> Iterator[Around]:
-    """The panel under a camera that goes around it, `turn` degrees a frame about its own up, right or line of sight."""
+    """Yield the panel under a camera that moves around it, `turn` degrees per frame about its own up, right or view
+    axis."""
     scene = shown(OBJECT, ENVIRONMENTS[ENVIRONMENT].make()).scene(ROUGHNESS)
     plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, False, 1.0, antialiased=False)
     with rendering(device, PIPELINES[PIPELINE], scene, plan) as drawing:
@@ -99,7 +100,7 @@ def differences(
 
 
 def around(view: View, axis: str, degrees: float) -> View:
-    """The camera gone around what it looks at, as `View.turned` turns it where it stands."""
+    """Return the camera moved around its target by the rotation that `View.turned` makes in place."""
     turned = view.turned(axis, degrees)
     x, y, z = map(float, np.add(view.target, np.subtract(view.eye, turned.target)))
     return replace(turned, eye=(x, y, z), target=view.target)

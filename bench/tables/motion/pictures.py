@@ -36,7 +36,7 @@ def write(folder: Path, row: Row, filmed: Filmed, exact: Filmed) -> None:
 
 
 def _window(where: np.ndarray) -> tuple[slice, slice]:
-    """The part of a picture around what is marked, bool of shape (height, width)."""
+    """Return the part of a picture around the pixels in a mask, bool of shape (height, width)."""
     spans = [np.flatnonzero(where.any(axis=axis)) for axis in (1, 0)]
     y, x = (slice(max(int(span[0]) - MARGIN, 0), int(span[-1]) + MARGIN + 1) for span in spans)
     return y, x

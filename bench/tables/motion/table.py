@@ -76,7 +76,7 @@ COLUMNS = (
     shared.STORAGE,
     Column("rounding", "How the storage rounds.", KEY, drops=5),
     Column("space", "The space that normals are encoded in: view or world.", KEY),
-    Column("moves", "What turns: the camera, or the surface in front of a still camera.", KEY, drops=6),
+    Column("moves", "Whether the camera turns, or the surface in front of a still camera.", KEY, drops=6),
     Column("axis", "The axis of the turn: yaw is about the camera's up, pitch its right, roll its line of sight.", KEY),
     Column("turn_deg", "Angle of the turn from one frame to the next.", KEY, "degrees"),
     Column("bits", shared.BITS.says, drops=9),

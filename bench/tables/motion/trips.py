@@ -28,7 +28,7 @@ Trip = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 @contextmanager
 def trip_of(codec: Codec) -> Iterator[Trip]:
-    """Prepare the round trip of a codec.
+    """Yield the round trip of a codec.
 
     Raises:
         MissingError: the encoding exists only in GLSL, and there is no OpenGL device.
@@ -96,8 +96,8 @@ def _in_chunks(trip: Trip) -> Trip:
         codes, decoded = zip(*(part(n, view, start) for start in range(0, len(n), CHUNK)), strict=True)
         return np.concatenate(codes)[: len(n)], np.concatenate(decoded)[: len(n)]
 
-    def part(n: np.ndarray, view: np.ndarray, at: int) -> tuple[np.ndarray, np.ndarray]:
-        rows = (a[at : at + CHUNK] for a in (n, view))
+    def part(n: np.ndarray, view: np.ndarray, start: int) -> tuple[np.ndarray, np.ndarray]:
+        rows = (a[start : start + CHUNK] for a in (n, view))
         return trip(*(np.pad(a, ((0, CHUNK - len(a)), (0, 0)), mode="edge") for a in rows))
 
     return whole

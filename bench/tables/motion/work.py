@@ -106,7 +106,7 @@ def cases(options: MotionOptions, device: Device | None) -> list[MotionCase]:
 
 
 def is_suited(codec: Codec, motion: Motion) -> bool:
-    """Whether an encoding is made for a space: in world space normals have all directions."""
+    """Whether an encoding suits the space of a motion: in world space normals have all directions."""
     return motion.space != turning.SPACES[1] or codec.encoding.domain == "sphere"
 
 
@@ -119,8 +119,8 @@ def _steps(options: MotionOptions, outputs: MotionOutputs) -> list[Step]:
     return shot_steps(Bench(device, outputs.images is not None), chosen, outputs.images, _key)
 
 
-def _check(outputs: MotionOutputs, made: Sequence[Step]) -> None:
-    if outputs.images and not any(step.case.case.pictures for step in made):
+def _check(outputs: MotionOutputs, all_steps: Sequence[Step]) -> None:
+    if outputs.images and not any(step.case.case.pictures for step in all_steps):
         raise UsageError("--images requires rendered frames: a moving camera, a --picture-turn and an OpenGL device")
 
 
@@ -160,7 +160,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """The worst turn of each code, and what was rendered."""
+    """Yield the worst turn of each codec, and the figures of rendered frames."""
     codes, images = [], []
     for line in _lines(rows):
         worst = max(line, key=lambda row: row["wobble_deg"])

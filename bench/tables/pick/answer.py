@@ -1,6 +1,6 @@
-"""The answer: which codes qualify, what each is worth, and which one to take. From rows alone.
+"""The answer, from rows alone: which encodings qualify, how they rank, and which to use.
 
-The order of two codes depends on these two alone. Adding or removing a third one does not change it.
+The order of two encodings depends only on these two. Adding or removing a third encoding does not change it.
 """
 
 from __future__ import annotations
@@ -160,8 +160,8 @@ def doublings(row: Row) -> float:
 
 
 def is_enough(row: Row) -> bool:
-    """Whether an environment map does not show what a code does to a reflection: twice its largest angle is at most
-    what was asked for."""
+    """Whether reflections in an environment map hide an encoding's error: twice its largest angle is at most the
+    limit of the question."""
     angle = largest_mixed(row)
     return angle is not None and 2 * angle <= row["enough"]
 
@@ -188,25 +188,25 @@ def score(row: Row) -> float:
     return loss_db(row) + row["worth"] * doublings(row)
 
 
-def clear_gap_db(one: Row, other: Row) -> float:
+def clear_gap_db(candidate: Row, other: Row) -> float:
     """Return the smallest difference in decibels at which one of two encodings is better.
 
     Images of one encoding depend on how its axes are oriented in the scene: a gap counts only above twice its
     standard error.
     """
-    if one["aim"] != "image":
+    if candidate["aim"] != "image":
         return LEAST_DB
-    errors = [json.loads(row["image_errors"]) for row in (one, other) if row.get("image_errors")]
+    errors = [json.loads(row["image_errors"]) for row in (candidate, other) if row.get("image_errors")]
     return max(STEP, ERRORS * gap_db(*errors)[1]) if len(errors) > 1 else STEP
 
 
-def is_clearly_better(one: Row, other: Row) -> bool:
+def is_clearly_better(candidate: Row, other: Row) -> bool:
     """Whether a code loses less than another one, by more than chance explains."""
-    return loss_db(other) - loss_db(one) >= clear_gap_db(one, other)
+    return loss_db(other) - loss_db(candidate) >= clear_gap_db(candidate, other)
 
 
 def to_a_step(figure: float) -> float:
-    """Round a score to half a decibel, because nobody chooses by less."""
+    """Return a score rounded to half a decibel, because nobody chooses by less."""
     return round(figure / STEP) * STEP if math.isfinite(figure) else figure
 
 
@@ -220,9 +220,9 @@ def figures(row: Row) -> tuple[float, float, float]:
     return _to_a_tenth(loss_db(row)), price(row), _bits(row)
 
 
-def beats(one: Row, other: Row) -> bool:
+def beats(candidate: Row, other: Row) -> bool:
     """Whether a code is nowhere worse than another one and somewhere better."""
-    pairs = list(zip(figures(one), figures(other), strict=True))
+    pairs = list(zip(figures(candidate), figures(other), strict=True))
     return all(a <= b for a, b in pairs) and any(a < b for a, b in pairs)
 
 
@@ -383,13 +383,13 @@ def _places(fit: Sequence[Row]) -> list[list[str]]:
         places[index].append(PLAIN)
     best, rungs = fit[0], [i for i, row in enumerate(fit) if i and not any(beats(other, row) for other in fit)]
     places[0].append(BEST)
-    exact = min(range(len(fit)), key=lambda at: (figures(fit[at]), at))
+    exact = min(range(len(fit)), key=lambda rank: (figures(fit[rank]), rank))
     if exact and is_clearly_better(fit[exact], best):
         places[exact].append(MOST_EXACT)
     above = [i for i in rungs if is_clearly_better(fit[i], best) and i != exact]
     below = [i for i in rungs if loss_db(fit[i]) >= loss_db(best)]
     for place, chosen in (
-        (MORE_EXACT, _rungs_apart(sorted(above, key=lambda at: -loss_db(fit[at])), fit)[:MOST_RUNGS]),
+        (MORE_EXACT, _rungs_apart(sorted(above, key=lambda rank: -loss_db(fit[rank])), fit)[:MOST_RUNGS]),
         (CHEAPER, [i for i in below if _is_cheaper(fit[i], best) and fit[i]["bits"] == best["bits"]][:1]),
         (FEWER_BITS, _first_of_each_size([i for i in below if _is_smaller(fit[i], best)], fit)[:MOST_RUNGS]),
     ):
@@ -398,9 +398,9 @@ def _places(fit: Sequence[Row]) -> list[list[str]]:
     return places
 
 
-def is_same_price(one: Row, other: Row) -> bool:
+def is_same_price(candidate: Row, other: Row) -> bool:
     """Whether two costs are less than a tenth of a doubling apart."""
-    return abs(math.log2(price(one) / price(other))) < SAME_PRICE
+    return abs(math.log2(price(candidate) / price(other))) < SAME_PRICE
 
 
 def _is_cheaper(row: Row, best: Row) -> bool:
@@ -423,7 +423,7 @@ def _first_of_each_size(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
 
 
 def _rungs_apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
-    """Return the alternatives, given from the least accurate, that gain enough over the one before."""
+    """Return the alternatives, given from the least accurate, that gain enough over the alternative before."""
     kept: list[int] = []
     for index in chosen:
         if not kept or is_clearly_better(fit[index], fit[kept[-1]]):
@@ -432,8 +432,8 @@ def _rungs_apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
 
 
 def is_much_better(row: Row, best: Row) -> bool:
-    """Whether a code of another storage is worth a word: by a bit of each component, not worse at its worst, and where
-    the answer itself is not far more exact than what is asked for."""
+    """Whether an encoding in another storage is worth mentioning: it is better by a bit per component, its largest
+    error is not higher, and the best encoding is not already far more accurate than requested."""
     worst = largest_mixed(best) or math.inf
     is_worse, is_needless = (largest_mixed(row) or math.inf) > worst, 2 * worst * NEEDLESS <= best["enough"]
     return loss_db(best) - loss_db(row) >= MUCH_BETTER_DB and not is_worse and not is_needless

@@ -1,4 +1,4 @@
-"""The charts of an answer: what codes cost against what they lose, and how often they are off by which angle."""
+"""The charts of an answer: cost against error, and the distribution of angles."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
             yield _spread(spread_name(index), counted)
 
 
-def chart_name(at: int) -> str:
+def chart_name(index: int) -> str:
     """Return the name of a question's chart, from the question's index among those of the rows."""
-    return f"choose-{at}"
+    return f"choose-{index}"
 
 
-def spread_name(at: int) -> str:
+def spread_name(index: int) -> str:
     """The name of the chart of its angles."""
-    return f"spread-{at}"
+    return f"spread-{index}"
 
 
 def _has_place(row: Row) -> bool:
@@ -57,7 +57,7 @@ def _front(points: Sequence[Row]) -> list[Row]:
     """The points that no other one beats in both, the cheapest first."""
     kept: list[Row] = []
     for point in sorted(
-        (candidate for candidate in points if not candidate["rest"]), key=lambda one: (one["x"], one["y"])
+        (candidate for candidate in points if not candidate["rest"]), key=lambda row: (row["x"], row["y"])
     ):
         if not kept or point["y"] < kept[-1]["y"]:
             kept.append(point)
@@ -119,10 +119,10 @@ def _spread(name: str, counted: Sequence[tuple[Row, Bins]]) -> Chart:
     )
 
 
-def _shares_below(found: Bins) -> tuple[list[float], list[float]]:
+def _shares_below(counts: Bins) -> tuple[list[float], list[float]]:
     """Return the upper edges of a histogram's bins, and the percentage of all angles below each."""
-    total = sum(count for *_, count in found)
-    return [max(high, LEAST_DEG) for _, high, _ in found], [100 * n / total for n in accumulate(c for *_, c in found)]
+    total = sum(count for *_, count in counts)
+    return [max(high, LEAST_DEG) for _, high, _ in counts], [100 * n / total for n in accumulate(c for *_, c in counts)]
 
 
 def _share_at(angle: float, edges: Sequence[float], below: Sequence[float]) -> float:

@@ -74,7 +74,7 @@ def _question(group: Sequence[Row]) -> dict[str, Any]:
 
 
 def _on(first: Row) -> str:
-    """The normals of a question, and what a code must hold where that is not all of them."""
+    """Return the normals of a question, and those that an encoding must represent if these are not all."""
     held = MADE_FOR.get(first["needs"] or "")
     return f"{first['normals']}: {held}" if held else first["normals"]
 

@@ -1,4 +1,4 @@
-"""Images that are lit by what codes give back: their errors in many orientations, and the pictures of one."""
+"""Images lit with decoded normals: their errors in many orientations, and the pictures of one orientation."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ Found = dict[str, dict[str, dict[str, list[float]]]]
 
 
 class Images:
-    """Images of a question's scenes. Each scene's surfaces are drawn once; a context manager that lets go of them."""
+    """A context manager for the images of a question's scenes. Each scene's surfaces are drawn once, and released at
+    the end."""
 
     def __init__(self, device: Device):
         self._device, self._stack = device, ExitStack()
@@ -54,14 +55,14 @@ class Images:
         self._stack.close()
 
     def first(self, case: PickCase) -> Row:
-        """Return the columns of images by a few yaws: enough to tell what is far from the best."""
+        """Return the columns of images from a few yaws, enough to recognise encodings far from the best."""
         return _with_conditions(columns(self._errors(case, 0, turns.FIRST, _poles(case))), case)
 
     def of(self, case: PickCase) -> Row:
-        """Return the columns of images: PSNRs over covered pixels that the encoding is made for, at each power in each
-        scene; none where the device or a layout has no room for the code.
+        """Return the columns of images: PSNRs over covered pixels that the encoding is made for, at each power in
+        each scene; empty if the device or a layout does not support the codec.
 
-        What filters or traces is drawn whole, which takes long: by a few yaws.
+        Images with effects use only a few yaws, because they are drawn whole, which is slow.
         """
         poles = _poles(case)
         if case.said.get("effects"):
@@ -138,7 +139,7 @@ class Images:
         return self._sampled[id(whole)]
 
     def _lost_percent(self, case: PickCase, maker: SceneMaker) -> float:
-        """The share of covered pixels whose normals the encoding is not made for."""
+        """Return the percentage of covered pixels whose normals the encoding is not made for."""
         whole, encoding = next(iter(self._images(case, maker).values())), case.codec.encoding
         if encoding.domain == "view":
             return 100.0 * float(np.mean(whole.view_angles() > encoding.reach_deg))
@@ -152,11 +153,11 @@ class Images:
         return f"In {maker.name} {within}"
 
     def shown(self, case: PickCase, maker: SceneMaker, pole: str) -> dict[float | None, tuple[np.ndarray, np.ndarray]]:
-        """Return for each power (None without powers) the displayed image of the first yaw, and the one of exact
+        """Return for each power (None without powers) the displayed image of the first yaw, and the image of exact
         normals: (height, width, 3), 0 to 1.
 
         Raises:
-            LayoutError, or one of shots.UNMEASURABLE: there is no room for the codec.
+            LayoutError, or one of shots.UNMEASURABLE: the codec is not supported.
         """
         (turn,) = _turns(pole, 0, 1, case.setting.seed)
         trip = self._trip(case.codec)
@@ -187,40 +188,40 @@ def _turns(pole: str, first: int, count: int, seed: int) -> Sequence[Turn]:
     return [POLES[pole] @ yaw for yaw in yaws(first, count, seed)]
 
 
-def _extend(found: Found, more: Found) -> None:
+def _extend(image_errors: Found, more: Found) -> None:
     for name, by_pole in more.items():
         for pole, by_class in by_pole.items():
             for of, values in by_class.items():
-                found[name][pole][of] = found[name][pole][of] + values
+                image_errors[name][pole][of] = image_errors[name][pole][of] + values
 
 
-def _frames(found: Found) -> turns.Errors:
+def _frames(image_errors: Found) -> turns.Errors:
     """The errors of whole frames, by pole."""
     return {
         name: {pole: by_class[""] for pole, by_class in by_pole.items() if pole != TURNED}
-        for name, by_pole in found.items()
+        for name, by_pole in image_errors.items()
     }
 
 
-def _frames_and_pole(found: Found) -> tuple[turns.Errors, str]:
-    frames = _frames(found)
+def _frames_and_pole(image_errors: Found) -> tuple[turns.Errors, str]:
+    frames = _frames(image_errors)
     return frames, turns.best_pole(frames)
 
 
-def columns(found: Found) -> Row:
+def columns(image_errors: Found) -> Row:
     """Return the columns of a code's images; nothing where it has none."""
-    if not found:
+    if not image_errors:
         return {}
-    frames, pole = _frames_and_pole(found)
+    frames, pole = _frames_and_pole(image_errors)
     row: Row = {f"{IMAGE}{name}": turns.image_db(by_pole[pole]) for name, by_pole in frames.items()}
     worst = min(frames, key=lambda name: row[f"{IMAGE}{name}"])
     by_pole = {other: turns.worst_db(frames, other, range(turns.count_of(frames, other))) for other in frames[worst]}
     row |= {"image_se_db": turns.error_db(frames, pole), "image_two_worst_db": turns.two_worst_db(frames[worst][pole])}
     row |= {"image_pole": pole or None, "image_wrong_pole_db": by_pole[pole] - min(by_pole.values()) if pole else None}
-    if all(TURNED in by_pole for by_pole in found.values()):
-        row["image_turned_db"] = min(turns.image_db(by_pole[TURNED][""]) for by_pole in found.values())
+    if all(TURNED in by_pole for by_pole in image_errors.values()):
+        row["image_turned_db"] = min(turns.image_db(by_pole[TURNED][""]) for by_pole in image_errors.values())
     classes = {
         name: {of: turns.image_db(errors) for of, errors in by_pole[pole].items() if of}
-        for name, by_pole in found.items()
+        for name, by_pole in image_errors.items()
     }
     return row | {"image_classes": json.dumps(classes), "image_errors": json.dumps(frames)}

@@ -101,15 +101,15 @@ class PickCase:
 def rows(
     asked: Sequence[Sequence[PickCase]], device: Device | None, images: Path | None, tick: Callable[[str], None]
 ) -> Iterator[list[Row]]:
-    """Yield the rows of each question: the codecs of one storage on one set of normals and its scenes, in their order.
+    """Yield the rows of each question: the codecs of one storage on one set of normals and its scenes, in order.
 
     Images and suprema take seconds each. Images are drawn for codecs that have a place in the answer, or for all
     that qualify if the image decides. Suprema are computed for codecs that have a place, or for all that qualify if
     the largest angle decides.
 
     Args:
-        device: draws; without it there are no images.
-        images: a folder for the images of codecs that an answer names, if they are wanted.
+        device: device that draws the images; None for no images.
+        images: folder for the images of codecs that an answer names; None to write no images.
     """
     if not asked:
         return
@@ -203,7 +203,7 @@ class Question:
         return [case for name, case in self._cases.items() if name in self._rows and not case.is_beside]
 
     def draw(self, images: Images | None, tick: Callable[[str], None]) -> None:
-        """Images, if there is what draws them, and the suprema of codes that have a place then."""
+        """Draw images, if `images` is given, and find the suprema of codecs that then have a place."""
         own = self._own
         left = own[len(own) // OF_ANGLES :]
         if self._aim == "worst":
@@ -243,7 +243,7 @@ class Question:
             self._rows[name][AXES] = row["angle_max_deg"]
 
     def answered(self) -> list[Row]:
-        """The rows as far as they are known, the best first."""
+        """Return the rows as far as they are known, the best first."""
         return answered(list(self._rows.values()))
 
     def _placed_rows(self) -> list[Row]:
@@ -254,7 +254,7 @@ class Question:
         return [row for row in answered([row | {"aim": aim} for row in rows]) if row["place"]]
 
     def _recorded_front(self) -> list[Row]:
-        """Rows that people are shown next to those with a place, whose suprema come with the package."""
+        """Return the rows on the front, shown next to those with a place, whose suprema come with the package."""
         cases = ((row, self._cases[_case_name(row)]) for row in self.answered() if row["front"])
         return [row for row, case in cases if SUPREMA.find(name_of(case.codec, _is_half(case)), case.codec)]
 
@@ -284,7 +284,7 @@ def _is_half(case: PickCase) -> bool:
 
 @cache
 def _axis_set(is_half: bool) -> NormalSet:
-    """Axis-aligned normals, all or those with z >= 0: what faces the viewer of floors, walls and ceilings."""
+    """Return the axis-aligned normals, all or those with z >= 0: of floors, walls and ceilings facing the viewer."""
     axes = NORMAL_SETS["axes"](0, 0)
     if not is_half:
         return axes
@@ -435,7 +435,8 @@ def _normals_key(case: PickCase) -> list[Any] | None:
 
 @cache
 def _lost_percent(normals: NormalSet, domain: str, reach_deg: float = 90.0) -> float:
-    """The percentage of normals outside a domain: of "view", further than `reach_deg` from the line of sight."""
+    """Return the percentage of normals outside a domain; outside "view" are those more than `reach_deg` from the
+    line of sight."""
     if domain == "sphere":
         return 0.0
     lost = count = 0

@@ -71,9 +71,9 @@ FREE_SLOTS, ENOUGH = (8, 32), (0.5, 1.5)
 # How far the mirror's image is, in metres, and the map that it shows.
 FAR, MAP = 10.0, "a 1k environment map"
 OF_SPACE = {
-    "hemisphere": "For tangent space and terrain, where every normal with z >= 0 is as likely. The normals of a map "
-    "lie near z: `normalbench maps` measures them in the formats of maps. In world space a G-buffer's code must hold "
-    "every direction.",
+    "hemisphere": "For tangent space and terrain, where every normal with z >= 0 is equally likely. Normals of a map "
+    "are near z: `normalbench maps` measures them in the formats of maps. In world space a G-buffer must store every "
+    "direction.",
     "view": "In view space a code that ends 100° from the line of sight gains at most 2.3 dB over one of every "
     "direction. But its steps crawl when the camera turns: 26.0 dB on a slow mirror panel, 36.6 dB in world space.",
 }
@@ -141,7 +141,7 @@ def conditions(group: Sequence[Row]) -> Iterator[str]:
 def _of_maps(best: Row) -> Iterator[str]:
     """Yield a note that texture maps, which are filtered, are a separate question."""
     if best["needs"] == "hemisphere" and "filter" in (best.get("mixing") or "").split(","):
-        yield "This is of all normals with z >= 0. Those of a texture map lie near z: ask normalbench maps."
+        yield "Figures are for all normals with z >= 0. Normals of a texture map are near z: use normalbench maps."
 
 
 def _space_sentences(best: Row) -> str:
@@ -182,7 +182,7 @@ def _instead(group: Sequence[Row]) -> Iterator[str]:
             yield f"{RUNGS[INSIDE]}: {code_text}. Across an edge: {row['mixed_across']}."
         uses = group[0]["mixing"].split(",")
         if {*uses} & {"blend", "resolve"}:
-            yield "What the hardware blends or resolves needs three numbers: in rgb10a2 xyz_renormalised survives both."
+            yield "Hardware blending and resolving need three numbers: in rgb10a2 xyz_renormalised survives both."
         if "filter" in uses:
             yield f"Decode each texel and mix the normals instead ({UPSAMPLE}). This works with every encoding."
             if group[0]["needs"] not in ("hemisphere", "view"):
@@ -336,7 +336,7 @@ def _bits_text(row: Row) -> str:
 
 
 def _images_text(row: Row) -> str:
-    """Return the sentence on the worst of a row's images; empty if there are none."""
+    """Return the sentence on the worst of a row's images; empty if the row has no images."""
     by_scene = images(row)
     if not by_scene:
         return ""

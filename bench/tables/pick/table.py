@@ -111,7 +111,7 @@ class PickOptions(Reading, SourceOptions):
     ] = None
     needs: Annotated[
         Names | None,
-        Option("--needs", f"What stored codes must survive: {', '.join(USES)}; comma-separated, or all."),
+        Option("--needs", f"Operations that stored codes must survive: {', '.join(USES)}; comma-separated, or all."),
     ] = None
     survey: Annotated[
         bool,
@@ -259,7 +259,7 @@ COLUMNS = (
     Column("effects", "Effects in the image.", HOW),
     Column("family", "The GPU families that slots were counted for.", HOW),
     Column("dearest_family", "The GPU family with the highest cost; the slots are for this family.", HOW),
-    Column("recorded_by", "What counted the slots on another machine, if this machine has no compilers.", HOW),
+    Column("recorded_by", "Compiler that counted the slots on another machine, if this machine has no compilers.", HOW),
     Column("aim", "The quality to optimise.", HOW),
     Column("readers", "Number of decoding passes.", HOW),
     Column("worth", "Decibels that an encoding must gain for twice the cost.", HOW, "dB"),
@@ -271,7 +271,7 @@ COLUMNS = (
     Column("look_ups", "Whether encodings that read a lookup table may be the answer.", HOW, shown=False),
     Column("most_instructions", "The maximum number of issue slots to encode and decode once.", HOW),
     Column("needs", "The requested domain.", HOW),
-    Column("mixing", "What stored codes must survive, as in --needs.", HOW),
+    Column("mixing", "Operations that stored codes must survive, as in --needs.", HOW),
     Column("cannot_mix", "Why codes do not survive that mixing inside a surface: the verdict of `mix`.", HOW),
     Column(
         "mixed_mean_deg",

@@ -145,7 +145,7 @@ def _say_if_few(sets: Iterable[NormalSet]) -> None:
 
 
 def _asked(options: PickOptions) -> dict[str, list[Storage]]:
-    """The storages of each question, by what was asked for. Raises UsageError."""
+    """Return the storages of each question, by the text of the request. Raises UsageError."""
     if options.bytes is None:
         # Of floats whose number nobody said, all that a texel has.
         asked = [of_count(storage, storage.channels) for storage in storages_named(options.storage)]
@@ -239,7 +239,7 @@ def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
 
 
 def _steps(options: PickOptions, outputs: PickOutputs) -> list[Step]:
-    """A step for each question: what is measured of a code depends on the others."""
+    """Return a step for each question, because the measurements of a codec depend on the others."""
     require_jax()
     asked = questions(options)
     device, why = found_device()
@@ -312,7 +312,7 @@ def _short(row: Row) -> Row:
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
-    """The questions without an answer; the sentences of the sheet say why."""
+    """Yield a line for each question without an answer; the sentences of the sheet give the reason."""
     for (asked, normals, _), group in groups(rows).items():
         if all(row["left_out"] for row in group):
             yield f"no answer for {asked} on {normals}"

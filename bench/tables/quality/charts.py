@@ -30,11 +30,11 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
         yield histogram_chart(index, sorted(part, key=lambda row: row["angle_mean_deg"]))
 
 
-def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
+def histogram_chart(index: int, rows: Sequence[Row]) -> Chart:
     """Return a histogram of angles for each codec, the best mean on top; mean, 99th percentile and largest are marked.
 
     Args:
-        at: its index among the charts of the table.
+        index: its index among the charts of the table.
         rows: of the quality table, one set, in that order: encoding, storage, bits, angle_counts and angles.
     """
     lines = lines_of(rows)
@@ -54,7 +54,7 @@ def histogram_chart(at: int, rows: Sequence[Row]) -> Chart:
     all_bits = tuple(sorted({row["bits"] for row in rows}))
     tips = (("codec", "codec"), ("bits", "bits"), ("mean", "mean (degrees)"), ("largest", "largest (degrees)"))
     return Chart(
-        name=f"angles-{at}",
+        name=f"angles-{index}",
         title=_finding_sentence(rows),
         subtitle=f"Angles on {rows[0]['normals']}, by {backends_of(rows)}",
         description="The share of normals by angle in degrees, on a logarithmic scale. The figures are in the tables "
@@ -79,11 +79,11 @@ def _point_row(row: Row, line: str) -> dict[str, Any]:
     }
 
 
-def steps(found: Sequence[tuple[float, float, int]]) -> tuple[list[float], list[float]]:
+def steps(counts: Sequence[tuple[float, float, int]]) -> tuple[list[float], list[float]]:
     """Return a histogram's outline: edges from LEAST_DEG up, and between them the number of normals per octave."""
-    below = sum(count for low, _, count in found if low < LEAST_DEG)
+    below = sum(count for low, _, count in counts if low < LEAST_DEG)
     edges, heights = [LEAST_DEG, LEAST_DEG * 1.125], [below / math.log2(1.125)]
-    for low, high, count in found:
+    for low, high, count in counts:
         if low >= LEAST_DEG:
             if low > edges[-1] * 1.001:  # rows round edges
                 edges, heights = [*edges, low], [*heights, 0.0]

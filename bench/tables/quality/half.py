@@ -13,13 +13,14 @@ SURVIVES = 10.0
 
 
 def with_half_loss(rows: Sequence[Row]) -> list[Row]:
-    """Rows of half arithmetic get what it adds to the RMS angle, where the row in float32 is among them."""
+    """Return rows with the increase of the RMS angle by half arithmetic, if the float32 row is among them."""
     known = {_case_key(row): row["angle_rms_deg"] for row in rows if not _is_half(row)}
     return [row | _loss_column(row, known.get(_case_key(row))) if _is_half(row) else row for row in rows]
 
 
 def survivors(rows: Sequence[Row]) -> tuple[str, ...]:
-    """A line for each storage and set: which codes half arithmetic leaves nearly as they are, and which it does not."""
+    """Return a line for each storage and set: the encodings that stay nearly as accurate in half arithmetic, and the
+    others."""
     measured_rows = [row for row in rows if row.get("half_loss_percent") is not None]
     return tuple(_loss_lines(measured_rows))
 

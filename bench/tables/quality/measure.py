@@ -1,4 +1,4 @@
-"""The quality table: what each codec loses of the normals of a set, by the JAX and by the GLSL implementation."""
+"""The quality table: the errors of each codec on a set of normals, by the JAX and by the GLSL implementation."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def _compiled(encoding: Encoding, like: Storage, rounding: str) -> ctypes.CDLL:
 
 
 def meter_by_xla(codec: Codec) -> Meter:
-    """Return what measures a codec by XLA's program."""
+    """Return the meter of a codec by XLA's program."""
     like, scales = shared(codec.storage, codec.encoding.components)
     noise = (_noise_of(codec, CHUNK_WIDTH, CHUNK),) if codec.is_dithered else ()
     return Meter(_program(codec.encoding, like, codec.rounding), (*noise, *scales))
@@ -134,7 +134,7 @@ def _noisy_trip(encoding: Encoding, like: Storage) -> Callable[..., Vec3]:
 
 
 def round_trip(codec: Codec, n: np.ndarray, view: np.ndarray) -> np.ndarray:
-    """Return what unit normals are decoded as, (count, 3), not renormalised, by the program that measures rows.
+    """Return the decodes of unit normals, (count, 3), not renormalised, by the program that measures rows.
 
     Args:
         n, view: unit normals and view positions, float32 of shape (count, 3).
@@ -161,7 +161,7 @@ def rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Decoding:
-    """A case about to be measured: with what, on which chunks, and what the row says of how."""
+    """A case about to be measured: its meter, its chunks, and the columns on how it is measured."""
 
     meter: Measures
     loads: Iterable[Load]
@@ -268,14 +268,14 @@ def measure(case: QualityCase, tick: Tick = idle) -> Row:
 
 
 def _row(case: QualityCase, total: ErrorTotal, how: Mapping[str, str | None]) -> Row:
-    """A row of the table; of a part of a set what `merged` makes one of."""
+    """Return a row of the table; for a part of a set, the totals from which `merged` makes a row."""
     if case.normal_set.of:
         return {TOTAL: total.as_text(), **how}
     return _case_columns(case) | _measured_columns(case, statistics(case.normal_set.count, total)) | dict(how)
 
 
 def merged(case: QualityCase, rows: Sequence[Row]) -> Row:
-    """The row of a set that was measured in parts, of their rows in order."""
+    """Return the row of a set that was measured in parts, from the rows of the parts in order."""
     if reason := next((row["skipped"] for row in rows if row.get("skipped")), None):
         return _case_columns(case) | {"skipped": reason}
     total = ErrorTotal()
@@ -303,13 +303,13 @@ def _case_columns(case: QualityCase) -> Row:
     }
 
 
-def _measured_columns(case: QualityCase, found: Statistics) -> Row:
-    row = _figures(found, case.normal_set.area)
+def _measured_columns(case: QualityCase, measured: Statistics) -> Row:
+    row = _figures(measured, case.normal_set.area)
     if case.worst_case:
-        row |= exact_figures.supremum(case.codec, case.domain, case.normal_set.area or 0.0, found)
+        row |= exact_figures.supremum(case.codec, case.domain, case.normal_set.area or 0.0, measured)
     if case.codes:
         row |= exact_figures.odd(case.codec, case.domain)
-    return row | exact_figures.held(case.codec, case.domain, found, row.get("angle_sup_deg"))
+    return row | exact_figures.held(case.codec, case.domain, measured, row.get("angle_sup_deg"))
 
 
 def worst(case: QualityCase) -> Worst | None:

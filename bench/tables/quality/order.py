@@ -1,4 +1,4 @@
-"""The quality table as people read it: grouped by bits, the best first, and under each group what its bits could do."""
+"""The quality table for display: grouped by bits, the best first, with the limit of each bit count below."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ONCE = ("limit_mean_deg", "limit_rms_deg", "limit_max_deg", "below_limit", "code
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Rows by normal set, as they come, then by bits, then the best first; a codec's back ends stay together."""
+    """Return rows by normal set, as given, then by bits, then the best first; a codec's backends stay together."""
     sets = list(dict.fromkeys(row["normals"] for row in rows))
     best: dict[tuple, float] = {}
     for row in rows:
@@ -32,7 +32,7 @@ def _codec_key(row: Row) -> tuple:
 
 
 def _error_key(row: Row) -> float:
-    """The RMS angle, which effective bits go by; rows without figures last."""
+    """Return the RMS angle, on which effective bits are based; infinity for rows without figures."""
     return math.inf if row["angle_rms_deg"] is None else row["angle_rms_deg"]
 
 

@@ -33,12 +33,12 @@ def _best_columns(bits: int, domain: str) -> Row:
 
     normals = NORMAL_SETS["hemisphere" if domain == "hemisphere" else "sphere"](COUNT, 0)
     means = pick.mean_angles(chosen, normals)
-    name = min(means, key=lambda one: means[one])
+    name = min(means, key=lambda codec_name: means[codec_name])
     return {"best_codec": name, "best_mean_deg": means[name]}
 
 
 def _codecs(bits: int, domain: str) -> list[Codec]:
-    """The codes of the catalogue that hold a domain and have so many bits, or the most below."""
+    """Return the catalogue's codecs that represent a domain with `bits` bits, or with the closest lower number."""
     holding = [
         encoding for encoding in ENCODINGS.values() if encoding.domain in ("sphere", domain) and not encoding.sign_bits
     ]

@@ -1,4 +1,4 @@
-"""Pictures of what codecs make of a set that is an image: drawn into a folder, and found there again."""
+"""Pictures of codecs on a set that is an image: written to a folder, and found there again."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ def write(chosen: Sequence[measure.QualityCase], folder: Path) -> None:
 
 
 def _write_codecs(chosen: Iterable[measure.QualityCase], folder: Path) -> None:
-    """Write four PNG files and one of arrays for each codec on each image set, by GLSL where that was asked for and can
-    be had."""
+    """Write four PNG files and, unless the image is too large, an array file for each codec on each image set. GLSL
+    is used if it was requested and can be measured."""
     wanted = {(c.normal_set.name, c.codec): c for c in sorted(chosen, key=lambda c: c.backend, reverse=True)}
     for (normals, codec), case in wanted.items():
         if not case.normal_set.shape:
@@ -93,7 +93,7 @@ def _codes_and_bits(codec: Codec, encoded: np.ndarray) -> tuple[np.ndarray, list
 
 
 def _write_originals(chosen: Sequence[measure.QualityCase], folder: Path) -> None:
-    """The normals as they are, of each set that is an image."""
+    """Write the exact normals of each set that is an image."""
     for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
         n, covered = measure.image_of(case.normal_set)
         _write_png(folder / f"{case.normal_set.name}-normals.png", pictures.normals_picture(n, covered))

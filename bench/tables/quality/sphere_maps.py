@@ -91,7 +91,7 @@ def _angles_apart(n: Vec3, decoded: Vec3) -> Any:
 
 
 def _angles_by_glsl(codec: Codec, n: Vec3) -> np.ndarray:
-    """Angles of planes of shape (halves, pixels). Raises what UNMEASURABLE names."""
+    """Return the angular errors of planes of shape (halves, pixels). Raises the errors that UNMEASURABLE lists."""
     count = n.x.size
     # As an image that every device has room for, the last direction repeated to fill it.
     given = Vec3(*(np.pad(plane.reshape(-1), (0, -count % WIDTH), mode="edge") for plane in n))

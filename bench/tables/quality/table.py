@@ -1,4 +1,4 @@
-"""The quality table: what each codec loses of the normals of a set."""
+"""The quality table: the errors of each codec on the normals of a set."""
 
 from __future__ import annotations
 

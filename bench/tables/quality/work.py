@@ -55,7 +55,7 @@ def cases(options: QualityOptions) -> list[measure.QualityCase]:
 
     Raises:
         UsageError: unknown names, or nothing that fits.
-        MissingError: only GLSL is requested and there is no GL device.
+        MissingError: only GLSL is requested and there is no OpenGL device.
     """
     count = checked_count(options.count)
     check_seed(options.seed)
@@ -95,23 +95,23 @@ def _as_wgsl(backends: Sequence[str]) -> list[str]:
 
 
 def _not_of_noise(options: QualityOptions, backends: Sequence[str]) -> str:
-    """Why codes with noise are not measured as it is asked; empty where they are."""
+    """Return why dithered codecs cannot be measured as requested; empty if they can."""
     exact = [option for option, is_asked in zip(EXACT, (options.worst_case, options.codes), strict=True) if is_asked]
     if exact:
         return not_with_noise(exact[0])
     return f"--rounding {DITHERED} cannot be used with WGSL; use --backend jax,glsl" if "wgsl" in backends else ""
 
 
-def _set_names(said: Sequence[str], codec: Codec) -> Iterator[str]:
-    """The normal sets that words stand for where it is about a codec."""
-    for word in said:
+def _set_names(words: Sequence[str], codec: Codec) -> Iterator[str]:
+    """Yield the normal sets that words stand for with a given codec."""
+    for word in words:
         yield from (OF_SPHERE if codec.encoding.domain == "sphere" else OF_HALF) if word == DOMAIN else (word,)
 
 
-def _is_asked(case: measure.QualityCase, said: Sequence[str]) -> bool:
+def _is_asked(case: measure.QualityCase, words: Sequence[str]) -> bool:
     """Whether words name the set of a case, which `domain` does for codes of that domain alone."""
     name = case.normal_set.name
-    return DOMAIN not in said or name not in OF_SPHERE + OF_HALF or name in _set_names(said, case.codec)
+    return DOMAIN not in words or name not in OF_SPHERE + OF_HALF or name in _set_names(words, case.codec)
 
 
 def steps(options: QualityOptions, outputs: QualityOutputs) -> list[Step]:
@@ -128,8 +128,8 @@ def _step(case: measure.QualityCase, key: Row) -> Step:
     return Step(key, case, case.name, len(case.normal_set.starts), parts)
 
 
-def _check(outputs: QualityOutputs, made: Sequence[Step]) -> None:
-    if outputs.images and not any(step.case.normal_set.shape for step in made):
+def _check(outputs: QualityOutputs, all_steps: Sequence[Step]) -> None:
+    if outputs.images and not any(step.case.normal_set.shape for step in all_steps):
         raise UsageError(f"--images requires a normal set that is an image; use {published.NORMALS} or an image file")
 
 

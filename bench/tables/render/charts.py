@@ -21,11 +21,11 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
         yield image_chart(index, scene, sorted(part, key=lambda row: -row["psnr_db"]))
 
 
-def image_chart(at: int, scene: str, rows: Sequence[Row]) -> Chart:
+def image_chart(index: int, scene: str, rows: Sequence[Row]) -> Chart:
     """The final image next to the normals it was lit by, a line for each codec, the best image on top.
 
     Args:
-        at: its place among the charts of the table.
+        index: its place among the charts of the table.
         rows: of one scene, in that order.
     """
     lines = [
@@ -36,7 +36,7 @@ def image_chart(at: int, scene: str, rows: Sequence[Row]) -> Chart:
     tips = (("line", "codec"), ("image", "the image (dB)"), ("normals", "the normals (dB)"))
     what = Names("what", (IMAGE, NORMALS))
     return Chart(
-        name=f"image-{at}",
+        name=f"image-{index}",
         title=_finding_sentence(lines),
         subtitle=f"The image of {scene} and the normals it was lit by",
         description="PSNR in dB of the final image for each codec, next to the PSNR of the normals in its G-buffer. "

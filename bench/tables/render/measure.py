@@ -1,4 +1,4 @@
-"""The render table: what a codec, a layout or a light buffer does to the final image of a pipeline."""
+"""The render table: the effect of a codec, a layout or a light buffer on the final image of a pipeline."""
 
 from __future__ import annotations
 
@@ -145,10 +145,10 @@ class RenderBench(Bench[RenderCase, Drawn]):
         return Display(exposure, case.tone_mapping)
 
     def _covered_masks(self, case: RenderCase, exact: list[Drawn]) -> list[np.ndarray]:
-        """Return where opaque surfaces are in each frame of a reference, bool of shape (height, width).
+        """Return the masks of opaque surfaces in the frames of a reference, bool of shape (height, width) each.
 
         Raises:
-            UsageError: there are none; figures over no pixels would make every codec look exact.
+            UsageError: no surface is visible; figures over no pixels would make every codec look exact.
         """
         coverage = case.coverage if exact[0].kinds is None else case.reference
         if coverage not in self._masks:
@@ -172,21 +172,21 @@ class RenderBench(Bench[RenderCase, Drawn]):
         return row
 
     def worst(self, case: RenderCase) -> Worst | None:
-        """Return the normal of a case's first frame that its G-buffer gives back farthest off; None without one."""
+        """Return the normal of a case's first frame with the largest G-buffer error; None without a normal."""
         try:
             return _farthest(self.frames(case)[0], self.reference(case)[0])
         except UNMEASURABLE:
             return None
 
 
-def _drawn_images(made: Rendering, pipeline: Pipeline, repeats: int) -> Drawn:
-    made.draw()
+def _drawn_images(rendered: Rendering, pipeline: Pipeline, repeats: int) -> Drawn:
+    rendered.draw()
     normals = kinds = None
-    if pipeline.has_gbuffer and made.frame.plan.surface_samples == 1:
-        position, direction, *_ = made.gbuffer()
+    if pipeline.has_gbuffer and rendered.frame.plan.surface_samples == 1:
+        position, direction, *_ = rendered.gbuffer()
         normals, kinds = direction[..., :3], np.where(position[..., 2] != 0, direction[..., 3], -1).astype(np.int32)
-    image = made.image()
-    return Drawn(image, normals, kinds, times=time_columns(*made.timings(repeats)) if repeats else {})
+    image = rendered.image()
+    return Drawn(image, normals, kinds, times=time_columns(*rendered.timings(repeats)) if repeats else {})
 
 
 def _reference_columns(reference: list[Drawn], covered: list[np.ndarray]) -> Row:
@@ -209,12 +209,12 @@ def _psnr_of_covered(pairs: list[tuple[Drawn, Drawn]], covered: list[np.ndarray]
     return psnr_db(squared_error(pixels, other)[0]) if len(pixels) else None
 
 
-def _farthest(one: Drawn, other: Drawn) -> Worst | None:
+def _farthest(own: Drawn, other: Drawn) -> Worst | None:
     """Return the normal of the first frame that differs most from the second; None if they cannot be compared."""
-    if one.normals is None or other.normals is None or other.kinds is None or one.normals.shape != other.normals.shape:
+    if own.normals is None or other.normals is None or other.kinds is None or own.normals.shape != other.normals.shape:
         return None
     covered = other.kinds >= 0
-    right, normals = other.normals[covered], one.normals[covered]
+    right, normals = other.normals[covered], own.normals[covered]
     if not len(right):
         return None
     angles = np.nan_to_num(angles_deg(right, normals), nan=180.0)
@@ -222,11 +222,11 @@ def _farthest(one: Drawn, other: Drawn) -> Worst | None:
     return Worst(right[index], normals[index], float(angles[index]))
 
 
-def _normal_error(one: Drawn, other: Drawn, has_kind: bool) -> float:
+def _normal_error(own: Drawn, other: Drawn, has_kind: bool) -> float:
     """Mean squared error over the components of covered normals; hair's strand only where the layout knows hair."""
-    assert one.normals is not None and other.normals is not None and other.kinds is not None
+    assert own.normals is not None and other.normals is not None and other.kinds is not None
     compared = (other.kinds >= 0) & (has_kind | (other.kinds != KINDS.index("hair")))
-    return float(np.mean((one.normals[compared].astype(np.float64) - other.normals[compared]) ** 2))
+    return float(np.mean((own.normals[compared].astype(np.float64) - other.normals[compared]) ** 2))
 
 
 def _case_columns(case: RenderCase) -> Row:
@@ -275,7 +275,7 @@ def shown_scene(row: Row) -> str:
 
 
 def in_order(rows: list[Row]) -> list[Row]:
-    """Rows by what was rendered, as it comes, then by the bits of the normal's code, then the best image first."""
+    """Return rows by render settings, in the given order, then by bits of the normal's code, the best first."""
     groups = list(dict.fromkeys(_group_key(row) for row in rows))
     return sorted(rows, key=lambda row: (groups.index(_group_key(row)), row["normal_bits"] or 0, *_error_key(row)))
 

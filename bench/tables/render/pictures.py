@@ -96,7 +96,7 @@ def _pictured_or_none(there: Mapping[str, Path], row: Row, part: Sequence[Row], 
 
 
 def _label(row: Row, part: Sequence[Row]) -> str:
-    """The codec, and what else tells the row apart."""
+    """Return the codec, and other names that distinguish the row."""
     if row["layout"] is None:
         return str(row["pipeline"])
     others = [name for name in ("layout", "light_buffer", "light_targets") if len({other[name] for other in part}) > 1]

@@ -1,4 +1,4 @@
-"""The render table: what a codec, a layout or a light buffer does to the final image of a pipeline."""
+"""The render table: the effect of a codec, a layout or a light buffer on the final image of a pipeline."""
 
 from __future__ import annotations
 
@@ -216,7 +216,7 @@ COLUMNS = (
     Column("ms_*", "Median milliseconds of that pass.", TIME, "ms", "less"),
     Column(
         "clock",
-        "What measured the time. Times of a software rasteriser compare passes; they are not GPU times.",
+        "Clock that measured the time. Times of a software rasteriser compare passes; they are not GPU times.",
         HOW,
         drops=2,
     ),

@@ -47,10 +47,10 @@ ONE_ORIENTATION = (
 
 
 def layouts(options: RenderOptions) -> list[Layout]:
-    """The layouts asked for, each with every codec asked for in it; without codecs as they are.
+    """Return the requested layouts, each with every requested codec; unchanged if no codec is requested.
 
     Raises:
-        UsageError: an unknown name, a layout that cannot be, or nothing left.
+        UsageError: an unknown name, an impossible layout, or nothing left.
     """
     chosen = layouts_named(("fp32",) if options.layout is None else options.layout)
     if options.layout is not None and options.encoding is options.storage is options.rounding is None:
@@ -112,7 +112,7 @@ def cases(options: RenderOptions, device: Device) -> list[RenderCase]:
 
 
 def _as_engines_keep(plan: Plan) -> Plan:
-    """A plan whose code alone is measured, with its normal in world space where the code is made for that."""
+    """Return a plan that measures only an encoding with its normal in world space, if it is made for that."""
     layout, exact = plan.layout, LAYOUTS["fp32"]
     if layout.name != exact.name or layout == exact:
         return plan
@@ -193,7 +193,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _usual_columns(rows: Sequence[Row]) -> tuple[str, ...]:
-    """Columns that say only what goes without saying."""
+    """Return the columns that only repeat the usual case."""
     usual = {
         ("samples_asked",): all(row["samples"] == row["samples_asked"] for row in rows),
         ("exposure",): not any(row["exposure"] for row in rows),

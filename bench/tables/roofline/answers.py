@@ -14,7 +14,7 @@ def answers(rows: Sequence[Row]) -> tuple[str, ...]:
     """Return a sentence for each GPU, or for several with the same answer; several sentences have a heading.
 
     Args:
-        rows: those of the table, ranked.
+        rows: the ranked rows of the table.
     """
     sentences = list(_answers_by_gpu(rows))
     return tuple(["The fastest encodings on each GPU:", *sentences] if len(sentences) > 1 else sentences)

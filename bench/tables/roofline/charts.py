@@ -37,22 +37,22 @@ def points(rows: Sequence[Row]) -> list[Row]:
     return list(codec_points.values())
 
 
-def ridge_lines(found: Sequence[Row], gpu: str) -> dict[bool, list[tuple[float, float]]]:
+def ridge_lines(point_rows: Sequence[Row], gpu: str) -> dict[bool, list[tuple[float, float]]]:
     """Instructions, and the bytes that take as long, from the fewest bytes that are drawn on: a line for codes in
     memory, and one, under True, for those that the cache holds."""
-    most, (least, _) = _axis_end(found), _bytes_axis(found)
-    ridges = {point["in_cache"]: point["ridge"] for point in found if point["gpu"] == gpu}
+    most, (least, _) = _axis_end(point_rows), _bytes_axis(point_rows)
+    ridges = {point["in_cache"]: point["ridge"] for point in point_rows if point["gpu"] == gpu}
     across = [most * (step / STEPS) ** 2 for step in range(1, STEPS + 1)]
     return {cached: [(x, x / ridge) for x in across if x / ridge >= least] for cached, ridge in ridges.items()}
 
 
-def _axis_end(found: Sequence[Row]) -> float:
-    return max(point["x"] for point in found) * 1.3 + 1
+def _axis_end(point_rows: Sequence[Row]) -> float:
+    return max(point["x"] for point in point_rows) * 1.3 + 1
 
 
-def _bytes_axis(found: Sequence[Row]) -> tuple[float, float]:
+def _bytes_axis(point_rows: Sequence[Row]) -> tuple[float, float]:
     """The axis of bytes, which has room for the points alone."""
-    return min(point["y"] for point in found) / 1.5, max(point["y"] for point in found) * 1.5
+    return min(point["y"] for point in point_rows) / 1.5, max(point["y"] for point in point_rows) * 1.5
 
 
 def roofline_chart(rows: Sequence[Row]) -> Chart:
@@ -97,9 +97,9 @@ def roofline_chart(rows: Sequence[Row]) -> Chart:
     )
 
 
-def _finding_sentence(found: Sequence[Row]) -> str:
+def _finding_sentence(point_rows: Sequence[Row]) -> str:
     """Return a sentence on how often bytes take longer than instructions."""
-    bound = [point for point in found if point["y"] * point["ridge"] > point["x"]]
-    gpus, codecs = (len(distinct(found, name)) for name in ("gpu", "codec"))
+    bound = [point for point in point_rows if point["y"] * point["ridge"] > point["x"]]
+    gpus, codecs = (len(distinct(point_rows, name)) for name in ("gpu", "codec"))
     shown = f"{codecs} codecs on {gpus} {'GPU' if gpus == 1 else 'GPUs'}"
-    return f"Bytes take longer than instructions in {len(bound)} of {len(found)} cases: {shown}"
+    return f"Bytes take longer than instructions in {len(bound)} of {len(point_rows)} cases: {shown}"

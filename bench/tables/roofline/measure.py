@@ -79,11 +79,11 @@ class Work:
 
 @dataclass(frozen=True, eq=False)
 class RooflineCase:
-    """Codes on one GPU, in several frames.
+    """Codecs on one GPU, in several frames.
 
     Attributes:
-        codecs, gpu, rates, frames: what is compared, and where.
-        is_shared: whether something else uses what a code leaves of its texel, so that its own bits count alone.
+        codecs, gpu, rates, frames: the codecs to compare, and the GPU and frames to compare them on.
+        is_shared: whether other data shares each texel, so that only a code's own bits count.
     """
 
     codecs: Sequence[Codec]
@@ -174,7 +174,7 @@ def _ranked_rows(group: Sequence[Row]) -> Iterator[Row]:
 MOST_READS = 64
 
 
-def from_reads(one: Work, other: Work, rates: Rates, frame: Frame) -> str:
+def from_reads(candidate: Work, other: Work, rates: Rates, frame: Frame) -> str:
     """Return from how many reads one codec is faster than another: "always", "never", "from 3", "up to 2", "equal".
 
     Each time is the larger of two linear functions of the reads, so a codec may also be faster between two numbers.
@@ -182,7 +182,7 @@ def from_reads(one: Work, other: Work, rates: Rates, frame: Frame) -> str:
     wins, loses = [], []
     for reads in range(1, MOST_READS + 1):
         read_frame = Frame(frame.size, reads, frame.overdraw, frame.cache_share)
-        a, b = (max(work.times(read_frame, rates)) for work in (one, other))
+        a, b = (max(work.times(read_frame, rates)) for work in (candidate, other))
         wins += [reads] if a < b * (1 - TIE) else []
         loses += [reads] if b < a * (1 - TIE) else []
     if not wins:

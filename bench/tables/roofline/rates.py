@@ -1,4 +1,4 @@
-"""GPUs by what they compute and move in a second. Imports nothing heavy."""
+"""GPUs by their rates of computation and of memory traffic. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Rates:
         return self.lanes * self.clock * 1e9
 
     def ridge(self, bandwidth: float) -> float:
-        """Instructions that take as long as moving one byte does at so many GB/s."""
+        """Return the number of instructions that take as long as moving one byte, at a bandwidth in GB/s."""
         return self.instructions / (bandwidth * 1e9)
 
 

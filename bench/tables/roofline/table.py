@@ -1,4 +1,4 @@
-"""The roofline table: what a code's bytes and its instructions take of a frame."""
+"""The roofline table: the time that an encoding's bytes and instructions take per frame."""
 
 from __future__ import annotations
 

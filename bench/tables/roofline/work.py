@@ -79,7 +79,7 @@ def _duels(case: RooflineCase) -> Iterator[str]:
     """Yield for each pair of codecs of different size from how many reads the smaller is faster, and at which
     sizes. If there are many pairs, only those in which it is not always faster."""
     works = {f"{codec.encoding.name} {codec.storage.name}": case.work(codec) for codec in case.codecs}
-    known = sorted(((name, work) for name, work in works.items() if work), key=lambda one: one[1].bytes)
+    known = sorted(((name, work) for name, work in works.items() if work), key=lambda entry: entry[1].bytes)
     pairs = [pair for pair in combinations(known, 2) if pair[0][1].bytes < pair[1][1].bytes]
     duels = {(small[0], large[0]): _by_size(case, small[1], large[1]) for small, large in pairs}
     few = (
@@ -94,18 +94,18 @@ def _duels(case: RooflineCase) -> Iterator[str]:
         yield f"{case.gpu}: {len(few) - MOST_PAIRS} more pairs; name fewer encodings to see them"
 
 
-def _by_size(case: RooflineCase, one: measure.Work, other: measure.Work) -> dict[str, list[str]]:
+def _by_size(case: RooflineCase, candidate: measure.Work, other: measure.Work) -> dict[str, list[str]]:
     """The sizes by the answer that holds for them."""
     groups: dict[str, list[str]] = {}
     for size, frame in {frame.size: frame for frame in case.frames}.items():
-        answer = measure.from_reads(one, other, case.rates, frame)
+        answer = measure.from_reads(candidate, other, case.rates, frame)
         groups.setdefault(answer, []).append("x".join(map(str, size)))
     return groups
 
 
-def _said(said: str, sizes: Sequence[str]) -> str:
-    reads = "" if said in ("always", "never", "equal") else " reads of the G-buffer"
-    return said + reads + (f" at {', '.join(sizes)}" if sizes else "")
+def _said(answer: str, sizes: Sequence[str]) -> str:
+    reads = "" if answer in ("always", "never", "equal") else " reads of the G-buffer"
+    return answer + reads + (f" at {', '.join(sizes)}" if sizes else "")
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -44,11 +44,11 @@ class Frames:
     """Frames of an object through one layout, drawn once and released with the stack.
 
     Attributes:
-        made: one for each frame.
-        covered: where at least one frame shows the object, (height, width).
+        made: the rendering of each frame.
+        covered: mask of the pixels in which at least one frame shows the object, (height, width).
 
     Raises:
-        ShaderError, FormatError, LayoutError: they cannot be drawn.
+        ShaderError, FormatError, LayoutError: the frames cannot be drawn.
     """
 
     def __init__(
@@ -92,17 +92,17 @@ def layout_of(codec: Codec) -> Layout:
     return replace(LAYOUTS["fp32"], space=engines_space(codec.encoding)).with_codec(codec)
 
 
-def draw_again(made: Rendering, roughness: float) -> None:
+def draw_again(rendered: Rendering, roughness: float) -> None:
     """Draw the picture of another roughness of a metal, in a fifth of the time: of the G-buffer one target changes, to
     a constant."""
-    number = next(w.target for w in made.frame.plan.layout.words if w.component == "power")
+    number = next(w.target for w in rendered.frame.plan.layout.words if w.component == "power")
     # Reflectance head on, and the roughness, which a metal/rough surface has in place of a power.
-    made.frame.framebuffer([made.frame.textures(GBUFFER)[number]]).clear(*WHITE, roughness)
-    made.passes[SHADES]()
+    rendered.frame.framebuffer([rendered.frame.textures(GBUFFER)[number]]).clear(*WHITE, roughness)
+    rendered.passes[SHADES]()
 
 
 def views(view: View, size: tuple[int, int], frames: int) -> Sequence[View]:
-    """Return the view of each frame: through the middle of pixels, or for several through points spread over them.
+    """Return the view of each frame: through pixel centres, or for several frames through points spread over pixels.
 
     The points are those of J. Halton, On the efficiency of certain quasi-random sequences, 1960, in bases 2 and 3.
     """

@@ -60,7 +60,7 @@ class RoughnessCase:
 
 
 class Pictures:
-    """Displayed images of a case by exact normals and by those of codecs; each exact image is drawn once."""
+    """Displayed images of a case with exact normals and with decoded normals; each exact image is drawn once."""
 
     def __init__(self, device: Device, stack: ExitStack, case: RoughnessCase):
         self._device, self._stack, self._case = device, stack, case
@@ -70,18 +70,19 @@ class Pictures:
         self.display = Display(measured_exposure(exact.light(EXPOSED_AT)[exact.covered]), TONE_MAPPING)
 
     def opened(self, stack: ExitStack, codec: Codec | None, seen: Accumulation) -> Frames:
-        """The object by a code, or by exact normals, kept open with a stack. Raises what UNMEASURABLE lists."""
+        """Return the object drawn with a codec, or with exact normals if that is None; the stack releases it. Raises
+        the errors that UNMEASURABLE lists."""
         return Frames(self._device, stack, self.what, self._case.size, codec, seen)
 
     def exact(self, frames: int) -> Frames:
-        """The object by exact normals in so many frames, kept open."""
+        """Return the object drawn with exact normals in `frames` frames, which stay open."""
         if frames not in self._exact:
             self._exact[frames] = self.opened(self._stack, None, Accumulation(frames=frames))
         return self._exact[frames]
 
-    def image(self, made: Frames, roughness: float) -> np.ndarray:
+    def image(self, frames: Frames, roughness: float) -> np.ndarray:
         """A picture in [0, 1], float32 of shape (height, width, 3); black around the object."""
-        return self.display.image(made.light(roughness)).astype(np.float32)
+        return self.display.image(frames.light(roughness)).astype(np.float32)
 
     def right(self, frames: int, roughness: float) -> Flip:
         """Return the picture by exact normals, for others to be compared with."""
@@ -89,15 +90,15 @@ class Pictures:
             self._right[frames, roughness] = Flip(self.image(self.exact(frames), roughness))
         return self._right[frames, roughness]
 
-    def figures(self, made: Frames, roughness: float, with_flip: bool) -> Row:
+    def figures(self, frames: Frames, roughness: float, with_flip: bool) -> Row:
         """Return the columns of one image."""
-        image, exact = self.image(made, roughness), self.right(len(made.made), roughness)
-        pixels, right = (picture[made.covered].astype(np.float64) for picture in (image, exact.reference))
+        image, exact = self.image(frames, roughness), self.right(len(frames.made), roughness)
+        pixels, right = (picture[frames.covered].astype(np.float64) for picture in (image, exact.reference))
         bytes_off = np.abs(np.round(255 * pixels) - np.round(255 * right)).max(axis=-1)
         row: Row = {"roughness": roughness, "psnr_db": psnr_db(float(np.mean((pixels - right) ** 2)))}
         row |= {"off_percent": 100 * float(np.mean(bytes_off > 1)), "largest": float(bytes_off.max())}
         if with_flip:
-            apart = exact.of(image)[made.covered]
+            apart = exact.of(image)[frames.covered]
             row |= {"flip": float(apart.mean()), "flip_p99": float(np.percentile(apart, PERCENTILE))}
         return row
 
@@ -128,10 +129,10 @@ def _rows_of(pictures: Pictures, codec: Codec, seen: Accumulation, thresholds: S
         return [about | row for row in _curve(pictures, frames, thresholds)]
 
 
-def _curve(pictures: Pictures, made: Frames, thresholds: Sequence[float]) -> list[Row]:
+def _curve(pictures: Pictures, frames: Frames, thresholds: Sequence[float]) -> list[Row]:
     """A row for each threshold, then one for each roughness; no picture's FLIP is measured twice."""
-    with_flip = cache(lambda roughness: pictures.figures(made, roughness, True))
-    singles = [with_flip(r) if r in WITH_FLIP else pictures.figures(made, r, False) for r in ROUGHNESSES]
+    with_flip = cache(lambda roughness: pictures.figures(frames, roughness, True))
+    singles = [with_flip(r) if r in WITH_FLIP else pictures.figures(frames, r, False) for r in ROUGHNESSES]
     return [*(_crossing(with_flip, singles, threshold) for threshold in thresholds), *singles]
 
 
@@ -142,8 +143,8 @@ def size_of(environment: Environment) -> str:
 
 
 def _crossing(with_flip: Callable[[float], Row], rows: Sequence[Row], threshold: float) -> Row:
-    """Return the row of the lowest roughness from which a codec stays within a threshold; if none does, that of 1,
-    without a roughness.
+    """Return the row of the lowest roughness from which a codec stays within a threshold; if it never does, the row
+    of roughness 1 with None as its roughness.
 
     Between two roughnesses with FLIP, a single crossing is assumed.
     """

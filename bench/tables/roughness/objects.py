@@ -31,7 +31,7 @@ class Kind:
     """A test object.
 
     Attributes:
-        mesh: makes its surface.
+        mesh: function that makes its surface.
         is_metal: whether it is a metal that reflects its whole environment; otherwise it is white and dull, lit
             only by a sun.
     """

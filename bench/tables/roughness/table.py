@@ -1,4 +1,4 @@
-"""The roughness table: what a normal code does to reflections, from mirrors to dull surfaces."""
+"""The roughness table: the effect of a normal encoding on reflections, from mirrors to dull surfaces."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ COLUMNS = (
         "across it; a white plaster sphere.",
         KEY,
     ),
-    Column("environment", "What the object reflects. Plaster is lit by a sun.", KEY),
+    Column("environment", "Environment that the object reflects. Plaster is lit by a sun.", KEY),
     Column(
         "roughness",
         "Perceptual roughness, 0 for a mirror. In a row with a threshold: the lowest acceptable roughness, to 0.01; "
@@ -132,8 +132,8 @@ TABLE = Table(
         title="Banding in reflections",
         short="Roughness",
         view=View.CHOOSE,
-        intro="A mirror shows each step between codes as a band; a rough surface hides the bands. From which "
-        "roughness are reflections acceptable?",
+        intro="A mirror shows each step between codes as a band; a rough surface hides the bands. What is the lowest "
+        "roughness with acceptable reflections?",
         method="A sphere and two slowly turning panels of perfectly reflecting metal fill the image in turn, under "
         "each environment; so does a white plaster sphere (F0 0.04) under one sun. The image with decoded "
         "normals is compared with the image with exact normals, as displayed, at 24 roughnesses. The lowest "

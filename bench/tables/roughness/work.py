@@ -46,7 +46,8 @@ def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
 
 
 def _seen(options: RoughnessOptions) -> tuple[Accumulation, ...]:
-    """Without noise always; one frame, and what temporal antialiasing sees, unless others are asked for."""
+    """Return each dither, always including none, with each number of frames: by default one frame and, if a dither is
+    requested, as many as temporal antialiasing averages."""
     dithers = dict.fromkeys((NONE, *choose("dither", options.dither, {name: name for name in DITHERS})))
     usual = ("1",) if tuple(dithers) == (NONE,) else ("1", str(TEMPORAL))
     frames = checked_numbers("--frames", options.frames or usual, int, 1, MOST_FRAMES)

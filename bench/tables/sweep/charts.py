@@ -1,4 +1,4 @@
-"""The charts of frames: what their milliseconds go into, and how they grow with the number of objects."""
+"""The charts of frames: the time of each pass, and the frame time over the number of objects."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
         yield passes_chart(index, objects, [row for row in usable if row.get("objects") == objects])
 
 
-def passes_chart(at: int, objects: object, rows: Sequence[Row]) -> Chart:
+def passes_chart(index: int, objects: object, rows: Sequence[Row]) -> Chart:
     """Return a chart of a frame's milliseconds: a bar for each pipeline, with the medians of its passes in sequence.
 
     Args:
-        at: its index among the charts of the table.
+        index: its index among the charts of the table.
         rows: of a sweep at one number of objects.
     """
     lines = [_line_name(row, rows, (*MORE, "shadow")) for row in rows]
@@ -48,7 +48,7 @@ def passes_chart(at: int, objects: object, rows: Sequence[Row]) -> Chart:
     tips = (("pipeline", "pipeline"), ("ms", "ms"), ("pass", "pass"))
     fastest = min(totals, key=lambda total: total["x"])
     return Chart(
-        name=f"passes-{at}",
+        name=f"passes-{index}",
         title=f"{fastest['pipeline']} is the fastest, {fastest['x']:.3g} ms per frame",
         subtitle=f"Time per pass, for a frame of {objects} objects",
         description="A bar for each pipeline, divided by pass: median milliseconds per frame. The figures are in the "
@@ -69,7 +69,7 @@ def passes_chart(at: int, objects: object, rows: Sequence[Row]) -> Chart:
 
 
 def _pass_rows(row: Row, line: str) -> list[Row]:
-    """Return the passes of a frame, each from the end of the one before it."""
+    """Return the passes of a frame, each from the end of the pass before."""
     passes = passes_of(row)
     ends = [0.0, *accumulate(passes.values())]
     return [
@@ -136,7 +136,7 @@ def _shadow_text(row: Row) -> str:
 
 
 def _line_name(row: Row, rows: Sequence[Row], more: Sequence[str]) -> str:
-    """A pipeline's name, and what tells its rows apart."""
+    """Return a pipeline's name, and the values that distinguish its rows."""
     same = [other for other in rows if other["pipeline"] == row["pipeline"]]
     varied = [name for name in more if len({str(other.get(name)) for other in same}) > 1]
     texts = (_shadow_text(row) if name == "shadow" else str(row.get(name)) for name in varied)

@@ -1,4 +1,4 @@
-"""The points of a sweep: what is rendered with how many objects."""
+"""The points of a sweep: each pipeline with each number of objects."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SIZE, SOFTWARE_SIZE = "640x480", "320x240"
 
 
 def points(options: SweepOptions, device: Device) -> list[Point]:
-    """Return a point for each row; what does not suit a pipeline is named on standard error.
+    """Return a point for each row; plans that do not suit a pipeline are named on standard error.
 
     Raises:
         UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.

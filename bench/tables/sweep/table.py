@@ -92,7 +92,7 @@ COLUMNS = (
     ),
     Column(
         "clock",
-        "What measured the time. Times of a software rasteriser compare passes; they are not GPU times.",
+        "Clock that measured the time. Times of a software rasteriser compare passes; they are not GPU times.",
         HOW,
         drops=2,
     ),

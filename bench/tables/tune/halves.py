@@ -49,14 +49,15 @@ class Halves:
 
 
 def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
-    """A set's covered normals in two halves, at random.
+    """Return a set's covered normals in two random halves.
 
     Args:
-        by_tiles: of an image whole squares go to one half. Neighbours are too alike to test what could learn each
-            normal by heart, as a look-up could; two numbers cannot, and then a half should miss nothing that is rare.
+        by_tiles: whether whole squares of an image go to one half. Neighbours are too similar to test a lookup table,
+            which could learn each normal by heart. Two parameters cannot do so; for them, a half should miss no rare
+            normals.
 
     Raises:
-        UsageError: too many or too few of them, or all of them are one.
+        UsageError: too many or too few normals, or all normals to fit are the same.
     """
     if chosen.count > MAX_COUNT:
         raise UsageError(

@@ -1,4 +1,4 @@
-"""The table of `tune`: parameters fitted to normals, and what they gain on a half that was held out."""
+"""The table of `tune`: parameters fitted to normals, and their gain on a half that was held out."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ COLUMNS = (
     Column("quantity", "A parameter, or a figure of the hold-out.", KEY),
     Column("published", "Its value as published."),
     Column("tuned", "Its value as tuned."),
-    Column("gain", "What tuning gained on the hold-out.", better="more"),
+    Column("gain", "Gain of tuning on the hold-out.", better="more"),
     Column("unit", "Unit of the gain: dB, or percent of an angle.", HOW),
     Column("glsl", "The macro that sets the parameter in GLSL.", HOW, drops=2),
 )

@@ -1,7 +1,6 @@
-"""Fits an encoding's parameters and its look-up to normals, by a search with the measured error.
+"""A search for an encoding's parameters and lookup table that minimise the measured error on normals.
 
-The rounding that is measured is the storage's own. It is done on one half of a set; the other half is for whoever wants
-to know what was gained.
+The error includes the storage's own rounding. The search uses one half of a set; the other half measures the gain.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ class Scale:
         return (self._log_values(np.array([values[name] for name in self.names])) - low) / (high - low)
 
     def values(self, shares: np.ndarray) -> Values:
-        """And back, of so many digits as a name says."""
+        """Return the values of parameters for numbers from 0 to 1, rounded to the digits of a name."""
         low, high = self._ends
         bent = low + np.clip(shares, 0.0, 1.0) * (high - low)
         straight = np.where(self._is_log, np.exp(np.where(self._is_log, bent, 0.0)), bent)
@@ -60,9 +59,9 @@ class Scale:
 
 
 class Measure:
-    """The error of a codec, its storage's rounding and all, on normals: the smaller the better.
+    """The error of a codec on normals, including the storage's rounding; smaller is better.
 
-    The values of parameters are given to what is compiled once.
+    The values of parameters are arguments of a program that is compiled once.
     """
 
     def __init__(self, codec: Codec, normals: Normals, goal: str):

@@ -102,7 +102,7 @@ def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
 
 
 def _write(done: Measured, _: Tick) -> None:
-    """The look-up, where it was asked for, and a line on how to use what was found."""
+    """Write the lookup table, if it was requested, and print a line on how to use the result."""
     for tuning in (step.case for step in done.steps):
         if tuning.sides:
             if tuning.table and tuning.scales is not None:
@@ -158,10 +158,10 @@ def _halves(chosen: Chosen, options: TuneOptions) -> Halves:
     return halves_of(_one("normal set", named, options.normals), options.seed, by_tiles=chosen.has_table)
 
 
-def tuned_codec(codec: Codec, found: Values, scales: np.ndarray | None, table: Path | None) -> Codec:
-    """The codec with what was found, under the name that says it."""
+def tuned_codec(codec: Codec, tuned_values: Values, scales: np.ndarray | None, table: Path | None) -> Codec:
+    """Return the codec with the tuned values, under a name that includes them."""
     encoding: Encoding = codec.encoding
-    changed = {name: value for name, value in found.items() if value != encoding.published[name]}
+    changed = {name: value for name, value in tuned_values.items() if value != encoding.published[name]}
     if changed:
         encoding = encoding.with_parameters(changed)
     if scales is not None:
@@ -178,14 +178,14 @@ def _write_table(path: Path, scales: np.ndarray) -> None:
         np.save(file, scales)
 
 
-def rows(before: Side, after: Side, chosen: Chosen, found: Values, about: Row) -> Iterator[Row]:
-    """A row for each parameter that was tuned, then one for each figure of the held-out half."""
+def rows(before: Side, after: Side, chosen: Chosen, tuned_values: Values, about: Row) -> Iterator[Row]:
+    """Yield a row for each tuned parameter and for a tuned table, then a row for each figure of the held-out half."""
     codecs = {"encoding": before.codec.encoding.name, "storage": before.codec.storage.name}
     codecs |= {"tuned_encoding": after.codec.encoding.name}
     empty = TABLE.empty() | codecs | about
     for parameter in before.codec.encoding.parameters:
         if parameter.name in chosen.names:
-            published, tuned = before.codec.encoding.published[parameter.name], found[parameter.name]
+            published, tuned = before.codec.encoding.published[parameter.name], tuned_values[parameter.name]
             yield empty | _row(parameter.name, published, tuned) | {"glsl": parameter.constant}
     if chosen.has_table:
         yield empty | _row("texels_changed", 0, _changed(before.codec.encoding, after.codec.encoding))
@@ -225,7 +225,7 @@ def _say_use(before: Side, after: Side, figure: str, table: Path | None, normals
     tell(f"{advice}")
 
 
-def _summary(found: Sequence[Row]) -> Iterator[Sheet]:
+def _summary(tuned_rows: Sequence[Row]) -> Iterator[Sheet]:
     names = (
         "encoding",
         "storage",
@@ -236,7 +236,7 @@ def _summary(found: Sequence[Row]) -> Iterator[Sheet]:
         "tuned",
         "gain",
     )
-    yield Sheet("tuned to one half, measured on the other", [{name: row[name] for name in names} for row in found])
+    yield Sheet("tuned to one half, measured on the other", [{name: row[name] for name in names} for row in tuned_rows])
 
 
 WORK = Work(steps=_steps, measure=each(lambda tuning: tuning.measured()), summary=_summary, write=_write, stays=True)

@@ -68,7 +68,7 @@ def _bits_text(bits: int) -> str:
 
 
 def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """Return the rows of each codec by its name, by speed; without those of zero error, which have no logarithm."""
+    """Return the rows of each codec by its name, by speed; rows of zero error, without a logarithm, are left out."""
     several = len({row.get("range") for row in rows if row.get("range")}) > 1
     lines: dict[str, list[Row]] = {}
     for row in sorted(rows, key=lambda row: row["speed"]):

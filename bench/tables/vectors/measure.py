@@ -1,4 +1,4 @@
-"""The vectors table: what motion vectors come back as from a storage, by JAX and by GLSL."""
+"""The vectors table: the errors of stored motion vectors, by JAX and by GLSL."""
 
 from __future__ import annotations
 
@@ -176,8 +176,8 @@ def _figures(case: MotionVectorCase, speed: float, trip: Trip, rest: np.ndarray)
 
 
 def _through(trip: Trip, motions: np.ndarray) -> np.ndarray:
-    """Motions of up to POINTS points in all frames as they come back. The last point is repeated up to POINTS, so that
-    every frame has its place."""
+    """Return the decoded motions of up to POINTS points in all frames. The last point is repeated up to POINTS, so
+    that each frame keeps its place in the array."""
     count = motions.shape[1]
     whole = np.pad(motions, ((0, 0), (0, POINTS - count), (0, 0)), mode="edge")
     return trip(whole.reshape(-1, NUMBERS)).reshape(whole.shape)[:, :count]

@@ -26,9 +26,9 @@ class Paths:
     """Points that move.
 
     Attributes:
-        count: how many points.
-        seed: what they were made with.
-        size: of the image in pixels.
+        count: number of points.
+        seed: seed of the points.
+        size: size of the image in pixels.
     """
 
     count: int
@@ -36,7 +36,7 @@ class Paths:
     size: tuple[int, int]
 
     def chunks(self, speed: float) -> Iterator[np.ndarray]:
-        """Motions at a speed in pixels a frame: in screens, float32 of shape (FRAMES, POINTS or what is left, 2)."""
+        """Yield motions at a speed in pixels per frame: float32 in screens, (FRAMES, POINTS or the rest, 2)."""
         for start in range(0, self.count, POINTS):
             yield (self._motions_px(start, speed) / self.size).astype(np.float32)
 

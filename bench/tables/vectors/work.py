@@ -37,7 +37,7 @@ def cases(options: VectorsOptions) -> list[measure.MotionVectorCase]:
 
     Raises:
         UsageError: unknown names, numbers beyond what is possible, or nothing that fits.
-        MissingError: only GLSL is requested and there is no GL device.
+        MissingError: only GLSL is requested and there is no OpenGL device.
     """
     check_seed(options.seed)
     in_range("--count", options.count, 1, MAX_POINTS)

@@ -14,12 +14,12 @@ def bits_of(blocks: np.ndarray) -> np.ndarray:
     return np.unpackbits(blocks, axis=1, bitorder="little")
 
 
-def field(bits: np.ndarray, at: int, width: int) -> np.ndarray:
-    """`width` bits from `at` on as whole numbers, the lowest bit first; int32 of shape (count)."""
-    return bits[:, at : at + width].astype(np.int32) @ (1 << np.arange(width, dtype=np.int32))
+def field(bits: np.ndarray, start: int, width: int) -> np.ndarray:
+    """`width` bits from `start` on as whole numbers, the lowest bit first; int32 of shape (count)."""
+    return bits[:, start : start + width].astype(np.int32) @ (1 << np.arange(width, dtype=np.int32))
 
 
-def fields(bits: np.ndarray, at: int, width: int, count: int) -> np.ndarray:
+def fields(bits: np.ndarray, start: int, width: int, count: int) -> np.ndarray:
     """`count` such numbers one after the other; int32 of shape (blocks, count)."""
-    part = bits[:, at : at + width * count].reshape(len(bits), count, width)
+    part = bits[:, start : start + width * count].reshape(len(bits), count, width)
     return part.astype(np.int32) @ (1 << np.arange(width, dtype=np.int32))

@@ -28,10 +28,10 @@ def _curve_defines(encoding: CurveEncoding) -> dict[str, object]:
 
 
 class CurvePasses(Passes):
-    """A curve codec on a GL device; a context manager that releases what it holds there.
+    """A curve codec on an OpenGL device; a context manager that releases its resources there.
 
     Attributes:
-        rounded_by: "device" where the format's own conversion rounds as the codec asks, else "shader".
+        rounded_by: "device" if the format's own conversion rounds as the codec requires, else "shader".
 
     Raises:
         ShaderError: the curve's GLSL does not compile.
@@ -50,10 +50,11 @@ class CurvePasses(Passes):
             set_uniforms(program, {"range": codec.range})
 
     def round_trip(self, quantities: np.ndarray) -> np.ndarray:
-        """Quantities encoded, stored and decoded.
+        """Return quantities after encoding, storage and decoding.
 
         Args:
-            quantities: float32 of shape (height, width, 2): each, and what is added to its number before it is rounded.
+            quantities: float32 of shape (height, width, 2): each quantity, and an offset that is added to its number
+                before rounding.
 
         Returns:
             float32 of shape (height, width).

@@ -71,10 +71,10 @@ class Rebuilt:
 
 
 class DepthPasses(Passes):
-    """A depth codec on a GL device; a context manager that releases what it holds there.
+    """A depth codec on an OpenGL device; a context manager that releases its resources there.
 
     Attributes:
-        rounded_by: "device" where the storage's own conversion rounds as the codec asks, else "shader".
+        rounded_by: "device" if the storage's own conversion rounds as the codec requires, else "shader".
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.
@@ -158,10 +158,10 @@ def rounds_by_itself(device: Device, storage: DepthStorage, rounding: str) -> bo
 
 
 def through(device: Device, storage: DepthStorage, numbers: np.ndarray) -> np.ndarray:
-    """float32 numbers of shape (count,) as they are into a target's first channel or a depth buffer, and back.
+    """Return float32 numbers, (count,), written unchanged to a target's first channel or a depth buffer, then read.
 
     Raises:
-        FormatError: the device cannot render to it.
+        FormatError: the device cannot render to the storage.
     """
     points = np.zeros((1, len(numbers), 3), np.float32)
     points[0, :, 2] = numbers

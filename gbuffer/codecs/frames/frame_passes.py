@@ -33,10 +33,10 @@ def frame_defines(encoding: FrameEncoding, least: float) -> dict[str, object]:
 
 
 class FramePasses(Passes):
-    """A frame codec on a GL device; a context manager that releases what it holds there.
+    """A frame codec on an OpenGL device; a context manager that releases its resources there.
 
     Attributes:
-        rounded_by: "device" where the format's own conversion rounds as the codec asks, else "shader".
+        rounded_by: "device" if the format's own conversion rounds as the codec requires, else "shader".
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.

@@ -40,7 +40,7 @@ def light_defines(codec: LightCodec) -> dict[str, object]:
 
 
 def _packing_defines(storage: Storage) -> dict[str, object]:
-    """Return the macros of numbers packed across channels, if they are packed: from 0 up, as the encoding made them."""
+    """Return the macros for numbers packed across channels. They are stored from 0 up, as the encoding makes them."""
     if not storage.is_packed:
         return {"LIGHT_PACKED": 0}
     laid = storage_defines(storage, ["nearest"] * storage.channels, True)
@@ -57,7 +57,7 @@ class Sum:
 
 
 class LightPasses(Passes):
-    """A light codec on a GL device; a context manager that releases what it holds there.
+    """A light codec on an OpenGL device; a context manager that releases its resources there.
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.

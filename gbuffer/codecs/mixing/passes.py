@@ -72,15 +72,15 @@ class Meetings:
 
 
 class MixPasses:
-    """A codec whose texels meet on a GL device; a context manager that releases what it holds there.
+    """A codec whose texels are mixed on an OpenGL device; a context manager that releases its resources there.
 
     Args:
-        meetings: what meets.
-        samples: of a pixel that is resolved.
+        meetings: the texels to mix.
+        samples: number of samples per pixel in a resolve.
 
     Attributes:
-        samples: as many as the device gave.
-        meetings: what meets.
+        samples: the number of samples that the device provides.
+        meetings: the texels to mix.
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.
@@ -121,7 +121,7 @@ class MixPasses:
         return self._passes[shader]
 
     def _targets(self, size: tuple[int, int], depths: str, texels: str, samples: int = 1) -> Textures:
-        """Targets of a code, by what shaders call them."""
+        """Return targets for a code, by their names in shaders."""
         device = self._device
         targets = {
             depths if name else texels: device.target(size, form, samples) for name, form in self._formats.items()
@@ -152,7 +152,7 @@ class MixPasses:
         return Decoded(normals[..., :3], numbers)
 
     def texels(self) -> Decoded:
-        """Every texel of the patches, as it is; arrays of shape (SIDE height, SIDE width, ...)."""
+        """Return every texel of the patches, unmixed; arrays of shape (SIDE height, SIDE width, ...)."""
         width, height = self._size
         views = np.repeat(np.repeat(self.meetings.views, SIDE, 0), SIDE, 1)
         with self._given_textures(views=views) as given:
@@ -174,7 +174,7 @@ class MixPasses:
         return self._decoded_pass("mix_texel.frag", self._size, self._texels, stride=SIDE >> level, level=level)
 
     def _sampled(self) -> Textures:
-        """The samples of each pixel, as textures by what shaders call them."""
+        """Return the samples of each pixel, as textures by their names in shaders."""
         textures = self._targets(self._size, "signed_samples", "samples", self.samples)
         counts = self.meetings.counts[..., None].astype(np.float32)
         with self._given_textures(normals=self.meetings.firsts, others=self.meetings.seconds, counts=counts) as given:

@@ -29,13 +29,14 @@ def motion_defines(encoding: MotionEncoding, needs_range: bool) -> dict[str, obj
 
 
 class MotionPasses(Passes):
-    """A motion codec on a GL device; a context manager that releases what it holds there.
+    """A motion codec on an OpenGL device; a context manager that releases its resources there.
 
     Args:
-        noise: what is added to the codes, by pixel, float32 of shape (height, width, 4); it repeats. None for nothing.
+        noise: noise to add to the codes, float32 of shape (height, width, 4), repeated over the image; None for
+            no noise.
 
     Attributes:
-        rounded_by: "device" where the format's own conversion rounds as the codec asks, else "shader".
+        rounded_by: "device" if the format's own conversion rounds as the codec requests, else "shader".
 
     Raises:
         ShaderError: the encoding's GLSL does not compile.

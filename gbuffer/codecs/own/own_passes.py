@@ -43,13 +43,13 @@ def tried(
     more: np.ndarray,
     codes: np.ndarray | None = None,
 ) -> Tried:
-    """Values through the two functions.
+    """Return the results of the two functions for these values.
 
     Args:
-        glsl: a file with their adapters, whose names begin with the prefix.
-        results: how many adapters the decoder has.
-        given, more: what each adapter is given, float32 of shape (count, 4), of `more` the first three.
-        codes: to decode in place of those that the encoder gives, likewise.
+        glsl: a file with the adapters of both functions, whose names begin with the prefix.
+        results: number of adapters of the decoder.
+        given, more: inputs of each adapter, float32 of shape (count, 4); the last column of `more` is ignored.
+        codes: codes to decode instead of the encoder's results, of the same shape; None to decode those results.
 
     Raises:
         ShaderError: the file does not compile.

@@ -1,4 +1,4 @@
-"""Light propagation volumes: one bounce of the sun's and the spots' light, carried through a lattice of cells.
+"""Light propagation volumes: one bounce of sunlight and spotlights, propagated through a lattice of cells.
 
 Kaplanyan, Light Propagation Volumes in CryEngine 3, SIGGRAPH 2009 course; Kaplanyan and Dachsbacher, Cascaded Light
 Propagation Volumes for Real-Time Indirect Illumination, I3D 2010.
@@ -21,10 +21,8 @@ SETTINGS = {
     ),
     "amplifier": Number(1.0, 0.0, 4.0, "Times what surfaces block of the light that passes; 0 blocks nothing."),
     "blend": Number(0.2, 0.0, 0.5, "The outer share of a volume over which the next coarser one takes over."),
-    "format": Choice(
-        tuple(FORMATS), "What the volumes are kept in; `shared` is an exponent and four numbers in RGBA8."
-    ),
-    "sums": Choice(SUMS, "What light and blockers of a cell are added up in before."),
+    "format": Choice(tuple(FORMATS), "Format of the volumes; `shared` is an exponent and four numbers in RGBA8."),
+    "sums": Choice(SUMS, "Format in which the light and blockers of a cell are added up first."),
     "texels": Number(128, 16, 1024, "Texels on a side of each reflective shadow map."),
 }
 

@@ -104,7 +104,8 @@ def cascades_of(view: View, box: np.ndarray, cell: float, cells: int, cascades: 
 
 
 def _placed_cascade(view: View, box: np.ndarray, cell: float, cells: int) -> Cascade:
-    """Ahead of the eye, but not past the scene where there is more of it on the other side; at whole cells."""
+    """Return the cascade ahead of the eye, at whole cells. Along each axis it is clamped to the scene's box, or
+    centred on the box if it is larger."""
     forward = np.subtract(view.target, view.eye)
     wanted = view.eye + AHEAD * cell * cells * forward / np.linalg.norm(forward)
     reach = (cells / 2 - MARGIN) * cell

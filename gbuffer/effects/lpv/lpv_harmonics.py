@@ -1,6 +1,6 @@
-"""Two bands of spherical harmonics, and the solid angles of a cell's faces: the numbers of light propagation volumes.
+"""Constants of light propagation volumes: two bands of spherical harmonics and the solid angles of a cell's faces.
 
-All are closed forms; a test integrates each of them anew.
+All are closed forms, which a test checks by integration.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from .volumes import INDIRECT, Volumes
 
 
 class Lattice:
-    """Positions of a frame's cascades: sizes from the scene that it was made for, positions at the current moment."""
+    """The cascades of a frame: their sizes follow from the initial scene, their positions from the current view."""
 
     def __init__(self, canvas: Canvas, volumes: Volumes, extent: float):
         self._canvas, self._volumes, self.box = canvas, volumes, box_of(canvas.frame.scene)
@@ -46,7 +46,7 @@ def inject(volumes: Volumes, extent: float, blocks: bool) -> Pass:
 
 
 class Injection:
-    """Draws a reflective shadow map, adds its texels to the volumes, and goes on to the next."""
+    """The injection pass: draws the reflective shadow maps one by one and adds their texels to the volumes."""
 
     def __init__(self, volumes: Volumes, extent: float, blocks: bool, canvas: Canvas):
         self._canvas, self._volumes, self._blocks = canvas, volumes, blocks
@@ -113,7 +113,7 @@ class Injection:
         self._add(self._surfels, cascades, normal_texels=normal, position_texels=position)
 
     def _add(self, points, cascades: range, **texels) -> None:
-        """A point for each texel, added to what its cell holds."""
+        """Draw a point per texel in each cascade, added to the cell that contains the texel."""
         self._canvas.device.state(None, ADD)
         self._canvas.prepare(points.program, **texels)
         for cascade in cascades:
@@ -122,7 +122,7 @@ class Injection:
 
 
 def propagate(volumes: Volumes, iterations: int, amplifier: float) -> Pass:
-    """The injected light, and so many steps of it, added up."""
+    """Return the pass that adds up the injected light and `iterations` steps of its propagation."""
     build = partial(Propagation, volumes, iterations, amplifier)
     reads = (*volumes.injected, volumes.blockers)
     return Pass("lpv_propagate", reads, (*volumes.wave, *volumes.light), build, after=("linear_depth",))

@@ -26,13 +26,13 @@ SUMS = ("rgba32f", "rgba16f")
 
 @dataclass(frozen=True)
 class Volumes:
-    """The resources of `cascades` volumes of cells x cells x cells, one behind the other along z.
+    """The resources of `cascades` volumes of cells x cells x cells, stacked along z.
 
     Attributes:
-        cells, cascades: their numbers.
-        format: of the volumes, a word of FORMATS.
-        sums: of what is added up before, one of SUMS.
-        texels: of a reflective shadow map, on a side.
+        cells, cascades: number of cells along each side of a volume, and number of volumes.
+        format: format of the volumes, a key of FORMATS.
+        sums: format in which VPLs and surfels are added up, one of SUMS.
+        texels: width and height of a reflective shadow map, in texels.
     """
 
     cells: int

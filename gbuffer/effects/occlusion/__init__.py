@@ -1,1 +1,1 @@
-"""Ambient occlusion: what its methods share."""
+"""Code that the ambient occlusion methods share."""

@@ -31,7 +31,7 @@ HALF_BENT_NORMAL = Resource("half_bent_normal", "rgba32f", scale=0.5, follows=SU
 OCCLUDERS = Resource("occluder_depth", "r32f", follows=SURFACES)
 
 SIZE = Choice(("full", "half"), "Size of the buffer that it is computed in, to the G-buffer's.")
-RADIUS = Number(1.0, 0.01, 100.0, "Metres from which on nothing occludes.")
+RADIUS = Number(1.0, 0.01, 100.0, "Distance in metres beyond which nothing occludes.")
 
 CONSTANTS: Mapping[str, float] = {
     "PI": math.pi,
@@ -54,12 +54,13 @@ class AmbientOcclusion(Effect):
 
 
 def passes(shader: str, size: str, bends: bool, **macros: float) -> tuple[Pass, ...]:
-    """The passes of one method.
+    """Return the passes of one method.
 
     Args:
-        shader: the method's, whose targets are visibility and, if it `bends`, the bent normal.
+        shader: the method's shader, whose targets are visibility and, if it `bends`, the bent normal.
         size: "full" or "half".
-        macros: what the shader is given on top of CONSTANTS.
+        bends: whether the method writes a bent normal.
+        macros: macros of the shader besides CONSTANTS.
     """
     whole = (VISIBILITY, BENT_NORMAL) if bends else (VISIBILITY,)
     half = (HALF_VISIBILITY, HALF_BENT_NORMAL) if bends else (HALF_VISIBILITY,)

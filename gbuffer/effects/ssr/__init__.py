@@ -1,7 +1,7 @@
-"""Screen-space reflections: mirrored rays that hit what the screen shows, glossy by roughness.
+"""Screen-space reflections: mirrored rays, spread by roughness, that hit the surfaces visible on the screen.
 
 A ray marches over the depths of the screen (McGuire and Mara, Efficient GPU Screen-Space Ray Tracing, 2014), and
-the step in which it passes behind a surface is halved. The light that it finds replaces the surface's reflection of
+the step in which it passes behind a surface is bisected. The light at the hit replaces the surface's reflection of
 the environment. A ray cannot hit anything outside the image or hidden by something else.
 """
 
@@ -18,7 +18,7 @@ SETTINGS = {
     "steps": Number(64, 1, 4096, "Steps of a ray at most; none is shorter than a pixel."),
     "rays": Number(2, 1, 1024, "Rays of a pixel, by the lobe of its roughness; a mirror needs one."),
     "thickness": Number(0.1, 0.001, 100.0, "Metres behind a surface in which a ray is stopped."),
-    "misses": Choice(AROUND, "What a ray that meets nothing on the screen brings."),
+    "misses": Choice(AROUND, "Light of a ray that meets nothing on the screen."),
     "seed": SEED,
 }
 

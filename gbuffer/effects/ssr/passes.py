@@ -1,4 +1,4 @@
-"""The passes of screen-space reflections: how near surfaces are, what rays bring, and that in the image."""
+"""The passes of screen-space reflections: inverse depths, ray tracing, and blending into the image."""
 
 from __future__ import annotations
 

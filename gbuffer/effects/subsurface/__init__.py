@@ -1,8 +1,8 @@
-"""Subsurface scattering in screen space: light of skin, blurred before albedo as it spreads under the surface.
+"""Subsurface scattering in screen space: skin's diffuse light, blurred before it is multiplied by the albedo.
 
 Jimenez, Sundstedt and Gutierrez, Screen-Space Perceptual Rendering of Human Skin, 2009; Jimenez and Gutierrez,
 SeparableSSS, 2012; Christensen and Burley 2015; Jo Kyeong-jun, Advanced Rendering with Vision Engine: the pairs of
-Gaussians, the stencil, and light that is scattered before textures.
+Gaussians, the stencil, and light that is scattered before textures are applied.
 """
 
 from __future__ import annotations

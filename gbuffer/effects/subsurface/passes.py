@@ -1,4 +1,4 @@
-"""The passes: the skin's light apart and the skin marked in a stencil, then blurs of what is marked."""
+"""The passes of subsurface scattering: skin's light is written and marked in a stencil, then blurred where marked."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Scatter:
 
 
 def sun_entry() -> Pass:
-    """Return the pass that draws what the sun reaches first; it is skipped if there are no shadows."""
+    """Return the pass that draws the first surfaces that the sun reaches; it is skipped if there are no shadows."""
     return Pass("sun_entry", (), (SUN_ENTRY,), _sun_entry, after=("lights",))
 
 
@@ -85,7 +85,7 @@ def _sun_entry(canvas: Canvas) -> Run:
 
 
 def skin_light(width: float, translucency: float, transmits: bool) -> Pass:
-    """Light of skin, with what comes through it from the sun, and a mark in the stencil."""
+    """Return the pass that writes skin's light, with transmitted sunlight if `transmits`, and marks the stencil."""
     reads = (*SURFACE, LIGHT, *((SUN_ENTRY,) if transmits else ()))
     numbers = {
         "TRANSMITS": int(transmits),
@@ -125,10 +125,10 @@ def _skin_light(numbers: Mapping[str, Any], canvas: Canvas) -> Run:
 
 
 class Blur:
-    """One shader over the marked pixels.
+    """A blur pass: one shader over the marked pixels.
 
     Attributes:
-        queries: if set, each draw adds a query to it.
+        queries: the list to which each draw adds a query; None for no queries.
     """
 
     def __init__(self, shader: str, into: Resource, numbers: Mapping[str, Any], canvas: Canvas):
@@ -155,7 +155,7 @@ def separable(scatter: Scatter) -> tuple[Pass, ...]:
 
 
 def gaussians(scatter: Scatter, pairs: int) -> tuple[Pass, ...]:
-    """Return rows and columns of each Gaussian as passes, each from the one before, with the sum in the last pass."""
+    """Return a row pass and a column pass per Gaussian, each blurring the previous result; the last adds all up."""
     sum_of, levels, passes = GAUSSIANS[pairs], SKIN_GAUSSIANS[: pairs - 1], []
     begun = (SKIN_LIGHT, *levels)
     for number, (variance, light) in enumerate(zip(sum_of.increments.tolist(), begun, strict=True), 1):

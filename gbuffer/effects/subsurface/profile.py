@@ -62,11 +62,11 @@ def _narrowed_profile(r: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Gaussians:
-    """A sum of Gaussians, each blurred from the one before.
+    """A sum of Gaussians, each computed by blurring the previous Gaussian.
 
     Attributes:
-        variances: in square millimetres, in ascending order.
-        weights: (1 + Gaussians, 3), first those of unblurred light.
+        variances: variances in square millimetres, in ascending order.
+        weights: weights of red, green and blue, (1 + number of Gaussians, 3); the first row is for unblurred light.
     """
 
     variances: tuple[float, ...]
@@ -74,7 +74,7 @@ class Gaussians:
 
     @property
     def increments(self) -> np.ndarray:
-        """Variances of the blurs: sigma_fg^2 = sigma_f^2 + sigma_g^2, so each adds what its Gaussian is wider."""
+        """Variances of the blurs: the differences of `variances`, because sigma_fg^2 = sigma_f^2 + sigma_g^2."""
         return np.diff(self.variances, prepend=0.0)
 
 
@@ -120,9 +120,10 @@ def gaussian_kernel(variance: float, samples: int) -> np.ndarray:
 
 
 def burley_distances() -> np.ndarray:
-    """d of R(r) = (e^(-r/d) + e^(-r/3d)) / (8 pi d r) for red, green and blue.
+    """Return the distances d of R(r) = (e^(-r/d) + e^(-r/3d)) / (8 pi d r) for red, green and blue.
 
-    So that light goes as far on average as by d'Eon's sum: the mean of r is 2.5 d, and sqrt(pi v / 2) of a Gaussian.
+    With these distances light travels as far on average as in d'Eon's sum: the mean of r is 2.5 d for R, and
+    sqrt(pi v / 2) for a Gaussian of variance v.
     """
     return np.sqrt(np.pi * VARIANCES / 2) @ WEIGHTS / 2.5
 
@@ -137,5 +138,5 @@ def burley_radius(u: np.ndarray, d: float) -> np.ndarray:
 
 
 def burley_radii(samples: int) -> np.ndarray:
-    """Radii of a disc's taps, (samples,): in the middle of equal shares of the light that goes farthest, red."""
+    """Return the radii of a disc's taps, (samples,): middles of equal shares of red light, which goes farthest."""
     return burley_radius((np.arange(samples) + 0.5) / samples, float(burley_distances().max()))

@@ -26,15 +26,15 @@ SETTINGS = {
     "fresnel": Choice(FRESNEL, "Fresnel's formula, or Schlick's approximation of it."),
     "refraction": Choice(
         REFRACTION,
-        "What keeps things above the water out of what is seen in it: a look-up that meets one stays in place, or the "
-        "thing has no weight; or nothing does.",
+        "Keeps objects above the water out of the refraction: a lookup that hits such an object stays in place "
+        "(two_depth), the object has no weight (alpha), or nothing is done (unguarded).",
     ),
     "caustics": Number(1.0, 0.0, 1.0, "Share of the caustics in the sun's light on the ground."),
     "blur": Number(
-        1.0, 0.0, 4.0, "Times the tilt of waves too short to be seen, which blurs the mirror image in height."
+        1.0, 0.0, 4.0, "Factor of the tilt of invisibly short waves, which blurs the mirror image vertically."
     ),
     "power": Number(1000.0, 16.0, 4096.0, "Blinn-Phong power of the sun's highlight."),
-    "seed": Number(0, 0, 2**31 - 1, "What the waves' random numbers start from."),
+    "seed": Number(0, 0, 2**31 - 1, "Seed of the waves."),
 }
 
 

@@ -53,7 +53,7 @@ class Look:
         return canvas.frame.scene.water
 
     def place(self, canvas: Canvas, program: Program) -> None:
-        """Tell a program what `water_map.glsl` asks of the scene."""
+        """Set the uniforms of `water_map.glsl` that depend on the scene."""
         water = self.water(canvas)
         least = shortest(water.patch, self.maps.octaves)
         tell(program, patch_size=water.patch, shortest=least, level=water.level)

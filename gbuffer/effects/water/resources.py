@@ -38,7 +38,7 @@ CELLS, MARGIN = 96, 12
 
 @dataclass(frozen=True)
 class Maps:
-    """The wave maps and the maps made from them: volumes of texels x texels, one slice for each level."""
+    """The wave maps and the caustics made from them: volumes whose slices are texels x texels."""
 
     octaves: int
     texels: int

@@ -1,4 +1,4 @@
-"""Two busts of one shape, of skin and of stone, with the sun behind an ear: where light goes through a surface."""
+"""Two busts of the same shape, of skin and of stone, with the sun behind an ear: a test of transmitted light."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ EAR_PLACE = (0.082, 0.0, -0.012)
 
 
 def head(setting: Setting) -> Scene:
-    """The busts; `setting.lights` point lights circle in front of them, a sun stands behind."""
+    """Return the busts; `setting.lights` point lights circle in front of them, and a sun is behind them."""
     rng = np.random.default_rng(setting.seed)
     places = [(-0.11, 0.0, 0.0), (0.12, 0.0, -0.04)]
     bars = placed([(-0.42, 0.2, -0.2), (-0.42, 0.155, -0.2), (-0.42, 0.11, -0.2)])

@@ -140,7 +140,7 @@ def _cone(radius: float, tall: float, low: float, slices: int) -> Mesh:
 
 
 def _lanterns(setting: Setting, rng: np.random.Generator) -> list[Light]:
-    """On the shore, in a circle that turns with the time."""
+    """Return lanterns on the shore, in a circle that turns with time."""
     turn = 2 * np.pi * (setting.time + rng.uniform(0, 1, setting.lights))
     x, z = 1.02 * SHORE * np.cos(turn), 1.02 * SHORE * np.sin(turn) / 1.15
     places = np.stack([x, height(x, z) + rng.uniform(0.5, 1.2, setting.lights), z], axis=1)

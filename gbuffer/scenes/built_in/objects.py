@@ -26,7 +26,7 @@ GROUND = Material(albedo=(0.35, 0.33, 0.3), specular=(0.06, 0.06, 0.06), power=2
 
 
 def _places(count: int, rng: np.random.Generator) -> np.ndarray:
-    """The corners of a jittered grid, (count, 3), so that no two objects stand in one place."""
+    """Return positions on a jittered grid, (count, 3), so that no two objects are in the same place."""
     columns = int(np.ceil(np.sqrt(count)))
     cell = np.arange(count)
     grid = np.stack([cell % columns, cell // columns], axis=1) + 0.5 + rng.uniform(-0.25, 0.25, (count, 2))

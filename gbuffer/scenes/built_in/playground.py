@@ -1,9 +1,9 @@
 """The scene on which the quality table of Pranckevicius' article was measured.
 
 World space is left-handed, y up, z into the screen, the eye at (0, 0, -5); view space is OpenGL's, so z is negated.
-Backs are culled, as in Direct3D 9 by default. The normals that face away from the eye, which are most of what
+Back faces are culled, as in Direct3D 9 by default. The normals that face away from the eye, which are most of what
 per-pixel view space loses, are interpolated normals at the silhouettes of four lamp arms. The original's arms may
-not be redistributed: lamp_arm.py makes one with the same statistics. Teapots are cut finely enough that the table
+not be redistributed: lamp_arm.py makes an arm with the same statistics. Teapots are cut finely enough that the table
 no longer changes: from 10 x 10 to 24 x 24 cells per patch, every row stays within 0.15 dB.
 """
 

@@ -74,7 +74,7 @@ def _materials() -> tuple[MetalRough, ...]:
 
 
 def _ramp(low: float, high: float) -> np.ndarray:
-    """Return numbers that go from `low` to `high` along u, (SIZE, SIZE)."""
+    """Return a linear ramp from `low` to `high` along u, (SIZE, SIZE)."""
     return np.tile(np.linspace(low, high, SIZE), (SIZE, 1))
 
 

@@ -1,11 +1,11 @@
-"""glTF 2.0 and GLB files: meshes with their own normals and tangents under their nodes' transforms, materials, lights,
-the first camera.
+"""glTF 2.0 and GLB files: meshes with their own normals and tangents under their nodes' transforms, materials, lights
+and the first camera.
 
-A node's transform goes to its vertices as it stands: mirrored and of three scales if need be, normals by the inverse
-transpose, tangents as positions.
+A node's transform is applied to its vertices unchanged, even if it mirrors them or has three scales. Normals use the
+inverse transpose, and tangents are transformed like positions.
 
-Read here and not by trimesh (5.2), which drops tangents, gives a mirrored mesh no normals of the file's, and takes
-indices that are out of range and nodes that are their own ancestors.
+The files are not read with trimesh (5.2), which drops tangents, does not give a mirrored mesh the file's normals, and
+accepts indices that are out of range and nodes that are their own ancestors.
 """
 
 from __future__ import annotations
@@ -162,7 +162,7 @@ def _local_matrix(gltf: Gltf, node: Object, place: str) -> np.ndarray:
 
 
 def _check_sizes(gltf: Gltf, nodes: list[tuple[Object, np.ndarray]]) -> None:
-    """Raise SceneFileError if the meshes in all their places are too large to be read; uses only headers."""
+    """Raise SceneFileError if the meshes of all nodes together are too large to read; use only headers."""
     sizes: dict[int, tuple[int, int]] = {}
     vertices = triangles = 0
     for node, _ in nodes:

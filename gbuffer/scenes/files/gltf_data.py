@@ -110,11 +110,11 @@ class Gltf:
         """A list that may be missing."""
         entries = holder.get(key, [])
         if not isinstance(entries, list):
-            raise self.error(f"{place}.{key}", "is no list")
+            raise self.error(f"{place}.{key}", "is not a list")
         return entries
 
     def entry(self, kind: str, index: object, place: str) -> Object:
-        """Return an object of one of the document's lists. Raises SceneFileError if there is none at that index."""
+        """Return an object of one of the document's lists. Raises SceneFileError if the index is not valid."""
         known = self.list_of(self.json, kind, "the file")
         if type(index) is not int or not 0 <= index < len(known):
             raise self.error(place, f"names {kind}[{_shown_text(index)}], of which there are {len(known)}")
@@ -148,7 +148,7 @@ class Gltf:
         return self.numbers({key: [holder.get(key, default)]}, key, place, (default,))[0]
 
     def numbers(self, holder: Object, key: str, place: str, default: tuple[float, ...]) -> tuple[float, ...]:
-        """As many finite numbers as the default has."""
+        """Return as many finite numbers as the default has. Raises SceneFileError if the file's are not valid."""
         values = holder.get(key, list(default))
         if not isinstance(values, list) or len(values) != len(default) or not all(map(_is_number, values)):
             raise self.error(f"{place}.{key}", f"is {_shown_text(values)}, not {len(default)} numbers below 1e15")
@@ -157,10 +157,10 @@ class Gltf:
     # Numbers in buffers.
 
     def accessor(self, index: object, width: int, place: str) -> np.ndarray:
-        """An accessor's numbers as they are meant, float64 of shape (count, width).
+        """Return an accessor's decoded numbers, float64 of shape (count, width).
 
         Raises:
-            SceneFileError: it is not of that width, or leaves its buffer.
+            SceneFileError: the accessor has another width, or extends beyond its buffer.
         """
         return self._accessor(index, width, place)
 
@@ -168,7 +168,7 @@ class Gltf:
         """An index accessor's numbers, int64 of shape (count,)."""
         accessor = self.entry("accessors", index, place)
         if COMPONENTS.get(_hashable_or_none(accessor.get("componentType"))) not in INDEX_TYPES:
-            raise self.error(place, "are no unsigned whole numbers")
+            raise self.error(place, "are not unsigned whole numbers")
         return self._accessor(index, 1, place)[:, 0].astype(np.int64)
 
     def count(self, index: object, place: str) -> int:
@@ -192,21 +192,21 @@ class Gltf:
             elements = self._sparse_elements(self.child(accessor, "sparse", place), elements, place)
         return meant_numbers(elements, accessor.get("normalized") is True)
 
-    def _sparse_elements(self, sparse: Object, found: np.ndarray, place: str) -> np.ndarray:
+    def _sparse_elements(self, sparse: Object, dense: np.ndarray, place: str) -> np.ndarray:
         """Some of an accessor's elements replaced."""
         count = self.whole(sparse, "count", f"{place} (sparse)")
         where, what = (self.child(sparse, key, place) for key in ("indices", "values"))
         kind = COMPONENTS.get(_hashable_or_none(where.get("componentType")))
-        if kind not in INDEX_TYPES or count > len(found):
+        if kind not in INDEX_TYPES or count > len(dense):
             raise self.error(f"{place} (sparse)", "is damaged")
         starts = [self.whole(part, "byteOffset", f"{place} (sparse)", 0) for part in (where, what)]
         index = self._view_elements(where.get("bufferView"), starts[0], kind, count, 1, place)[:, 0].astype(np.int64)
-        values = self._view_elements(what.get("bufferView"), starts[1], found.dtype.str, count, found.shape[1], place)
-        if np.any(index >= len(found)):
-            raise self.error(f"{place} (sparse)", f"names element {index.max()} of {len(found)}")
-        found = found.copy()
-        found[index] = values
-        return found
+        values = self._view_elements(what.get("bufferView"), starts[1], dense.dtype.str, count, dense.shape[1], place)
+        if np.any(index >= len(dense)):
+            raise self.error(f"{place} (sparse)", f"names element {index.max()} of {len(dense)}")
+        dense = dense.copy()
+        dense[index] = values
+        return dense
 
     def _view_elements(self, index: object, start: int, kind: str, count: int, width: int, place: str) -> np.ndarray:
         """Return elements of a buffer view, (count, width), as they are stored."""
@@ -242,7 +242,7 @@ class Gltf:
         return self._unpacked[index]
 
     def _is_packed(self, view: Object, where: str) -> bool:
-        """Return whether a view has to be unpacked, because there is no plain copy of it."""
+        """Whether a view has to be unpacked, because its buffer has no plain copy of it."""
         buffer = self.entry("buffers", view.get("buffer"), where)
         return self.requires(MESHOPT) or ("uri" not in buffer and view.get("buffer") != 0)
 
@@ -301,7 +301,7 @@ def _dicts(value: object) -> list[Object]:
 
 
 def meant_numbers(stored: np.ndarray, is_normalised: bool) -> np.ndarray:
-    """Whole numbers that stand for [0, 1] or [-1, 1] as such; others as they are; float64."""
+    """Return normalised integers as numbers in [0, 1] or [-1, 1], other numbers unchanged; float64."""
     # A NaN of the signalling kind is one all the same, and is found where numbers are checked.
     with np.errstate(invalid="ignore"):
         numbers = stored.astype(np.float64)

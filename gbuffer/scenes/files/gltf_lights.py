@@ -23,10 +23,10 @@ ROUNDED_OFF = "its lights fall off with 1 / (d^2 + 1), not 1 / d^2"
 def lights_of(
     gltf: Gltf, nodes: Iterable[tuple[Object, np.ndarray]], pieces: Iterable[Piece], notes: list[str]
 ) -> tuple[Light, ...]:
-    """The lights of nodes, a sun first; `notes` gets what is not as in the file.
+    """Return the lights of nodes, a sun first; append to `notes` what differs from the file.
 
-    A light of colour c gives an irradiance of pi c at a distance of 0, so that colours are intensities over pi. A sun's
-    are in lux, others' in candela.
+    A light of colour c gives an irradiance of pi c at a distance of 0, so a colour is an intensity divided by pi. A
+    sun's intensity is in lux, that of other lights in candela.
 
     Raises:
         SceneFileError: a light is damaged.
@@ -55,7 +55,7 @@ def _corners(piece: Piece) -> np.ndarray:
 
 
 def _light(gltf: Gltf, index: object, model: np.ndarray, corners: np.ndarray, notes: list[str]) -> Light | None:
-    """A light that looks down the -z of its node; None for one that gives no light."""
+    """Return a light along the -z axis of its node; None if its type is unknown or it emits no light."""
     data, place = _data(gltf, index)
     kind = KINDS.get(data["type"]) if isinstance(data.get("type"), str) else None
     if kind is None:

@@ -1,8 +1,8 @@
-"""Materials of glTF files: metal and roughness, and the pictures that vary them.
+"""Materials of glTF files: metallic-roughness parameters and the textures that vary them.
 
-Two numbers of `MetalRough` say what blends and what is cut out. An opaque material has an alpha of 1, and so have its
-picture's texels. One that is cut out has an alpha of 1 too: its factor goes into the threshold. One that blends has an
-alpha below 1 where its picture has any.
+Two numbers of `MetalRough` define blending and cut-outs. An opaque material has an alpha of 1, and so do its
+texture's texels. A cut-out material has an alpha of 1 too: its factor is included in the threshold. A blended
+material has an alpha below 1 if any texel of its texture has.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ DEFAULT = MetalRough(base=(1.0, 1.0, 1.0), metalness=1.0, roughness=1.0)
 
 
 class Materials:
-    """The materials of a file, read one after another; a picture that several of them have is unpacked once.
+    """The materials of a file, read one after another; an image that several materials use is unpacked once.
 
     Attributes:
-        notes: what is not drawn of them.
+        notes: features of the materials that are not drawn.
     """
 
     def __init__(self, gltf: Gltf):
@@ -94,7 +94,7 @@ class Materials:
         return _triple(np.maximum(emission * strength, 0.0).tolist())
 
     def _reflectance(self, data: Object, place: str) -> float:
-        """((n - 1) / (n + 1))^2 of the refractive index n; an index of 0 stands for what reflects everything."""
+        """Return ((n - 1) / (n + 1))^2 of the refractive index n; an index of 0 means full reflection."""
         extension = self._gltf.extension(data, IOR, place)
         if not extension:
             return DIELECTRIC
@@ -147,10 +147,10 @@ class Materials:
         return WRAPS[codes[0]], WRAPS[codes[1]]
 
     def _placed(self, moved: Object, place: str) -> np.ndarray:
-        """KHR_texture_transform, (2, 3): translation x rotation x scale.
+        """Return the matrix of KHR_texture_transform, (2, 3): translation x rotation x scale.
 
-        A positive rotation takes (1, 0) up in the picture, towards smaller v: the extension's text says
-        counter-clockwise. Its GLSL turns the other way; files and programs follow the text (glTF's pull request 1624).
+        A positive rotation turns (1, 0) up in the image, towards smaller v: the extension's text says
+        counter-clockwise. Its GLSL turns the other way; files and programs follow the text (glTF pull request 1624).
         """
         numbers = self._gltf.numbers
         (x, y), (along_u, along_v) = (
@@ -194,17 +194,17 @@ class Materials:
         return bytes(self._gltf.view_bytes(image["bufferView"], place))
 
 
-def _as_kind(found: np.ndarray, kind: str) -> np.ndarray:
+def _as_kind(image: np.ndarray, kind: str) -> np.ndarray:
     """Texels without their alpha if they are opaque; colours of 16 bits on the sRGB curve become linear."""
     if kind == "numbers":
-        return found
-    most = np.iinfo(found.dtype).max
-    if found.dtype == np.uint16:
-        found = found.copy()
-        found[..., :3] = np.round(_linear_of_deep()[found[..., :3]] * most)
-    if kind == "opaque" and np.any(found[..., 3] < most):
-        found = np.concatenate([found[..., :3], np.full_like(found[..., 3:], most)], axis=2)
-    return found
+        return image
+    most = np.iinfo(image.dtype).max
+    if image.dtype == np.uint16:
+        image = image.copy()
+        image[..., :3] = np.round(_linear_of_deep()[image[..., :3]] * most)
+    if kind == "opaque" and np.any(image[..., 3] < most):
+        image = np.concatenate([image[..., :3], np.full_like(image[..., 3:], most)], axis=2)
+    return image
 
 
 def _linear_of_deep() -> np.ndarray:

@@ -40,12 +40,12 @@ def _package(gltf: Gltf, name: str, place: str) -> Any:
 
 
 def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place: str) -> tuple[bytes, int | None]:
-    """A buffer view's bytes, and the bits of the octahedral map that they were packed by, None for no such map.
+    """Return a buffer view's bytes and the bits of its octahedral encoding; None for the bits of any other packing.
 
     Args:
-        packed: the extension of the view.
-        data: what it names.
-        most: how many bytes may come of it.
+        packed: the view's extension.
+        data: the bytes that the extension names.
+        most: maximum number of bytes after unpacking.
 
     Raises:
         SceneFileError: the view is damaged or too large, or its package is missing (MissingPackageError).
@@ -72,7 +72,7 @@ def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place
 
 
 def _octahedral_bits(packed: np.ndarray, count: int, stride: int) -> int | None:
-    """The bits of a map's numbers: the third number of an element is what stands for 1 in it, 2^(bits - 1) - 1."""
+    """Return the bits of a map's numbers: the third number of an element represents 1 as 2^(bits - 1) - 1."""
     if not count:
         return None
     ones = np.frombuffer(packed.tobytes(), f"<i{stride // 4}").reshape(count, 4)[:, 2]
@@ -83,10 +83,10 @@ def _octahedral_bits(packed: np.ndarray, count: int, stride: int) -> int | None:
 
 
 def draco_primitive(gltf: Gltf, primitive: Object, place: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """A primitive's triangles, (triangles, 3), and its attributes by name, (vertices, numbers), as they are stored.
+    """Return a primitive's triangles, (triangles, 3), and its attributes by name, (vertices, numbers), as stored.
 
     Raises:
-        SceneFileError: what it names is damaged or too large, or its package is missing (MissingPackageError).
+        SceneFileError: the data are damaged or too large, or the package is missing (MissingPackageError).
     """
     extension = gltf.extension(primitive, DRACO, place)
     data = bytes(gltf.view_bytes(extension.get("bufferView"), f"{place}.{DRACO}"))
@@ -107,7 +107,7 @@ def draco_primitive(gltf: Gltf, primitive: Object, place: str) -> tuple[np.ndarr
 
 
 def _check_draco_size(gltf: Gltf, data: bytes, place: str) -> None:
-    """Raise SceneFileError if the header is not valid, or states more than is read."""
+    """Raise SceneFileError if the header is not valid, or states a size that is too large."""
     try:
         magic, major, minor, kind, method, flags = DRACO_HEAD.unpack_from(data)
         if magic != b"DRACO" or (major, minor) != DRACO_VERSION or kind != DRACO_MESH:
@@ -127,11 +127,11 @@ def _check_draco_size(gltf: Gltf, data: bytes, place: str) -> None:
         )
 
 
-def _varint(data: bytes, at: int) -> tuple[int, int]:
+def _varint(data: bytes, offset: int) -> tuple[int, int]:
     """Return a number stored as seven bits per byte, the lowest first, and the offset after it."""
     value = shift = 0
     while True:
-        value |= (data[at] & 127) << shift
-        shift, at = shift + 7, at + 1
-        if data[at - 1] < 128 or shift > 63:
-            return value, at
+        value |= (data[offset] & 127) << shift
+        shift, offset = shift + 7, offset + 1
+        if data[offset - 1] < 128 or shift > 63:
+            return value, offset

@@ -23,8 +23,8 @@ class Rounding:
     """The coarseness of stored normals.
 
     Attributes:
-        most: steps of a number from 0 to 1: 127 for signed 8 bits, 127.5 for 8 bits that stand for [-1, 1].
-        is_octahedral: whether the numbers are those of an octahedral map, and not x, y and z.
+        most: number of steps from 0 to 1: 127 for signed 8 bits, 127.5 for unsigned 8 bits that represent [-1, 1].
+        is_octahedral: whether the numbers are of an octahedral encoding, and not x, y and z.
     """
 
     most: float
@@ -39,9 +39,9 @@ class Stored:
         place: its place in the file.
         positions: (vertices, 3).
         corners: vertex indices: (triangles, 3) for triangles, (points, 1) for points.
-        normals: (vertices, 3), of any length; None if there are none.
+        normals: (vertices, 3), of any length; None if the file has no normals.
         uv, tangents, second_uv: as in `Mesh`, tangents as `authored`, of any length.
-        roundings: how the normals were rounded, as far as the file tells.
+        roundings: the rounding of the normals, if the file defines it.
     """
 
     place: str
@@ -90,7 +90,7 @@ class MeshFile:
         pieces: at least one.
         materials, two_sided: the pieces' materials, and whether the back of each material is drawn.
         view: the file's own camera; None if it has none.
-        notes: what was not taken from the file or was made up for it, each in a few words.
+        notes: notes on what was ignored in the file or made up for it, each in a few words.
         lights: the file's own, a sun first; empty if it has none.
     """
 
@@ -130,7 +130,7 @@ class MeshFile:
 
 
 def of_one_mesh(path: Path, mesh: Mesh, notes: Iterable[str]) -> MeshFile:
-    """A file of one mesh where it stands, in one grey material seen from both sides."""
+    """Return a file of one mesh, in one grey material that is visible from both sides."""
     return MeshFile(path, (Piece(mesh, np.eye(4), 0),), (Material(),), (True,), None, tuple(notes))
 
 
@@ -167,7 +167,7 @@ def mesh_of(path: Path, stored: Stored) -> tuple[Mesh, list[str]]:
 
 
 def _completed_normals(normals: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, int]:
-    """Unit normals, and how many used ones had to be made."""
+    """Return unit normals, and the number of used normals that had to be made up."""
     length = np.linalg.norm(normals, axis=1)
     lost = length < NOTHING
     normals = normals / np.where(lost, 1.0, length)[:, None]

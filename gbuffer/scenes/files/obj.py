@@ -98,7 +98,7 @@ def _stored(path: Path, obj: _Obj) -> Iterator[Stored]:
 
 
 def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
-    """The words of each line that has any, with its number; a line may go on after a backslash."""
+    """Yield the words of each line that has any, with its number; a line may continue after a backslash."""
     words: list[str] = []
     for number, line in enumerate(data.decode("utf-8", "replace").split("\n"), 1):
         text = line.partition("#")[0].rstrip()

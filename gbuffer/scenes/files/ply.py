@@ -86,8 +86,8 @@ def read_cloud(path: Path) -> Stored:
 
 
 def _normals(vertex: Table, types: dict[str, str]) -> tuple[np.ndarray | None, tuple[Rounding, ...]]:
-    """Normals as they are meant: whole numbers with a sign stand for [-1, 1] around 0, those without one from end to
-    end; and what they are rounded to."""
+    """Return decoded normals and their roundings: signed integers represent [-1, 1] around 0, unsigned integers from
+    end to end."""
     normals, kinds = _columns(vertex, NORMAL), {types[name] for name in NORMAL if name in types}
     kind = np.dtype(kinds.pop() if len(kinds) == 1 else "f8")
     if normals is None or kind.kind == "f":
@@ -146,7 +146,7 @@ def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
 
 
 def _check_count(path: Path, element: Element, left: int, least: int) -> None:
-    """Raise SceneFileError if a table is not valid, or is larger than the rest of the file or than is read."""
+    """Raise SceneFileError if a table is not valid, or is larger than the rest of the file or the maximum size."""
     names = [p.name for p in element.properties]
     if not names or len(set(names)) < len(names):
         raise SceneFileError(f"{path}: element {element.name}: no properties, or two of the same name; export it again")
@@ -163,53 +163,53 @@ def _damage_error(path: Path, element: Element, row: int) -> SceneFileError:
     return SceneFileError(f"{path}: element {element.name}, row {row}: cut off or damaged; export it again")
 
 
-def _binary(path: Path, data: bytes, at: int, element: Element, order: str) -> tuple[Table, int]:
+def _binary(path: Path, data: bytes, offset: int, element: Element, order: str) -> tuple[Table, int]:
     """A table of a binary file, and where the next one starts."""
     least = sum(np.dtype(p.counted_by or p.type).itemsize for p in element.properties)
-    _check_count(path, element, len(data) - at, least)
+    _check_count(path, element, len(data) - offset, least)
     lists = [p for p in element.properties if p.counted_by]
-    lengths = _first_lengths(data, at, element, order) if lists and element.count else {}
-    table = _alike(data, at, element, order, lengths)
+    lengths = _first_lengths(data, offset, element, order) if lists and element.count else {}
+    table = _alike(data, offset, element, order, lengths)
     if table is not None:
         return table
     rows: dict[str, list] = {p.name: [] for p in element.properties}
     for row in range(element.count):
         for p in element.properties:
             try:
-                values, at = _values(data, at, p, order)
+                values, offset = _values(data, offset, p, order)
             except ValueError as error:
                 raise _damage_error(path, element, row) from error
             rows[p.name].append(values if p.counted_by else values[0])
-    return {p.name: rows[p.name] if p.counted_by else np.array(rows[p.name]) for p in element.properties}, at
+    return {p.name: rows[p.name] if p.counted_by else np.array(rows[p.name]) for p in element.properties}, offset
 
 
-def _values(data: bytes, at: int, p: Property, order: str) -> tuple[np.ndarray, int]:
+def _values(data: bytes, offset: int, p: Property, order: str) -> tuple[np.ndarray, int]:
     """A property's values at a place, and where the next one is. Raises ValueError beyond the end."""
     count = 1
     if p.counted_by:
-        count = int(np.frombuffer(data, order + p.counted_by, 1, at)[0])
-        at += np.dtype(p.counted_by).itemsize
+        count = int(np.frombuffer(data, order + p.counted_by, 1, offset)[0])
+        offset += np.dtype(p.counted_by).itemsize
         if not 0 <= count <= MAX_CORNERS:
             raise ValueError(count)
     kind = np.dtype(order + p.type)
-    if at + count * kind.itemsize > len(data):
-        raise ValueError(at)
-    return np.frombuffer(data, kind, count, at) if count else np.zeros(0, kind), at + count * kind.itemsize
+    if offset + count * kind.itemsize > len(data):
+        raise ValueError(offset)
+    return np.frombuffer(data, kind, count, offset) if count else np.zeros(0, kind), offset + count * kind.itemsize
 
 
-def _first_lengths(data: bytes, at: int, element: Element, order: str) -> dict[str, int]:
+def _first_lengths(data: bytes, offset: int, element: Element, order: str) -> dict[str, int]:
     """Return the lengths of the lists in the first row; empty if the row is damaged."""
     lengths: dict[str, int] = {}
     try:
         for p in element.properties:
-            values, at = _values(data, at, p, order)
+            values, offset = _values(data, offset, p, order)
             lengths[p.name] = len(values)
     except ValueError:
         return {}
     return lengths
 
 
-def _alike(data: bytes, at: int, element: Element, order: str, lengths: dict[str, int]) -> tuple[Table, int] | None:
+def _alike(data: bytes, offset: int, element: Element, order: str, lengths: dict[str, int]) -> tuple[Table, int] | None:
     """The whole table at once, where every row's lists are as long as the first row's; else None."""
     fields = []
     for p in element.properties:
@@ -221,43 +221,43 @@ def _alike(data: bytes, at: int, element: Element, order: str, lengths: dict[str
         else:
             fields += [(p.name, order + p.type)]
     kind = np.dtype(fields)
-    if at + element.count * kind.itemsize > len(data):
+    if offset + element.count * kind.itemsize > len(data):
         return None
-    rows = np.frombuffer(data, kind, element.count, at) if element.count else np.zeros(0, kind)
+    rows = np.frombuffer(data, kind, element.count, offset) if element.count else np.zeros(0, kind)
     lists = [p for p in element.properties if p.counted_by]
     if any(np.any(rows[f"{p.name} count"] != lengths.get(p.name, 0)) for p in lists):
         return None
-    return {p.name: rows[p.name] for p in element.properties}, at + element.count * kind.itemsize
+    return {p.name: rows[p.name] for p in element.properties}, offset + element.count * kind.itemsize
 
 
-def _ascii(path: Path, tokens: list[bytes], at: int, element: Element) -> tuple[Table, int]:
+def _ascii(path: Path, tokens: list[bytes], index: int, element: Element) -> tuple[Table, int]:
     """A table of an ASCII file, and which token comes next."""
-    _check_count(path, element, len(tokens) - at, len(element.properties))
+    _check_count(path, element, len(tokens) - index, len(element.properties))
     width = len(element.properties)
     if not any(p.counted_by for p in element.properties):
-        part = tokens[at : at + element.count * width]
+        part = tokens[index : index + element.count * width]
         try:
             if max(map(len, part), default=0) > MAX_TOKEN:
                 raise ValueError(f"a number of more than {MAX_TOKEN} characters")
             rows = np.array(part, np.bytes_).astype(np.float64).reshape(-1, width)
         except ValueError as error:
             raise SceneFileError(f"{path}: element {element.name}: {error}; export it again") from error
-        return {p.name: rows[:, column] for column, p in enumerate(element.properties)}, at + len(part)
+        return {p.name: rows[:, column] for column, p in enumerate(element.properties)}, index + len(part)
     table: dict[str, list] = {p.name: [] for p in element.properties}
     for row in range(element.count):
         try:
             for p in element.properties:
                 count = 1
                 if p.counted_by:
-                    count, at = int(tokens[at]), at + 1
-                values = [float(token) for token in tokens[at : at + count]]
+                    count, index = int(tokens[index]), index + 1
+                values = [float(token) for token in tokens[index : index + count]]
                 if not 0 <= count <= MAX_CORNERS or len(values) < count:
                     raise ValueError(count)
-                at += count
+                index += count
                 table[p.name].append(np.array(values) if p.counted_by else values[0])
         except (ValueError, IndexError) as error:
             raise _damage_error(path, element, row) from error
-    return {p.name: table[p.name] if p.counted_by else np.array(table[p.name]) for p in element.properties}, at
+    return {p.name: table[p.name] if p.counted_by else np.array(table[p.name]) for p in element.properties}, index
 
 
 def _columns(table: Table, names: tuple[str, ...]) -> np.ndarray | None:

@@ -1,4 +1,4 @@
-"""Users' mesh files as scenes: a camera that frames them, lights around them, and what that camera sees."""
+"""Users' mesh files as scenes: a camera that frames them, lights around them and the surfaces that it sees."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ AROUND = "studio"
 
 
 def read_mesh_file(path: Path) -> MeshFile:
-    """A file of one of the formats in READERS, which its name's ending says. Raises SceneFileError."""
+    """Read a file of one of the formats in READERS, chosen by its extension. Raises SceneFileError."""
     return READERS[path.suffix.lower()](path)
 
 
@@ -76,8 +76,8 @@ def _float_triple(values: np.ndarray) -> tuple[float, float, float]:
 
 
 def file_scene(file: MeshFile, setting: Setting) -> Scene:
-    """Return the file's meshes under its own lights, else under a sun. What surrounds metal/rough surfaces lights them,
-    too; others have no surroundings, and `setting.lights` point lights circle around them."""
+    """Return the file's meshes under its own lights or, without any, under a sun. An environment also lights
+    metallic-roughness surfaces; around others `setting.lights` point lights circle if the file has no lights."""
     view = file_view(file)
     aside = 0.01 * file.radius
     moved = (_float_triple(np.add(point, (aside, 0.0, 0.0))) for point in (view.eye, view.target))
@@ -94,7 +94,7 @@ def file_scene(file: MeshFile, setting: Setting) -> Scene:
 
 
 def _parts(file: MeshFile) -> tuple[ScenePart, ...]:
-    """Meshes in several places by rotation and one scale stand there as instances, others are baked into place."""
+    """Return the parts: meshes placed by rotation and uniform scale as instances, other meshes in world space."""
     rigid: dict[tuple[int, bool], list[Piece]] = {}
     parts = []
     for piece in file.pieces:

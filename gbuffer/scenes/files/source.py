@@ -102,7 +102,7 @@ def resource(path: Path, address: object, place: str) -> bytes:
 
 
 def checked_indices(path: Path, indices: np.ndarray, count: int, place: str) -> np.ndarray:
-    """Vertex indices as they are. Raises SceneFileError where one is beyond `count` vertices."""
+    """Return vertex indices unchanged. Raises SceneFileError if an index is not one of `count` vertices."""
     bad = np.flatnonzero((indices < 0) | (indices >= count))
     if len(bad):
         worst = indices.ravel()[bad[0]] if indices.ndim == 1 else indices.reshape(-1)[bad[0]]
@@ -113,7 +113,7 @@ def checked_indices(path: Path, indices: np.ndarray, count: int, place: str) -> 
 
 
 def checked_numbers(path: Path, numbers: np.ndarray, place: str) -> np.ndarray:
-    """Vertex data as they are. Raises SceneFileError where one is NaN, infinite, or too large to be squared."""
+    """Return vertex data unchanged. Raises SceneFileError if a number is NaN, infinite or too large to be squared."""
     bad = np.flatnonzero(~(np.abs(numbers) < TOO_LARGE).all(axis=1))
     if len(bad):
         raise SceneFileError(
@@ -123,7 +123,7 @@ def checked_numbers(path: Path, numbers: np.ndarray, place: str) -> np.ndarray:
 
 
 def checked_size(path: Path, vertices: int, triangles: int, place: str) -> None:
-    """Raise SceneFileError if there is more than is read at once; called before anything is allocated."""
+    """Raise SceneFileError if a count exceeds the maximum; call this before anything is allocated."""
     for count, most, what in ((vertices, MAX_VERTICES, "vertices"), (triangles, MAX_TRIANGLES, "triangles")):
         if count > most:
             raise SceneFileError(f"{path}: {place}: {count} {what}; the maximum is {most} (2^22): export fewer objects")

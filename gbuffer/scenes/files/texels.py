@@ -1,7 +1,7 @@
-"""Pictures of users' scene files as texels: PNG, JPEG and WebP.
+"""Images of users' scene files as texels: PNG, JPEG and WebP.
 
-A picture's size is taken from its header and refused before anything is unpacked. Pillow reads all pictures. It cuts
-colours of 16 bits to 8, so that OpenImageIO reads PNG files of 16 bits once more.
+An image's size is read from its header, and an image that is too large is refused before anything is unpacked. Pillow
+reads all images. It reduces 16-bit colours to 8 bits, so OpenImageIO reads 16-bit PNG files once more.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ DEPTH = 24
 
 
 class PictureError(ValueError):
-    """A picture that cannot be read: what is wrong, and the remedy."""
+    """An image that cannot be read; the message says what is wrong and how to fix it."""
 
 
 def sides(data: bytes) -> tuple[int, int]:
@@ -95,7 +95,7 @@ def _deep_texels(data: bytes) -> np.ndarray:
 def _bare(data: bytes) -> bytes:
     """Return a PNG file with only the chunks that its texels need; other files are unchanged.
 
-    Damaged profiles and texts are no reason to refuse an image, and libpng prints warnings about them.
+    Damaged profiles and texts must not make an image unreadable, and libpng prints warnings about them.
     """
     if not data.startswith(PNG):
         return data
@@ -108,9 +108,9 @@ def _bare(data: bytes) -> bytes:
     return b"".join(kept)
 
 
-def _widened(found: np.ndarray) -> np.ndarray:
+def _widened(image: np.ndarray) -> np.ndarray:
     """Grey, grey and alpha, or colours as colours and alpha."""
-    count = found.shape[2]
-    colours = found[..., :3] if count >= 3 else np.repeat(found[..., :1], 3, axis=2)
-    alpha = found[..., -1:] if count in (2, 4) else np.full_like(found[..., :1], np.iinfo(found.dtype).max)
+    count = image.shape[2]
+    colours = image[..., :3] if count >= 3 else np.repeat(image[..., :1], 3, axis=2)
+    alpha = image[..., -1:] if count in (2, 4) else np.full_like(image[..., :1], np.iinfo(image.dtype).max)
     return np.concatenate([colours, alpha], axis=2)

@@ -1,1 +1,1 @@
-"""Meshes that are made by code."""
+"""Procedural meshes."""

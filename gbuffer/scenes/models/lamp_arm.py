@@ -96,7 +96,7 @@ def surface(points: np.ndarray) -> Mesh:
 
 
 def swept(path: np.ndarray, radii: tuple[float, ...], sides: int) -> Mesh:
-    """A tube with flat ends around a path (steps, 3) that nowhere goes along y, with a radius for each step."""
+    """Return a tube with flat ends along a path, (steps, 3), that never runs along y, with a radius per step."""
     tangents = np.gradient(path, axis=0)
     tangents = tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
     up = (0.0, 1.0, 0.0) - tangents * tangents[:, 1:2]

@@ -1,7 +1,7 @@
 """The Utah teapot, evaluated from its Bezier patches.
 
-Control points after M. Newell, 1975, as published by F. Crow, The Origins of the Teapot, IEEE CG&A 7(1), 1987: z is up,
-the base lies at z = 0, the spout points to +x, and Blinn's squashed height (3.15 to the tip of the lid) is kept.
+Control points after M. Newell, 1975, as published by F. Crow, The Origins of the Teapot, IEEE CG&A 7(1), 1987: z is
+up, the base is at z = 0, the spout points to +x, and Blinn's squashed height (3.15 to the tip of the lid) is kept.
 Rim, body, lid and bottom are solids of revolution, so their patches are given by profiles; handle and spout are given
 on one side of the plane y = 0 and mirrored.
 """

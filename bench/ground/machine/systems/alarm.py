@@ -27,7 +27,7 @@ if sys.platform == "win32":
         timer.start()
 
     def call_none() -> None:
-        """Whatever waits to be called is not."""
+        """Cancel any call that is waiting."""
         while _waiting:
             _waiting.pop().cancel()
         signal.signal(_SIGNAL, signal.SIG_IGN)
@@ -40,6 +40,6 @@ else:
         signal.setitimer(signal.ITIMER_REAL, seconds)
 
     def call_none() -> None:
-        """Whatever waits to be called is not."""
+        """Cancel any call that is waiting."""
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, signal.SIG_IGN)

@@ -29,11 +29,11 @@ if sys.platform == "win32":
         partial.replace(path)
 
     def is_closed_pipe(error: OSError) -> bool:
-        """Whether nobody reads any more what was written."""
+        """Whether an error means that nobody reads from a pipe any more."""
         return error.errno in (errno.EPIPE, errno.EINVAL)
 
     def user() -> str:
-        """What tells the user that this process acts for from others."""
+        """Return text that identifies the user that this process acts for."""
         return os.environ.get("USERNAME", "")
 
     def is_own(_: os.stat_result) -> bool:
@@ -53,7 +53,7 @@ if sys.platform == "win32":
         return False
 
     def cache_home() -> Path:
-        """The folder that caches of this user lie in."""
+        """Return the folder for this user's caches."""
         return Path(os.environ.get("LOCALAPPDATA") or Path("~/AppData/Local").expanduser())
 
 else:
@@ -69,20 +69,20 @@ else:
         partial.replace(path)
 
     def is_closed_pipe(error: OSError) -> bool:
-        """Whether nobody reads any more what was written."""
+        """Whether an error means that nobody reads from a pipe any more."""
         return error.errno == errno.EPIPE
 
     def user() -> str:
-        """What tells the user that this process acts for from others."""
+        """Return text that identifies the user that this process acts for."""
         return str(os.geteuid())
 
-    def is_own(found: os.stat_result) -> bool:
+    def is_own(status: os.stat_result) -> bool:
         """Whether a file is this user's."""
-        return found.st_uid == os.geteuid()
+        return status.st_uid == os.geteuid()
 
-    def is_closed(found: os.stat_result) -> bool:
+    def is_closed(status: os.stat_result) -> bool:
         """Whether a file or folder is this user's, and nobody else may write to it."""
-        return is_own(found) and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+        return is_own(status) and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
     def is_guarded(path: Path) -> bool:
         """Whether nobody but this user and root can put another file at a path without links: every existing part of it
@@ -95,13 +95,13 @@ else:
         """
         return all(_is_kept_by_its_owner(place.lstat()) for place in (path, *path.parents) if os.path.lexists(place))
 
-    def _is_kept_by_its_owner(found: os.stat_result) -> bool:
-        if found.st_uid not in (0, os.geteuid()) or stat.S_ISLNK(found.st_mode):
+    def _is_kept_by_its_owner(status: os.stat_result) -> bool:
+        if status.st_uid not in (0, os.geteuid()) or stat.S_ISLNK(status.st_mode):
             return False
-        if stat.S_ISDIR(found.st_mode) and found.st_mode & stat.S_ISVTX:
+        if stat.S_ISDIR(status.st_mode) and status.st_mode & stat.S_ISVTX:
             return True
-        is_closed_to_groups = not found.st_mode & stat.S_IWGRP or _is_of_this_user_alone(found.st_gid)
-        return is_closed_to_groups and not found.st_mode & stat.S_IWOTH
+        is_closed_to_groups = not status.st_mode & stat.S_IWGRP or _is_of_this_user_alone(status.st_gid)
+        return is_closed_to_groups and not status.st_mode & stat.S_IWOTH
 
     @functools.cache
     def _is_of_this_user_alone(group: int) -> bool:
@@ -121,7 +121,7 @@ else:
         return sys.platform == "linux" and bool(os.statvfs(folder).f_flag & os.ST_NOEXEC)
 
     def cache_home() -> Path:
-        """The folder that caches of this user lie in."""
+        """Return the folder for this user's caches."""
         return Path("~/Library/Caches" if sys.platform == "darwin" else "~/.cache").expanduser()
 
 

@@ -1,5 +1,5 @@
-"""Processes for code that may do anything. On Linux they are forked from one that has imported what they need; to fork
-is not safe on macOS, and Windows does not: there each process imports for itself."""
+"""Processes for code that may do anything. On Linux they are forked from a process that has imported what they need.
+Forking is not safe on macOS and does not exist on Windows; there each process imports for itself."""
 
 from __future__ import annotations
 
@@ -13,11 +13,10 @@ if sys.platform == "linux":
 else:
 
     def finished(module: str, words: list[str], seconds: float) -> subprocess.CompletedProcess[str]:
-        """As `children.finished` of `children.python`: what `main(words)` of a module of this program printed, and how
-        its process ended.
+        """Run `main(words)` of a module of this program in a process, and return its output and status.
 
         Raises:
-            TimeoutExpired: it took longer; it has what was printed until then.
+            TimeoutExpired: the process took longer; the error has the output until then.
         """
         return children.finished(children.python(module, *words), seconds)
 

@@ -42,7 +42,7 @@ TCP, OUTSIDE, NO_NEW_PRIVILEGES = 0b11, 0b11, 38
 
 
 def abi() -> int:
-    """Return the version of Landlock here; 0 if there is no Landlock, or the environment of this process refuses it."""
+    """Return the version of Landlock here; 0 if the system lacks it, or does not let this process use it."""
     return max(0, _called(CREATE_RULESET, None, 0, VERSION)) if sys.platform == "linux" else 0
 
 
@@ -52,9 +52,9 @@ def is_available() -> bool:
 
 
 def restrict(reads: list[str], writes: list[str], executes: list[str]) -> None:
-    """Wall in this process and all that it starts from here on, for good.
+    """Build the wall around this process and all that it starts from now on, permanently.
 
-    It binds the calling thread. So a process that runs others is refused: they would stay outside.
+    The wall binds the calling thread only. A process with other threads is refused, because they would stay outside.
 
     Args:
         reads: files, and folders with all that is in them. A path that does not exist is left out, here and below.
@@ -62,8 +62,8 @@ def restrict(reads: list[str], writes: list[str], executes: list[str]) -> None:
         executes: programs, and the loaders of libraries that they name, which the kernel executes too.
 
     Raises:
-        RuntimeError: there are further threads.
-        OSError: the kernel refuses; nothing is to be run then.
+        RuntimeError: the process has other threads.
+        OSError: the kernel refuses; the caller must not run anything then.
     """
     # A folder has two links and one for each folder in it; behind a wall it could not be listed.
     if os.stat("/proc/self/task").st_nlink > 3:
@@ -81,7 +81,7 @@ def restrict(reads: list[str], writes: list[str], executes: list[str]) -> None:
 
 
 def forget_variables() -> None:
-    """Remove all variables except VARIABLES and Python's, for this process and what it starts: they may be secrets."""
+    """Remove all variables except VARIABLES and Python's from this process: the others may hold secrets."""
     for name in [*os.environ]:
         if name not in VARIABLES and not name.startswith("PYTHON"):
             del os.environ[name]

@@ -1,7 +1,7 @@
-"""Processes for code that may do anything, forked from one that has imported what they need. Imports nothing heavy.
+"""Processes for code that may do anything, forked from a process with their imports done. Imports nothing heavy.
 
-To import JAX takes longer than most of what is done in such a process. So one process imports once, runs nothing, and
-forks for each request.
+Importing JAX takes longer than most work in such a process. So one process imports once, runs nothing, and forks for
+each request.
 
     python -m normalbench.bench.ground.machine.systems.linux_forks DESCRIPTOR
 
@@ -43,11 +43,10 @@ READ_AT_THE_START = ("PYTHON", "JAX_", "XLA_", LOADERS_VARIABLES, "OMP_", "OPENB
 
 
 def finished(module: str, words: list[str], seconds: float) -> subprocess.CompletedProcess[str]:
-    """As `children.finished` of `children.python`: what `main(words)` of a module of this program printed, and how
-    its process ended.
+    """Run `main(words)` of a module of this program in a process, and return its output and status.
 
     Raises:
-        TimeoutExpired: it took longer; it has what was printed until then.
+        TimeoutExpired: the process took longer; the error has the output until then.
     """
     command = children.python(module, *words)
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
@@ -84,7 +83,7 @@ _under_way: set[socket.socket] = set()
 
 
 def stop() -> None:
-    """End what is under way: whoever waits for it has it as killed."""
+    """End the processes that are running; their callers see them as killed."""
     for answer in [*_under_way]:
         with suppress(OSError):
             answer.shutdown(socket.SHUT_RDWR)
@@ -119,7 +118,7 @@ class _Forking:
         return self.link
 
     def end(self) -> None:
-        """End the process: it ends once nobody can send it a request."""
+        """End the process by closing the socket of its requests."""
         if self.link and self.process:
             self.link.close()
             self.process.wait()
@@ -177,7 +176,7 @@ def _serve(link: socket.socket) -> None:
 
 
 def _watch(module: Any, given: dict[str, Any], answer: int, files: list[int]) -> NoReturn:
-    """Fork again, and say how that ended; end it where whoever asked is there no more."""
+    """Fork again, and report how the child ended; kill the child if the caller is gone."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     if not (process := os.fork()):
         _run(module, given, answer, files)

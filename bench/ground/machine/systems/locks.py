@@ -30,12 +30,12 @@ if sys.platform == "win32":
             file.seek(place, os.SEEK_SET)
 
     def put_in_place(path: Path, old: FileIO, partial: Path, new: FileIO) -> FileIO:
-        """Have a locked file take the place of another one; gives the file that is open and locked then.
+        """Replace a file by another locked file. Return the file that is open and locked then.
 
-        No file is replaced while it is open, nor while it is locked: for a moment another process may lock it.
+        A file cannot be replaced while it is open or locked, so for a moment another process may lock it.
 
         Raises:
-            OSError: it cannot be replaced, or another process was faster. Both files are closed.
+            OSError: the file cannot be replaced, or another process was faster. Both files are closed.
         """
         new.close()
         old.close()
@@ -62,10 +62,10 @@ else:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
     def put_in_place(path: Path, old: FileIO, partial: Path, new: FileIO) -> FileIO:
-        """Have a locked file take the place of another one; gives the file that is open and locked then.
+        """Replace a file by another locked file. Return the file that is open and locked then.
 
         Raises:
-            OSError: it cannot be replaced.
+            OSError: the file cannot be replaced.
         """
         moved_over(partial, path)
         old.close()

@@ -32,17 +32,17 @@ else:
 
 
 def how_to_install(packages: str, counts: bool = False) -> str:
-    """Return how to install Debian's packages here; the first is the missing one, and the others are what it needs.
+    """Return how to install Debian's packages here; the first package is the missing one, and it needs the others.
 
     Args:
-        counts: whether it is needed to count instructions, which only Linux can do.
+        counts: whether the package is needed to count instructions, which only Linux can do.
     """
     way = ELSEWHERE if counts else _WAYS.get(packages.split()[0], ELSEWHERE)
     return way or f"Debian: apt-get install {packages}"
 
 
 def command_line(words: Iterable[str]) -> str:
-    """A command as people type it."""
+    """Return a command as people type it."""
     return subprocess.list2cmdline(words) if sys.platform == "win32" else shlex.join(words)
 
 
@@ -51,5 +51,5 @@ LAST_OPENGL = "4.1" if sys.platform == "darwin" else ""
 
 
 def webgpu_api() -> str:
-    """The interface of GPUs that wgpu goes through."""
+    """Return the name of the GPU API that wgpu uses here."""
     return "Metal" if sys.platform == "darwin" else "Vulkan"

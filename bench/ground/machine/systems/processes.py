@@ -1,4 +1,4 @@
-"""Processes with a group of their own, how one ended, what it may use, and the cores that there are."""
+"""Processes with their own groups, how they end, limits on their resources, and the cores of this machine."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class FileOfChild:
     """A file that another process writes.
 
     Attributes:
-        path: the name that it is told.
-        descriptors: what it must be given, as `pass_fds` of `subprocess`.
-        content: reads what it wrote.
+        path: the path that the process is told.
+        descriptors: the descriptors that the process must be given, as `pass_fds` of `subprocess`.
+        content: a function that reads what the process wrote.
     """
 
     path: str
@@ -45,14 +45,14 @@ if sys.platform == "win32":
     }
 
     def started(command: Sequence[str], **how: Any) -> subprocess.Popen[Any]:
-        """A process in a job of its own: an interruption of this process does not reach it, and `end_group` ends it
-        with all that it started. It ends with this process."""
+        """Start a process in a job of its own: an interruption of this process does not reach it, and `end_group`
+        ends it with all that it started. It ends with this process."""
         process = subprocess.Popen(command, creationflags=subprocess.CREATE_NEW_PROCESS_GROUP, **how)
         windows.hold(process.pid)
         return process
 
     def end_group(process: subprocess.Popen[Any]) -> None:
-        """End a process that `started` gave, and what is left of those that it started."""
+        """End a process from `started`, and the processes that it started."""
         windows.end(process.pid)
 
     def end_this_group() -> NoReturn:
@@ -60,7 +60,7 @@ if sys.platform == "win32":
         os._exit(1)
 
     def signal_name(status: int) -> str:
-        """Return what the system ended a process by; empty if the process ended by itself."""
+        """Return the reason why the system ended a process; empty if the process ended by itself."""
         status &= 0xFFFFFFFF
         return _ENDINGS.get(status, f"0x{status:08X}" if status >= 0xC0000000 else "")
 
@@ -82,7 +82,7 @@ if sys.platform == "win32":
             yield FileOfChild(str(path), (), lambda: path.read_bytes() if path.exists() else b"")
 
     def is_running(process: int) -> bool:
-        """Whether there is a process of a number."""
+        """Whether a process with this number exists."""
         return windows.is_running(process)
 
     def most_addresses() -> int | None:
@@ -97,12 +97,12 @@ else:
     import signal
 
     def started(command: Sequence[str], **how: Any) -> subprocess.Popen[Any]:
-        """A process with a group of its own: an interruption of this process does not reach it, and `end_group` ends
-        it with all that it started."""
+        """Start a process with a group of its own: an interruption of this process does not reach it, and `end_group`
+        ends it with all that it started."""
         return subprocess.Popen(command, start_new_session=True, **how)
 
     def end_group(process: subprocess.Popen[Any]) -> None:
-        """End a process that `started` gave, and what is left of those that it started."""
+        """End a process from `started`, and the processes that it started."""
         end_group_of(process.pid)
 
     def end_this_group() -> NoReturn:
@@ -124,7 +124,7 @@ else:
     def limit(seconds: int, file: int, memory: int) -> None:
         """Limit this process to seconds of processor time, and to bytes of a file and of data.
 
-        What goes beyond ends it, and no other; it leaves no image of its memory.
+        Exceeding a limit ends this process and no other; it leaves no core dump.
         """
         _limit({resource.RLIMIT_CPU: seconds, resource.RLIMIT_FSIZE: file, resource.RLIMIT_CORE: 0})
         limit_memory(memory)
@@ -160,7 +160,7 @@ else:
             yield FileOfChild(f"/dev/fd/{file.fileno()}", (file.fileno(),), content)
 
     def is_running(process: int) -> bool:
-        """Whether there is a process of a number."""
+        """Whether a process with this number exists."""
         try:
             os.kill(process, 0)
         except ProcessLookupError:

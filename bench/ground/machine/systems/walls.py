@@ -36,7 +36,7 @@ class Wall:
     executes: tuple[str, ...] = ()
 
     def __or__(self, other: Wall) -> Wall:
-        """A wall that leaves what either leaves."""
+        """Return a wall that allows what either wall allows."""
         kinds = zip(*((wall.reads, wall.writes, wall.executes) for wall in (self, other)), strict=True)
         return Wall(*(tuple(dict.fromkeys((*own, *more))) for own, more in kinds))
 

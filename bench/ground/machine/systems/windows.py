@@ -81,7 +81,7 @@ def hold(process: int) -> None:
 
 
 def end(process: int) -> None:
-    """End what is left of a job."""
+    """End the remaining processes of a job."""
     if job := _jobs.pop(process, None):
         _kernel.TerminateJobObject(wintypes.HANDLE(job), wintypes.UINT(ENDED))
         _kernel.CloseHandle(wintypes.HANDLE(job))
@@ -123,7 +123,7 @@ def _checked(result: int) -> int:
 
 
 def is_running(process: int) -> bool:
-    """Whether there is a process of a number that has not ended."""
+    """Whether a process with this number exists and has not ended."""
     handle = _kernel.OpenProcess(SYNCHRONIZE, False, process)
     if not handle:
         # Another user's.

@@ -20,10 +20,10 @@ class Numbers:
     """The numbers of a code, and how they are stored.
 
     Attributes:
-        storage: holds them, the first number in the first channel.
+        storage: their storage, with the first number in the first channel.
         roundings: the rounding of each number that is stored, one of `storage.ROUNDINGS`.
         is_biased: whether a number c is stored as c/2 + 1/2.
-        size: the number of components of the code's vector; those that are not stored come back as 0.
+        size: the number of components of the code's vector; components that are not stored come back as 0.
         sign_bits: 1 if the last component is a sign that is stored elsewhere, else 0.
         is_precise: whether the encoder takes the neighbouring code that decodes nearest.
         settle: the function (value, the code as it comes back) -> the code to store, if some numbers depend on how
@@ -63,8 +63,8 @@ class CodeKind:
         given: (codec) -> the places of an encoder's input in these rows: n.xyz.
         named: (codec) -> the usual name of its encoding.
         fields: the names of these places in the structure that an encoder takes and a decoder returns; else empty.
-        settings: by parameter, the place of the further inputs of both functions: view.xyz.
-        result: (codec) -> the number of values that a decoder returns; in a structure, those of n first.
+        settings: by parameter, the places of the other inputs of both functions: view.xyz.
+        result: (codec) -> the number of values that a decoder returns; in a structure, the values of n come first.
         defines: (codec) -> the macros of its GLSL: CODE, ENCODE and DECODE, and constants.
         numbers: (codec) -> its numbers.
         bound: (codec) -> the settings that are constants of the codec.
@@ -73,8 +73,8 @@ class CodeKind:
         decoded: (codec, code, view) -> the decoded value, as planes; in JAX.
         by_device: (codec, n, view) -> codes as they come back, and their decoded values, by OpenGL, for encodings
             that exist only in GLSL; (count, size) and (count, result).
-        has_twin: (codec) -> whether it exists in JAX.
-        is_ours: (codec) -> whether it is the catalogue's.
+        has_twin: (codec) -> whether its encoding exists in JAX.
+        is_ours: (codec) -> whether its encoding is the catalogue's.
         errors: (input, result) -> the error, float64 of shape (count,).
         unit: the unit of the errors.
         units: (input) -> the unit of differences between decoded values, (count, 1).

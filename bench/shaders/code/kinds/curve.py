@@ -1,4 +1,4 @@
-"""Codes of what materials are: roughness, occlusion, channels of colours."""
+"""Codes of material properties: roughness, occlusion, colour channels."""
 
 from __future__ import annotations
 

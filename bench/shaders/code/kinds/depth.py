@@ -36,8 +36,8 @@ def _bound(codec: DepthCodec) -> dict[str, float]:
 
 
 def _defines(codec: DepthCodec) -> dict[str, object]:
-    """The catalogue's encoders are given nothing beyond the far plane, where there is one; a user's own is written as
-    it is."""
+    """Return the macros of a codec's GLSL. Depths for the catalogue's encoders are limited to the far plane, if the
+    codec has one; a user's encoder is called directly."""
     macros = defines(codec.encoding, "_depth", "float")
     if _bound(codec) or not is_in(DEPTH)(codec):
         return macros

@@ -55,7 +55,7 @@ def _numbers(codec: FrameCodec) -> Numbers:
 
 
 def _by_device(codec: FrameCodec, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Codes by OpenGL as JAX stores them, and what OpenGL makes of these."""
+    """Return codes that OpenGL computes and JAX stores, and the frames that OpenGL decodes from them."""
 
     def run(codes: np.ndarray) -> list[np.ndarray]:
         return exact_frames(device(), codec.encoding, codec.least, n, np.pad(view, ((0, 0), (0, 1))), codes)

@@ -1,4 +1,4 @@
-"""Users' codes of something else than normals: what their two functions make of values, by OpenGL."""
+"""Users' encodings of anything except normals: the results of their two functions, computed by OpenGL."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def is_in(kind: Kind) -> Callable[[Any], bool]:
 
 
 def defines(encoding: Any, word: str, code: str) -> dict[str, object]:
-    """The macros of an encoding: what its code is in GLSL, its two functions, and what its file needs.
+    """Return the macros of an encoding: the GLSL type of its code, its two functions, and the constants of its file.
 
     Args:
-        word: what the functions' names end with: `_motion`.
+        word: the ending of the functions' names: `_motion`.
 
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of its functions.

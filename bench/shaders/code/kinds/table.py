@@ -9,5 +9,5 @@ from .code_kind import CodeKind
 
 
 def kind_of(codec: Any) -> CodeKind:
-    """Return what `code` knows of a codec's kind."""
+    """Return the description of a codec's kind for `code`."""
     return import_module(f".{codec.encoding.kind.word}", __package__).KIND

@@ -12,7 +12,7 @@ NEVER_RUN = ("msl",)
 
 
 def runner(language: str) -> Runner:
-    """Return what runs files of a language, a key of `emit.LANGUAGES`. Raises MissingError where nothing does."""
+    """Return the runner of a language, a key of `emit.LANGUAGES`. Raises MissingError if the language has none."""
     if language in NEVER_RUN:
         raise MissingError("only Metal itself runs Metal's language")
     return import_module(f"{__name__}.{language}").RUNNER

@@ -96,10 +96,10 @@ def macros(values: Mapping[str, object]) -> list[str]:
 
 
 def compilers_wall(tool: str, place: Path) -> Wall:
-    """Return the wall for a compiler of somebody's text: it may use its own parts, and a folder.
+    """Return the wall for a compiler of a user's text: the compiler may use its own parts and a folder.
 
     Raises:
-        MissingError: there is no wall, or no program can be compiled and run behind it.
+        MissingError: walls are not available, or no program can be compiled and run behind one.
     """
     walls.require()
     path = str(tools.path_of(tool))
@@ -115,7 +115,7 @@ def programs_wall(program: Path) -> Wall:
 
 @cache
 def _failure_behind_wall(tool: str, path: str) -> str:
-    """Why a compiler or what it makes does not run behind a wall, as where `cc` is a script; empty where both do."""
+    """Return why a compiler or its program fails behind a wall, for example if `cc` is a script; else empty."""
     with folder() as place:
         try:
             wall = walls.of_c_compiler(path) | Wall(writes=(str(place),))
@@ -130,19 +130,19 @@ def _failure_behind_wall(tool: str, path: str) -> str:
 def compiled(
     tool: str, words: Sequence[str], place: Path, files: Mapping[str, Text], path: Path, wall: Wall | None = None
 ) -> Path:
-    """Compile texts, the first of which is that of `path`, and return the path of the program.
+    """Compile texts and return the path of the program. Messages about the first text name `path`.
 
     Raises:
         MissingError: the compiler is not installed.
         ShaderError: the compiler refuses the texts.
     """
-    compile_with(tool, [*words, "-o", PROGRAM], place, files, lambda said: re.sub(r"^0(?=:)", str(path), said), wall)
+    compile_with(tool, [*words, "-o", PROGRAM], place, files, lambda text: re.sub(r"^0(?=:)", str(path), text), wall)
     return place / PROGRAM
 
 
 def called(program: Path, path: Path, interface: Interface) -> Run:
-    """Return what a program does with rows: see main.c. Each run is a process of its own, behind a wall where the text
-    is not the catalogue's."""
+    """Return a function that runs a program on rows: see main.c. Each run is a separate process, behind a wall unless
+    the text is the catalogue's."""
     wall = None if interface.is_ours else programs_wall(program)
 
     def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:

@@ -33,7 +33,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
 
 def glsl_of(place: Path, text: Text, explain: Callable[[str], str] = str) -> str:
-    """Return GLSL of desktop OpenGL of a text of HLSL, made in a folder. Raises MissingError, ShaderError."""
+    """Return an HLSL text as GLSL for desktop OpenGL, compiled in a folder. Raises MissingError, ShaderError."""
     compile_with(tools.GLSLANG, ["-D", *OPTIONS, "-o", MODULE, "code.hlsl"], place, {"code.hlsl": text}, explain)
     return glsl_of_module(place)
 

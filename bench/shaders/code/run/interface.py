@@ -30,7 +30,7 @@ class Interface:
         size: the number of components of a code, 1 to 4, including that of a sign bit.
         sign_bits: 1 if the last component of a code is a sign that is stored elsewhere, else 0.
         words: the number of 32-bit integers in a texel: 1, 2 or 4.
-        settings: the places, in the rows `n` and `view`, of further inputs of both `P_encode` and `P_decode`:
+        settings: the places, in the rows `n` and `view`, of the other inputs of both `P_encode` and `P_decode`:
             view.xyz.
         tables: the lookup tables by name, float32 of shape (height, width, channels).
         is_ours: whether the file has no text from users.
@@ -38,7 +38,8 @@ class Interface:
         result: the number of values that `P_decode` returns.
         structure: the type of the input of `P_encode` and the result of `P_decode`, if that is a structure; else
             empty.
-        fields: of the structure, one for each of `value`; decoded values are laid out like the input, in two rows.
+        fields: the fields of the structure, in the order of `value`; decoded values are laid out like the input, in
+            two rows.
     """
 
     prefix: str
@@ -64,16 +65,16 @@ class Interface:
         return self.defines_with(", ".join)
 
     def defines_with(
-        self, listed: Callable[[Sequence[str]], str], made: str = "{}({})", parts: Parts = lambda path, _: [path]
+        self, listed: Callable[[Sequence[str]], str], construct: str = "{}({})", parts: Parts = lambda path, _: [path]
     ) -> dict[str, object]:
-        """Return the same macros for a language that writes things differently.
+        """Return the macros of `defines` for a language with a different syntax.
 
         Args:
             listed: (places) -> the inputs as text, in place of n.xyz, view.x.
-            made: the text of a structure, from its name and its fields.
+            construct: the text of a structure, from its name and its fields.
             parts: (path, size) -> the parts of a decoded value, one after the other.
         """
-        value = [made.format(self.structure, listed(self.value))] if self.structure else [listed(self.value)]
+        value = [construct.format(self.structure, listed(self.value))] if self.structure else [listed(self.value)]
         named = {name.upper(): f"{self.prefix}_{name}" for name in PUBLIC}
         facts = {"SIZE": self.size, "SIGN": self.sign_bits, "WORDS": self.words, "RESULT": self.result}
         behind = listed(("", *self.settings))
@@ -141,8 +142,8 @@ class Runner:
         Args:
             path: the file; its tables are next to it if the language needs that.
             n, view: the inputs of the functions, as unit normals and view-space positions; float32 of shape (count,
-                3 or 4), of `view` the first three columns are used.
-            texels: the input of `P_from_target`, float32 of shape (count, 4). A sign is the code's own.
+                3 or 4). Only the first three columns of `view` are used.
+            texels: the input of `P_from_target`, float32 of shape (count, 4). A sign bit is taken from the code.
 
         Raises:
             MissingError: a tool is missing; what to install.
@@ -170,9 +171,9 @@ def rows_of(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> np.ndarray:
     return given.reshape(-1, 4)
 
 
-def ran_of(made: np.ndarray, words: np.ndarray, interface: Interface) -> Ran:
+def ran_of(output: np.ndarray, words: np.ndarray, interface: Interface) -> Ran:
     """Return a shader's output, six rows of four numbers for each normal and four words, without the unused parts."""
-    rows, size = made.reshape(-1, MADE, 4), interface.size
+    rows, size = output.reshape(-1, MADE, 4), interface.size
     words = np.ascontiguousarray(words.reshape(-1, 4)[:, : interface.words])
     code, unpacked, first, target, back, second = np.ascontiguousarray(rows.transpose(1, 0, 2))
     decoded = np.concatenate([first, second], axis=1) if interface.result > first.shape[1] else first

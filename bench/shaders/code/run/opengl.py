@@ -1,4 +1,4 @@
-"""GLSL compute shaders on the GL device: what the runners of several languages end in."""
+"""GLSL compute shaders on the GL device: the last step of the runners of several languages."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def device_name() -> str:
 
 @contextmanager
 def prepared(compute: Any, interface: Interface) -> Iterator[Run]:
-    """A compiled shader with its tables, released afterwards.
+    """Yield a `Run` of a compiled shader with its tables, which are released afterwards.
 
-    The name of a sampler is its table's, or has that in it where a translator made the name.
+    A sampler has the name of its table, or a translator's name that contains it.
     """
     gl = device()
     with ExitStack() as stack:
@@ -67,7 +67,7 @@ def dispatched(gl: Device, compute: Any, given: np.ndarray) -> tuple[np.ndarray,
 
 
 def compiled(text: str, explain: Any) -> Any:
-    """Compile a compute shader of GLSL. `explain` turns the driver's message into the user's.
+    """Compile a GLSL compute shader. `explain` rewrites the driver's message for the user's file.
 
     Raises:
         ShaderError: it does not compile.

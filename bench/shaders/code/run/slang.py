@@ -1,4 +1,4 @@
-"""Slang: slangc makes GLSL for Vulkan of it, and from there it goes the way of HLSL."""
+"""Slang: slangc translates it to GLSL for Vulkan; the other steps, by way of SPIR-V, are as for HLSL."""
 
 from __future__ import annotations
 

@@ -21,16 +21,16 @@ SECONDS = 60
 
 
 class EmittedSource(Source):
-    """A program around a file: the file stands where the program says `#include CODE`.
+    """A program around a file, which replaces the program's line `#include CODE`.
 
     Args:
-        wrapper: the program, whose first line stays the first one.
+        wrapper: the program, whose first line stays first.
         code: the file; its own `#version` is left out.
-        made: how the language makes a structure: see `Interface.defines_with`.
+        made: the language's text of a structure: see `Interface.defines_with`.
     """
 
-    def __init__(self, wrapper: Path, code: Path, interface: Interface, made: str = "{}({})"):
-        super().__init__(wrapper, interface.defines_with(", ".join, made), {"CODE": code})
+    def __init__(self, wrapper: Path, code: Path, interface: Interface, construct: str = "{}({})"):
+        super().__init__(wrapper, interface.defines_with(", ".join, construct), {"CODE": code})
         self._lines: list[Line] = [self._kept_line(line) for line in self._lines]
         self.text = "".join(f"{line}\n" for line, _, _ in self._lines)
 
@@ -47,7 +47,7 @@ def folder() -> Iterator[Path]:
 
 
 def run_apart(path: Path, command: Sequence[str], wall: Wall | None = None) -> None:
-    """Run a program made from a file, in its own process for a limited time, behind a wall if there is one.
+    """Run a program made from a file, in a separate process for a limited time, behind a wall if one is given.
 
     Raises:
         ShaderError: it does not end, or fails.
@@ -69,18 +69,18 @@ def compile_with(
     explain: Callable[[str], str] = str,
     wall: Wall | None = None,
 ) -> str:
-    """Return what a compiler prints, which runs in a process of its own for a limited time.
+    """Return the output of a compiler, which runs in a separate process for a limited time.
 
     Args:
-        words: its options, and names of files in the folder.
+        words: its options and the names of files in the folder.
         place: the folder.
-        files: the texts that it is given, by their names there; in messages the first one is called 0.
-        explain: turns a message into the user's.
-        wall: what it may use, of a text that may be anybody's.
+        files: the texts by their names in the folder; messages call the first text 0.
+        explain: rewrites a message for the user's file.
+        wall: the compiler's permissions, if the text may be a user's.
 
     Raises:
-        ShaderError: it refuses the file or does not end; its first complaint, with file and line.
-        MissingError: it is not there.
+        ShaderError: the compiler refuses the file or does not end; its first error, with file and line.
+        MissingError: the compiler is not installed.
     """
     try:
         done = tools.run(tool, words, place, files, SECONDS, wall)
@@ -94,8 +94,8 @@ def compile_with(
 
 
 def first_complaint(log: str) -> str:
-    """The first line of a compiler's log that names an error, or the first one with words; with its place, where that
-    is a line of its own: ` --> FILE:LINE:COLUMN`."""
+    """Return the first line of a compiler's log that names an error, else the first line with words. The place of an
+    error is put in front if the log has it on a line of its own: ` --> FILE:LINE:COLUMN`."""
     lines = [line.strip() for line in log.splitlines() if re.search(r"\w", line)]
     errors = [line for line in lines if re.search(r"\berror\b", line, re.I)]
     complaint = (errors or lines or ["it failed without a message"])[0].removeprefix("ERROR: ")

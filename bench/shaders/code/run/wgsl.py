@@ -32,7 +32,7 @@ ROW = 16  # bytes: four numbers
 
 @cache
 def device() -> Any:
-    """The first device, by wgpu. Raises MissingError, which says what to install."""
+    """Return the first device of wgpu. Raises MissingError, which says what to install."""
     try:
         gpus = adapters()
     except ImportError as error:
@@ -69,14 +69,14 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
 
 class Program:
-    """A compute shader, compiled, with its look-up tables as textures of group 0, in the order of their names.
+    """A compiled compute shader, with its lookup tables as textures of group 0, in the order of their names.
 
     Args:
         gpu: the device.
-        name: what a message calls the text.
-        text: has the entry point MAIN, which reads the first buffer of group 1 and writes the others.
-        tables: float32 of shape (height, width, channels).
-        results: how many buffers it writes.
+        name: the name of the text in messages.
+        text: the shader; its entry point MAIN reads the first buffer of group 1 and writes the others.
+        tables: the lookup tables by name, float32 of shape (height, width, channels).
+        results: the number of buffers that it writes.
 
     Raises:
         ShaderError: it does not compile; one line.
@@ -104,7 +104,7 @@ class Program:
             raise ShaderError(f"{name}: {_complaint(str(error))}") from error
 
     def __call__(self, given: np.ndarray, count: int, sizes: Sequence[int]) -> list[np.ndarray]:
-        """Run it for so many rows: what it writes into buffers of these sizes in bytes, as uint32."""
+        """Run the shader for `count` rows and return its output buffers, of these sizes in bytes, as uint32."""
         import wgpu
 
         if not count:
@@ -139,7 +139,7 @@ def _texture(gpu: Any, table: np.ndarray) -> Any:
 
 
 def _try_apart(path: Path, text: Text) -> None:
-    """Compile somebody's text in a process of its own: naga ends the process at some. Raises ShaderError."""
+    """Compile a user's text in a separate process, because some texts crash naga. Raises ShaderError."""
     with folder() as place:
         tools.put(place / "code.wgsl", text)
         try:
@@ -161,9 +161,9 @@ def _text(path: Path, interface: Interface) -> str:
         raise ShaderError(f"{path}: {error}") from error
 
 
-def _complaint(said: str) -> str:
+def _complaint(output: str) -> str:
     """naga's complaint and its line in one line; the file's own lines come first, so that its numbers hold."""
-    words = " ".join(said.split())
+    words = " ".join(output.split())
     for mark in ("Shader '' parsing error:", "Caused by:"):
         words = words.partition(mark)[2].strip() or words
     return words[:400]

@@ -1,1 +1,1 @@
-"""Code that packs and unpacks a whole G-buffer: what `code --of layout` writes, runs and compares."""
+"""Code that packs and unpacks a whole G-buffer: `code --of layout` writes, runs and compares it."""

@@ -11,8 +11,8 @@ from .....gbuffer.layouts.words import Word
 
 @dataclass(frozen=True)
 class WordPart:
-    """The part of a word in a channel. The word's integer is shifted left there by `shift`, to the right if it is
-    negative. Bits above the channel are cut off if `is_cut`; `is_masked` means that other bits are above the part."""
+    """The part of a word in a channel. The word's integer is shifted left by `shift`, or right if that is negative.
+    Bits above the channel are masked off if `is_cut`; `is_masked` means that other bits are above the part."""
 
     word: Word
     shift: int

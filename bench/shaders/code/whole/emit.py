@@ -51,7 +51,7 @@ class GBufferCode:
         prefix: the beginning of their names.
         body: their text.
         texts: their structures.
-        settings: further inputs of both functions, of `view`, `near` and `far`.
+        settings: the other inputs of both functions, from `view`, `near` and `far`.
         tables: the lookup tables by name, float32 of shape (height, width, channels).
     """
 
@@ -87,10 +87,10 @@ def _template() -> Template:
 
 
 def gbuffer_code(layout: Layout, language: str, prefix: str = "") -> GBufferCode:
-    """The code of a layout in a language.
+    """Return the code of a layout in a language.
 
     Raises:
-        UsageError: the layout holds what is not written, or has what cannot be translated; one line.
+        UsageError: the layout contains something that cannot be written or translated; one line.
         ShaderError: its GLSL cannot be read.
     """
     texts, prefix = Texts(Contents(layout)), prefix or PREFIX
@@ -120,12 +120,12 @@ def _program(texts: Texts, prefix: str) -> Program:
 
 
 def functions_text(texts: Texts) -> str:
-    """The structures and the two functions of a layout in GLSL, with macros of what they call."""
+    """Return the structures and the two functions of a layout in GLSL, with macros for the functions they call."""
     return _template().render(texts.context)
 
 
 def read_of(layout: Layout) -> tuple[dict[str, object], dict[str, Any]]:
-    """The macros and the files of what a layout's functions call, as `Source` takes them. Raises ShaderError."""
+    """Return macros and files for the functions that a layout's code calls, as for `Source`. Raises ShaderError."""
     defines = {**depth_defines(layout.depth_encoding), **encoding_defines(layout.encoding), **curve_defines(layout)}
     files = {"ENCODING": layout.encoding.glsl, "DEPTH_ENCODING": layout.depth_encoding.glsl}
     return defines, files | {"CURVES": curve_files(layout)}

@@ -1,4 +1,4 @@
-"""The numbers of the two structures one by one, as rows of 32-bit words: what the programs around a file copy."""
+"""The numbers of the two structures in order, as rows of 32-bit words for the programs around a file."""
 
 from __future__ import annotations
 

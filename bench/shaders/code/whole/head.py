@@ -25,11 +25,11 @@ SAID = {
 
 
 def head(code: GBufferCode, command: str, verified: str) -> list[str]:
-    """The paragraphs above a file's functions.
+    """Return the paragraphs above a file's functions.
 
     Args:
-        command: what made it.
-        verified: how its results compare with the renderer's.
+        command: the command that made the file.
+        verified: the comparison of its results with the renderer's.
     """
     layout, language = code.layout, LANGUAGES[code.language]
     return [

@@ -1,4 +1,4 @@
-"""The two functions of a layout as operations, for compilers to be asked what they cost."""
+"""The two functions of a layout as operations whose cost compilers report."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _texts(layout: Layout) -> Texts:
 
 
 def _operation(
-    texts: Texts, given: tuple[str, Sequence[Leaf]], made: tuple[str, Sequence[Leaf]], function: str
+    texts: Texts, given: tuple[str, Sequence[Leaf]], returned: tuple[str, Sequence[Leaf]], function: str
 ) -> Operation:
     """A function of a layout, by the structures that it takes and makes and by the numbers of these."""
     defines, files = read_of(texts.contents.layout)
@@ -55,22 +55,22 @@ def _operation(
         "KERNEL_NEAR": NEAR,
         "KERNEL_FAR": FAR,
         "KERNEL_FROM": given[0],
-        "KERNEL_TO": made[0],
+        "KERNEL_TO": returned[0],
         "KERNEL_LOADS": " ".join(_load(i, leaf) for i, leaf in enumerate(given[1])),
-        "KERNEL_STORES": " ".join(_store(i, leaf) for i, leaf in enumerate(made[1])),
+        "KERNEL_STORES": " ".join(_store(i, leaf) for i, leaf in enumerate(returned[1])),
     }
     tables = texts.contents.layout.encoding.tables
-    return Operation(FILE, len(given[1]), BESIDE, len(made[1]), defines | own, files, tables, is_portable=False)
+    return Operation(FILE, len(given[1]), BESIDE, len(returned[1]), defines | own, files, tables, is_portable=False)
 
 
-def _load(at: int, leaf: Leaf) -> str:
-    number = f"given[{at}]"
+def _load(index: int, leaf: Leaf) -> str:
+    number = f"given[{index}]"
     return f"from.{leaf.path} = {f'floatBitsToUint({number})' if leaf.is_whole else number};"
 
 
-def _store(at: int, leaf: Leaf) -> str:
+def _store(index: int, leaf: Leaf) -> str:
     number = f"to.{leaf.path}"
-    return f"made[{at}] = {f'uintBitsToFloat({number})' if leaf.is_whole else number};"
+    return f"made[{index}] = {f'uintBitsToFloat({number})' if leaf.is_whole else number};"
 
 
 def _held(texts: Texts) -> list[Leaf]:
@@ -79,8 +79,8 @@ def _held(texts: Texts) -> list[Leaf]:
     return [leaf for leaf, place in zip(target_leaves(texts), places, strict=True) if _holds(texts.contents, *place)]
 
 
-def _holds(contents: Contents, at: int, channel: int) -> bool:
-    storage = contents.layout.targets[at].storage
-    words = [word for word in contents.words if word.target == at]
+def _holds(contents: Contents, index: int, channel: int) -> bool:
+    storage = contents.layout.targets[index].storage
+    words = [word for word in contents.words if word.target == index]
     has_own = any(not word.bits and word.first == channel for word in words)
     return channel < storage.channels and (has_own or any(parts_of(words, channel, storage)))

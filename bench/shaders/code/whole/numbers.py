@@ -1,4 +1,4 @@
-"""A number of a layout as it is written to a channel or to bits, and back: what `words.glsl` does, for one word."""
+"""A number of a layout as it is written to a channel or to bits, and back: `words.glsl` for one word."""
 
 from __future__ import annotations
 
@@ -162,7 +162,7 @@ class Number:
         return f"{x} * 0.5 + 0.5" if is_halved else x
 
     def channel_value(self, x: str, is_float: bool = False) -> str:
-        """The number of what a channel of its own reads."""
+        """Return the text of the number that is read from a channel of its own."""
         kind = storage_kind(self._storage)
         if self.is_depth and self.layout.depth_encoding.signed and kind < HALF:
             return f"from_fixed_code(uint({x} * {self._scale}.0 + 0.5), {self._scale}.0, true)"

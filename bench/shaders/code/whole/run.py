@@ -43,10 +43,10 @@ def run(code: GBufferCode, rows: np.ndarray, settings: np.ndarray) -> np.ndarray
     Args:
         rows: uint32 of shape (count, numbers of a surface and of the targets), floats by their bits: the input of
             `pack`, then the input of `unpack`.
-        settings: further inputs of both, as from `surfaces.settings`.
+        settings: the other inputs of both, as from `surfaces.settings`.
 
     Returns:
-        uint32 of the shape of `rows`: the results of `pack`, then those of `unpack`.
+        uint32 of the shape of `rows`: the results of `pack`, then the results of `unpack`.
 
     Raises:
         MissingError: a tool is missing; what to install.

@@ -79,7 +79,7 @@ class Contents:
             yield Field(self._name(first), kind, parts, words, words[0].kept)
 
     def _name(self, component: str) -> str:
-        """Return the name of a component; without metallic, the surface colour is that of the scattered light."""
+        """Return a component's name in the structure; without metallic, the surface colour is `diffuse_color`."""
         if component == "base_color" and "metallic" not in self.layout.components:
             return "diffuse_color"
         # Of metal/rough materials a roughness lies where others have a power.

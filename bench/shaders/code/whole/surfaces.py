@@ -30,7 +30,7 @@ def surfaces(contents: Contents, count: int, seed: int = 0) -> np.ndarray:
 
 
 def settings(count: int, seed: int = 0) -> np.ndarray:
-    """Return further inputs of each surface's functions: its position in view space, and the planes of the depth.
+    """Return the other inputs of each surface's functions: its view-space position, and the near and far planes.
 
     Returns:
         uint32 of shape (count, 5), in the order of PLACES; floats by their bits.

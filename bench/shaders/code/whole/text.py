@@ -118,30 +118,30 @@ class Texts:
         motion = f"{encoding.prefix}_encode_motion(s.{field.name}, {glsl_value(field.kept.range)})"
         return f"vec2 {field.name} = {motion};"
 
-    def _packed_target(self, at: int, target: TargetText, names: dict[str, str]) -> Iterator[str]:
-        storage = self._layout.targets[at].storage
-        words = [word for word in self.contents.words if word.target == at]
+    def _packed_target(self, index: int, target: TargetText, names: dict[str, str]) -> Iterator[str]:
+        storage = self._layout.targets[index].storage
+        words = [word for word in self.contents.words if word.target == index]
         for word in (word for word in words if word.bits):
             text = names.get(word.component) or f"s.{self._other_name(word)}"
             yield f"uint {self._integer_name(word)} = {Number(self._layout, word).bits_text(text)};"
         channels = []
         for channel in range(storage.channels):
-            lines, text = self._channel(words, at, channel, names)
+            lines, text = self._channel(words, index, channel, names)
             yield from lines
             channels.append(text)
         if not storage.is_integer:
             channels += ["0.0"] * (4 - len(channels))
         yield f"{target.kind} {target.name} = {_listed(target.kind, channels)};"
 
-    def _channel(self, words: list[Word], at: int, channel: int, names: dict[str, str]) -> tuple[list[str], str]:
-        """Lines before a target, and what they make of a channel."""
-        name = f"channel_{at}_{AXES[channel]}"
+    def _channel(self, words: list[Word], index: int, channel: int, names: dict[str, str]) -> tuple[list[str], str]:
+        """Return the lines before a target, and the text of a channel's value."""
+        name = f"channel_{index}_{AXES[channel]}"
         own = next((word for word in words if not word.bits and word.first == channel), None)
         if own:
             text = names.get(own.component) or f"s.{self._other_name(own)}"
             code = Number(self._layout, own).channel_text(text, self._is_float(own))
             return ([], code) if len(code) <= SHORT or code.isidentifier() else ([f"float {name} = {code};"], name)
-        storage = self._layout.targets[at].storage
+        storage = self._layout.targets[index].storage
         size = storage.bits[channel]
         joined = packed_texts([(p, self._integer_name(p.word)) for p in parts_of(words, channel, storage)], size)
         if not joined:
@@ -179,17 +179,17 @@ class Texts:
             names[word], signs[word.sign] = f"abs({name})", f"sign_not_zero({name})"
             yield f"float {name} = {number};"
 
-    def _taken_words(self, at: int, names: dict[Word, str]) -> Iterator[str]:
+    def _taken_words(self, index: int, names: dict[Word, str]) -> Iterator[str]:
         """Lines that take integers out of a target; each word's number is added to `names`."""
-        storage = self._layout.targets[at].storage
-        words = [word for word in self.contents.words if word.target == at]
+        storage = self._layout.targets[index].storage
+        words = [word for word in self.contents.words if word.target == index]
         held = {}
         for channel in range(storage.channels):
             parts = list(parts_of(words, channel, storage))
-            text = f"t.target_{at}" + (f".{AXES[channel]}" if storage.channels > 1 or not storage.is_integer else "")
+            text = f"t.target_{index}" + (f".{AXES[channel]}" if storage.channels > 1 or not storage.is_integer else "")
             if parts and not storage.is_integer:
-                yield f"uint bits_{at}_{AXES[channel]} = uint({text} * {float(storage.scale(channel))} + 0.5);"
-                text = f"bits_{at}_{AXES[channel]}"
+                yield f"uint bits_{index}_{AXES[channel]} = uint({text} * {float(storage.scale(channel))} + 0.5);"
+                text = f"bits_{index}_{AXES[channel]}"
             for part in parts:
                 held.setdefault(part.word, []).append((part, text))
         for word in words:
@@ -198,7 +198,7 @@ class Texts:
                 yield f"uint {self._integer_name(word)} = {taken_text(held[word], word.bits)};"
                 names[word] = number.bits_value(self._integer_name(word))
             else:
-                names[word] = number.channel_value(f"t.target_{at}.{AXES[word.first]}", self._is_float(word))
+                names[word] = number.channel_value(f"t.target_{index}.{AXES[word.first]}", self._is_float(word))
 
     def _normal_lines(self, names: dict[Word, str], signs: dict[str, str]) -> Iterator[str]:
         by_component = {word.component: names[word] for word in names if word.component.startswith("normal.")} | signs

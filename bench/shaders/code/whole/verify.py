@@ -1,4 +1,4 @@
-"""Whether a layout's code gives what the renderer's own GLSL gives: both run on the same surfaces, and are compared."""
+"""A comparison of a layout's code with the renderer's own GLSL: both run on the same surfaces."""
 
 from __future__ import annotations
 
@@ -146,18 +146,19 @@ class Expected:
                 value = np.ascontiguousarray(self._given[:, columns[field.name]])
                 _put(self.contents.layout, field.words[0], value, field.kind == "float", self.stored)
 
-    def _surfaces(self, made: np.ndarray) -> np.ndarray:
-        """Surfaces of a normal and the renderer's numbers; others as they were given, floats as the format has them."""
+    def _surfaces(self, decoded: np.ndarray) -> np.ndarray:
+        """Return surfaces with the renderer's normals and numbers. Other fields are as given, with floats as the
+        format stores them."""
         expected = self._given.copy()
         for field in self.contents.fields:
             if field.kind == "float" and field.words[0].component == OTHER:
                 word = field.words[0]
                 expected[:, self._columns()[field.name]] = self.stored[:, word.target, word.first]
-        expected[:, :NORMAL] = made[:, :NORMAL]
+        expected[:, :NORMAL] = decoded[:, :NORMAL]
         kinds = {name: field.kind for field in self.contents.fields for name in field.components}
         for component, column in self._columns().items():
             if component in COMPONENTS:
-                number = np.ascontiguousarray(made[:, NORMAL + COMPONENTS.index(component)])
+                number = np.ascontiguousarray(decoded[:, NORMAL + COMPONENTS.index(component)])
                 is_whole = kinds[component] == "uint"
                 expected[:, column] = (number.view(np.float32) + 0.5).astype(np.uint32) if is_whole else number
         return expected
@@ -186,7 +187,7 @@ def written_texels(code: GBufferCode, packed: np.ndarray) -> np.ndarray:
 
 
 def stored_texels(layout: Layout, texels: np.ndarray) -> np.ndarray:
-    """Texels as targets hold them and give them back: what the formats' own conversion makes of them."""
+    """Return texels as they are read back from targets, after each format's own conversion."""
     stored = np.zeros_like(texels)
     for index, target in enumerate(layout.targets):
         for channel in range(target.storage.channels):
@@ -241,7 +242,7 @@ def _compared(expected: Expected, stored: np.ndarray, back: np.ndarray) -> Agree
 
 
 def _float_steps(number: np.ndarray, bits: int) -> np.ndarray:
-    """Floats of so many bits as integers in their order. Those without a sign are halves that end in 0."""
+    """Return floats of `bits` bits as integers in order. Unsigned floats are half floats whose last bits are 0."""
     held = number.astype(np.float16).view(np.int16) if bits < 32 else number.view(np.int32)
     magnitude = held.astype(np.int64) & np.iinfo(held.dtype).max
     return np.where(held < 0, -magnitude, magnitude) >> max(0, 15 - bits)

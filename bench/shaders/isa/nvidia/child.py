@@ -1,8 +1,8 @@
-"""A process of its own for NVIDIA's compiler, which may crash or hang: CUDA in, what became of it out.
+"""A separate process for NVIDIA's compiler, which may crash or hang: it reads CUDA and writes the compiler's results.
 
     python -m normalbench.bench.shaders.isa.nvidia.child < JOBS
 
-What it reads and writes is as in `bench.shaders.isa.child`, a job's code being CUDA's text. ARCHITECTURE names the GPU.
+Input and output are as in `bench.shaders.isa.child`, but a job's code is CUDA text. ARCHITECTURE names the GPU.
 """
 
 from __future__ import annotations

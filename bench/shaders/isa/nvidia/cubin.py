@@ -19,8 +19,7 @@ SIZED, REGISTERS, STACK = 4, 0x2F, 0x11
 
 @dataclass(frozen=True)
 class Kernel:
-    """A kernel's machine code; the registers of a lane, and the bytes that it keeps on a stack, None where the file
-    does not say."""
+    """A kernel's machine code, registers per lane and stack in bytes. Figures that the file lacks are None."""
 
     code: bytes
     registers: int | None

@@ -94,7 +94,7 @@ def kinds(assembly: str, total: int, _: str = "") -> dict[str, int] | None:
 
 
 def issue_slots(_: Mapping[str, int], __: str) -> None:
-    """Nothing: how long an instruction issues depends on the unit's width, which NVIDIA does not say of all of them."""
+    """Return None: issue times depend on the widths of units, and NVIDIA does not publish all of these widths."""
     return
 
 
@@ -115,7 +115,7 @@ def kinds_in_order(assembly: str, _: str) -> list[str]:
 
 
 def loops(assembly: str) -> list[range]:
-    """The instructions of each loop, by their places: from where a jump goes back to, to that jump."""
+    """Return the instruction indices of each loop: from the target of a jump back, to that jump."""
     jumps_back = ((instruction.place, distance) for instruction, _, distance in _jumps(assembly) if distance < 0)
     return [range((place + distance) // SIZE, place // SIZE + 1) for place, distance in jumps_back]
 

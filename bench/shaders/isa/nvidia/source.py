@@ -34,10 +34,12 @@ def cuda_of(operation: Operation) -> str:
 
 
 def functions_of(operation: Operation) -> str:
-    """The operation's own functions in the language of glsl.cuh, the last of them `kernel_operation`. Kept by its GLSL.
+    """Return the operation's own functions in the language of glsl.cuh, with `kernel_operation` last. The result is
+    cached by the GLSL.
 
     Raises:
-        ShaderError: its GLSL cannot be read, or has what cannot be translated; the message names file and line.
+        ShaderError: its GLSL cannot be read, or contains something that cannot be translated; the message names file
+            and line.
     """
     source = operation.source(str(ROOT))
 

@@ -33,8 +33,8 @@ class Step:
     """A change of codes between the two functions.
 
     Attributes:
-        said: its words, as the result for a code c; empty for no change.
-        change: its function of codes of shape (count, size).
+        said: its description, as the result for a code c; empty for no change.
+        change: a function of codes of shape (count, size).
     """
 
     said: str
@@ -78,7 +78,7 @@ FOLDS = (NOTHING, Step("the other function's fold, with .yx for .xy,", _other_fo
 
 @cache
 def _orders(size: int) -> tuple[Step, ...]:
-    """Every way to swap and to negate the numbers of a code, the shortest to say first."""
+    """Return every way to swap and negate the numbers of a code, with the shortest description first."""
     orders = []
     for order in itertools.permutations(range(size)):
         for signs in itertools.product((1, -1), repeat=size):
@@ -135,7 +135,7 @@ def step_between(trip: Trip, probe: Probe) -> tuple[Step, Domain] | None:
             domain = guessed(Trip(few.n, few.view, few.codes, decoded), SAME_DEG)
         if domain.name:
             candidates.append((step, domain))
-    return min(candidates, key=lambda one: _unlikely(one[0], few.codes), default=None)
+    return min(candidates, key=lambda candidate: _unlikely(candidate[0], few.codes), default=None)
 
 
 def _unlikely(step: Step, codes: np.ndarray) -> tuple[int, bool, float]:
@@ -145,7 +145,7 @@ def _unlikely(step: Step, codes: np.ndarray) -> tuple[int, bool, float]:
 
 
 def axes_of(trip: Trip) -> str:
-    """Say which axes are swapped or reversed in the decoded directions; empty if none are."""
+    """Return in words which axes are swapped or reversed in the decoded directions; empty if no axes are."""
     for order, signs in turns():
         if (angles_deg(trip.n[:, order] * np.array(signs), trip.decoded) < SAME_DEG).mean() > MOST:
             return axes_said(order, signs)
@@ -153,7 +153,7 @@ def axes_of(trip: Trip) -> str:
 
 
 def turns() -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
-    """Every order of the axes with every sign, but for what leaves them."""
+    """Yield every order of the axes with every sign, except for the one that changes nothing."""
     for order in itertools.permutations(range(3)):
         for signs in itertools.product((1, -1), repeat=3):
             if (order, signs) != ((0, 1, 2), (1, 1, 1)):

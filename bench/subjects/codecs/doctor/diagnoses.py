@@ -1,4 +1,4 @@
-"""Likely mistakes in an encoder and its decoder, found from what they do to directions without any storage.
+"""Likely mistakes in an encoder and its decoder, found by round trips of directions without any storage.
 
 Each diagnosis is a line with its figure and a direction that shows it.
 """
@@ -47,7 +47,7 @@ class Diagnosis:
 
 
 def bad(probe: Probe, domain: Domain) -> np.ndarray:
-    """The directions of a domain that come back elsewhere, (count, 3): what a picture of the sphere is marked with."""
+    """Return the directions of a domain that do not round-trip, (count, 3), as marks for a picture of the sphere."""
     held = domain.held(trip_of(probe, np.concatenate([directions(), circles()])))
     held = held.of(held.is_finite)
     return held.n[held.angles() > exact.unusual(held)]
@@ -102,14 +102,14 @@ def _finite_diagnosis(trip: Trip, probe: Probe, gl: Device, meant: Domain | None
 
 
 def _nearly_back(trip: Trip, domain: Domain) -> Domain | None:
-    """Return a wider domain that nearly round-trips, other than the one that does; None if no such domain exists."""
+    """Return a domain that nearly round-trips and is wider than `domain`; None if no such domain exists."""
     wider = guessed(trip, NEARLY_DEG)
     return wider if wider.name and wider != domain else None
 
 
-def _near_diagnosis(trip: Trip, probe: Probe, domain: Domain, found: list[str]) -> Diagnosis:
+def _near_diagnosis(trip: Trip, probe: Probe, domain: Domain, mistakes: list[str]) -> Diagnosis:
     """Return the diagnosis of a domain that nearly round-trips, with the mistakes found."""
-    return Diagnosis(domain, [*found, *exact.lengths(domain.held(trip)), *exact.ranges(trip, domain, probe)])
+    return Diagnosis(domain, [*mistakes, *exact.lengths(domain.held(trip)), *exact.ranges(trip, domain, probe)])
 
 
 def _same_within_deg(trip: Trip) -> float:
@@ -119,7 +119,7 @@ def _same_within_deg(trip: Trip) -> float:
 
 
 def _is_lost(trip: Trip, domain: Domain, within: float) -> bool:
-    """Whether a domain that a user gives is not what comes back."""
+    """Whether a domain that a user gives does not round-trip."""
     return (domain.held(trip).angles() < within).mean() <= MOST
 
 
@@ -127,7 +127,7 @@ def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[s
     """Return the mistakes in a pair that round-trips on a domain.
 
     Args:
-        is_meant: whether its author says that it is made for that domain; what it wastes is then intended as well.
+        is_meant: whether its author says that it is made for that domain; unused codes are then intended as well.
     """
     held, ranges = domain.held(trip), list(exact.ranges(trip, domain, probe))
     wasted = [] if is_meant else [*unread(probe, trip.codes), *(() if ranges else unused(held, probe))]
@@ -167,7 +167,7 @@ def _half_faults(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
 
 
 def _elsewhere_text(half: Domain, gone: Trip) -> str:
-    """Say how a half decodes that both functions know."""
+    """Return in words how directions decode in a half that both functions know."""
     if axes := axes_of(gone):
         return f"directions with {half.lost_text} come back with {axes}: {gone.worst}"
     return f"of directions with {half.lost_text} {exact.lost(gone)}: {gone.worst}"
@@ -195,7 +195,7 @@ def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
 
 
 def _is_back_unclipped(trip: Trip, probe: Probe) -> bool:
-    """Whether codes come back that reach beyond what a storage holds."""
+    """Whether codes beyond the range of storages round-trip if they are not clipped."""
     whole = replace(trip, decoded=probe.decode(trip.codes))
     return bool(np.median(whole.angles()) < SAME_DEG)
 
@@ -210,7 +210,7 @@ def _scale_text(trip: Trip, held: Trip, probe: Probe) -> str:
 
 
 def _apart_text(held: Trip, likely: Domain) -> str:
-    """Say how far the two are from being a pair."""
+    """Return in words how far the two functions are from being a pair."""
     return f"{NO_PAIR}: {held.angles().mean():.3g} degrees apart on average{_domain_text(likely)} without any storage"
 
 
@@ -226,7 +226,7 @@ def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> st
 
 
 def _or_numbers(trip: Trip, probe: Probe) -> str:
-    """Say which change of the code's numbers would have the same effect as other axes; empty if none would."""
+    """Return in words the change of the code's numbers that has the same effect as other axes; empty if none has."""
     between = step_between(trip, probe)
     return f", as with {between[0].said} between the two" if between else ""
 
@@ -236,7 +236,7 @@ def _domain_text(domain: Domain) -> str:
 
 
 def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
-    """Say what would make a pair of the two; empty if nothing known would."""
+    """Return in words what would make the two functions a pair; empty if nothing known would."""
     if mistakes := folds.mistakes(probe):
         return mistakes[0]
     if between := step_between(trip, probe):

@@ -1,4 +1,4 @@
-"""The directions that an encoding is made for: those that round-trip, unless its author says otherwise."""
+"""The directions that an encoding is made for: the directions that round-trip, unless its author names others."""
 
 from __future__ import annotations
 
@@ -99,10 +99,10 @@ def finite(trip: Trip) -> list[Domain]:
 
 
 def asked(name: str, trip: Trip, among: Collection[Domain] = IN_TURN) -> Domain:
-    """The domain of a name that a user gives: of a hemisphere the first half that comes back as well as any.
+    """Return the domain that a user names; for a hemisphere, the first half that round-trips as well as any.
 
     Args:
-        among: the domains where the code is finite. A half is one of these if there is one.
+        among: the domains where the code is finite. If they include a half, the half is chosen among them.
     """
     if name != HEMISPHERE:
         return SPHERE if name == SPHERE.name else VIEWED

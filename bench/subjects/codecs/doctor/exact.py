@@ -58,7 +58,7 @@ def values(codes: np.ndarray, number: int) -> np.ndarray:
 
 
 def lost(trip: Trip, within: float = SAME_DEG) -> str:
-    """Say how many directions are off by more than an angle in degrees after decoding, and the largest error."""
+    """Return in words how many directions are off by more than an angle in degrees, and the largest error."""
     angles = trip.angles()
     count = int((angles > within).sum())
     return f"{count} of {len(angles)} come back more than {within:g} degree off, up to {angles.max():.3g}"
@@ -95,7 +95,7 @@ def _is_only_there(gone: Trip, probe: Probe) -> bool:
 
 
 def _where(gone: Trip, is_fold: bool) -> str:
-    """Say what single directions have in common; for an octahedral fold, a number to be folded is 0."""
+    """Return in words what the lost directions have in common; in an octahedral fold, a number to be folded is 0."""
     if is_fold or (gone.n == 0).any(axis=1).all():
         return "sign() returns 0 for 0: only directions with a component of 0 are lost, not their neighbours"
     return "only directions with equal components or one of 0 are lost, not their neighbours: a comparison or sign()"
@@ -129,7 +129,8 @@ def lengths(trip: Trip) -> Iterator[str]:
 
 
 def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
-    """Numbers that use less than a storage has, of all directions, or more, of those that the encoding is made for."""
+    """Yield a line on each number that uses too little of a storage's range for all directions, or that exceeds the
+    range for directions that the encoding is made for."""
     if probe.is_packed:
         return
     held = domain.held(trip)

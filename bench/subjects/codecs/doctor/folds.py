@@ -1,9 +1,9 @@
-"""The mistakes that people make in an octahedral map, each side by itself.
+"""Common mistakes in an octahedral map, for each of the two functions by itself.
 
-An octahedral map projects a direction m, in some axes, to p = m.xy / (|m.x| + |m.y| + |m.z|), and folds what has
-m.z < 0 out: (1 - |p.yx|) sign(p). Every mistake here is such a map with one thing changed. A side has a mistake where
-it is that map for nearly all directions that are tried, and the other side is right in the same axes. Both sides are
-compared as functions, however they are written.
+An octahedral map projects a direction m, in some axes, to p = m.xy / (|m.x| + |m.y| + |m.z|), and folds points with
+m.z < 0 outwards: (1 - |p.yx|) sign(p). Every mistake here is such a map with one change. A function has a mistake if
+it is that map for nearly all directions that are tried, and the other function is right in the same axes. Only the
+results of the functions are compared, however these are written.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ class Axes:
         return self._turned_points(p) / 2 if self.is_turned else p
 
     def point(self, c: np.ndarray) -> np.ndarray:
-        """The point of the square that a code stands for."""
+        """Return the point of the square that a code stands for."""
         return self._turned_points(c) if self.is_turned else c
 
     def _turned_points(self, p: np.ndarray) -> np.ndarray:
@@ -141,7 +141,7 @@ class Axes:
 
 @cache
 def frames() -> tuple[Axes, ...]:
-    """Every order of the axes with every sign; each also turned by 45 degrees about its pole, or in its codes."""
+    """Return every order of the axes with every sign, also turned by 45 degrees about the pole, or in the codes."""
     half = np.sqrt(0.5)
     about = np.array([[half, half, 0], [half, -half, 0], [0, 0, 1]])
     plain = [
@@ -209,10 +209,10 @@ def _matching_axes(models: Mapping[str, Sequence[Side]], alike: Callable[[Side],
     return {mistake: axes for mistake, axes in matched.items() if axes}
 
 
-def _alike(made: np.ndarray, own: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """In which axes results, (axes, count, size), are a user's for nearly all that count."""
+def _alike(modelled: np.ndarray, own: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """Return in which axes results, (axes, count, size), match a user's for nearly all rows that count."""
     with np.errstate(invalid="ignore"):
-        near = (np.abs(made - own) < NEAR * np.maximum(1, np.abs(own))).all(axis=2)
+        near = (np.abs(modelled - own) < NEAR * np.maximum(1, np.abs(own))).all(axis=2)
     # A sum that is 0 is finite in neither.
-    neither = ~np.isfinite(made).all(axis=2) & ~np.isfinite(own).all(axis=1)
+    neither = ~np.isfinite(modelled).all(axis=2) & ~np.isfinite(own).all(axis=1)
     return ((near | neither) & counts).sum(axis=1) > NEARLY_ALL * counts.sum(axis=1)

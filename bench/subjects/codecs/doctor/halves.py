@@ -1,8 +1,9 @@
-"""Whether a half of the sphere that does not come back is a design, or lost by one of the two functions.
+"""The reason why a half of the sphere does not round-trip: by design, or because one of the functions loses it.
 
-Each is looked at by itself. The encoder knows the half where its directions have codes of their own: what their codes
-decode to has other codes. The decoder reaches it where codes of the square, used or not, decode into most of it. In a
-design for a half neither is so: xy, which uses the disc, and hemi-octahedral, which uses the square.
+Each function is looked at by itself. The encoder knows the half if its directions have codes of their own: the
+directions that these codes decode to have other codes. The decoder reaches the half if codes of the square, used or
+not, decode to most of it. In a design for a half neither is the case: xy, which uses the disc, and hemi-octahedral,
+which uses the square.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ class Sides:
 
 
 def _cells(n: np.ndarray, half: Domain) -> np.ndarray:
-    """Return the cells of the sphere that directions are in, as whole numbers; those of the half itself are below 0."""
+    """Return the cells of the sphere that directions are in, as whole numbers, negative in the half itself."""
     height = -half.side * n[:, half.axis]
     x, y = (n[:, (half.axis + step) % 3] for step in (1, 2))
     sector = np.floor((np.arctan2(y, x) / (2 * np.pi) + 0.5) * SECTORS).clip(max=SECTORS - 1)
@@ -71,7 +72,7 @@ def _cells(n: np.ndarray, half: Domain) -> np.ndarray:
 
 
 def lost(sides: Sides, half: Domain) -> str:
-    """Say which function loses the half that a hemisphere lacks; empty if both have it, or neither."""
+    """Return in words which function loses the half that a hemisphere lacks; empty if both have it, or neither."""
     axes = axes_of(sides.gone)
     which = f"{sides.share}directions with {half.lost_text}{f', which come back with {axes}' if axes else ''}"
     if sides.encoder_knows and not sides.decoder_reaches:

@@ -63,7 +63,7 @@ def names_alone(gl: Device, probe: Probe, is_encoder: bool) -> tuple[str, ...]:
 
 
 def _is_comparable(encoding: Encoding, size: int, domain: Domain) -> bool:
-    """Whether an encoding has so many numbers and a map of its own, and holds a domain."""
+    """Whether an encoding has `size` numbers and a map of its own, and includes a domain."""
     is_alike = encoding.components + encoding.sign_bits == size and not encoding.is_precise
     return is_alike and (encoding.domain == SPHERE.name or domain.name != SPHERE.name)
 

@@ -1,7 +1,7 @@
 """Mistakes in a pair that nearly round-trips: codes that are scaled, shifted or truncated between the two functions.
 
-The code that the decoder wants for a direction is the one that decodes to it, found by Newton's method from the
-code that the encoder gives. The difference between wanted and given codes identifies the mistake, whatever the map.
+The code that the decoder wants for a direction is the code that decodes to it, found by Newton's method from the
+encoder's code. The difference between the two codes identifies the mistake, whatever the map.
 """
 
 from __future__ import annotations
@@ -54,11 +54,11 @@ class Fit:
 
 @dataclass(frozen=True)
 class Lattice:
-    """Steps that the numbers of codes are whole multiples of: `steps` from 0 to 1.
+    """Steps whose whole multiples are the numbers of codes: `steps` of them from 0 to 1.
 
     Attributes:
-        is_unit: whether (c + 1) / 2 is a multiple, as UNORM has it; else c, as SNORM has it.
-        is_one_more: whether there is one step more than the bits have: 256 in place of 255.
+        is_unit: whether (c + 1) / 2 is a multiple, as in UNORM; else c, as in SNORM.
+        is_one_more: whether there is one more step than the bits hold: 256 instead of 255.
     """
 
     bits: int
@@ -121,7 +121,7 @@ def start(trip: Trip, probe: Probe) -> Start:
     few = trip.of(np.arange(max(len(trip.n) - FEW, 0), len(trip.n)))
     given = np.concatenate([begin.of(few.codes).astype(np.float32) for begin in tried])
     back = np.split(probe.decode(given), len(tried))
-    return min(zip(tried, back, strict=True), key=lambda one: float(np.median(angles_deg(few.n, one[1]))))[0]
+    return min(zip(tried, back, strict=True), key=lambda pair: float(np.median(angles_deg(few.n, pair[1]))))[0]
 
 
 def wanted(trip: Trip, probe: Probe, begin: Start) -> np.ndarray:
@@ -133,7 +133,7 @@ def wanted(trip: Trip, probe: Probe, begin: Start) -> np.ndarray:
 
 
 def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
-    """The step of each code that the decoder's slope says."""
+    """Return the Newton step of each code, by the decoder's slope."""
     size = codes.shape[1]
     # Of what float32 makes of a code, so that a difference is one of codes that are.
     rounded_codes = codes.astype(np.float32)
@@ -151,18 +151,18 @@ def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
     return steps - (codes - rounded_codes)
 
 
-def _fit(at: int, given: np.ndarray, wanted_codes: np.ndarray, begin: Start) -> Fit:
+def _fit(index: int, given: np.ndarray, wanted_codes: np.ndarray, begin: Start) -> Fit:
     """Fit a line through most of the wanted numbers, by repeated least squares on the nearest of them."""
-    x, y = given[:, at], wanted_codes[:, at]
+    x, y = given[:, index], wanted_codes[:, index]
     scale, shift = begin.scale, begin.shift
     kept = np.isfinite(y) & (np.abs(y - begin.of(x)) < 0.5)
     for _ in range(FITTINGS):
         if kept.sum() < LEAST_COUNT or np.ptp(x[kept]) < LEAST_SPREAD:
-            return Fit(at + 1, 1.0, 0.0)
+            return Fit(index + 1, 1.0, 0.0)
         scale, shift = np.polyfit(x[kept], y[kept], 1)
         off = np.abs(scale * x + shift - y)
         kept = kept & (off <= np.quantile(off[kept], KEPT))
-    return Fit(at + 1, float(scale), float(shift))
+    return Fit(index + 1, float(scale), float(shift))
 
 
 def mistakes(trip: Trip, probe: Probe, begin: Start = UNCHANGED) -> Iterator[str]:
@@ -227,7 +227,8 @@ def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Pr
 
 
 def _fixed_point_text(scale: float, shift: float, probe: Probe) -> str:
-    """Say which point stays fixed when codes are scaled, unless it is 0: 0.5, or a shift in the user's own range."""
+    """Return in words the point that stays fixed when codes are scaled, unless it is 0: 0.5, or a shift in the user's
+    own range."""
     own = (1 - scale + shift) / 2 if probe.is_unit else shift
     stays = own / (1 - scale)
     # Codes in [0, 1] that have become [-1, 1] by the user's own doing are scaled about -1.
@@ -251,12 +252,12 @@ def _shift_said(scale: float, shift: float) -> str:
 
 
 def _fraction(scale: float) -> str:
-    """A scale as a fraction of the integers that stand for 1, where it is one: 254/255."""
+    """Return a scale as a fraction of the integers that stand for 1, such as 254/255, if one fits."""
     fractions = {}
     for steps in (count for bits in BITS for count in (2**bits - 1, 2**bits, 2 ** (bits - 1) - 1)):
         fractions |= {f"{steps - 1}/{steps}": 1 - 1 / steps, f"{steps}/{steps - 1}": steps / (steps - 1)}
     # Of two that float32 does not tell apart the first, whose integers stand for 1.
-    fraction, value = min(fractions.items(), key=lambda one: round(abs(one[1] - scale) / UNTOLD))
+    fraction, value = min(fractions.items(), key=lambda pair: round(abs(pair[1] - scale) / UNTOLD))
     return fraction if abs(value - scale) < OF_A_FRACTION * abs(value - 1) else f"{scale:.5g}"
 
 
@@ -288,10 +289,10 @@ def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator
 
 
 def scaled_angles(held: Trip) -> Iterator[str]:
-    """Say that an angle comes back a step of a whole turn too large or too small, as where 256 steps meet 255.
+    """Yield a line if the two functions divide a turn into different numbers of steps, such as 256 and 255.
 
     Args:
-        held: directions that the encoding is made for, and what comes back of them.
+        held: directions that the encoding is made for, and the directions that they decode to.
     """
     for axis, name in enumerate("xyz"):
         across = [(axis + 1) % 3, (axis + 2) % 3]

@@ -1,7 +1,7 @@
-"""An encoder and its decoder as functions that can be asked for anything, and what a round trip does to directions.
+"""An encoder and its decoder as functions for any input, and the round trip of directions through them.
 
-Arrays are float of shape (count, ...), a row for each direction: `n` the direction, `codes` its numbers, `decoded` what
-comes back.
+Arrays are float of shape (count, ...), a row for each direction: `n` the direction, `codes` its numbers, `decoded`
+the decoded direction.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ class Probe:
 
     Attributes:
         encode: directions of shape (count, 3) to codes of shape (count, size).
-        decode: codes to what comes back, as long as it is.
-        size: how many numbers a code has.
-        is_unit: whether the user's own numbers are in [0, 1]: each is c / 2 + 1 / 2 of the c that a code has here.
+        decode: codes to decoded directions, which are not normalised.
+        size: the number of components of a code.
+        is_unit: whether the user's own numbers are in [0, 1]: c / 2 + 1 / 2 for each number c of a code here.
         is_packed: whether the user's own code is one integer of 32 bits, whose halves are the numbers.
     """
 
@@ -54,7 +54,7 @@ def of_unit(probe: Probe) -> Probe:
 
 
 def probe_of(gl: Device, encoding: Encoding) -> Probe:
-    """The two functions of an encoding on a device. What they raise is what `exact_values` raises."""
+    """Return the two functions of an encoding on a device. They raise the exceptions of `exact_values`."""
     size = encoding.components + encoding.sign_bits
 
     def both(given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -69,7 +69,7 @@ def probe_of(gl: Device, encoding: Encoding) -> Probe:
 
 @dataclass(frozen=True)
 class Trip:
-    """Directions, where they are seen from, their codes, and what these decode to, clipped as in storages."""
+    """Directions, their view-space positions, their codes, and what the codes, clipped as in storages, decode to."""
 
     n: np.ndarray
     view: np.ndarray
@@ -98,13 +98,13 @@ class Trip:
         """Return the angle by which each direction is off after decoding, in degrees."""
         return angles_deg(self.n, self.decoded)
 
-    def example(self, at: int) -> str:
-        """A direction and what it becomes."""
-        return f"{vector(self.n[at])} becomes {vector(self.decoded[at])}"
+    def example(self, index: int) -> str:
+        """Return in words a direction and its decoded direction."""
+        return f"{vector(self.n[index])} becomes {vector(self.decoded[index])}"
 
     @property
     def worst(self) -> str:
-        """The direction that comes back farthest, and what it becomes."""
+        """The direction with the largest error, and its decoded direction."""
         return self.example(int(np.argmax(self.angles())))
 
 

@@ -1,4 +1,4 @@
-"""A device that computes in 16 bits: Vulkan through wgpu, and what it makes of a compute shader."""
+"""A device that computes in 16 bits, by Vulkan through wgpu, and the results of a compute shader on it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ EXCESS = Path(__file__).with_name("excess.comp")
 
 @cache
 def half_device() -> Any:
-    """The wgpu device.
+    """Return the wgpu device.
 
     Raises:
         MissingError: wgpu is not installed, or no Vulkan device here has 16-bit floats; what to install.

@@ -1,4 +1,4 @@
-"""An encoding's operations in 16-bit types, for a compiler to be asked what they cost."""
+"""An encoding's operations in 16-bit types, whose cost compilers report."""
 
 from __future__ import annotations
 

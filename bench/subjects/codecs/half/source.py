@@ -18,8 +18,8 @@ BITS = re.compile(r"\b(floatBitsToUint|floatBitsToInt|uintBitsToFloat|intBitsToF
 
 
 class HalfSource(Source):
-    """A shader whose includes, and the macros at its head, are in 16-bit types; its own lines, and those of this
-    folder's files, stay as they are.
+    """A shader whose includes, and the macros at its head, are in 16-bit types; its own lines, and the files of this
+    folder, stay as they are.
 
     Args:
         path, defines, names: as `Source` takes them.

@@ -1,4 +1,4 @@
-"""Codecs of every kind as they are named on the command line: encodings and files of yours, and storages."""
+"""Codecs of every kind by their names on the command line: encodings, users' files and storages."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ NAMED: Mapping[str, Kind] = MappingProxyType({kind.word: kind for kind in (NORMA
 
 
 def kinds_named(names: Names, of: str) -> dict[Kind, Names]:
-    """Return names by their kind: the kind `of` if it is given, otherwise what each name says; normals if in doubt.
+    """Return names by their kind: the kind `of` if it is given, otherwise the kind of each name; normals if in doubt.
 
     Raises:
         UsageError: an unknown kind, or names that belong to several kinds.
@@ -106,7 +106,7 @@ def _kind_of_word(word: str) -> Kind:
 
 
 def _kind_of_file(file: UserFile) -> Kind:
-    """Return the kind of a user's file: what its functions' names say, otherwise normals if it can be."""
+    """Return the kind of a user's file: by its functions' names, else normals if they fit, else a kind that fits."""
     from ..encoding_names import encodings_named
 
     if (spoken := kind_by_names(file)) and spoken in MADE:

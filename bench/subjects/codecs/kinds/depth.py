@@ -35,9 +35,9 @@ def _depths(own: Own) -> Values:
     return Values(rows(np.geomspace(near, far, COUNT)), rows(np.full(COUNT, near), far))
 
 
-def _depth_errors(values: Values, found: Tried) -> np.ndarray:
+def _depth_errors(values: Values, trial: Tried) -> np.ndarray:
     """Errors as shares of the depth; of a code over bytes, whose steps are even, of the range."""
-    return one_number_errors(values, found) / np.where(values.more[:, 1] == EVEN, 1.0, values.given[:, 0])
+    return one_number_errors(values, trial) / np.where(values.more[:, 1] == EVEN, 1.0, values.given[:, 0])
 
 
 def _depth_facts(own: Own, gl: Device) -> dict[str, Any]:
@@ -85,7 +85,7 @@ def _faults_of_bytes(own: Own, gl: Device) -> Iterator[str]:
 
 
 def _is_lost(back: np.ndarray, x: np.ndarray, digits: int) -> bool:
-    """Whether what comes back is the depth without its first digits of a byte each."""
+    """Whether decoded depths are the depths without their first `digits` bytes."""
     whole = 256.0**digits
     return float(np.abs(back - np.modf(x * whole)[0] / whole).max()) < DEPTH_NEARLY / whole
 

@@ -50,7 +50,7 @@ def _largest_first(q: np.ndarray) -> np.ndarray:
 
 
 def _axes(given: np.ndarray, more: np.ndarray, of_rotation: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Normals and tangents, of shape (count, 3), of what an adapter is given or gives."""
+    """Return normals and tangents, of shape (count, 3), from an adapter's input or output."""
     if not of_rotation:
         return given[:, :3], more[:, :3]
     q = given.astype(np.float64)
@@ -59,11 +59,11 @@ def _axes(given: np.ndarray, more: np.ndarray, of_rotation: bool) -> tuple[np.nd
     return np.stack(n, axis=1), np.stack(t, axis=1)
 
 
-def _frame_errors(values: Values, found: Tried) -> np.ndarray:
+def _frame_errors(values: Values, trial: Tried) -> np.ndarray:
     """The larger of the angles that normals and tangents are off by."""
-    of_rotation = len(found.back) < len(RESULTS)
+    of_rotation = len(trial.back) < len(RESULTS)
     (n, t), (n_back, t_back) = (
-        _axes(first, other, of_rotation) for first, other in ((values.given, values.more), found.back[:2])
+        _axes(first, other, of_rotation) for first, other in ((values.given, values.more), trial.back[:2])
     )
     with np.errstate(invalid="ignore"):
         return np.maximum(angles_deg(n, n_back), angles_deg(t, t_back))
@@ -82,7 +82,7 @@ def _frame_facts(own: Own, gl: Device) -> dict[str, Any]:
 
 
 def _level_count(numbers: np.ndarray) -> int:
-    """Return how many values numbers have, if these are few and evenly spread from -1 to 1, or one; otherwise 0."""
+    """Return how many values numbers have: 1, or a few that are evenly spread from -1 to 1; otherwise 0."""
     values = np.unique(np.round(numbers, 4))
     if len(values) == 1:
         return 1
@@ -90,17 +90,17 @@ def _level_count(numbers: np.ndarray) -> int:
     return len(values) if is_few and np.abs(values - np.linspace(-1, 1, len(values))).max() < 1e-3 else 0
 
 
-def _of_hands(own: Own, values: Values, found: Tried) -> dict[str, Any]:
-    """A note where a decoder gives no hand; a finding where some come back as the other."""
+def _of_hands(own: Own, values: Values, trial: Tried) -> dict[str, Any]:
+    """Return a note if a decoder returns no handedness, or a likely mistake if it reverses some; else nothing."""
     gives = [part for part in ("hand", "bitangent") if own.size(part)[1]]
     if not gives and own.size("tangent")[1] < 4:
         return {"notes": [NO_HAND], "has_hand": False}
     if gives == ["bitangent"]:
-        n, t, b = (vectors[:, :3] for vectors in found.back)
+        n, t, b = (vectors[:, :3] for vectors in trial.back)
         hand = np.sum(np.cross(n, t) * b, axis=1)
     else:
-        of_rotation = len(found.back) < len(RESULTS)
-        hand = found.back[1][:, 0] if of_rotation else found.back[not gives][:, 3]
+        of_rotation = len(trial.back) < len(RESULTS)
+        hand = trial.back[1][:, 0] if of_rotation else trial.back[not gives][:, 3]
     given = values.more[:, 0] if own.size("rotation")[0] else values.given[:, 3]
     lost = float(np.mean((hand < 0) != (given < 0)))
     return {"wrong": [HANDS.format(100 * lost)]} if lost else {}

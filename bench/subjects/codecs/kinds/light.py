@@ -34,9 +34,9 @@ def _lights(own: Own) -> Values:
     return Values(bright.astype(np.float32), rows(np.zeros(COUNT)))
 
 
-def _light_errors(values: Values, found: Tried) -> np.ndarray:
+def _light_errors(values: Values, trial: Tried) -> np.ndarray:
     """Return the errors of the colours, relative to the brightest channel or to 1/256, whichever is larger."""
-    return _light_apart(values.given, found.back[0])[:, :3].max(axis=1)
+    return _light_apart(values.given, trial.back[0])[:, :3].max(axis=1)
 
 
 def _light_apart(given: np.ndarray, back: np.ndarray) -> np.ndarray:
@@ -80,7 +80,8 @@ def _added(own: Own, gl: Device, held: Values) -> dict[str, Any]:
 
 
 def _light_encoding(own: Own) -> LightEncoding:
-    """In the format that the file's name says, or that its codes are for. Raises UsageError for one that it is not."""
+    """Return the encoding in the format that the file's name gives, or that its codes fit. Raises UsageError for an
+    unknown format, or a format with too few channels."""
     is_open = own.found.get("is_open", False)
     (kept,) = choose("format", [own.file.settings.format or FORMATS[is_open]], LIGHT_STORAGES)
     if kept.channels < own.made.components:

@@ -1,11 +1,11 @@
-"""A first look at a user's own code of something else than normals, in a process that may hang or die.
+"""A first look at a user's own encoding of anything except normals, in a process that may hang or die.
 
     python -m normalbench.bench.subjects.codecs.kinds.look KIND FILE
 
-Prints a line of JSON. `error`, what is wrong with the file, with `pairs`, the names of several; `missing`, what this
-machine lacks; `broken`, where the code is not finite or does not end. Else `functions`, its encoder and its decoder,
-`pair`, these where the file has several and one undoes itself, `error_max`, how far what was tried comes back off at
-most, `wrong`, `notes` and `measured`, lines, and what its kind finds: see `own.py`.
+Prints a line of JSON: `error`, what is wrong with the file, with `pairs`, the names of several pairs; `missing`, what
+this machine lacks; `broken`, a value for which the code is not finite or does not end. Otherwise `functions`, its
+encoder and its decoder, `pair`, the only one of several pairs that round-trips, `error_max`, the largest error of the
+values that were tried, `wrong`, `notes` and `measured`, lines, and the findings of its kind: see `own.py`.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def _undoes_itself(kind: OwnKind, file: UserFile) -> bool:
 
 
 def _look_at_one(kind: OwnKind, file: UserFile) -> dict[str, Any]:
-    """Look at a file of which one pair is meant. Raises SeveralEncodersError."""
+    """Return the findings on a file that has, or names, a single pair. Raises SeveralEncodersError."""
     try:
         gl, translation = device(), translated(file, kind=kind.kind)
         own = Own(file, translation, {})
@@ -91,8 +91,8 @@ def _endless(kind: OwnKind, own: Own, gl: Device) -> str:
     return ""
 
 
-def _said(kind: OwnKind, values: Values, at: int) -> str:
-    return kind.said(values.given[at], values.more[at])
+def _said(kind: OwnKind, values: Values, index: int) -> str:
+    return kind.said(values.given[index], values.more[index])
 
 
 def _judged(kind: OwnKind, own: Own, gl: Device) -> dict[str, Any]:
@@ -114,19 +114,19 @@ def _judged(kind: OwnKind, own: Own, gl: Device) -> dict[str, Any]:
     return {"error_max": float(errors[worst]), "wrong": wrong, "notes": notes, "measured": measured}
 
 
-def _reach(found: Tried, size: int) -> Iterator[str]:
+def _reach(trial: Tried, size: int) -> Iterator[str]:
     for number in range(size):
-        codes = found.codes[:, number]
+        codes = trial.codes[:, number]
         yield f"{codes.min():.4g} to {codes.max():.4g}"
 
 
-def _beyond(kind: OwnKind, own: Own, values: Values, found: Tried) -> Iterator[str]:
-    """The numbers of a code that lead beyond what storages hold, with the worst value."""
+def _beyond(kind: OwnKind, own: Own, values: Values, trial: Tried) -> Iterator[str]:
+    """Yield a line on each number of a code that exceeds the range of storages, with the worst value."""
     least = 0 if own.is_unit or not own.shape.has_sign else -1
     if own.found.get("is_open"):
         return
     for number in range(own.made.components):
-        codes = found.codes[:, number].astype(np.float64)
+        codes = trial.codes[:, number].astype(np.float64)
         off = np.maximum(codes - 1, least - codes)
         worst = int(np.argmax(off))
         if off[worst] > kind.rounded:

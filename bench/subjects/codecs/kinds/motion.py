@@ -32,8 +32,8 @@ def _motions(own: Own) -> Values:
     return Values(rows(*(np.concatenate([axes[:, i], (x, y)[i]]) * largest for i in (0, 1))), of_range(len(x) + 7))
 
 
-def _motion_errors(values: Values, found: Tried) -> np.ndarray:
-    return np.abs(found.back[0][:, :2].astype(np.float64) - values.given[:, :2]).max(axis=1)
+def _motion_errors(values: Values, trial: Tried) -> np.ndarray:
+    return np.abs(trial.back[0][:, :2].astype(np.float64) - values.given[:, :2]).max(axis=1)
 
 
 def _motion_facts(own: Own, gl: Device) -> dict[str, Any]:

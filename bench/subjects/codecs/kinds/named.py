@@ -1,4 +1,4 @@
-"""Codes of a kind as they are named on the command line: the catalogue's, and users' own files."""
+"""Encodings of a kind by their names on the command line: the catalogue's, and users' own files."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def own_codes_named(kind: Kind, names: Names, catalogue: Mapping[str, T], what: 
     named on standard error and left out.
 
     Args:
-        what: what the names are, for messages; by default the kind's encoding.
+        what: the word for the names in messages; by default the kind's encoding.
 
     Raises:
         UsageError: an unknown name, or nothing left.
@@ -59,7 +59,7 @@ def own_codes_named(kind: Kind, names: Names, catalogue: Mapping[str, T], what: 
 
 
 def light_codecs_named(names: Names) -> list[LightCodec]:
-    """Return the light buffers that names stand for, users' files among them: see `light_buffers_named`.
+    """Return the light buffers that names stand for, including users' files: see `light_buffers_named`.
 
     Raises: as own_codes_named.
     """
@@ -89,27 +89,27 @@ def said_of(own: Own) -> list[str]:
 
 
 def notes_of(own: Own) -> list[str]:
-    """Return what was guessed and found about a file, in sentences."""
+    """Return the guesses and findings about a file, in sentences."""
     findings = own.found
     guessed = [*([IN_32_BITS] if has_halves(own.made.text) else []), *([UNIT] if own.is_unit else [])]
     return [*own.made.notes, *findings.get("notes", []), *guessed, *findings.get("measured", [])]
 
 
-def kind_of(file: UserFile, said: str) -> OwnKind | None:
-    """Return the kind of a user's file that is not an encoding of normals: the first that fits, or what its functions'
-    names say; None if there is no such kind.
+def kind_of(file: UserFile, reason: str) -> OwnKind | None:
+    """Return the kind of a user's file that is not an encoding of normals: the first kind that fits, or the kind that
+    `reason` names; None if there is no such kind.
 
     Args:
-        said: why it is not an encoding of normals.
+        reason: why it is not an encoding of normals.
     """
     fitting = (kind for kind in OWN if _fits(file, kind))
-    spoken = (kind for kind in OWN if f"is of {kind.plural}, not of" in said)
+    spoken = (kind for kind in OWN if f"is of {kind.plural}, not of" in reason)
     kind = next(fitting, None) or next(spoken, None)
     return OWN[kind] if kind else None
 
 
 def kind_by_names(file: UserFile) -> Kind | None:
-    """The one kind that the names of a file's encoders and decoders speak of, if it has a pair of it; else None."""
+    """Return the only kind that a file's function names give, if the file has a pair of that kind; else None."""
     try:
         text = file.path.read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -134,7 +134,7 @@ def _fits(file: UserFile, kind: Kind) -> bool:
 
 
 def own_code(kind: Kind, file: UserFile) -> Own:
-    """A user's own code of a kind, after a first look in a process of its own.
+    """Return a user's own encoding of a kind, after a first look in a separate process.
 
     Raises:
         UsageError: it cannot be translated or measured.

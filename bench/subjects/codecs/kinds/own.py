@@ -1,7 +1,7 @@
-"""A user's own code of a kind: what it is read as, and what a kind says of how it is tried and becomes an encoding.
+"""A user's own encoding of a kind: how it is read, how its kind tries it, and how it becomes an encoding.
 
-A kind is a module next to this one, and a line of `table.py`; what its functions take and give stands in
-`languages/shapes.py`.
+A kind is a module next to this one, and a line of `table.py`; `languages/shapes.py` defines the inputs and outputs of
+its functions.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ ROUNDED = 2e-5
 
 @dataclass(frozen=True)
 class Own:
-    """A user's own code, read.
+    """A user's own encoding, as it is read.
 
     Attributes:
-        file: with the names of its functions where they are needed.
+        file: the file, with the names of its functions if they are needed.
         made: its translation.
-        found: what the first look found of it: see `look.py`.
+        found: the findings of the first look: see `look.py`.
     """
 
     file: UserFile
@@ -51,7 +51,7 @@ class Own:
 
     @property
     def settings(self) -> Sequence[str]:
-        """The further inputs of its functions."""
+        """The names of the other inputs of its functions."""
         return self.made.shaped["settings"]
 
     @property
@@ -87,8 +87,8 @@ class Own:
 
 @dataclass(frozen=True)
 class Values:
-    """Inputs that functions are tried with: `given` for an adapter, and `more`, of which it takes three numbers;
-    float32 of shape (count, 4)."""
+    """Inputs to try functions with: `given` for an adapter, and `more`, of which it takes three numbers; float32 of
+    shape (count, 4)."""
 
     given: np.ndarray
     more: np.ndarray
@@ -101,8 +101,7 @@ class OwnKind:
     Attributes:
         kind: the kind in the catalogue.
         values: the values that an encoding is tried with.
-        errors: from what was given and what came back, as adapters have it, to the errors; float64 of shape
-            (count,).
+        errors: (values, results of the adapters) -> the errors; float64 of shape (count,).
         unit: the unit of the errors.
         nearly: the largest error of an encoding that round-trips, before any storage.
         exactly: by name, a value that should round-trip exactly.
@@ -110,7 +109,7 @@ class OwnKind:
         facts: other findings of the first look; `wrong` and `notes` are lines, `is_open` means that codes are
             unbounded.
         said: a value in words.
-        rounded: how far a number may exceed what a storage holds.
+        rounded: how far a number may exceed the range of storages.
     """
 
     kind: Kind
@@ -142,13 +141,13 @@ def numbers(given: np.ndarray, _: np.ndarray) -> str:
 
 
 def number(given: np.ndarray, _: np.ndarray) -> str:
-    """And the first number alone."""
+    """Return the first number of a value as text, four digits."""
     return f"{given[0]:.4g}"
 
 
-def one_number_errors(values: Values, found: Tried) -> np.ndarray:
+def one_number_errors(values: Values, trial: Tried) -> np.ndarray:
     """Return the errors of one number."""
-    return np.abs(found.back[0][:, 0].astype(np.float64) - values.given[:, 0])
+    return np.abs(trial.back[0][:, 0].astype(np.float64) - values.given[:, 0])
 
 
 def longest(ascending: np.ndarray, is_in: np.ndarray) -> tuple[float, float] | None:

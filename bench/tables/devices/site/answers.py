@@ -70,7 +70,7 @@ def answers(rows: Sequence[Row], known: Known) -> Iterator[Sheet]:
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault(tuple(row[name] for name in QUESTION), []).append(row)
-    for question in sorted(groups, key=lambda one: (_bytes_per_texel(one[0]), one)):
+    for question in sorted(groups, key=lambda group: (_bytes_per_texel(group[0]), group)):
         yield _sheet(question, answered([_pick_row(row, known) for row in groups[question]]))
 
 

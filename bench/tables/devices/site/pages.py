@@ -55,7 +55,7 @@ INDEXED = {
 
 @dataclass(frozen=True)
 class Entry:
-    """A device with what its section shows."""
+    """A device and the contents of its section."""
 
     device: Device
     key: str
@@ -123,7 +123,7 @@ def _index(entries: Sequence[Entry], site: Site) -> Index:
         description="Which GPUs and browsers store the same codes of normals as the run, and which encoding to use "
         "on each.",
         question="Which devices store the same codes?",
-        said=sentences(rows) if rows else ("No device has been added yet.",),
+        said=sentences(rows) if rows else ("There are no devices yet.",),
         label="Search by device, codec or storage",
         searched=[_device_list(entries), _codec_list(rows), _taken_list(entries)] if entries else [],
         devices=[_device_section(entry) for entry in entries],

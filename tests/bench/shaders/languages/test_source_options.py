@@ -1,4 +1,4 @@
-"""How users' files are read: macros, preludes, folders of includes and languages, as a part of their names."""
+"""Settings for reading users' files, given after the file name: macros, preludes, include folders and languages."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ def mine(tmp_path):
 @pytest.mark.parametrize(
     "word", ["mine.hlsl", "mine.hlsl:A:B", "a+b/mine.hlsl.h:A::B:C", "my,file.hlsl", "mine.hlsl:Foo", "octahedral"]
 )
-def test_settings_stand_behind_a_files_name(word):
+def test_settings_follow_the_file_name(word):
     more = word_with(word, define="A=1,B", prelude="pre.hlsl", include="x,Packages=../y", language="slang")
     if "Foo" in word or word == "octahedral":
         assert more == word
@@ -44,7 +44,7 @@ def test_settings_stand_behind_a_files_name(word):
     assert word_with(more, define="B,A=1") == more
 
 
-def test_names_of_the_catalogue_are_as_they_were():
+def test_define_applies_only_to_users_files():
     options = QualityOptions(encoding="octahedral,mine.hlsl", define="A=1")
     assert options.encoding == ("octahedral", "mine.hlsl:define=A=1")
     with pytest.raises(UsageError, match="--define applies only to your own shader files"):
@@ -60,10 +60,12 @@ def test_names_of_the_catalogue_are_as_they_were():
         ({"language": "metal"}, "must be one of hlsl, slang, wgsl, glsl"),
         ({"prelude": "gone.hlsl"}, "gone.hlsl: there is no such file"),
         ({"prelude": "\0.hlsl"}, "not a valid value"),
+        ({"include": "gone"}, "--include gone: no such folder; name the folder that holds the included files"),
+        ({"include": "Packages=gone"}, "--include gone: no such folder"),
         ({"prelude": "/etc/hostname"}, "must end like a shader's"),
     ],
 )
-def test_what_cannot_be_is_said(mine, settings, why):
+def test_invalid_setting_is_an_error(mine, settings, why):
     with pytest.raises(UsageError, match=why):
         Source(word_with(str(mine), **settings))
 
@@ -73,7 +75,7 @@ def test_what_cannot_be_is_said(mine, settings, why):
     [("lib/part.hlsl", ""), ("Packages/lib/part.hlsl", "Packages="), ("/Engine/lib/part.hlsl", "/Engine=")],
 )
 def test_includes_are_read_from_the_folders_that_are_given(tmp_path, mine, name, root):
-    """Angle brackets likewise; and from nowhere else."""
+    """Angle brackets work the same way; no other folder is read."""
     library = tmp_path / "library" / "lib"
     library.mkdir(parents=True)
     (library / "part.hlsl").write_text('#include "next.hlsl"\n#include "../../secret.hlsl"\n#include "notes.txt"\n')
@@ -92,7 +94,7 @@ def test_includes_are_read_from_the_folders_that_are_given(tmp_path, mine, name,
 
 
 @pytest.mark.usefixtures("slang")
-def test_a_file_is_read_in_the_language_that_is_said(tmp_path):
+def test_file_is_read_in_the_given_language(tmp_path):
     path = tmp_path / "mine.h"
     path.write_text("func PackDir(n : float3) -> float2 { return n.xy; }\n" + PAIR.split("\n")[1])
     assert translated(word_with(str(path), language="slang")).components == 2
@@ -104,22 +106,22 @@ def test_files_that_are_named_are_found(tmp_path, mine):
     assert files_in(word) == [str(mine), str(tmp_path / "pre.hlsl"), str(tmp_path)]
 
 
-def test_gates_name_files_and_folders_from_where_they_lie(tmp_path, mine):
+def test_gates_resolve_files_and_folders_relative_to_their_own_folder(tmp_path, mine):
     (mine.parent / "pre.hlsl").touch()
     options = {"encoding": "mine.hlsl", "prelude": "pre.hlsl", "include": ("Packages=library", str(tmp_path))}
-    found = located(TABLES["quality"], options, mine.parent)
+    resolved = located(TABLES["quality"], options, mine.parent)
     assert {
-        name: {Path(word.removeprefix("Packages=")).resolve() for word in words} for name, words in found.items()
+        name: {Path(word.removeprefix("Packages=")).resolve() for word in words} for name, words in resolved.items()
     } == {
         "encoding": {mine},
         "prelude": {mine.parent / "pre.hlsl"},
         "include": {mine.parent / "library", tmp_path},
     }
-    assert found["include"][0].startswith("Packages=")
+    assert resolved["include"][0].startswith("Packages=")
 
 
 def test_a_path_of_windows_has_a_drive():
-    """A colon in front of a slash ends no word."""
+    """A colon before a slash does not end a word."""
     word = r"C:\shaders\mine.hlsl:Pack:Unpack:include=C:\library:define=ROUND=1"
     settings = UserFile(word).settings
     assert (str(UserFile(word).path), UserFile(word).functions) == (r"C:\shaders\mine.hlsl", ("Pack", "Unpack"))
