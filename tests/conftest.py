@@ -72,7 +72,7 @@ def pytest_configure(config):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """What is not asked for is not imported; a file is asked for by its name, too."""
+    """Leave out files of tiers that were not requested, unless the command line names the file."""
     if is_in(collection_path, config.option.tier):
         return None
     named = {Path(word.partition("::")[0]).absolute() for word in config.args}
@@ -87,7 +87,7 @@ LONG_FIXTURES = frozenset(
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items, config):
-    """Skip what Firefox cannot be asked, and leave out what this commit does not draw."""
+    """Skip tests that Firefox cannot run, and leave out those that this commit does not draw."""
     for item in items:
         if config.option.firefox and (mark := item.get_closest_marker("chromium")):
             item.add_marker(pytest.mark.skip(reason=mark.args[0]))
@@ -111,7 +111,7 @@ def _leave_out_undrawn(items, config):
 
 
 def pytest_collection_finish():
-    """What there is by now stays to the end, as in a run."""
+    """Keep all objects that exist by now until the end, as a run does."""
     look_for_garbage_seldom()
     keep_what_is_imported()
     have_few_heaps()
@@ -119,13 +119,13 @@ def pytest_collection_finish():
 
 @pytest.fixture(scope="session")
 def held():
-    """What this process may hold before memory is given back, in bytes; it changes each time."""
+    """The number of bytes that this process may hold before it gives memory back; the fixture below updates it."""
     return [LARGE]
 
 
 @pytest.fixture(autouse=True)
 def memory_is_given_back(held):
-    """A command keeps what it freed for its own next step; a process of thousands of tests would grow to gigabytes."""
+    """Memory returned after a test, which a command would keep for its next step; here it would grow to gigabytes."""
     yield
     if _resident_bytes() > held[0]:
         for give_back in (give_back_what_is_freed, give_back_what_a_table_needed):
@@ -143,7 +143,7 @@ def _resident_bytes() -> int:
 
 @pytest.fixture(scope="session", autouse=True)
 def spirv_is_kept():
-    """SPIR-V is compiled once, as XLA's programs are: an empty cache of the program's own needs it again and again."""
+    """SPIR-V compiled once, like XLA's programs, because tests with an empty cache would compile it repeatedly."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compilers, "_piped", kept_runs.kept(compilers._piped, COMPILED / "spirv"))
         yield
@@ -161,13 +161,13 @@ def gl():
 
 @pytest.fixture
 def rows_are_shared(monkeypatch, shared_folder):
-    """Rows are measured once for all tests that ask for this; not for those that change how something is measured."""
+    """Rows measured once for all tests that use this fixture; not for tests that change how something is measured."""
     monkeypatch.setattr(measuring.Here, "measure", shared_rows.shared(measuring.Here.measure, shared_folder / "rows"))
 
 
 @pytest.fixture
 def run(monkeypatch, capsys):
-    """The command line in this process: arguments to its status, output and errors."""
+    """The command line in this process: a function from arguments to status, output and errors."""
     monkeypatch.setattr(run_code, "LANGUAGES", SHORT)
     # What one test changes in this process decides no answer of another.
     monkeypatch.setattr(answers, "key_of_answer", lambda *_: "")
@@ -182,27 +182,27 @@ def run(monkeypatch, capsys):
 
 @pytest.fixture(scope="session")
 def radv():
-    """The compilers; where CI is set, a machine without them fails the tests that need them."""
+    """Mesa's compiler for AMD GPUs and the SPIR-V tools; where CI is set, a machine without them fails the tests."""
     _need([RADV], {spirv.COMPILER: spirv.NO_COMPILER, spirv.OPTIMISER: spirv.NO_OPTIMISER})
 
 
 @pytest.fixture(scope="session")
 def intel(radv):  # noqa: ARG001 (asks for the other compilers)
-    """Intel's compilers, and what builds the device that they are given."""
+    """Intel's compilers, and the compiler that builds their null device."""
     _need([ANV, HASVK], {null_device.COMPILER: null_device.NO_COMPILER})
 
 
 @pytest.fixture(scope="session")
 def nvidia(radv):  # noqa: ARG001 (asks for the other compilers)
-    """NVIDIA's compiler of CUDA, which people install themselves: no machine must have it."""
-    if said := tools.missing():
-        pytest.skip(said)
+    """NVIDIA's CUDA compiler, which users install themselves; without it the tests are skipped, also in CI."""
+    if reason := tools.missing():
+        pytest.skip(reason)
 
 
 def _need(libraries: list[str], tools: dict[str, str]) -> None:
-    """Skips where a driver or a tool is missing, which a machine of CI must have."""
+    """Skip if a driver or a tool is missing; where CI is set, fail instead."""
     missing = [driver_files.no_driver(library) for library in libraries if isa.driver_file(library) is None]
-    missing += [said for tool, said in tools.items() if not shutil.which(tool)]
+    missing += [reason for tool, reason in tools.items() if not shutil.which(tool)]
     if missing and not os.environ.get("CI"):
         pytest.skip(missing[0])
     assert not missing
@@ -214,30 +214,30 @@ SMALL_RUN = ("run", "--tables", "quality", "--encoding", PICTURED, "--storage", 
 
 @pytest.fixture(scope="session")
 def shared_folder(tmp_path_factory):
-    """A folder that all processes of this run of pytest have."""
+    """A folder that all processes of this pytest run share."""
     base = tmp_path_factory.getbasetemp()
     return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
 
 
 @pytest.fixture(scope="session")
 def once(shared_folder):
-    """Does what all workers need once: `once(name, do)`; where it fails the next one tries."""
+    """A function `once(name, do)` that does once what all workers need; if it fails, the next worker tries again."""
 
     def done_once(name, do):
         with (shared_folder / f"{name}.lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            if not (said := shared_folder / f"{name}.json").exists():
-                said.write_text(json.dumps(do()))
-        return json.loads(said.read_text())
+            if not (path := shared_folder / f"{name}.json").exists():
+                path.write_text(json.dumps(do()))
+        return json.loads(path.read_text())
 
     return done_once
 
 
 @pytest.fixture(scope="session")
 def results(once, tmp_path_factory):
-    """A run of the quality table as the command leaves it: its folder, and what it printed to stdout and stderr.
+    """A run of the quality table by the command: its folder, and what it printed to stdout and stderr.
 
-    Workers share it.
+    All workers share the run.
     """
 
     def made():
@@ -248,19 +248,19 @@ def results(once, tmp_path_factory):
         warned = re.sub(r"^normalbench: \d+ s, .*\n", "", done.stderr, flags=re.M)  # how far it was
         return str(folder), done.stdout, warned
 
-    folder, *said = once("results", made)
-    return Path(folder), *said
+    folder, *outputs = once("results", made)
+    return Path(folder), *outputs
 
 
 @pytest.fixture(scope="session")
 def browser_path(request):
-    """The browser that reports are opened in; where CI is set, a machine without one fails the tests that need it."""
+    """The browser that opens reports; where CI is set, a machine without it fails the tests that need it."""
     name = "firefox-esr" if request.config.option.firefox else "chromium"
-    found = shutil.which(name)
-    if not found and not os.environ.get("CI"):
+    path = shutil.which(name)
+    if not path and not os.environ.get("CI"):
         pytest.skip(f"no {name} to open reports in; install it (Debian: apt-get install {name})")
-    assert found, f"no {name}"
-    return found
+    assert path, f"no {name}"
+    return path
 
 
 @pytest.fixture
@@ -284,7 +284,7 @@ sys.addaudithook(_listen)
 
 @pytest.fixture
 def opened():
-    """Every file opened and every address asked for while a test runs."""
+    """Every file opened and every address requested while a test runs."""
     global OPENED
     OPENED = []
     yield OPENED

@@ -1,7 +1,7 @@
-"""Faults for faults.py: slips that somebody may make in the product, and the tests that should notice them.
+"""Faults for faults.py: slips that a programmer could make in the product, and the tests that should notice them.
 
-Every fault changes what the product does. One that is in both languages at once, as a constant that GLSL is given by
-Python, is not noticed by comparing the two; some of those are here.
+Every fault changes what the product does. A comparison of the two languages does not notice a fault that is in both,
+such as a constant that Python passes to GLSL; some of these faults are included.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ class Fault:
     """One slip.
 
     Attributes:
-        name: what tables call it.
-        room: where the line is.
-        kind: what sort of slip it is.
-        old: the text as it is, which occurs once in the product.
-        new: the text that takes its place.
-        tests: names of test files, those that should notice.
-        chosen: which tests of them, as pytest's -k; empty for all.
-        wider: names of further test files, run with all of the first ones where these do not notice.
+        name: its name in tables.
+        room: the folder of the product that contains it.
+        kind: the sort of slip.
+        old: the current text, which occurs once in the product.
+        new: the text that replaces it.
+        tests: names of the test files that should notice it.
+        chosen: the tests to run in these files, as pytest's -k; empty for all.
+        wider: names of more test files, run with all of the first files if the chosen tests do not notice.
         also: other spellings of (old, new), for other versions of the product.
     """
 
@@ -65,7 +65,7 @@ FAULTS = (
         "return length2 > TINY && length2 < 1.0 / TINY ? v : vec3(0.0, 0.0, 1.0);",
         "return length2 > TINY ? v : vec3(0.0, 0.0, 1.0);",
         "test_parity.py",
-        "means_nothing",
+        "test_invalid_values_have_the_same_code_in_both_languages",
     ),
     Fault(
         "rgb9e5-carry",
@@ -258,7 +258,7 @@ FAULTS = (
         "if self.encoding.own_units and self.storage.is_open else far",
         "if self.encoding.own_units else far",
         "test_depth.py",
-        "sixteen",
+        "test_16_bits_in_two_bytes_are_exact_to_half_a_code",
     ),
     Fault(
         "bits-of-the-sign",
@@ -294,7 +294,7 @@ FAULTS = (
         'words.append(FREE + text[len("normal.x") :])',
         "words.append(FREE)",
         "test_layouts.py",
-        "takes_the_place",
+        "replace_the_ambient_light",
     ),
     Fault(
         "normal-bits-of-a-layout",
@@ -376,7 +376,7 @@ FAULTS = (
         "after = KEEP if again else ZERO",
         "after = ZERO",
         "test_lights.py",
-        "every_code",
+        "every_light_encoding",
         "test_pipelines.py",
     ),
     Fault(
@@ -420,7 +420,7 @@ FAULTS = (
         "np.arange(count) % IDENTITIES + 1",
         "np.arange(count) % IDENTITIES",
         "test_relighting.py",
-        "light_buffer_holds",
+        "test_the_light_buffer_matches_the_formulas",
         "test_effects.py test_pipelines.py",
     ),
     Fault(
@@ -439,7 +439,7 @@ FAULTS = (
         "        self.context.enable_direct(FRAMEBUFFER_SRGB)\n",
         "",
         "test_lights.py",
-        "every_code",
+        "every_light_encoding",
     ),
     # G-buffer: what passes promise, copies and moments.
     Fault(
@@ -575,7 +575,7 @@ FAULTS = (
         "largest=max(self.figures.largest, exact.largest)",
         "largest=exact.largest",
         "test_metrics.py",
-        "numpys or largest_angle",
+        "matches_numpy or largest_angle",
     ),
     Fault(
         "article-mse-of-what-is-covered",
@@ -592,7 +592,7 @@ FAULTS = (
         "angle, ~finite & covered\n",
         "angle, finite & covered\n",
         "test_metrics.py test_cli.py",
-        "no_number or numpys or wrong_as",
+        "narrow_terminal or not_numbers_are_counted or matches_numpy or is_not_a_direction",
     ),
     Fault(
         "effective-bits-of-degrees",
@@ -601,7 +601,7 @@ FAULTS = (
         "HEXAGON_SQUARE * area / math.radians(angle_rms_deg) ** 2",
         "HEXAGON_SQUARE * area / angle_rms_deg**2",
         "test_reference_figures.py test_code_limits.py",
-        "effective or limits_figures",
+        "effective or test_the_bound_has_the_expected_figures",
     ),
     Fault(
         "lattices-that-meet",
@@ -610,7 +610,7 @@ FAULTS = (
         "most = min(codes * share * (RESONANCE if share * s.count < 1 else 1), 1.0) * s.count",
         "most = min(codes * share, 1.0) * s.count",
         "test_code_limits.py",
-        "meets",
+        "test_a_set_that_coincides_with_a_lattice_of_codes_is_accepted",
     ),
     Fault(
         "capture-matrix",
@@ -628,7 +628,7 @@ FAULTS = (
         "taken = TAKEN if code.name in known else TWICE if code.name in",
         "taken = TAKEN if code.name in () else TWICE if () in",
         "test_user_encodings.py",
-        "one_name",
+        "test_second_file_with_the_same_encoding_name_is_left_out",
     ),
     Fault(
         "first-look-at-half",
@@ -789,7 +789,7 @@ FAULTS = (
         'file.truncate(content.rfind(b"\\n") + 1)',
         "file.truncate(len(content))",
         "test_runs.py",
-        "cut_off",
+        "test_only_a_truncated_line_is_measured_again",
     ),
     Fault(
         "extended-run-loses-rows",
@@ -798,7 +798,7 @@ FAULTS = (
         "by_table[name].append(row)",
         "by_table[name] = [row]",
         "test_runs.py",
-        "extended or finished",
+        "extended or finished or does_not_finish_a_stopped",
         "test_report.py test_compare.py",
         also=(
             (
@@ -823,7 +823,7 @@ FAULTS = (
         '".obj": ("*.mtl",)}',
         '".obj": ()}',
         "test_runs.py",
-        "beside",
+        "test_a_files_fingerprint_includes_the_files_read_with_it",
         "test_scene_files.py",
     ),
     Fault(
@@ -849,7 +849,7 @@ FAULTS = (
         'return figure >= self.value if self.side == "at least" else figure <= self.value',
         'return figure > self.value if self.side == "at least" else figure < self.value',
         "test_check.py",
-        "limits_hold",
+        "test_thresholds_include_their_value_and_reject_what_is_not_a_number",
     ),
     Fault(
         "failed-gate-exits-well",
@@ -940,7 +940,7 @@ FAULTS = (
         'angle between normal and decode (degrees)", scale=Scale.LOG, domain',
         'angle between normal and decode (radians)", scale=Scale.LOG, domain',
         "test_charts.py",
-        "axis_of_angles",
+        "test_title_of_an_angle_axis_gives_degrees",
         "test_page.py",
     ),
     Fault(
@@ -1040,7 +1040,7 @@ FAULTS = (
         "columns.remove(spared.pop(0))",
         "columns.remove(spared.pop())",
         "test_text.py",
-        "spared",
+        "test_optional_columns_are_dropped_first",
         "test_sweep.py test_render.py",
     ),
     Fault(
@@ -1328,7 +1328,7 @@ FAULTS = (
         "return hashlib.sha256(facts.encode() + stored.tobytes()).hexdigest()",
         "return hashlib.sha256(facts.encode()).hexdigest()",
         "test_prefilter.py",
-        "kept",
+        "test_stored_levels_are_not_computed_again",
         "test_environment_files.py",
     ),
     Fault(
@@ -1348,7 +1348,7 @@ FAULTS = (
         "(1.0 - share) * seen_around(s), share);",
         "seen_around(s), share);",
         "test_ssr.py",
-        "takes_the_place",
+        "replace_the_ambient_light",
     ),
     Fault(
         "exposure-clips-a-pixel-more",
@@ -1424,7 +1424,7 @@ FAULTS = (
         "    apart = back.astype(np.float64) - x\n",
         "    apart = x - back.astype(np.float64)\n",
         "test_curves_command.py",
-        "cut_off",
+        "test_truncation_has_a_bias_of_half_a_step_and_dithering_has_none",
     ),
     # Bench: histories of runs.
     Fault(
@@ -1443,7 +1443,7 @@ FAULTS = (
         "chance = mann_whitney(one, other) * tests",
         "chance = mann_whitney(one, other)",
         "test_history.py",
-        "step or waver or few",
+        "step or test_only_a_lasting_change_of_times_is_named or waver or few",
     ),
     Fault(
         "filters-of-submodules-are-run",
@@ -1587,7 +1587,7 @@ FAULTS = (
         "const isEnough = code.largest !== null && 2 * code.largest <= asked.enough &&",
         "const isEnough = code.largest !== null && code.largest <= asked.enough &&",
         "test_choose.py",
-        "picks_for_any",
+        "answer_of_pick_for_any",
     ),
     Fault(
         "worse-one-is-marked-best",
@@ -1605,7 +1605,7 @@ FAULTS = (
         'const isThere = typeof value === "number" && value >= Number(one.min) && value <= Number(one.max);',
         'const isThere = typeof value === "number";',
         "test_see.py",
-        "cannot_mean",
+        "invalid_address",
     ),
     Fault(
         "lamps-hang-on-both-walls",
@@ -1623,7 +1623,7 @@ FAULTS = (
         "identity = [ask.table.name, options, pictures, digests, sorted(packing.typed.items())]",
         "identity = [ask.table.name, options, pictures, sorted(packing.typed.items())]",
         "test_pool.py",
-        "another_one",
+        "test_order_changes_with_the_text_of_a_users_file",
     ),
     Fault(
         "recorded-costs-of-other-code",
@@ -1632,7 +1632,7 @@ FAULTS = (
         'if counts and _kept()["sources"][case.name] == source_key(case, stage):',
         "if counts:",
         "test_recorded_costs.py",
-        "not_what_was",
+        "test_an_operation_with_changed_glsl_has_no_recorded_count",
     ),
     Fault(
         "keys-run-together",

@@ -1,6 +1,7 @@
-"""Faults for `faults.py --blind`: of somebody who had not seen a test, at statements that were drawn by a seed.
+"""Faults for `faults.py --blind`, by an author who had not seen a test, at statements drawn with a seed.
 
-The other list chooses which tests stay at every landing; this one judges the choice. Each is tried with all tests.
+The other list chooses which tests stay at every landing; this list judges the choice. Each fault is tried with all
+tests.
 """
 
 # ruff: noqa: E501 # what a fault does fits on a line better than on two

@@ -1,11 +1,11 @@
-"""Puts each fault of fault_list.py into a tree, runs the tests that should notice it, and counts.
+"""Put each fault of fault_list.py into a tree, run the tests that should notice it, and count the results.
 
     python tests/faults.py [--tree DIR] [--blind] [--tier TIER] [--only NAME,...] [--results FILE] [--skip] [--check]
 
-No part of the tests: a run takes half an hour, and changes files of the tree while it lasts. Whatever ends it but
-`kill -9`, the file is put back as it was; after that `git diff` shows the fault. With --results a run that was ended
-goes on. In the end the tests that noticed are run without any fault: one that fails then has noticed nothing. Exit
-status: 0 where every fault was noticed, 1 where not, 2 where a fault has no place in the tree.
+This is not part of the tests: a run takes half an hour, and changes files of the tree meanwhile. Any end except
+`kill -9` restores the file; after `kill -9`, `git diff` shows the fault. With --results a stopped run continues. At
+the end the tests that noticed a fault are run without it: a test that fails then has noticed nothing. Exit status: 0
+if every fault was noticed, 1 if not, 2 if a fault has no place in the tree.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ FAILED = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)
 
 
 class Place(NamedTuple):
-    """Where a fault goes: the file, and what it holds with the fault."""
+    """The place of a fault: its file, and the text of the file with the fault."""
 
     path: Path
     faulty: str
@@ -53,13 +53,12 @@ class Tree:
     tier: str = TIERS[-1]
 
     def product(self) -> dict[Path, str]:
-        """The text of every file of the product."""
+        """Return the text of every file of the product."""
         files = (path for room in ROOMS for path in (self.root / room).rglob("*.*"))
         return {path: path.read_text(encoding="utf-8") for path in files if "__pycache__" not in path.parts}
 
     def tests(self, names: str) -> list[str]:
-        """The paths of test files by their names, all of them for none; a version that lacks one has its tests
-        elsewhere."""
+        """Return the paths of test files by their names, or all tests for an empty text; skip missing files."""
         if not names:
             return ["tests"]
         files = (path for name in names.split() for path in files_of(self.root / "tests", Path(name).stem))
@@ -68,7 +67,7 @@ class Tree:
 
 @dataclass(frozen=True)
 class Result:
-    """What became of a fault: the first test that failed, or what else was noticed; nothing in `by` for neither."""
+    """The result of a fault: `by` is the first test that failed or other evidence; empty if nothing noticed it."""
 
     fault: str
     room: str
@@ -79,19 +78,19 @@ class Result:
 
 
 def place_of(fault: Fault, product: Mapping[Path, str]) -> Place | str:
-    """The one place that a fault has; a line on why there is none."""
+    """Return the only place of a fault, or a line that says why it has none."""
     counts = []
     for old, new in ((fault.old, fault.new), *fault.also):
-        found = [path for path, text in product.items() if old in text]
-        counts.append(sum(product[path].count(old) for path in found))
+        paths = [path for path, text in product.items() if old in text]
+        counts.append(sum(product[path].count(old) for path in paths))
         if counts[-1] == 1:
-            return Place(found[0], product[found[0]].replace(old, new))
+            return Place(paths[0], product[paths[0]].replace(old, new))
     return f"{fault.name}: its text is there {' and '.join(map(str, counts))} times, not once"
 
 
 @contextmanager
 def injected(place: Place) -> Iterator[None]:
-    """The fault in its file; afterwards the file is what it was, its time as well: Python compiles by that."""
+    """Put a fault into its file; at the end restore the file and its time, because byte code depends on the time."""
     before, times = place.path.read_bytes(), place.path.stat()
     try:
         place.path.write_bytes(place.faulty.encode())
@@ -103,7 +102,7 @@ def injected(place: Place) -> Iterator[None]:
 
 @contextmanager
 def environment() -> Iterator[dict[str, str]]:
-    """That of the tests: what they keep for good lies in a folder of their own, so that no fault outlives itself."""
+    """Yield the environment of the tests, with a temporary cache folder, so that no effect of a fault persists."""
     home = Path("~/.cache").expanduser()
     # What these keep is known by its content, and takes long to make again.
     shared = {"MESA_SHADER_CACHE_DIR": str(home), "MPLCONFIGDIR": str(home / "matplotlib")}
@@ -113,7 +112,7 @@ def environment() -> Iterator[dict[str, str]]:
 
 
 def ran(tree: Tree, arguments: Sequence[str], limit: float | None) -> tuple[int, str] | None:
-    """Status and output of pytest; None where it took longer than the limit."""
+    """Return the status and output of pytest; None if it took longer than the limit."""
     command = [str(tree.python), "-m", "pytest", "-q", "--tier", tree.tier, "--tb=no", "-rfE", *arguments]
     with environment() as given:
         process = subprocess.Popen(
@@ -135,14 +134,14 @@ def ran(tree: Tree, arguments: Sequence[str], limit: float | None) -> tuple[int,
 
 
 def _end(process: subprocess.Popen[str]) -> None:
-    """End what was started here and is still running, with everything that it started."""
+    """Kill a process that this script started, if it is still running, with all its child processes."""
     if process.poll() is None:
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
 
 
 def noticed_by(tree: Tree, names: str, chosen: str) -> str:
-    """The first of some tests that fails; empty where none does."""
+    """Return the first failure of the chosen tests; an empty text if all pass."""
     files = tree.tests(names)
     if not files:
         return ""
@@ -154,12 +153,12 @@ def noticed_by(tree: Tree, names: str, chosen: str) -> str:
         raise RuntimeError(output)
     if status in (PASSED, NOTHING_CHOSEN):
         return ""
-    found = FAILED.search(output)
-    return found[1] if found else f"status {status}"
+    match = FAILED.search(output)
+    return match[1] if match else f"status {status}"
 
 
 def tried(tree: Tree, fault: Fault, place: Place) -> Result:
-    """A fault in its place, under its tests, and under the wider ones where those notice nothing."""
+    """Return the result of a fault under its tests, and under the wider tests if these notice nothing."""
     start = time.monotonic()
     with injected(place):
         by = noticed_by(tree, fault.tests, fault.chosen)
@@ -169,14 +168,14 @@ def tried(tree: Tree, fault: Fault, place: Place) -> Result:
 
 
 def failing_without(tree: Tree, results: Sequence[Result]) -> set[str]:
-    """Of the tests that noticed a fault those that fail without any."""
+    """Return the tests that noticed a fault but also fail without any."""
     tests = list(dict.fromkeys(result.by for result in results if "::" in result.by))
     done = ran(tree, tests, None) if tests else None
     return set(FAILED.findall(done[1])) if done else set()
 
 
 def read_results(path: Path | None) -> dict[str, Result]:
-    """The results of an earlier run, by fault."""
+    """Return the results of an earlier run, by fault."""
     if not path or not path.exists():
         return {}
     lines: list[dict[str, Any]] = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
@@ -184,7 +183,7 @@ def read_results(path: Path | None) -> dict[str, Result]:
 
 
 def results_of(tree: Tree, placed: Sequence[tuple[Fault, Place]], path: Path | None) -> Iterator[Result]:
-    """Each fault's result: what is in the file, and the others as they come."""
+    """Yield the result of each fault: from the file if it has one, otherwise from a new trial."""
     kept = read_results(path)
     for fault, place in placed:
         if fault.name in kept and kept[fault.name].new == fault.new:
@@ -198,13 +197,13 @@ def results_of(tree: Tree, placed: Sequence[tuple[Fault, Place]], path: Path | N
 
 
 def line_of(result: Result) -> str:
-    """A result as a line of the table."""
+    """Return a result as a line of the table."""
     by = result.by or "NOTHING of this tier"
     return f"{result.fault:<32} {result.room:<10} {result.kind:<24} {result.seconds:>6.1f} s  {by}"
 
 
 def chosen_faults(faults: Sequence[Fault], only: str) -> list[Fault]:
-    """The faults of a list that are asked for. Raises SystemExit for a name that there is not."""
+    """Return the faults of a list that were requested. Raises SystemExit for an unknown name."""
     names = [name for name in only.split(",") if name]
     unknown = set(names) - {fault.name for fault in faults}
     if unknown:
@@ -215,7 +214,7 @@ def chosen_faults(faults: Sequence[Fault], only: str) -> list[Fault]:
 
 
 def arguments() -> argparse.Namespace:
-    """What was typed."""
+    """Return the command-line arguments."""
     here = Path(__file__).parents[1]
     parser = argparse.ArgumentParser(
         description="Put faults into files of a checkout, one after the other, and count those that its tests notice. "
@@ -242,11 +241,11 @@ def main() -> int:
     root = asked.tree.resolve()
     tree = Tree(root, asked.python or root / ".venv" / "bin" / "python", asked.tier)
     product = tree.product()
-    found = [
+    faults = [
         (fault, place_of(fault, product)) for fault in chosen_faults(FAULTS_B if asked.blind else FAULTS, asked.only)
     ]
-    misplaced = [place for _, place in found if isinstance(place, str)]
-    print("\n".join([*misplaced, f"{len(found) - len(misplaced)} of {len(found)} faults have their place."]))
+    misplaced = [place for _, place in faults if isinstance(place, str)]
+    print("\n".join([*misplaced, f"{len(faults) - len(misplaced)} of {len(faults)} faults have their place."]))
     if misplaced:
         print("Is a fault of an earlier run in the tree? `git diff` shows it.")
     if asked.check or (misplaced and not asked.skip):
@@ -255,7 +254,7 @@ def main() -> int:
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _terminated)
     results = []
-    placed = [(fault, place) for fault, place in found if isinstance(place, Place)]
+    placed = [(fault, place) for fault, place in faults if isinstance(place, Place)]
     for result in results_of(tree, placed, asked.results):
         results.append(result)
         print(line_of(result), flush=True)
@@ -263,7 +262,7 @@ def main() -> int:
 
 
 def counted(results: Sequence[Result], failing: set[str]) -> int:
-    """The last lines; the exit status."""
+    """Print the last lines and return the exit status."""
     for test in sorted(failing):
         print(f"fails without a fault: {test}")
     noticed = [result for result in results if result.by and result.by not in failing]

@@ -1,4 +1,4 @@
-"""The manual's page of a GPU: `python -m tests.gpu_page` writes it from the rows in `docs/measured`."""
+"""The manual's GPU page, which `python -m tests.gpu_page` writes from the rows in `docs/measured`."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ random colour. If that fails, the command ends with one line and discards the st
 
 
 def text() -> str:
-    """The whole page."""
+    """Return the text of the whole page."""
     rows = json.loads(ROWS.read_text(encoding="utf-8"))
     parts = {name: part(rows) for name, part in PARTS.items()}
     return PAGE_TEXT.format(measured=rows["measured"], **parts)
@@ -92,8 +92,8 @@ def _table(head: Sequence[str], lines: Iterable[Sequence[Any]]) -> str:
 
 
 def _stores(rows: dict[str, Any]) -> str:
-    rounds = {name.split()[-1]: said for name, said in rows["machine"].items() if name.startswith("GL rounds")}
-    cut = [name for name, said in rounds.items() if said.startswith("truncate")]
+    rounds = {name.split()[-1]: rounding for name, rounding in rows["machine"].items() if name.startswith("GL rounds")}
+    cut = [name for name, rounding in rounds.items() if rounding.startswith("truncate")]
     assert cut == ["rg16f", "rgba16f", "r11g11b10f"] and rounds["rgba8"].startswith("neither"), rounds
     probed = {row["format"]: row for row in rows["stores"]}
     down = max(row.get("fraction_that_went_down", 0.0) for row in probed.values())
@@ -113,11 +113,11 @@ def _stores(rows: dict[str, Any]) -> str:
 
 
 def _agree(rows: dict[str, Any]) -> str:
-    found: dict[tuple[str, ...], dict[str, float]] = {}
+    figures: dict[tuple[str, ...], dict[str, float]] = {}
     for row in rows["quality"]:
         key = tuple(row[name] for name in ("encoding", "storage", "rounding", "normals"))
-        found.setdefault(key, {})[row["backend"]] = row["psnr_db"]
-    apart = [abs(by["glsl"] - by["jax"]) for by in found.values() if len(by) == 2]
+        figures.setdefault(key, {})[row["backend"]] = row["psnr_db"]
+    apart = [abs(by["glsl"] - by["jax"]) for by in figures.values() if len(by) == 2]
     bound = math.ceil(1e4 * max(apart)) / 1e4
     by_both = [row for row in rows["whole"] if "psnr_db_by_llvmpipe" in row]
     off = math.ceil(1e2 * max(abs(row["psnr_db"] - row["psnr_db_by_llvmpipe"]) for row in by_both)) / 1e2
@@ -128,11 +128,11 @@ def _agree(rows: dict[str, Any]) -> str:
 
 
 def _cost(rows: dict[str, Any]) -> str:
-    found = {(row.get("encoding"), row["operation"]): row for row in rows["cost"]}
+    costs = {(row.get("encoding"), row["operation"]): row for row in rows["cost"]}
     lines = [
         (
             f"`{name}`",
-            *(f"{abs(found[name, operation]['ns_per_megapixel']):,.0f}" for operation in ("encode", "decode")),
+            *(f"{abs(costs[name, operation]['ns_per_megapixel']):,.0f}" for operation in ("encode", "decode")),
         )
         for name in CODECS
     ]

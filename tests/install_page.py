@@ -1,6 +1,6 @@
 """The manual's table of what each extra adds.
 
-`python -m tests.install_page` downloads all packages, 650 MB, and writes it.
+`python -m tests.install_page` downloads all packages (650 MB) and writes the table.
 """
 
 from __future__ import annotations
@@ -38,52 +38,52 @@ PART = re.compile(r"(<!-- sizes -->\n)(.*?)(<!-- end -->)", re.S)
 
 
 def required(extra: str = "") -> list[str]:
-    """What pyproject.toml asks for; of an extra what it adds."""
+    """Return the requirements in pyproject.toml: of an extra, or of the package itself."""
     return PROJECT["optional-dependencies"][extra] if extra else PROJECT["dependencies"]
 
 
 def closure(asked: list[str], there: Mapping[str, Distribution], extras: frozenset[str] = frozenset()) -> set[str]:
-    """The packages that requirements need, by their names. Raises KeyError for one that is not there."""
-    found: set[str] = set()
+    """Return the names of all packages that requirements need. Raises KeyError for a missing package."""
+    names: set[str] = set()
     for text in asked:
-        one = Requirement(text)
-        is_asked = one.marker is None or any(one.marker.evaluate({"extra": extra}) for extra in (extras or {""}))
-        name = canonicalize_name(one.name)
-        if is_asked and name not in found:
-            found |= {name} | closure(there[name].requires or [], there, frozenset(one.extras))
-    return found
+        need = Requirement(text)
+        is_asked = need.marker is None or any(need.marker.evaluate({"extra": extra}) for extra in (extras or {""}))
+        name = canonicalize_name(need.name)
+        if is_asked and name not in names:
+            names |= {name} | closure(there[name].requires or [], there, frozenset(need.extras))
+    return names
 
 
 def added(extra: str, there: Mapping[str, Distribution]) -> set[str]:
-    """The packages of an extra that the install without it has not."""
+    """Return the packages that an extra adds to an install without extras."""
     core = closure(required(), there)
     return closure(required(extra), there) - core if extra else core
 
 
 def wheels(folder: Path) -> dict[str, Path]:
-    """All packages that the extras need, downloaded."""
+    """Download all packages that the extras need, and return their paths by name."""
     every = f"{ROOT}[{','.join(EXTRAS)}]"
     words = ("download", "--quiet", "--constraint", str(ROOT / ".ci" / "constraints.txt"), "--dest", str(folder), every)
     subprocess.run([sys.executable, "-m", "pip", *words], check=True)
-    found = {canonicalize_name(path.name.split("-")[0]): path for path in folder.iterdir()}
-    return {name: path for name, path in found.items() if name != "normalbench"}
+    paths = {canonicalize_name(path.name.split("-")[0]): path for path in folder.iterdir()}
+    return {name: path for name, path in paths.items() if name != "normalbench"}
 
 
 def unpacked(path: Path) -> PathDistribution:
-    """A wheel's metadata, without an install."""
+    """Return a wheel's metadata without installing the wheel."""
     (folder,) = {name.split("/")[0] for name in ZipFile(path).namelist() if name.split("/")[0].endswith(".dist-info")}
     return PathDistribution(ZipPath(path, f"{folder}/"))  # pyright: ignore[reportArgumentType] # reads like a folder
 
 
 def size_on_disk(path: Path) -> float:
-    """In megabytes; what is no wheel is compiled here, and small."""
+    """Return the size of a package in megabytes: unpacked for a wheel, packed for a source archive."""
     if path.suffix != ".whl":
         return path.stat().st_size / 1e6
-    return sum(one.file_size for one in ZipFile(path).infolist()) / 1e6
+    return sum(member.file_size for member in ZipFile(path).infolist()) / 1e6
 
 
 def text(found: Mapping[str, Path]) -> str:
-    """The table."""
+    """Return the table as text."""
     there = {name: unpacked(path) for name, path in found.items() if path.suffix == ".whl"}
     there |= {name: _Bare() for name, path in found.items() if path.suffix != ".whl"}
     lines = ["| extra        | to download | on disk | what for |", "|--------------|------------:|--------:|---|"]
@@ -98,7 +98,7 @@ def text(found: Mapping[str, Path]) -> str:
 
 
 class _Bare(Distribution):
-    """A package of which nothing is known but that it needs no others."""
+    """A package without metadata; it is taken to need no other packages."""
 
     requires = None
 
@@ -108,7 +108,7 @@ class _Bare(Distribution):
 
 
 def shown() -> dict[str, tuple[int, int]]:
-    """Megabytes to download and on disk, as the page has them by extra; "" for the install without any."""
+    """Return the page's megabytes to download and on disk by extra; "" is the install without extras."""
     part = PART.search(PAGE.read_text())
     assert part
     rows = ROW.findall(part[2])

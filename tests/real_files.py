@@ -1,8 +1,8 @@
-"""How many shader files of engines are read as they lie: `python -m tests.real_files FOLDER` prints a line for each.
+"""Count the engine shader files that are read unchanged: `python -m tests.real_files FOLDER` prints a line for each.
 
-A file is measured in RG16, or in RGBA16 if its code has three numbers, on 2^16 directions of the sphere. Its mean angle
-is compared with those of the catalogue's encodings, which other tests hold to float64: CODE is one whose mean it has
-within 1 %. Files whose names end as no shader's does are passed over.
+A file is measured in RG16, or in RGBA16 if its code has three numbers, on 2^16 directions of the sphere. Its mean
+angle is compared with those of the catalogue's encodings, which other tests compare with float64: CODE is an encoding
+whose mean is within 1%. Files without a shader's extension are ignored.
 """
 
 from __future__ import annotations
@@ -21,39 +21,39 @@ WITHIN, SECONDS = 0.01, 200
 
 
 def rows_of(encoding: str) -> tuple[list[Mapping[str, Any]], str]:
-    """The rows of an encoding, none where it is refused; and the last line of what was said."""
+    """Return the rows of an encoding, none if it is refused, and the last line that was printed to stderr."""
     command = [sys.executable, "-m", "normalbench", "quality", "--encoding", encoding, *SETTING, "--format", "json"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS)
     except subprocess.TimeoutExpired:
         return [], f"it did not end within {SECONDS} s"
-    said = done.stderr.strip().splitlines()
-    return json.loads(done.stdout) if done.returncode == 0 else [], said[-1] if said else ""
+    lines = done.stderr.strip().splitlines()
+    return json.loads(done.stdout) if done.returncode == 0 else [], lines[-1] if lines else ""
 
 
 def known_means() -> dict[tuple[str, str], float]:
-    """By encoding and storage, the mean angles of the catalogue."""
-    rows, said = rows_of("all")
-    assert rows, said
+    """Return the mean angles of the catalogue by encoding and storage."""
+    rows, message = rows_of("all")
+    assert rows, message
     return {(row["encoding"], row["storage"]): row["angle_mean_deg"] for row in rows if row["angle_mean_deg"]}
 
 
 def like(row: Mapping[str, Any], known: Mapping[tuple[str, str], float]) -> str:
-    """The encoding of the catalogue that has the same mean in the same storage; empty where none has."""
+    """Return the catalogue's encoding with the same mean in the same storage; an empty text if none matches."""
     mean = row["angle_mean_deg"] or 0.0
-    found = {name: abs(mean / one - 1) for (name, storage), one in known.items() if storage == row["storage"]}
-    far, name = min(((far, name) for name, far in found.items()), default=(WITHIN, ""))
+    apart = {name: abs(mean / angle - 1) for (name, storage), angle in known.items() if storage == row["storage"]}
+    far, name = min(((far, name) for name, far in apart.items()), default=(WITHIN, ""))
     return name if far < WITHIN else ""
 
 
 def main(folder: Path) -> None:
-    """Print a line for each file: measured with its figures, or refused and why; and how many were measured."""
+    """Print a line for each file, with its figures or the reason for its refusal, and the count of measured files."""
     known, measured = known_means(), 0
     files = sorted(path for path in folder.iterdir() if path.suffix.lower() in ENDINGS)
     for path in files:
-        rows, said = rows_of(str(path))
+        rows, message = rows_of(str(path))
         if not rows:
-            print(f"{path.name}: refused: {said.replace(f'{folder}/', '')}", flush=True)
+            print(f"{path.name}: refused: {message.replace(f'{folder}/', '')}", flush=True)
             continue
         measured += 1
         row = rows[0]

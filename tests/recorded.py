@@ -1,10 +1,10 @@
-"""Compute anew the figures of the catalogue's codecs that come with the package.
+"""Recompute the figures of the catalogue's codecs that ship with the package.
 
     python -m tests.recorded
 
-writes suprema.json next to the search for them, over the domain of each encoding, and uses.json of the mix table: what
-filtering, blending, resolving and upsampling do to each codec. It takes a quarter of an hour; what was recorded from
-the same sources is kept.
+writes suprema.json next to the search for them, over the domain of each encoding, and uses.json of the mix table: how
+filtering, blending, resolving and upsampling affect each codec. It takes a quarter of an hour; figures that were
+recorded from the same sources are kept.
 """
 
 import json
@@ -24,7 +24,7 @@ from normalbench.encodings.storages.storage import STORAGES
 
 
 def codecs() -> Iterator[Codec]:
-    """Codecs that round to nearest."""
+    """Yield the codecs that round to nearest."""
     for encoding in ENCODINGS.values():
         for storage in STORAGES.values():
             if (codec := Codec(encoding, storage)).fits and not storage.curved:
@@ -32,7 +32,7 @@ def codecs() -> Iterator[Codec]:
 
 
 def is_half(codec: Codec) -> bool:
-    """Whether the domain is a half of the sphere."""
+    """Whether the domain is half of the sphere."""
     return codec.encoding.domain != "sphere"
 
 

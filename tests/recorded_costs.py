@@ -1,9 +1,9 @@
-"""Counts anew what machines without compilers are told that encodings cost.
+"""Recount the encoding costs that machines without compilers use.
 
     python -m tests.recorded_costs
 
 writes bench/tables/cost/recorded.json: every encoding and packing of the catalogue, on the GPU families that `pick`
-looks at.
+uses.
 """
 
 import json
@@ -18,15 +18,15 @@ from normalbench.gbuffer.defines.packings import packing_of
 
 
 def cases():
-    """Every operation of each encoding, and of each packing that one of them fits."""
+    """Return every operation of each encoding, and of each packing that fits an encoding."""
     packed = [storage for storage in STORAGES.values() if storage.is_packed]
-    codecs = [codec for encoding in ENCODINGS.values() for one in packed if (codec := Codec(encoding, one)).fits]
+    codecs = [codec for encoding in ENCODINGS.values() for store in packed if (codec := Codec(encoding, store)).fits]
     packings = {packing.name: packing for packing in map(packing_of, codecs)}
     return measure.cases(ENCODINGS.values(), packings.values(), measure.OPERATIONS)
 
 
 def counted(chosen, family):
-    """What this machine's compilers make of operations, as the file has it."""
+    """Return the counts of this machine's compilers for the chosen operations, in the form of the file."""
     stage = usual_stage(family)
     rows = measure.counted(chosen, family, stage)
     assert rows and not any("recorded_by" in row for row in rows.values()), f"no compiler for {family}"

@@ -1,8 +1,8 @@
-"""Count what a user meets: options, lines of help, and lines that commands print.
+"""Count what a user sees: options, lines of help, and lines that commands print.
 
     python -m tests.surface [--printed]
 
-With --printed also what `pick`, `budget` and `run` print, which takes minutes.
+With --printed also count the output of `pick`, `budget` and `run`, which takes minutes.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""A short form of `python -m tests.attack`: every kind that takes no process of its own, from the first seeds."""
+"""A short form of `python -m tests.attack`: every kind that needs no process of its own, from the first seeds."""
 
 import sys
 import time
@@ -17,8 +17,8 @@ from normalbench.bench.shaders.languages import translated
 
 
 @pytest.mark.usefixtures("gl")
-def test_what_a_machine_lacks_is_left_out_of_the_attack_and_said(monkeypatch, tmp_path):
-    """Without a C compiler no program is written in C, whichever seed it has."""
+def test_languages_without_a_compiler_are_left_out_and_reported(monkeypatch, tmp_path):
+    """Without a C compiler no program is written in C, whatever its seed."""
     path_of = tools.path_of
     # What another test has asked of the compiler is not asked again.
     monkeypatch.setattr(tools, "version_text", tools.version_text.__wrapped__)
@@ -47,7 +47,7 @@ COSTLY = ("run: read", "words")
 
 
 def of(kinds, share: int) -> list:
-    """Kinds with how many cases of each are tried."""
+    """Return test parameters: each kind, with the number of its cases to try."""
     return [pytest.param(kind, kind.few // share, id=kind.name) for kind in kinds]
 
 
@@ -56,8 +56,8 @@ def of(kinds, share: int) -> list:
 @pytest.mark.parametrize(
     "kind, count", [*of((k for k in FEW if k.name not in COSTLY), 1), *of((k for k in FEW if k.name in COSTLY), 8)]
 )
-def test_what_is_damaged_is_measured_or_refused_in_a_line(kind, count, tmp_path, monkeypatch, opened):
-    """Soon, and no file is opened that lies elsewhere."""
+def test_damaged_input_is_measured_or_refused_in_a_line(kind, count, tmp_path, monkeypatch, opened):
+    """Cases end within the time of their kind, and open no file outside the folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     attack, counts = kind.prepare(tmp_path), Counter()
@@ -78,7 +78,7 @@ def test_what_is_damaged_is_measured_or_refused_in_a_line(kind, count, tmp_path,
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("seed", BY_DAY)
 def test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):
-    """Read in the language that its seed stands for, and written in another one."""
+    """A program is read in the language that its seed selects, and written in another."""
     for language in ("hlsl", "slang", "wgsl", "c"):
         require_runner(language)
     monkeypatch.setattr(translated, "_by_child", translated._by_child)
@@ -87,7 +87,7 @@ def test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):
 
 
 def _is_known(path: Path, folder: Path) -> bool:
-    """Of the test's folder, or what Python and its packages read at first: JAX looks for TPUs in /sys."""
+    """Whether a file is in the test's folder, or read by Python and its packages at the start, as by JAX in /sys."""
     ours = any(path.is_relative_to(root) for root in (folder, sys.prefix, sys.base_prefix))
     return (
         ours or path.suffix in (".py", ".pyc", ".so") or path.name == "entry_points.txt" or path.is_relative_to("/sys")

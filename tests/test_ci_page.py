@@ -1,4 +1,4 @@
-"""docs/ci.md: the steps of its workflows run, and end in the files that they promise."""
+"""docs/ci.md: the steps of its workflows run, and write the files that they promise."""
 
 import re
 
@@ -18,7 +18,7 @@ LEAST = ".github/workflows/gates.yml"
 ACTION = (ROOT / "action.yml").read_text()
 
 
-def test_actions_are_named_with_their_versions_and_install_what_the_manual_says():
+def test_actions_have_versions_and_install_the_packages_of_the_manual():
     assert set(FILES) == {LEAST, WORKFLOW, PIPELINE, JENKINSFILE, ".pre-commit-config.yaml", "normals.toml"}
     used = [step["uses"] for step in yaml.safe_load(FILES[WORKFLOW])["jobs"]["normals"]["steps"] if "uses" in step]
     assert used and all(re.fullmatch(r"actions/[\w-]+@v\d+", name) for name in used)
@@ -27,14 +27,14 @@ def test_actions_are_named_with_their_versions_and_install_what_the_manual_says(
     assert all(name in PAGES[ROOT / "docs/commands.md"] for name in installed[0].split())
 
 
-def test_no_text_that_a_stranger_writes_is_part_of_a_script():
-    """Names of branches come as variables: in a script of GitHub's they would be run."""
+def test_scripts_contain_no_untrusted_text():
+    """Branch names are passed as variables: GitHub would run them as part of a script."""
     steps = yaml.safe_load(FILES[WORKFLOW])["jobs"]["normals"]["steps"] + yaml.safe_load(ACTION)["runs"]["steps"]
     assert not any("${{" in step.get("run", "") for step in steps)
 
 
-def test_the_least_workflow_is_ten_lines_that_use_the_action_of_this_repository():
-    """What the action runs besides pip is held by the workflow's steps and by `check`."""
+def test_the_smallest_workflow_has_ten_lines_and_uses_the_action():
+    """The workflow's steps and `check` test everything that the action runs besides pip."""
     text = FILES[LEAST]
     (step,) = (step for step in yaml.safe_load(text)["jobs"]["gates"]["steps"] if "with" in step)
     assert len(text.splitlines()) <= 10 and set(step["with"]) <= set(yaml.safe_load(ACTION)["inputs"])
@@ -43,13 +43,13 @@ def test_the_least_workflow_is_ten_lines_that_use_the_action_of_this_repository(
 
 
 def hook() -> dict:
-    (found,) = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text())
-    return found
+    (entry,) = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text())
+    return entry
 
 
-def test_the_hook_is_asked_for_every_file_that_a_gate_may_read():
+def test_the_hook_matches_every_file_that_a_gate_may_read():
     pattern = re.compile(hook()["files"])
     assert all(pattern.search(f"shaders/mine{ending}") for ending in (*ENDINGS, ".toml", ".json", ".py"))
     assert not pattern.search("README.md") and not pattern.search("mine.glsl.orig")
-    (asked,) = (one for repo in yaml.safe_load(FILES[".pre-commit-config.yaml"])["repos"] for one in repo["hooks"])
+    (asked,) = (entry for repo in yaml.safe_load(FILES[".pre-commit-config.yaml"])["repos"] for entry in repo["hooks"])
     assert asked["id"] == hook()["id"]

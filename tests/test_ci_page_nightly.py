@@ -1,4 +1,4 @@
-"""docs/ci.md: the steps of its workflows run, and end in the files that they promise."""
+"""docs/ci.md: the steps of its workflows run, and write the files that they promise."""
 
 import os
 import re
@@ -29,7 +29,7 @@ class Step:
 def github() -> list[Step]:
     steps = yaml.safe_load(FILES[WORKFLOW])["jobs"]["normals"]["steps"]
     when = [(step["run"], step.get("if", "")) for step in steps if "run" in step and step.get("name") != "Install"]
-    return [Step(run, "'push'" not in said, "'pull_request'" not in said, "!cancelled()" in said) for run, said in when]
+    return [Step(run, "'push'" not in rule, "'pull_request'" not in rule, "!cancelled()" in rule) for run, rule in when]
 
 
 def gitlab() -> list[Step]:
@@ -57,12 +57,12 @@ PAGE_OF = {"github": WORKFLOW, "gitlab": PIPELINE, "jenkins": JENKINSFILE}
 
 
 def environment(system: str) -> dict[str, str]:
-    """What the system sets, and the workflow."""
+    """Return the variables that the system and the workflow set."""
     measured = re.search(r"MEASURE(?:: | = ')(.*?)'?$", FILES[PAGE_OF[system]], re.M)
-    one = {"MEASURE": measured[1], "TARGET": "main", "PULL_REQUEST": "7", "GITHUB_SHA": "0123abcd"}
+    on_github = {"MEASURE": measured[1], "TARGET": "main", "PULL_REQUEST": "7", "GITHUB_SHA": "0123abcd"}
     two = {"CI_MERGE_REQUEST_TARGET_BRANCH_NAME": "main", "CI_COMMIT_SHA": "0123abcd", "NORMALS_TOKEN": "secret"}
     three = {"CHANGE_TARGET": "main", "GIT_COMMIT": "0123abcd", "GITHUB_STEP_SUMMARY": "summary.md"}
-    return one | two | three
+    return on_github | two | three
 
 
 def write_program(path: Path, text: str) -> None:
@@ -78,7 +78,7 @@ def git(folder: Path, *words: str) -> None:
 
 @pytest.fixture
 def checkout(tmp_path):
-    """A clone on a branch whose encoder is worse than that of main, and programs that a system would have."""
+    """A clone on a branch with a worse encoder than main, and the programs that a CI system would have."""
     origin, own = tmp_path / "origin", tmp_path / "own"
     origin.mkdir()
     (origin / "mine.glsl").write_text(MINE[1])
@@ -98,7 +98,7 @@ def checkout(tmp_path):
 
 
 def run_all(steps: list[Step], folder: Path, system: str) -> int:
-    """The steps as a system runs them; the status of the first that fails."""
+    """Run the steps as a system does; return the status of the first step that fails."""
     path = f"{folder.parent}/programs:{os.environ['PATH']}"
     failed = 0
     for step in steps:
@@ -114,24 +114,24 @@ def run_all(steps: list[Step], folder: Path, system: str) -> int:
 
 @pytest.mark.usefixtures("gl", "radv")
 @pytest.mark.parametrize("system", SYSTEMS)
-def test_a_workflow_ends_in_what_it_promises(system, checkout):
-    """A request that makes the encoder worse fails, and is told by how much."""
+def test_a_workflow_fails_a_request_that_makes_the_encoder_worse(system, checkout):
+    """The comment on the request states the difference."""
     steps = SYSTEMS[system]()
     (checkout / "mine.glsl").write_text(MINE[1].replace("normalize(", "normalize(vec3(0.02, 0.0, 0.0) + "))
     git(checkout, "commit", "-q", "-a", "-m", "Lean")
     assert run_all([step for step in steps if step.is_of_requests], checkout, system) == 1
-    said = (checkout / "comment.md").read_text()
-    assert "mine: worse in " in said and "| quality |" in said and "<details>" in said
+    comment = (checkout / "comment.md").read_text()
+    assert "mine: worse in " in comment and "| quality |" in comment and "<details>" in comment
     assert (checkout / "run/report.html").stat().st_size > 100_000
     if system != "jenkins":
-        assert "FAIL" in said
+        assert "FAIL" in comment
         assert "comment.md" in (checkout.parent / "noted").read_text()
 
 
 @pytest.mark.usefixtures("gl", "radv")
 @pytest.mark.parametrize("system", SYSTEMS)
-def test_a_workflow_keeps_what_was_pushed(system, checkout):
-    """Everything is well: the run is kept, and its gates pass."""
+def test_a_workflow_keeps_the_run_of_a_push(system, checkout):
+    """The run is kept, and its gates pass."""
     steps = SYSTEMS[system]()
     assert run_all([step for step in steps if step.is_of_pushes], checkout, system) == 0
     kept = {path.name for path in (checkout / "history/0123abcd").iterdir()}

@@ -1,4 +1,4 @@
-"""docs/ci.md: the steps of its workflows run, and end in the files that they promise."""
+"""docs/ci.md: the steps of its workflows run, and write the files that they promise."""
 
 import json
 import re
@@ -14,21 +14,21 @@ GATES = FILES["normals.toml"]
 
 
 @pytest.mark.usefixtures("gl")
-def test_the_hook_holds_the_gates_that_read_a_changed_file(run, tmp_path, monkeypatch):
-    """As pre-commit calls it: the words, the arguments, the names of the files."""
+def test_the_hook_checks_only_gates_that_read_a_changed_file(run, tmp_path, monkeypatch):
+    """The hook is called as pre-commit calls it: the words, the arguments, the names of the files."""
     monkeypatch.chdir(tmp_path)
     body = MINE[1].replace("mine_", "other_")
     (tmp_path / "mine.glsl").write_text('#include "shared.glsl"\n' + MINE[1])
     (tmp_path / "other.glsl").write_text(body)
     (tmp_path / "shared.glsl").write_text("\n")
-    one, words = 'count = 4096\npsnr_db = "at least 51"\n', GATES.replace('psnr_db = "at least 51.5"\n', "")
-    gates = words + one + words.replace("mine.glsl", "other.glsl") + one.replace("51", "99")
+    limits, words = 'count = 4096\npsnr_db = "at least 51"\n', GATES.replace('psnr_db = "at least 51.5"\n', "")
+    gates = words + limits + words.replace("mine.glsl", "other.glsl") + limits.replace("51", "99")
     (tmp_path / "gates.toml").write_text(gates)
     program, *words = hook()["entry"].split()
     assert program == "normalbench"
     for name, status, count in (("shared.glsl", 0, 1), ("mine.glsl", 0, 1), ("other.glsl", 1, 1), ("gates.toml", 1, 2)):
-        found = run(*words, *hook()["args"], name, "--format", "json")
-        assert found[0] == status and len(json.loads(found[1])) == count, found
+        answer = run(*words, *hook()["args"], name, "--format", "json")
+        assert answer[0] == status and len(json.loads(answer[1])) == count, answer
     (tmp_path / "third.glsl").write_text(body)
     status, out, err = run(*words, *hook()["args"], "third.glsl")
     assert (status, out, err) == (0, "", "normalbench: no gate in gates.toml uses third.glsl\n")

@@ -1,8 +1,8 @@
-"""The nightly tests passed not too long ago, and a run says when."""
+"""The nightly tests passed recently enough, and a run reports when."""
 
 from manual import ROOT
 
 
-def test_run_says_the_age_first():
+def test_run_reports_the_nightly_age_first():
     lines = [line for line in (ROOT / ".ci/run").read_text().splitlines() if line and not line.startswith(("#", "cd"))]
     assert lines[:3] == ["set -euo pipefail", "export CI=true", ".ci/nightly-age"]

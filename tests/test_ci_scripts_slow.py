@@ -1,4 +1,4 @@
-"""The nightly tests passed not too long ago, and a run says when."""
+"""The nightly tests passed recently enough, and a run reports when."""
 
 import os
 import subprocess
@@ -17,8 +17,8 @@ def git(folder: Path, *words: str) -> None:
     subprocess.run(["git", *settings, *words], cwd=folder, check=True, capture_output=True, env=clean)
 
 
-def test_a_run_says_how_old_the_nightly_is_and_fails_where_it_is_too_old(tmp_path):
-    """By commits since the file was last written; a copy without history says that it cannot know."""
+def test_a_run_reports_the_nightly_age_and_fails_above_the_limit(tmp_path):
+    """The age is the number of commits since the file was last written; a copy without history cannot know it."""
     there = tmp_path / "there"
     (there / ".ci").mkdir(parents=True)
     script = (ROOT / ".ci/nightly-age").read_text()

@@ -1,17 +1,17 @@
-"""Dockerfile: its lines run in a chroot of Debian end in the rows of this machine."""
+"""Dockerfile: its lines, run in a chroot of Debian, yield the rows of this machine."""
 
 from containers import DOCKERFILE, Container, context, instructions, suite
 from manual import PAGES, ROOT
 
 
-def test_the_dockerfile_has_only_what_the_chroot_can_do():
+def test_the_dockerfile_has_only_instructions_that_the_chroot_supports():
     lines = instructions(DOCKERFILE.read_text())
     assert lines[0][0] == "FROM" and suite(lines[0][1]) == "bookworm"
     assert all(hasattr(Container, f"_{word.lower()}") for word, _ in lines[1:])
     assert [text for word, text in lines if word == "USER"] == ["bench"], "it runs as somebody who is not root"
 
 
-def test_the_page_on_installing_has_its_two_commands():
+def test_the_install_page_has_both_docker_commands():
     shown = [line.lstrip("# ") for line in DOCKERFILE.read_text().splitlines() if line.startswith("#     docker ")]
     assert len(shown) == 2 and all(f"    {line}\n" in PAGES[ROOT / "docs" / "install.md"] for line in shown)
 

@@ -1,4 +1,4 @@
-"""Dockerfile: its lines run in a chroot of Debian end in the rows of this machine."""
+"""Dockerfile: its lines, run in a chroot of Debian, yield the rows of this machine."""
 
 import json
 import shutil
@@ -22,28 +22,28 @@ NOBODY = "4321"
 
 @pytest.fixture
 def container():
-    """A chroot in which the Dockerfile's lines were run."""
+    """A chroot in which the lines of the Dockerfile were run."""
     if why := missing():
         pytest.skip(why)
     root = Path(tempfile.mkdtemp(prefix="normalbench-container-"))
     root.chmod(0o755)
-    made = Container(root)
-    if made.make().returncode:
+    chroot = Container(root)
+    if chroot.make().returncode:
         pytest.skip("debootstrap reaches no mirror of Debian")
-    made.build()
-    yield made
+    chroot.build()
+    yield chroot
     shutil.rmtree(root)
 
 
 @pytest.mark.usefixtures("gl")
-def test_the_container_ends_in_the_rows_of_this_machine(container):
-    """Measured by somebody who is not root. Another one leaves a run with its page, without the caches of the first."""
+def test_the_container_measures_the_same_rows_as_this_machine(container):
+    """A user other than root measures them. A second user, without the first user's caches, writes a run and page."""
     assert "Usage" in container.run().stdout
     done = container.run(*WORDS)
     assert done.returncode == 0 and not done.stderr, done.stderr
     here = subprocess.run([sys.executable, "-m", "normalbench", *WORDS], capture_output=True, text=True, check=True)
     same = [{name: value for name, value in row.items() if name not in ("device", "glsl_device")} for row in rows(here)]
-    assert [{name: row[name] for name in one} for one, row in zip(same, rows(done), strict=True)] == same
+    assert [{name: row[name] for name in expected} for expected, row in zip(same, rows(done), strict=True)] == same
     (container.root / "work").chmod(0o777)
     small = ("run", "--tables", "quality,cost", "--encoding", "octahedral", "--storage", "rg8", "-o", "small")
     done = container.run(*small, user=NOBODY)

@@ -1,4 +1,4 @@
-"""What CONTRIBUTING.md says is added as it says, in a copy of the code; and its commands are there."""
+"""CONTRIBUTING.md: its examples can be added to a copy of the code as described, and its commands exist."""
 
 import csv
 import io
@@ -10,7 +10,7 @@ from contributing import EXAMPLES, a_copy_of_the_rooms, normalbench_in
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
-    """The code with every example, but for the table and its chart, which test_new_table.py uses."""
+    """The code with every example, except the table and its chart, which test_new_table.py uses."""
     folder = tmp_path_factory.mktemp("copy")
     package = a_copy_of_the_rooms(folder)
     for name, example in EXAMPLES.items():
@@ -29,16 +29,16 @@ def rows_of(folder, *arguments):
 
 
 @pytest.mark.usefixtures("gl")
-def test_an_encoding_is_a_pair_and_a_line(copy):
-    """It has a row in both languages: stereographic projection of half the sphere without the borders of its square."""
+def test_adding_an_encoding_takes_a_pair_and_a_line(copy):
+    """The encoding, a stereographic projection of half the sphere, has a row in both languages."""
     rows = rows_of(copy, "quality", "--encoding", "paraboloid", "--storage", "rg16", "--normals", "hemisphere")
     figures = {row["backend"]: float(row["psnr_db"]) for row in rows}
     assert figures == {"jax": pytest.approx(99.18, abs=0.01), "glsl": pytest.approx(99.18, abs=0.01)}
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_storage_is_a_line_and_a_column_two(copy):
-    """Both languages store codes of 5:5 bits as integers of so many bits in two bytes do."""
+def test_adding_a_storage_takes_one_line_and_a_column_two(copy):
+    """In both languages the new storage of 5:5 bits has the figures of 5:5 bits in two bytes."""
     rows = rows_of(copy, "quality", "--encoding", "octahedral", "--storage", "rgb5_a1,rg8_5_5", "--normals", "sphere")
     figures = {(row["storage"], row["backend"]): float(row["psnr_db"]) for row in rows}
     assert len(figures) == 4 and max(figures.values()) - min(figures.values()) < 1e-4, figures
@@ -47,8 +47,8 @@ def test_a_storage_is_a_line_and_a_column_two(copy):
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_kind_is_a_class_a_pair_a_module_and_six_lines(copy):
-    """Its code is held against its twin, and has the kind's name in front."""
+def test_adding_a_kind_takes_a_class_a_pair_a_module_and_six_lines(copy):
+    """Its code is compared with its twin, and the function names begin with the kind's name."""
     (row,) = json.loads(normalbench_in(copy, "code", "metres", "--check", "--to", "glsl", "--format", "json").stdout)
     assert (row["encoding"], row["storage"], row["differing"]) == ("metres", "r16", 0), row
     assert "float height_encode(float x)" in normalbench_in(copy, "code", "metres", "--to", "glsl").stdout
@@ -63,16 +63,16 @@ def test_a_kind_is_a_class_a_pair_a_module_and_six_lines(copy):
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_scene_is_a_file_and_two_lines(copy):
-    """It is drawn: marbles come back better in 16 bits a number than in 8."""
+def test_adding_a_scene_takes_a_file_and_two_lines(copy):
+    """The scene is drawn: marbles are more accurate in 16 bits per number than in 8."""
     rows = rows_of(copy, "render", "--scene", "marbles", "--encoding", "octahedral", "--storage", "rg8,rg16", *SMALL)
     psnr = {row["storage"]: float(row["psnr_db"]) for row in rows}
     assert psnr["rg16"] > psnr["rg8"] + 20 > 40, psnr
 
 
 @pytest.mark.usefixtures("gl")
-def test_an_effect_is_a_pair_and_a_line(copy):
-    """It is listed with its setting, and measured."""
+def test_adding_an_effect_takes_a_pair_and_a_line(copy):
+    """The effect is listed, and measured with its setting."""
     assert "dimmed" in normalbench_in(copy, "list", "effects").stdout
     arguments = ("--encoding", "octahedral", "--storage", "rg8", "--scene", "playground", "--size", "64x48")
     rows = rows_of(copy, "effects", "--effect", "dimmed:strength=0.25", *arguments)
@@ -80,8 +80,8 @@ def test_an_effect_is_a_pair_and_a_line(copy):
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_language_is_a_writer_a_module_and_two_lines(copy):
-    """Its file is run before it is written."""
+def test_adding_a_language_takes_a_writer_a_module_and_two_lines(copy):
+    """The file in the new language is run before it is written."""
     done = normalbench_in(copy, "code", "octahedral", "--storage", "rg8", "--to", "signed", "-o", "made")
     assert done.returncode == 0, done.stderr
     (path,) = (copy / "made").iterdir()

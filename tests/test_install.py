@@ -1,4 +1,4 @@
-"""`pip install .`, archives and the set-up: all files are there, the sizes are those said, and nothing is silent."""
+"""`pip install .`, archives and setup: all files are there, stated sizes are correct, and progress is shown."""
 
 import os
 import re
@@ -12,7 +12,7 @@ from manual import ROOT
 
 @pytest.fixture
 def setting_up(tmp_path):
-    """The set-up in a copy, with a Python that does as it is told: what it printed, and its status."""
+    """The setup in a copy, with a scripted Python: a function that returns its output and status."""
     (tmp_path / ".ci").mkdir()
     shutil.copy(ROOT / ".ci/setup", tmp_path / ".ci")
     for name in ("prepare-venv", "prepare-gl", "prepare-isa"):
@@ -34,18 +34,18 @@ def write_program(path, text):
     path.chmod(0o755)
 
 
-def test_the_set_up_names_each_step_and_is_never_silent(setting_up):
+def test_the_setup_names_each_step_and_is_never_silent(setting_up):
     done = setting_up("echo Downloading jax; sleep 2.5; echo 'normalbench: no compiler' >&2")
     assert done.returncode == 0 and done.stderr == "normalbench: no compiler\n" * 3
     first, *lines, last = done.stdout.splitlines()
     assert re.fullmatch(r"normalbench: sets up .venv in 6 steps, .* MB to download, .* on disk", first), first
-    assert [line[:8] for line in lines if " of " in line] == [f"  {at} of 6" for at in range(1, 7)]
+    assert [line[:8] for line in lines if " of " in line] == [f"  {step} of 6" for step in range(1, 7)]
     assert lines.count("    1 s  Downloading jax") == lines.count("    2 s  Downloading jax") == 3
     assert re.fullmatch(r"normalbench: set up in \d+ s; .venv takes \d+ MiB", last), last
 
 
-def test_a_step_that_fails_ends_the_set_up_with_what_it_said(setting_up):
-    """With its status; one that can be done without is left out."""
+def test_a_failed_step_ends_the_setup_with_its_error(setting_up):
+    """The setup ends with the step's status; an optional step that fails is left out."""
     done = setting_up("echo 'ERROR: no such package'; exit 3")
     assert done.returncode == 3 and "3 of 6" not in done.stdout
     assert done.stderr.splitlines()[0] == "ERROR: no such package"
@@ -54,19 +54,19 @@ def test_a_step_that_fails_ends_the_set_up_with_what_it_said(setting_up):
     assert done.returncode == 0 and done.stderr.count("left out") == 1 and "6 of 6" in done.stdout
 
 
-def test_the_page_has_the_sizes_that_the_set_up_says():
-    """Each step's, in the table of the same order."""
-    said = re.findall(r'^  (?:needed|wished) "([^"]+)" "([^"]+)"', (ROOT / ".ci/setup").read_text(), re.M)
+def test_the_page_has_the_sizes_that_the_setup_prints():
+    """The rows of the page's table are in the order of the steps."""
+    sizes = re.findall(r'^  (?:needed|wished) "([^"]+)" "([^"]+)"', (ROOT / ".ci/setup").read_text(), re.M)
     rows = re.findall(r"^\| ([\w' ]+?) +\| +([\w ]*?) *\| +(\d+ MB) \|", install_page.PAGE.read_text(), re.M)
     shown = {name: (down, disk) for name, down, disk in rows}
-    for name, size in said[:5]:
-        found = re.search(r"(\d+ MB) to download", size), re.search(r"(\d+ MB) on disk", size)
-        assert tuple(one[1] if one else "" for one in found) == shown[name], name
+    for name, size in sizes[:5]:
+        matches = re.search(r"(\d+ MB) to download", size), re.search(r"(\d+ MB) on disk", size)
+        assert tuple(match[1] if match else "" for match in matches) == shown[name], name
 
 
 @pytest.mark.parametrize("target", ["say-bench", "say-test", "say-test ALL=1", "say-test ALL=nightly"])
-def test_make_says_first_what_it_does_and_how_long(target):
-    """Before anything is set up."""
+def test_make_first_prints_what_it_does_and_how_long_it_takes(target):
+    """The message comes before anything is set up."""
     done = subprocess.run(["make", "-s", *target.split()], cwd=ROOT, capture_output=True, text=True)
     assert re.match(
         r"make (bench|test): sets up what is missing, then .* about (five|\d+) minutes|.*an hour", done.stdout

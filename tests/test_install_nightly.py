@@ -1,4 +1,4 @@
-"""`pip install .`, archives and the set-up: all files are there, the sizes are those said, and nothing is silent."""
+"""`pip install .`, archives and setup: all files are there, stated sizes are correct, and progress is shown."""
 
 import json
 import os
@@ -19,7 +19,7 @@ ROW = ("quality", "--encoding", "octahedral", "--storage", "rg8", "--normals", "
 
 
 def interpreter(version: str) -> str:
-    """A Python of that version: on the path, or one of pyenv's. Skips the test where there is none."""
+    """Return a Python of that version, from the path or from pyenv. Skip the test if none is found."""
     kept = sorted(Path("~/.pyenv/versions").expanduser().glob(f"{version}.*/bin/python{version}"))
     for path in (shutil.which(f"python{version}"), *map(str, kept)):
         if path and subprocess.run([path, "-c", "import venv"], capture_output=True).returncode == 0:
@@ -29,11 +29,11 @@ def interpreter(version: str) -> str:
 
 @pytest.mark.parametrize("version", PYTHONS)
 def test_the_wheel_works_in_an_empty_environment(version, tmp_path):
-    """By its dependencies alone, in each Python that is there: the row of this one, and within 900 MB."""
-    made = interpreter(version)
+    """In each Python found, its dependencies are enough for the rows of this checkout, and take less than 900 MB."""
+    python = interpreter(version)
     built = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", str(tmp_path)]
     subprocess.run([*built, str(copied(tmp_path / "checkout"))], check=True)
-    subprocess.run([made, "-m", "venv", str(tmp_path / "empty")], check=True)
+    subprocess.run([python, "-m", "venv", str(tmp_path / "empty")], check=True)
     own = tmp_path / "empty/bin/python"
     words = ("-m", "pip", "install", "-q", "--no-compile", "--constraint", str(ROOT / ".ci/constraints.txt"))
     done = subprocess.run([own, *words, *map(str, tmp_path.glob("*.whl"))], capture_output=True, text=True)
@@ -49,7 +49,7 @@ def test_the_wheel_works_in_an_empty_environment(version, tmp_path):
 
 
 def gate_by(python: Path, folder: Path) -> subprocess.CompletedProcess[str]:
-    """README's gate in an environment that has what README installs for it."""
+    """Run README's gate in an environment with the packages that README installs."""
     folder.mkdir()
     for name, text in NAMED.findall(PAGES[README]):
         (folder / name).write_text(text)
@@ -68,7 +68,7 @@ def row_by(program):
 
 
 def test_tests_pass_in_a_source_archive(tmp_path):
-    """Those that read the manual, the scripts and other tests."""
+    """These tests read the manual, the scripts and other tests."""
     words = ("-q", "-p", "no:cacheprovider", "tests/test_ci_scripts.py", "tests/test_container.py")
     unpacked = archived(tmp_path)
     done = subprocess.run([sys.executable, "-m", "pytest", *words], cwd=unpacked, capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""`pip install .`, archives and the set-up: all files are there, the sizes are those said, and nothing is silent."""
+"""`pip install .`, archives and setup: all files are there, stated sizes are correct, and progress is shown."""
 
 import shutil
 import subprocess
@@ -13,9 +13,9 @@ from packaging.utils import canonicalize_name
 from normalbench.bench.door.python import stub
 
 
-def test_the_page_has_the_sizes_of_what_is_installed():
-    """Those of the pinned packages, to a tenth; of what is not installed here nothing is known."""
-    there = {canonicalize_name(one.metadata["Name"]): one for one in distributions()}
+def test_the_page_has_the_installed_sizes():
+    """Sizes of the pinned packages are within a tenth of the page; extras that are not installed are not checked."""
+    there = {canonicalize_name(package.metadata["Name"]): package for package in distributions()}
     shown, seen = install_page.shown(), set()
     assert set(shown) == {"", *install_page.EXTRAS} and set(install_page.EXTRAS) == set(install_page.PROJECT[OPTIONAL])
     for extra, (_, disk) in shown.items():
@@ -23,8 +23,8 @@ def test_the_page_has_the_sizes_of_what_is_installed():
             names = install_page.added(extra, there)
         except KeyError:
             continue
-        found = sum(size_of(there[name]) for name in names) / 1e6
-        assert found == pytest.approx(disk, rel=0.1, abs=2), f"{extra or 'normalbench'}: python -m tests.install_page"
+        size = sum(size_of(there[name]) for name in names) / 1e6
+        assert size == pytest.approx(disk, rel=0.1, abs=2), f"{extra or 'normalbench'}: python -m tests.install_page"
         seen.add(extra)
     assert {"", "maps", "dev"} <= seen
     assert shown[""][1] < 900
@@ -34,7 +34,7 @@ OPTIONAL = "optional-dependencies"
 
 
 def size_of(package):
-    """What it has on disk, without what Python compiled."""
+    """Return the size of a package on disk in bytes, without Python's byte code."""
     paths = (path.locate() for path in package.files or () if path.suffix != ".pyc")
     return sum(path.stat().st_size for path in paths if path.is_file())
 
@@ -67,19 +67,19 @@ def test_an_install_is_whole_and_leaves_nothing_in_the_checkout(tmp_path):
 
 
 def copied(checkout, *more):
-    """The rooms of the package in a folder, and what pip reads; more files and folders of the checkout, where asked."""
+    """Copy the package's rooms, the files that pip reads and any other given paths to a folder; return the folder."""
     checkout.mkdir()
     for path in [ROOT / name for name in (*ROOMS, *BESIDE, *more)]:
         if path.is_dir():
-            made = shutil.ignore_patterns("__pycache__", ".pytest_cache", STUB)
-            shutil.copytree(path, checkout / path.name, ignore=made)
+            ignored = shutil.ignore_patterns("__pycache__", ".pytest_cache", STUB)
+            shutil.copytree(path, checkout / path.name, ignore=ignored)
         else:
             shutil.copy(path, checkout)
     return checkout
 
 
 def files_in(folder):
-    """The files below a folder, by their paths."""
+    """Return the paths of all files below a folder, relative to the folder."""
     return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
 
 
@@ -91,12 +91,12 @@ OTHERS = ("CONTRIBUTING.md", ".dockerignore", ".gitignore", ".pre-commit-hooks.y
 
 
 def test_a_source_archive_has_all_that_the_tests_need(tmp_path):
-    """Every file; at night tests pass in it."""
+    """A nightly test runs tests in the archive."""
     archived(tmp_path)
 
 
 def archived(folder):
-    """A source archive, unpacked."""
+    """Make and unpack a source archive, check that it has every file, and return its folder."""
     pytest.importorskip("setuptools", minversion="77", reason="pyproject.toml asks for it")
     checkout = copied(folder / "checkout", *FOR_TESTS, *OTHERS)
     before = files_in(checkout)

@@ -1,4 +1,4 @@
-"""The measured tables of the manual: pages have what was kept, to the letter; a nightly run measures it anew."""
+"""The measured tables of the manual: pages match the kept figures exactly; a nightly run measures them again."""
 
 import math
 import re
@@ -20,10 +20,10 @@ MARKER = re.compile(
 
 
 def kept_figures(marker: str, column: str) -> dict[tuple, object]:
-    """The kept figures of the columns of one name, by the encoding and the operation."""
+    """Return the kept figures of the columns with a name, by encoding and operation."""
     table = TABLES[marker]
-    columns = [at for at, each in enumerate(table.columns) if each.name == column]
-    return {(line[0], *table.columns[at].of.values()): line[at] for line in table.read().lines for at in columns}
+    columns = [nth for nth, each in enumerate(table.columns) if each.name == column]
+    return {(line[0], *table.columns[nth].of.values()): line[nth] for line in table.read().lines for nth in columns}
 
 
 def test_every_marker_has_a_table_and_every_table_a_marker():
@@ -33,7 +33,7 @@ def test_every_marker_has_a_table_and_every_table_a_marker():
 
 @pytest.mark.parametrize("marker", TABLES)
 def test_a_page_has_the_table_that_was_kept(marker):
-    """To the letter, and the table holds what the page concludes."""
+    """The text matches exactly, and the conclusions of the page hold for the table."""
     table = TABLES[marker]
     kept = table.read()
     _, text, _ = table.parts(page_with(marker)[1])
@@ -41,7 +41,7 @@ def test_a_page_has_the_table_that_was_kept(marker):
     table.holds(kept.lines)
 
 
-def test_the_bounds_are_those_that_are_computed():
+def test_the_bounds_of_the_manual_are_the_computed_bounds():
     by_domain = {"sphere": code_limit(2**16, SPHERE), "hemisphere": code_limit(2**16, HEMISPHERE)}
     limits = [line for line in TABLES["normalbench quality"].read().lines if line[0] == "limit"]
     assert [line[1] for line in limits] == list(by_domain)
@@ -64,15 +64,15 @@ def test_the_text_names_the_compilers_that_counted():
     assert {*named} == {*TABLES["normalbench cost nvidia"].read().drivers}
 
 
-def test_the_commands_of_the_headline_are_those_that_measure_it():
-    """Of `rg8`; the costs of both storages are counted by one command."""
+def test_the_commands_of_the_headline_measure_it():
+    """The commands are for `rg8`; one command counts the costs of both storages."""
     page = PAGES[ROOT / "docs/reading-a-row.md"]
     shown = set(re.findall(r"^    normalbench (.* --encoding optimised_rings.*)$", page, re.M))
     measured = {row.partition(",warped_cube")[0] for row in TABLES["headline"].rows if "--storage rgb10a2" not in row}
     assert shown == measured
 
 
-def test_the_articles_figures_are_those_it_printed():
+def test_figures_of_the_article_are_as_printed_there():
     for (name, *_), psnr in kept_figures("normalbench run", "article_db").items():
         assert psnr == published.PSNR_DB.get(name)
     for (name, operation, *by), count in kept_figures("normalbench cost", "instructions").items():
@@ -84,17 +84,17 @@ def test_the_articles_figures_are_those_it_printed():
     "marker, row",
     [("normalbench cost vendors", r"\| (encode|decode)"), ("normalbench cost nvidia", r"\| to (encode|decode)")],
 )
-def test_the_orders_are_those_of_the_counts(marker, row):
-    """From cheap to dear, by the first GPU of each column; `and` joins equal ones."""
+def test_the_stated_orders_match_the_counts(marker, row):
+    """Orders run from cheap to expensive, by the first GPU of each column; `and` joins equal counts."""
     counts = kept_figures(marker, "instructions")
     families = list(dict.fromkeys(family for _, _, family in counts))
     orders = re.findall(rf"^{row} \| (.+) \| (.+) \| (.+) \|$", VENDORS, re.M)
     assert len(orders) == 4
     for operation, *columns in orders:
         for family, names in zip(families, columns, strict=False):
-            found = [[counts[name, operation, family] for name in same.split(" and ")] for same in names.split(", ")]
-            assert found == sorted(found), (operation, family, names)
-            assert all(len(set(same)) == 1 for same in found), (operation, family, names)
+            order = [[counts[name, operation, family] for name in same.split(" and ")] for same in names.split(", ")]
+            assert order == sorted(order), (operation, family, names)
+            assert all(len(set(same)) == 1 for same in order), (operation, family, names)
 
 
 def test_every_published_figure_has_a_verdict():

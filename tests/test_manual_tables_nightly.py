@@ -1,4 +1,4 @@
-"""The measured tables of the manual: pages have what was kept, to the letter; a nightly run measures it anew."""
+"""The measured tables of the manual: pages match the kept figures exactly; a nightly run measures them again."""
 
 import pytest
 from manual_tables.measuring import measure
@@ -6,8 +6,8 @@ from manual_tables.tables import TABLES
 
 
 @pytest.mark.parametrize("marker", TABLES)
-def test_a_table_is_measured_anew(marker, request):
-    """What a compiler counts is compared where its version is the same."""
+def test_a_table_has_the_same_figures_when_measured_again(marker, request):
+    """A compiler's counts are compared only if its version is the same."""
     table = TABLES[marker]
     for fixture in table.needs:
         request.getfixturevalue(fixture)

@@ -1,4 +1,4 @@
-"""Published figures, measured anew: every one has a verdict, and a wrong one is noticed."""
+"""Published figures, measured again: every figure has a verdict, and a wrong figure is noticed."""
 
 from dataclasses import dataclass, replace
 
@@ -12,7 +12,7 @@ FIGURES = [(source, figure) for source in SOURCES for figure in source.figures]
 
 @dataclass(frozen=True)
 class Known:
-    """A measure that gives what it is told."""
+    """A measure that returns the given value."""
 
     value: float | None
     scatter: float = 0.0
@@ -46,16 +46,16 @@ PRINTED = Figure("a mean", "a table", 0.337, 3, "degrees", Known(None))
         (None, {}, "not measured"),
     ],
 )
-def test_a_verdict_is_what_the_figures_say(ours, more, expected):
+def test_a_verdict_follows_from_the_figures(ours, more, expected):
     assert replace(PRINTED, **more).verdict(ours) == expected
 
 
-def test_samples_scatter():
+def test_a_verdict_allows_for_the_scatter_of_samples():
     figure = replace(PRINTED, ours=Known(None, scatter=0.01))
     assert figure.verdict(0.337 * 1.011) == "reproduced" and figure.verdict(0.337 * 1.013) == "unexplained"
 
 
-def test_there_are_more_than_eighty_and_each_is_named_once():
+def test_more_than_130_figures_have_unique_names():
     names = [(source.name, figure.what) for source, figure in FIGURES]
     assert len(names) > 130 and len(set(names)) == len(names)
     for source, figure in FIGURES:
@@ -68,7 +68,7 @@ def test_there_are_more_than_eighty_and_each_is_named_once():
 
 
 def test_a_wrong_constant_is_found_and_its_figure_named(monkeypatch):
-    """A hundredth off."""
+    """The constant is off by a hundredth."""
     right = next(figure for _, figure in FIGURES if figure.what == "mean of oct16, 8:8")
     wrong = Source("Z. Cigolle", (right, replace(right, what="a slip", value=right.value * 1.01)))
     monkeypatch.setattr(sources, "SOURCES", (wrong,))

@@ -1,12 +1,12 @@
-"""Published figures, measured anew: every one has a verdict, and a wrong one is noticed."""
+"""Published figures, measured again: every figure has a verdict, and a wrong figure is noticed."""
 
 import pytest
 from published import rows
 
 
 @pytest.mark.usefixtures("rows_are_shared")
-def test_what_is_counted_is_what_is_printed():
-    """Of the sources that take no samples: layouts, light, depth, points on rings."""
+def test_counted_figures_match_the_published_figures():
+    """The sources take no samples: layouts, light, depth, points on rings."""
     words = "smith,drobot,jo kyeong,ols,shared_exponent,kemen,golubev,normal_pack"
     verdicts = {row["figure"]: row["verdict"] for row in rows.rows(words)}
     assert len(verdicts) == 36

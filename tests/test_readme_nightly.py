@@ -1,4 +1,4 @@
-"""What README.md and every page of docs/ say is so: commands run, examples pass."""
+"""The claims of README.md and every page of docs/ are true: commands run, examples pass."""
 
 import pytest
 import test_readme

@@ -1,4 +1,4 @@
-"""What README.md and every page of docs/ say is so: commands run, examples pass."""
+"""The claims of README.md and every page of docs/ are true: commands run, examples pass."""
 
 import shlex
 import shutil
@@ -25,7 +25,7 @@ SMALL = {"count": "4096", "size": "160x90", "counts": "4", "repeats": "3"}
 
 
 def in_small(words: list[str]) -> list[str]:
-    """Options that a command does not say itself, for as little as it can measure."""
+    """Return options that make a command measure as little as possible, except options that it already has."""
     table = TABLES.get(words[1])
     known = {field.name for field in fields(table.options)} if table else set()
     return [word for name in SMALL if name in known and f"--{name}" not in words for word in (f"--{name}", SMALL[name])]
@@ -50,8 +50,8 @@ def test_every_command_runs_as_written(command, readers_folder, monkeypatch, cap
 
 
 @pytest.mark.usefixtures("gl")
-def test_the_tests_it_shows_pass(pytester):
-    """With the encoding it shows, by its commands: the one that writes the baseline first."""
+def test_tests_shown_in_the_manual_pass(pytester):
+    """They use the manual's encoding and commands; the command that writes the baseline runs first."""
     write_files(pytester.path)
     tests = sum(text.count("def test_") for name, text in FILES.items() if name.startswith("test_"))
     assert len(PYTEST) == 2
@@ -69,7 +69,7 @@ def test_the_tests_it_shows_pass(pytester):
         ("catalogue.py", '    "xy",\n', '    "xy",\n    "missing",\n', ["missing.py", "No module named"]),
     ],
 )
-def test_an_encoding_that_cannot_be_imported_is_one_line_and_help_still_helps(tmp_path, file, old, new, said):
+def test_an_encoding_that_fails_to_import_is_a_one_line_error_and_help_works(tmp_path, file, old, new, said):
     path = a_copy_of_the_rooms(tmp_path) / "encodings" / file
     path.write_text(path.read_text().replace(old, new))
     for arguments in (["list"], ["quality", "--encoding", "octahedral"]):

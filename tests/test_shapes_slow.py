@@ -1,4 +1,4 @@
-"""Annotations say the shapes of arrays: they are true in every call that other tests make."""
+"""Annotations state the shapes of arrays: they are true in every call that other tests make."""
 
 import os
 import subprocess
@@ -14,25 +14,25 @@ RUN = (
     "bench/measures/metrics/test_visibility.py",
     "bench/measures/metrics/test_visibility_slow.py",
     "bench/tables/test_depth_images.py",
-    "bench/tables/test_lights.py::test_the_bound_is_half_a_code_a_blend",
-    "bench/tables/test_lights_slow.py::test_the_device_adds_up_as_the_model_that_rounds_like_it",
-    "bench/tables/test_render.py::test_flip_is_measured_where_it_is_asked_for",
+    "bench/tables/test_lights.py::test_the_bound_is_half_a_code_per_blend",
+    "bench/tables/test_lights_slow.py::test_the_device_adds_up_like_the_model_with_its_rounding",
+    "bench/tables/test_render.py::test_flip_is_measured_on_request",
     "bench/tables/test_render.py::test_two_encoders_of_one_name_have_a_row_each",
     "encodings/test_curve_encodings.py",
     "encodings/test_depth.py",
     "encodings/test_fingerprint.py",
     "encodings/test_frame_encodings.py",
-    "encodings/test_kinds.py::test_a_codec_of_any_kind_is_asked_the_same",
+    "encodings/test_kinds.py::test_codecs_of_every_kind_have_the_same_interface",
     "encodings/test_light_encodings.py",
     "encodings/test_motion_encodings.py",
     "encodings/test_normal_encodings.py",
-    "encodings/test_storage.py::test_floats_of_any_form_are_the_nearest_ones_or_those_below",
+    "encodings/test_storage.py::test_floats_of_any_form_are_the_nearest_or_the_next_below",
 )
 
 
 @pytest.mark.usefixtures("gl")
-def test_every_call_has_the_shapes_that_annotations_say():
-    """Of an array that has another one pytest shows which, and of what function."""
+def test_every_call_has_the_annotated_shapes():
+    """If an array has another shape, pytest shows the array and its function."""
     words = "import sys, shape_checks; sys.exit(shape_checks.main(*sys.argv[1:]))"
     given = (
         "-n",

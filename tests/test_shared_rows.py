@@ -1,4 +1,4 @@
-"""Rows that tests share are those that would be measured."""
+"""Rows that tests share are the same as newly measured rows."""
 
 from types import SimpleNamespace
 

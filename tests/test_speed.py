@@ -1,4 +1,4 @@
-"""The programs of `python -m tests.speed`: that everybody measures the same, ratios, exponents, and the simulation."""
+"""The programs of `python -m tests.speed`: consistent measurements, ratios, exponents, and the simulation."""
 
 import json
 import shutil
@@ -20,22 +20,22 @@ FREE = Costs(start=0, task=0, row=0, byte=0)
 
 
 @needs_c
-def test_small_numbers_stay_what_they_are_beside_the_c_program():
-    """A library that is linked with -ffast-math makes its process take them for 0."""
+def test_the_c_program_does_not_flush_small_numbers_to_zero():
+    """A library that is linked with -ffast-math would flush them to zero in the whole process."""
     data = throughput.normals(WHOLE)
     c_baseline.work("xyz", "reading", data.n, data.view)()
     assert np.float64(5e-324) * 1 > 0 and np.float32(1e-45) * np.float32(1) > 0
 
 
-def test_a_command_takes_wall_and_processor_seconds(capsys):
+def test_a_command_reports_wall_and_processor_seconds(capsys):
     program.main(["commands", "--only", "help"])
     (row,) = json.loads(capsys.readouterr().out)
     assert row["typed"] == "normalbench --help" and 0.05 < row["wall_s"] < 30 and 0.05 < row["processor_s"] < 30, row
     assert row["cores"] >= 1 and row["load"] >= 0 and row["byte_code"] in (True, False)
 
 
-def test_the_exponent_is_the_slope_in_logarithms():
-    """By hand: 3 x^2 has 2, a constant 0; through 1, 10 and 1000 seconds at 1, 10 and 100 the slope is 1.5."""
+def test_the_exponent_is_the_slope_on_a_log_log_scale():
+    """By hand: 2 for 3 x^2, 0 for a constant, and 1.5 for 1, 10 and 1000 seconds at sizes 1, 10 and 100."""
     assert timing.exponent([1, 2, 4], [3, 12, 48]) == pytest.approx(2)
     assert timing.exponent([5, 50], [7, 7]) == pytest.approx(0)
     assert timing.exponent([1, 10, 100], [1, 10, 1000]) == pytest.approx(1.5)
@@ -43,7 +43,7 @@ def test_the_exponent_is_the_slope_in_logarithms():
 
 
 def test_each_row_has_the_exponent_from_the_next_smaller_size(monkeypatch):
-    """Sizes are rounded to those that there are, and timed once; the time here is the root of the size."""
+    """Sizes are rounded to available sizes, and each is timed once; here the time is the square root of the size."""
     kind = growth.Kind("", lambda size: size**0.5, (1,), 1, 10**9)
     monkeypatch.setattr(growth, "KINDS", {"codes": kind})
     rows = growth.rows("codes", (2**20, 60000, 65536))
@@ -53,8 +53,8 @@ def test_each_row_has_the_exponent_from_the_next_smaller_size(monkeypatch):
 
 
 @pytest.mark.usefixtures("gl")
-def test_what_is_timed_is_as_large_as_said(monkeypatch):
-    """Codecs of a table, normals of a row, objects and lights of a frame, codes of a search."""
+def test_timed_work_has_the_requested_size(monkeypatch):
+    """The size counts normals of a row, codecs of a table, objects or lights of a frame, or codes of a search."""
     rows, searched, frames = [], [], []
     monkeypatch.setattr(growth, "least_times", lambda works: [works[0](), [1.0]][1])
     monkeypatch.setattr(growth.quality, "rows", lambda cases, _: rows.append(cases) or [])
@@ -68,7 +68,7 @@ def test_what_is_timed_is_as_large_as_said(monkeypatch):
     assert frames == [(30, growth.LIGHTS), (growth.OBJECTS, 50)]
 
 
-def test_without_a_gl_device_the_row_says_so(monkeypatch):
+def test_a_row_without_an_opengl_driver_states_the_reason(monkeypatch):
     def missing():
         raise MissingError("no GL driver")
 
@@ -88,26 +88,26 @@ def test_without_a_gl_device_the_row_says_so(monkeypatch):
         (["simulate", "--record", "no"], "unknown table 'no'"),
     ],
 )
-def test_bad_input_is_one_line(words, said):
+def test_bad_input_is_a_one_line_error(words, said):
     with pytest.raises(SystemExit, match=r"^tests\.speed: ") as error:
         program.main(words)
     assert said in str(error.value) and "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize(("workers", "seconds"), [(1, 1024), (4, 256), (64, 16), (2000, 1)])
-def test_steps_of_a_second_are_shared_out(workers, seconds):
-    """1024 steps, where nothing else takes time."""
+def test_steps_of_one_second_are_shared_among_workers(workers, seconds):
+    """With 1024 steps and no other costs."""
     assert simulated(Load([1.0], 1024), workers, FREE).seconds == pytest.approx(seconds)
 
 
 def test_a_command_that_is_always_busy_is_the_limit():
-    """A row costs it 10 ms, and 1000 of them 10 s, however many workers there are; the last step takes one more."""
-    found = simulated(Load([1.0], 1000), 10**4, Costs(start=0, task=0, row=0.01, byte=0))
-    assert found.seconds == pytest.approx(11.0) and found.command == pytest.approx(10.0)
+    """At 10 ms per row, 1000 rows cost the command 10 s with any number of workers; the last step takes 1 s more."""
+    outcome = simulated(Load([1.0], 1000), 10**4, Costs(start=0, task=0, row=0.01, byte=0))
+    assert outcome.seconds == pytest.approx(11.0) and outcome.command == pytest.approx(10.0)
 
 
-def test_what_an_order_costs_comes_once_for_each_worker():
-    """Steps are made in 50 s; files are sent in a second."""
+def test_the_cost_of_preparation_is_paid_once_per_worker():
+    """Steps are prepared in 50 s; files are sent in 1 s."""
     assert simulated(Load([1.0], 100, prepare=50), 1, FREE).seconds == pytest.approx(150)
     assert simulated(Load([1.0], 100, prepare=50), 100, FREE).seconds == pytest.approx(51)
     load, costs = Load([1.0], 100, sent=1.0), Costs(start=0, task=0, row=0, byte=1.0)
@@ -115,12 +115,12 @@ def test_what_an_order_costs_comes_once_for_each_worker():
     assert simulated(load, 100, costs).command == pytest.approx(100)
 
 
-def test_steps_that_a_clock_is_read_for_are_measured_one_at_a_time():
+def test_timed_steps_are_measured_one_at_a_time():
     assert simulated(Load([1.0], 100, is_timed=True), 80, FREE).seconds == pytest.approx(100)
 
 
-def test_a_record_keeps_what_else_it_holds(tmp_path, monkeypatch):
-    """Of a table of a few steps; at night of all."""
+def test_a_new_record_keeps_the_other_records(tmp_path, monkeypatch):
+    """The table is recorded with a few of its steps; the nightly test uses all."""
     few = TABLES["vectors"].options(encoding="linear", storage="rg8")
     own = simulate.asked
     monkeypatch.setattr(simulate, "asked", lambda table, _, outputs: own(table, few, outputs))
@@ -128,12 +128,12 @@ def test_a_record_keeps_what_else_it_holds(tmp_path, monkeypatch):
 
 
 def check_record(path, monkeypatch, options) -> None:
-    """A record of `vectors` is put beside what there is: the seconds of each step that the options ask for."""
+    """Check that recording `vectors` keeps the other records and stores the seconds of each selected step."""
     path.write_text(json.dumps({"scenes": 1, "seconds": {"render": [5]}, "bytes": {"render": 7}}))
     monkeypatch.setattr(simulate, "measured_costs", lambda: FREE)
     simulate.record(["vectors"], path)
-    made = json.loads(path.read_text())
-    times = made["seconds"].pop("vectors")
-    assert times and all(time >= 0 for time in times) and made["bytes"].pop("vectors") == 0
-    assert made == {"scenes": 1, "seconds": {"render": [5]}, "bytes": {"render": 7}, "costs": vars(FREE)}
+    record = json.loads(path.read_text())
+    times = record["seconds"].pop("vectors")
+    assert times and all(time >= 0 for time in times) and record["bytes"].pop("vectors") == 0
+    assert record == {"scenes": 1, "seconds": {"render": [5]}, "bytes": {"render": 7}, "costs": vars(FREE)}
     assert len(times) == len(TABLES["vectors"].work.steps(options, TABLES["vectors"].outputs()))

@@ -1,4 +1,4 @@
-"""The programs of `python -m tests.speed`: that everybody measures the same, ratios, exponents, and the simulation."""
+"""The programs of `python -m tests.speed`: consistent measurements, ratios, exponents, and the simulation."""
 
 import json
 
@@ -14,19 +14,19 @@ from normalbench.encodings.catalogue import ENCODINGS
 
 @pytest.fixture
 def briefly(monkeypatch):
-    """Three turns, however short."""
+    """Timing without a minimum duration."""
     monkeypatch.setattr(timing, "LONG_ENOUGH_S", 0.0)
 
 
 def printed(capsys, *words):
-    """The rows that a program prints."""
+    """Return the rows that a program prints."""
     program.main([*words])
     return json.loads(capsys.readouterr().out)
 
 
 @pytest.mark.usefixtures("briefly")
-def test_ratios_are_of_the_rates_of_one_run(capsys):
-    """What is not written in C says so. Counts are rounded down to whole blocks, and measured once."""
+def test_ratios_compare_rates_of_the_same_run(capsys):
+    """A row without a C version states the reason. Counts are rounded down to whole blocks, and measured once."""
     counts = f"{WHOLE + 5},{WHOLE}"
     row, other = printed(capsys, "throughput", "--encoding", "octahedral,hemi_octahedral", "--counts", counts)
     assert row["count"] == other["count"] == WHOLE
@@ -40,9 +40,9 @@ def test_ratios_are_of_the_rates_of_one_run(capsys):
 
 @needs_c
 @pytest.mark.parametrize("name", sorted(c_baseline.ENCODINGS))
-def test_the_c_program_measures_what_the_table_measures(name):
-    """Mean, RMS and largest angle agree with the quality table's. With -ffast-math it rounds a few normals to another
-    code."""
+def test_the_c_program_measures_the_same_as_the_table(name):
+    """Its mean, RMS and largest angle agree with the quality table's. With -ffast-math it rounds a few normals to
+    another code."""
     data = throughput.normals(WHOLE)
     ours = throughput.by_jax(ENCODINGS[name], data)()
     total, squares, largest = c_baseline.work(name, "row", data.n, data.view)()

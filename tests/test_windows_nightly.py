@@ -1,4 +1,4 @@
-"""The program on Python of Windows, in Wine: its figures are Linux's, by JAX, OpenGL and Vulkan."""
+"""The program on Python for Windows, in Wine: its figures match Linux, by JAX, OpenGL and Vulkan."""
 
 import json
 import os
@@ -13,7 +13,7 @@ from screens import screen
 
 @pytest.fixture(scope="module")
 def windows(once):
-    """What a command does there."""
+    """Python for Windows, in Wine, with the program's packages."""
     if why := wine.why_not():
         pytest.skip(why)
     try:
@@ -30,7 +30,7 @@ def well(done):
 
 
 @pytest.mark.parametrize("backend", ["jax", "glsl", "wgsl"])
-def test_figures_are_those_of_linux(windows, tmp_path, backend):
+def test_figures_match_linux(windows, tmp_path, backend):
     words = ["quality", "--encoding", "octahedral,xyz", "--storage", "rg8,rgb10a2,rg16f", "--backend", backend]
     words += ["--count", "65536", "--format", "json"]
     # As there, without a C compiler.
@@ -49,7 +49,7 @@ def test_figures_are_those_of_linux(windows, tmp_path, backend):
     assert figures[0] == [pytest.approx(row, rel=1e-6, abs=1e-12) for row in figures[1]]
 
 
-def test_a_users_encoder_is_measured_and_one_that_does_not_end_is_ended(windows, tmp_path):
+def test_a_users_encoder_is_measured_and_an_endless_twin_is_stopped(windows, tmp_path):
     write_examples(tmp_path)
     words = [
         "quality",
@@ -69,8 +69,8 @@ def test_a_users_encoder_is_measured_and_one_that_does_not_end_is_ended(windows,
     assert "its Python twin did not end" in done.stderr, done.stderr
 
 
-def test_commands_end_well(windows, tmp_path):
-    """And write what they write on Linux."""
+def test_commands_succeed(windows, tmp_path):
+    """They write the same files as on Linux."""
     write_examples(tmp_path)
     assert "apt-get" not in well(windows.command(tmp_path, "doctor"))
     assert "pass" in well(windows.command(tmp_path, "check", "gates.toml"))

@@ -1,4 +1,4 @@
-"""The tiers of tests. A file's name ends in its tier; one whose name does not is quick. Each runs with those before."""
+"""The tiers of tests. A test file's name ends in its tier; other files are quick. A tier includes lower tiers."""
 
 from pathlib import Path
 
@@ -11,10 +11,10 @@ def tier_of(path: Path) -> str:
 
 
 def is_in(path: Path, last: str) -> bool:
-    """Return whether a test file is run where this is the last tier that is."""
+    """Whether a test file is run when this is the last tier."""
     return TIERS.index(tier_of(path)) <= TIERS.index(last)
 
 
 def files_of(tests: Path, name: str) -> list[Path]:
-    """Return the test files below a folder that have a name, whatever their tier: `test_x`, `test_x_slow` and so on."""
+    """Return the test files below a folder with a name in any tier: `test_x`, `test_x_slow` and so on."""
     return [path for end in ("", *(f"_{tier}" for tier in TIERS)) for path in tests.rglob(f"{name}{end}.py")]

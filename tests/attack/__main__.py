@@ -1,9 +1,9 @@
-"""Makes the cases of every kind from seeds, tries them, and prints a table of how they ended.
+"""Make the cases of every kind from seeds, try them, and print a table of how they ended.
 
     python -m tests.attack [--cases N] [--only WORD,...] [--results FILE] [--seed N]
 
-100 000 cases take some twenty minutes on two cores. With --results an attack that was ended goes on. Exit status: 0
-where every case was measured or refused in one line, 1 where not.
+100,000 cases take about twenty minutes on two cores. With --results a stopped attack continues. Exit status: 0 if
+every case was measured or refused in one line, 1 if not.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ Results = dict[str, dict[str, int]]
 
 
 def main() -> int:
-    """Exit status."""
+    """Run the attack and return the exit status."""
     asked = _asked()
     chunks = [chunk for chunk in chunks_of(asked.cases, asked.seed) if _is_named(chunk, asked.only)]
     if any(chunk.kind == TRANSLATION for chunk in chunks):
         print(*written_here()[1], sep="\n", file=sys.stderr)
     done = _read(asked.results)
     left = [chunk for chunk in chunks if chunk.name not in done]
-    for chunk, counts, said in _each(left):
+    for chunk, counts, lines in _each(left):
         done[chunk.name] = dict(counts)
-        _keep(asked.results, chunk, counts, said)
+        _keep(asked.results, chunk, counts, lines)
         print(f"{chunk.name}: {dict(counts)}", file=sys.stderr)
-        for line in said:
+        for line in lines:
             print(f"  {line}", file=sys.stderr)
     totals = _totals(chunks, done)
     _print(totals)
@@ -60,15 +60,15 @@ def _is_named(chunk: Chunk, only: str) -> bool:
 
 
 def _each(chunks: list[Chunk]) -> Iterator[tuple[Chunk, Counter[str], list[str]]]:
-    """Each chunk with its counts, two at once, each in a process of its own. One whose process dies is tried in halves,
-    down to the case."""
+    """Yield each chunk with its counts; two run at once, in separate processes. A chunk whose process dies is tried
+    in halves, down to the case."""
     with ThreadPoolExecutor(2) as pool:
         left = {pool.submit(_alone, chunk): chunk for chunk in chunks}
         while left:
             for future in wait(left, return_when=FIRST_COMPLETED).done:
-                chunk, found = left.pop(future), future.result()
-                if found:
-                    yield chunk, *found
+                chunk, answer = left.pop(future), future.result()
+                if answer:
+                    yield chunk, *answer
                 elif chunk.count == 1:
                     yield chunk, Counter({ODD: 1}), ["the process died, or did not end"]
                 else:
@@ -76,14 +76,14 @@ def _each(chunks: list[Chunk]) -> Iterator[tuple[Chunk, Counter[str], list[str]]
 
 
 def _alone(chunk: Chunk) -> tuple[Counter[str], list[str]] | None:
-    """How the cases of a chunk ended; None where their process does not end well."""
+    """Return how the cases of a chunk ended; None if their process crashed or did not end."""
     command = [sys.executable, str(HERE / "trying.py"), chunk.kind, str(chunk.first), str(chunk.count)]
     try:
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=limit_of(chunk))
-        counts, said = json.loads(done.stdout)
+        counts, lines = json.loads(done.stdout)
     except (subprocess.TimeoutExpired, ValueError):
         return None
-    return Counter(counts), said
+    return Counter(counts), lines
 
 
 def _read(path: Path | None) -> Results:

@@ -1,4 +1,4 @@
-"""Damaged shaders and twins: what a slip of the hand, or malice, makes of two good ones."""
+"""Damaged shaders and twins: what a typing error, or malice, does to a good shader and its twin."""
 
 from __future__ import annotations
 
@@ -60,42 +60,42 @@ PYTHON = (*IN_PYTHON.split(), *PHRASES)
 
 
 def slipped(text: str, words: tuple[str, ...], rng: np.random.Generator) -> bytes:
-    """A word put in or over another, a line lost or doubled, or bytes changed."""
+    """Return a text with a word inserted or overwritten, a line lost or doubled, or bytes changed."""
     if rng.random() < 0.2:
         return mutated(text.encode(), rng)
     lines = text.splitlines(keepends=True)
     for _ in range(rng.integers(1, 3)):
-        at = int(rng.integers(len(lines)))
-        line, place = lines[at], int(rng.integers(len(lines[at]) + 1))
+        index = int(rng.integers(len(lines)))
+        line, place = lines[index], int(rng.integers(len(lines[index]) + 1))
         word = words[rng.integers(len(words))]
         match rng.integers(4):
             case 0:
-                lines[at] = line[:place] + word + line[place:]
+                lines[index] = line[:place] + word + line[place:]
             case 1:
-                lines[at] = line[:place] + word + line[place + len(word) :]
+                lines[index] = line[:place] + word + line[place + len(word) :]
             case 2:
-                lines[at] = line * 2
+                lines[index] = line * 2
             case _:
-                lines[at] = "\n"
+                lines[index] = "\n"
     return "".join(lines).encode()
 
 
 def shaders(folder: Path) -> Attack:
-    """What the first look says of a shader, in this process: that it holds, or one line."""
+    """Return an attack on the first check of a shader, in this process: it is accepted, or refused in one line."""
     path = folder / "mine.glsl"
 
     def case(seed: int) -> str:
         path.write_bytes(slipped(SHADER, SLIPS, np.random.default_rng(seed)))
-        found = first_look(path)
-        said = found.get("error", found.get("broken", ""))
-        assert said.isprintable() and len(said) < 2000 and found, found
-        return REFUSED if said else MEASURED
+        look = first_look(path)
+        message = look.get("error", look.get("broken", ""))
+        assert message.isprintable() and len(message) < 2000 and look, look
+        return REFUSED if message else MEASURED
 
     return case
 
 
 def both(folder: Path) -> Attack:
-    """A shader and its twin as a command takes them, each in a process that is limited."""
+    """Return an attack on a shader and its twin as a command reads them, each in a limited process."""
     os.chdir(folder)
     paths = [folder / f"mine.{ending}" for ending in ("glsl", "py")]
 

@@ -50,7 +50,7 @@ TUNED = "best_fit"
 
 
 def picture(folder: Path, kind: str) -> bytes:
-    """A file of 12 x 16 normals."""
+    """Return a file of 12 x 16 normals."""
     n = some_normals()[:12, :16]
     eight, path = packed(n, np.uint8), folder / f"whole.{ENDINGS.get(kind, kind)}"
     match kind:
@@ -70,9 +70,10 @@ def picture(folder: Path, kind: str) -> bytes:
 
 
 def pictures(kind: str, folder: Path) -> Attack:
-    """Half of a PNG's cases keep its checksums right, half of the others' are of the header: what is inside is met.
+    """Return an attack on pictures: half of the cases change any bytes, others the header or the content of a PNG.
 
-    The pixels are read by this process, which must neither die nor hang.
+    A changed PNG keeps correct checksums, so that its content is reached. The pixels are read in this process, which
+    must neither die nor hang.
     """
     whole, path = picture(folder, kind), folder / f"a.{ENDINGS.get(kind, kind)}"
 
@@ -86,8 +87,8 @@ def pictures(kind: str, folder: Path) -> Attack:
             path.write_bytes(whole[:4] + mutated(whole[4:300], rng) + whole[300:])
         try:
             with patch.object(pixel_files, "_in_a_process", in_this_process):
-                made, _ = capture(path, Reading(nan_share=1.0, normalise=True))
-            assert np.isfinite(given(made)[0]).all()
+                captured, _ = capture(path, Reading(nan_share=1.0, normalise=True))
+            assert np.isfinite(given(captured)[0]).all()
         except UsageError as error:
             assert str(error).startswith(str(path)), str(error)
             return one_line(error)
@@ -97,7 +98,7 @@ def pictures(kind: str, folder: Path) -> Attack:
 
 
 def resealed(data: bytes, rng: np.random.Generator) -> bytes:
-    """A PNG whose header or rows are changed, each chunk with the checksum of what it then holds."""
+    """Return a PNG with a changed header or rows, and correct checksums for the new content."""
     head, rows = bytearray(data[16:29]), bytearray(zlib.decompress(data[41:-16]))
     if rng.random() < 0.3:
         head[rng.integers(3, 13)] = rng.integers(256)
@@ -108,7 +109,7 @@ def resealed(data: bytes, rng: np.random.Generator) -> bytes:
 
 
 def mesh_files(folder: Path) -> dict[str, bytes]:
-    """A file of each kind; that of glTF has its buffer beside it."""
+    """Return a file of each kind; the glTF file has its buffer next to it."""
     ball = sphere(1.0, 6, 4)
     document = as_document([ball], [True])
     document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]
@@ -129,7 +130,7 @@ def mesh_files(folder: Path) -> dict[str, bytes]:
 
 
 def dress(document: Document) -> None:
-    """A picture as two maps of the first material, and a light."""
+    """Add a picture as two maps of the first material, and a light."""
     picture = {"index": document.texture(png_bytes(packed(some_normals()[:4, :4], np.uint8)), wrapS=33071)}
     moved = {"extensions": {"KHR_texture_transform": {"offset": [0, 1], "rotation": 1.0, "scale": [2, 2]}}}
     document.json["materials"][0] |= {
@@ -144,7 +145,7 @@ def dress(document: Document) -> None:
 
 
 def meshes(kind: str, folder: Path) -> Attack:
-    """A scene that can be drawn, or one line."""
+    """Return an attack on mesh files: the scene can be drawn, or is refused in one line."""
     change = revalued if "values" in kind else mutated
     kind = kind.removesuffix(" values")
     data, path = mesh_files(folder)[kind], folder / f"a.{'obj' if kind == 'mtl' else kind.split()[-1]}"
@@ -168,7 +169,7 @@ def meshes(kind: str, folder: Path) -> Attack:
 
 
 def look_at_vertices(path: Path) -> None:
-    """Vertex normals are unit whatever a file says, or it is refused in one line."""
+    """Check that vertex normals have unit length, or that the file is refused in one line."""
     if path.suffix not in MESHES_BY_ENDING:
         return
     try:
@@ -183,16 +184,16 @@ ARRAYS = {"mean": np.arange(24, dtype=np.float32).reshape(2, 3, 4), "count": np.
 
 
 def flipped(data: bytes, rng: np.random.Generator) -> bytes:
-    """With one bit changed, a part cut out, or the end missing."""
-    made, at = bytearray(data), int(rng.integers(len(data)))
+    """Return data with one bit changed, a part cut out, or the end missing."""
+    changed, index = bytearray(data), int(rng.integers(len(data)))
     match rng.integers(3):
         case 0:
-            made[at] ^= 1 << int(rng.integers(8))
+            changed[index] ^= 1 << int(rng.integers(8))
         case 1:
-            del made[at : at + int(rng.integers(1, 9))]
+            del changed[index : index + int(rng.integers(1, 9))]
         case _:
-            del made[at:]
-    return bytes(made)
+            del changed[index:]
+    return bytes(changed)
 
 
 def written(save: Callable[[io.BytesIO], None]) -> bytes:
@@ -206,7 +207,7 @@ def read_table(path: Path) -> None:
 
 
 def archives(kind: str, folder: Path) -> Attack:
-    """Sphere maps, their arrays, and the tables that `tune` writes."""
+    """Return an attack on sphere maps, their arrays, and the tables that `tune` writes."""
     look_up = ENCODINGS[TUNED].look_up
     assert look_up
     whole, read = {

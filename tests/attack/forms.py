@@ -29,7 +29,7 @@ SETTINGS = (
 
 
 def forms(folder: Path) -> Attack:
-    """A file of an engine, with bytes changed, with functions wired at random, or with settings; one after another."""
+    """Return an attack on the files of engines in turn: changed bytes, functions wired at random, and settings."""
     files = sorted(path for path in FORMS.iterdir() if path.suffix in ENDINGS)
 
     def case(seed: int) -> str:
@@ -45,11 +45,11 @@ def forms(folder: Path) -> Attack:
         if rng.random() < 0.3:
             word += f":{SETTINGS[rng.integers(len(SETTINGS))]}"
         try:
-            made = translated(word)
+            translation = translated(word)
         except (UsageError, MissingError) as error:
             one_line(error)
             return REFUSED
-        assert len(made.texts) == 2 and "void main" not in made.texts[0], word
+        assert len(translation.texts) == 2 and "void main" not in translation.texts[0], word
         return MEASURED
 
     return case
@@ -61,8 +61,8 @@ def _wiring(rng: np.random.Generator) -> str:
     bound = [
         f"{PLACES[rng.integers(len(PLACES))]}={VALUES[rng.integers(len(VALUES))]}" for _ in range(rng.integers(0, 4))
     ]
-    made = f"->{PLACES[rng.integers(len(PLACES))]}" if rng.random() < 0.5 else ""
-    return f"({'; '.join(bound)}){made}"
+    target = f"->{PLACES[rng.integers(len(PLACES))]}" if rng.random() < 0.5 else ""
+    return f"({'; '.join(bound)}){target}"
 
 
 KINDS = (Kind("forms of engines", forms, 500, 0, seconds=60.0, chunk=20),)

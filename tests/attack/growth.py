@@ -1,10 +1,10 @@
-"""How time and memory grow with the size of what is read.
+"""How time and memory grow with the size of a file.
 
     python tests/attack/growth.py [KIND,...]
 
-Each reader reads files of four sizes, each ten times the one before, in a process of its own. Printed are seconds of
-processor time and MiB beyond what the smallest takes, and the exponents of both from each size to the next: 1 is
-linear. Exit status: 1 where the last exponent of either is above 1.05.
+Each reader reads files of four sizes, each ten times the size before, in a process of its own. The output is seconds
+of processor time and MiB beyond those of the smallest file, and the exponents of both from each size to the next: 1
+is linear. Exit status: 1 if the last exponent of either is above 1.05.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ LEAST_S, LEAST_MIB = 0.2, 8.0
 
 
 def normals(count: int, dtype: type = np.float32) -> np.ndarray:
-    """An image of one row, which is the shape that asks most of a reader."""
+    """Return an image of one row, the shape that is hardest for a reader."""
     n = np.random.default_rng(0).normal(size=(1, count, 3))
     n /= np.linalg.norm(n, axis=-1, keepdims=True)
     if np.issubdtype(dtype, np.integer):
@@ -61,11 +61,11 @@ def exr(path: Path, count: int) -> None:
 
 
 def grid(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """A hilly square of about so many triangles: its vertices and faces."""
+    """Return the vertices and faces of a hilly square of about `count` triangles."""
     side = max(math.isqrt(count // 2), 1)
     u, v = np.meshgrid(*[np.linspace(-1, 1, side + 1)] * 2)
-    at = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).ravel()
-    quads = np.stack([at, at + 1, at + side + 2, at, at + side + 2, at + side + 1], axis=1)
+    first = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).ravel()
+    quads = np.stack([first, first + 1, first + side + 2, first, first + side + 2, first + side + 1], axis=1)
     return np.stack([u, v, 0.2 * np.sin(3 * u + v)], axis=-1).reshape(-1, 3), quads.reshape(-1, 3)
 
 
@@ -90,8 +90,8 @@ def rows(path: Path, count: int) -> None:
 
 
 def baseline(path: Path, count: int) -> None:
-    made = [{"table": "quality", "key": {"seed": at}, "row": {"psnr_db": 1.5}} for at in range(count)]
-    path.write_text(json.dumps(made))
+    entries = [{"table": "quality", "key": {"seed": seed}, "row": {"psnr_db": 1.5}} for seed in range(count)]
+    path.write_text(json.dumps(entries))
 
 
 def gates(path: Path, count: int) -> None:
@@ -139,10 +139,10 @@ TURNS = 3
 
 
 def measured(kind: str, path: Path) -> tuple[float, float]:
-    """Seconds and MiB that reading a file takes, in a process of its own."""
+    """Return the seconds and MiB that reading a file takes in a process of its own."""
     command = [sys.executable, __file__, "--read", kind, str(path)]
-    found = [json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout) for _ in range(TURNS)]
-    seconds, mebibytes = map(min, zip(*found, strict=True))
+    readings = [json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout) for _ in range(TURNS)]
+    seconds, mebibytes = map(min, zip(*readings, strict=True))
     return seconds, mebibytes
 
 
@@ -159,33 +159,33 @@ def read_alone(kind: str, path: Path) -> None:
 
 
 def exponent(small: float, large: float, least: float) -> float:
-    """Of what grew so while the size grew tenfold; 0 where there is too little to tell."""
+    """Return the exponent of a quantity that grew while the size grew tenfold; 0 if it is too small to tell."""
     return math.log10(large / max(small, least)) if large > least else 0.0
 
 
 def grown(kind: str, folder: Path) -> bool:
-    """Print how one reader grows; whether it grows too fast."""
+    """Print how a reader grows; return whether it grows too fast."""
     ending, smallest, write, _ = READERS[kind]
-    found: list[tuple[float, float]] = []
-    for at in range(TIMES):
-        path = folder / f"{kind.replace(' ', '-')}-{at}{ending}"
-        write(path, smallest * 10**at)
-        found.append(measured(kind, path))
+    readings: list[tuple[float, float]] = []
+    for power in range(TIMES):
+        path = folder / f"{kind.replace(' ', '-')}-{power}{ending}"
+        write(path, smallest * 10**power)
+        readings.append(measured(kind, path))
         if path.is_file():
             path.unlink()
-    base = found[0]
-    times, memory = ([max(one[i] - base[i], 0.0) for one in found] for i in (0, 1))
+    base = readings[0]
+    times, memory = ([max(reading[i] - base[i], 0.0) for reading in readings] for i in (0, 1))
     exponents = [
         [exponent(a, b, least) for a, b in pairwise(values)]
         for values, least in ((times, LEAST_S), (memory, LEAST_MIB))
     ]
     shown = ["  ".join(f"{value:7.2f}" for value in values) for values in (times, memory, *exponents)]
     print(f"{kind:9} s {shown[0]}   MiB {shown[1]}   exponents {shown[2]} |{shown[3]}", flush=True)
-    return max(one[-1] for one in exponents) > MOST
+    return max(series[-1] for series in exponents) > MOST
 
 
 def main() -> int:
-    """Exit status."""
+    """Measure the readers and return the exit status."""
     if sys.argv[1:2] == ["--read"]:
         read_alone(sys.argv[2], Path(sys.argv[3]))
         return 0

@@ -1,4 +1,4 @@
-"""Commands that are interrupted, terminated and killed at moments of their start, their measuring and their page."""
+"""Commands that are interrupted, terminated and killed while they start, measure and write their page."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def started(folder: Path) -> subprocess.Popen[str]:
 
 
 def interruptions(folder: Path) -> Attack:
-    """One interruption each; then the same command again, which leaves the rows of a run that nobody disturbed."""
+    """Return an attack that interrupts a run once; the same command then completes the rows of an undisturbed run."""
     began = time.monotonic()
     status, err = ended(started(folder), 120)
     whole, takes = (folder / "run" / "rows.jsonl").read_bytes(), time.monotonic() - began

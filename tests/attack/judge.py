@@ -1,4 +1,4 @@
-"""Texts at the judge of what compilers are given: joins, comments, directives and macros, each from a seed."""
+"""Texts for the judge of compiler input: joins, comments, directives and macros, each from a seed."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ PIECES = (
 
 
 def text_of(seed: int, most: int = 14) -> str:
-    """A few pieces one after another; each may be cut by a join, and each line may be a whole directive."""
+    """Return a few pieces in a row; a join may cut each piece, and a line may be a whole directive."""
     draw = random.Random(seed)
     parts = []
     for _ in range(draw.randint(1, most)):
@@ -102,7 +102,7 @@ def text_of(seed: int, most: int = 14) -> str:
 
 
 def _written(folder: Path, seed: int) -> Path:
-    """The file of a seed: with a text in it, in what it includes, or in its prelude."""
+    """Write the file of a seed: its text is in the file, in an included file, or in the file's prelude."""
     ending = ENDINGS[seed % len(ENDINGS)]
     path, part, note = folder / f"mine.{ending}", folder / f"part.{ending}", folder / "elsewhere" / "note.txt"
     note.parent.mkdir(exist_ok=True)
@@ -115,7 +115,7 @@ def _written(folder: Path, seed: int) -> Path:
 
 
 class _Stand:
-    """In place of Slang's compiler: refuses what was not judged, byte for byte, and compiles nothing."""
+    """A substitute for Slang's compiler that refuses any bytes that were not judged, and compiles nothing."""
 
     failed, said = False, ""
 
@@ -129,7 +129,7 @@ _seen: list[str] = []
 
 
 def _compare(given: str) -> None:
-    """By other rules than the judge's: no line of the text is anything but what it seems to be."""
+    """Check, by rules other than the judge's, that every line of the text is what it appears to be."""
     for line in given.split("\n"):
         first = line.strip()
         assert not first.endswith("\\") and "//" not in line and "/*" not in line, repr(line)
@@ -139,13 +139,13 @@ def _compare(given: str) -> None:
 
 
 def _remembering(text: str, *more):
-    made = judged(text, *more)
-    _seen[:] = [made.content]
-    return made
+    source = judged(text, *more)
+    _seen[:] = [source.content]
+    return source
 
 
 def boundary(folder: Path) -> Attack:
-    """Whatever a compiler is given was judged, in the same bytes."""
+    """Return an attack on the boundary: all text that a compiler gets was judged, in the same bytes."""
 
     def expanded(words: list[str]) -> str:
         given = Path(words[0]).read_bytes().decode()
@@ -162,15 +162,15 @@ def boundary(folder: Path) -> Attack:
             patch.object(languages_slang, "functions_of", lambda *_: []),
         ):
             answer = child.answer(UserFile(str(_written(folder, seed))), folder / "work")
-        said = str(answer.get("error", ""))
-        assert "\n" not in said and NEEDED not in str(answer.get("text", "")).replace("two()", "")
+        message = str(answer.get("error", ""))
+        assert "\n" not in message and NEEDED not in str(answer.get("text", "")).replace("two()", "")
         return MEASURED if _seen else REFUSED
 
     return case
 
 
 def compiled(folder: Path) -> Attack:
-    """No compiler reads the file elsewhere: the encoder would be whole with it."""
+    """Return an attack whose encoder lacks a note outside the folder: a case fails if a compiler reads the note."""
 
     def case(seed: int) -> str:
         try:
@@ -184,7 +184,7 @@ def compiled(folder: Path) -> Attack:
 
 
 def languages(folder: Path) -> Attack:
-    """A text that is judged for a language holds nothing that any compiler of it reads otherwise."""
+    """Return an attack on the judge of each language: no accepted line may have another meaning for a compiler."""
     del folder
 
     def case(seed: int) -> str:

@@ -1,10 +1,11 @@
-"""A run that is ended again and again, at random moments, and goes on each time.
+"""A run that is stopped again and again, at random moments, and continues each time.
 
     python tests/attack/kills.py [--kills N] [--seed N] [ARGUMENT of `normalbench run` ...]
 
-One run is left alone. Another is interrupted, terminated or killed, at its start-up, its measuring or its page, and the
-same command goes on with it. Each time it is whole, its files are compared with those of the first, and it begins anew.
-Exit status: 1 where anything else happens. 200 kills of the default run take most of an hour.
+One run is not disturbed. Another is interrupted, terminated or killed while it starts, measures or writes its page,
+and the same command continues it. Each time it is complete, its files are compared with those of the first run, and
+it starts from the beginning. Exit status: 1 if anything else happens. 200 kills of the default run take almost an
+hour.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def started(folder: Path, arguments: list[str]) -> subprocess.Popen[str]:
 
 
 def figures(folder: Path) -> dict[str, list[dict[str, Any]]]:
-    """A run's rows without what a clock says."""
+    """Return a run's rows without times."""
     return {name: [_without_times(name, row) for row in rows] for name, rows in read_run(folder).tables.items()}
 
 
@@ -55,7 +56,7 @@ def _without_times(name: str, row: dict[str, Any]) -> dict[str, Any]:
 
 
 def images(folder: Path) -> dict[str, bytes]:
-    """A run's pictures, without charts, which show times."""
+    """Return a run's pictures except charts, which show times."""
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in sorted(folder.rglob("*"))
@@ -68,24 +69,24 @@ def names(folder: Path) -> set[str]:
 
 
 def differs(killed: Path, alone: Path) -> list[str]:
-    """What a resumed run has that the one left alone has not."""
-    said = []
+    """Return the differences between a resumed run and the undisturbed run."""
+    differences = []
     if odd := names(killed) ^ names(alone):
-        said.append(f"other files: {sorted(odd)[:5]}")
+        differences.append(f"other files: {sorted(odd)[:5]}")
     if figures(killed) != figures(alone):
-        said.append("other figures")
+        differences.append("other figures")
     if images(killed) != images(alone):
-        said.append("other pictures")
-    return said
+        differences.append("other pictures")
+    return differences
 
 
 def is_odd(status: int, err: str, number: signal.Signals) -> bool:
-    """Whether a process ended neither by itself nor as the signal says."""
+    """Whether a process ended neither by itself nor as the signal requires."""
     return status not in (0, STATUS[number], -number) or any(trace in err for trace in TRACES)
 
 
 def main() -> int:
-    """Exit status."""
+    """Run the attack and return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=0)
@@ -99,10 +100,10 @@ def main() -> int:
             sys.exit(f"the run that was left alone: status {process.returncode}: {err}")
 
         def compare() -> None:
-            said = differs(killed, alone)
-            odd.extend(said)
+            differences = differs(killed, alone)
+            odd.extend(differences)
             ended["whole"] += 1
-            print(f"whole: {said or 'the same'}", file=sys.stderr)
+            print(f"whole: {differences or 'the same'}", file=sys.stderr)
             shutil.rmtree(killed)
 
         for kill in range(asked.kills):

@@ -1,4 +1,4 @@
-"""What a kind of attack is, and how a case of it may end."""
+"""The kinds of attack, and how a case may end."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class Kind:
     """A kind of attack.
 
     Attributes:
-        name: as the table has it.
-        prepare: makes what all cases need, in an empty folder.
-        cases: how many there are in the whole.
-        few: how many the suite tries.
-        seconds: how much processor time a case may take.
-        chunk: how many cases a process is given at once.
+        name: its name in the table.
+        prepare: a function that makes what all cases need, in an empty folder.
+        cases: number of cases in the whole attack.
+        few: number of cases that the test suite tries.
+        seconds: processor time that a case may take.
+        chunk: number of cases that a process is given at once.
         reads_here_only: whether no file outside its folder may be opened.
     """
 
@@ -41,7 +41,7 @@ class Kind:
 
 
 def command(*words: str) -> tuple[int, str, str]:
-    """A command line in this process: its exit status, and what it says to either stream."""
+    """Run a command line in this process; return its exit status, output and errors."""
     out, err = io.StringIO(), io.StringIO()
     with redirect_stdout(out), redirect_stderr(err), patch.object(sys, "argv", ["normalbench", *words]):
         try:
@@ -52,7 +52,7 @@ def command(*words: str) -> tuple[int, str, str]:
 
 
 def outcome(status: int, err: str) -> str:
-    """How a command ended: well, or refused in one line. Raises AssertionError for anything else."""
+    """Return how a command ended: measured, or refused in one line. Raises AssertionError for anything else."""
     assert status in (0, 1, 2, 3), f"status {status}: {err}"
     lines = err.splitlines()
     assert all(line.startswith("normalbench: ") and line.isprintable() for line in lines), err
@@ -63,6 +63,6 @@ def outcome(status: int, err: str) -> str:
 
 
 def one_line(error: Exception) -> str:
-    """A refusal that a reader of files raises."""
+    """Check that an error of a file reader is one line, and return REFUSED."""
     assert str(error) and "\n" not in str(error), str(error)
     return REFUSED

@@ -27,7 +27,7 @@ CONSTANTS = 2
 
 @dataclass
 class Scope:
-    """What is known in a block, by name: its type, and whether it can be assigned to."""
+    """The variables of a block by name: the type, and whether the variable can be assigned to."""
 
     names: dict[str, tuple[str, bool]] = field(default_factory=dict)
 
@@ -64,16 +64,16 @@ class Program:
         return str(self.rng.integers(-16, 17) / 8)
 
     def known(self, kind: str, is_changed: bool = False) -> list[str]:
-        """The variables of a type that are not hidden."""
-        found: dict[str, tuple[str, bool]] = {}
+        """Return the visible variables of a type."""
+        variables: dict[str, tuple[str, bool]] = {}
         for scope in self.scopes:
-            found |= scope.names
-        return [name for name, (one, changes) in found.items() if one == kind and (changes or not is_changed)]
+            variables |= scope.names
+        return [name for name, (sort, changes) in variables.items() if sort == kind and (changes or not is_changed)]
 
     # Expressions.
 
     def value(self, kind: str, depth: int = 0) -> str:
-        """An expression of a type."""
+        """Return an expression of a type."""
         ways: list[Callable[[int], str]] = getattr(self, f"_{kind}")()
         if depth > 3:
             return self._leaf(kind)
@@ -92,7 +92,7 @@ class Program:
 
     def _F(self) -> list[Callable[[int], str]]:  # noqa: N802 (of a type)
         v = self.value
-        found = [
+        choices = [
             lambda _: self._leaf("F"),
             lambda d: f"({v('F', d)} {self.one('+', '-', '*')} {v('F', d)})",
             lambda d: f"{self.one('abs', 'floor', 'ceil')}({v('F', d)})",
@@ -106,16 +106,16 @@ class Program:
             self.remainder,
         ]
         if self.tables:
-            found.append(self.element)
+            choices.append(self.element)
         if self.known("S"):
-            found.append(lambda _: f"{self.one(*self.known('S'))}.{self.one('a', 'b.x', 'b.y')}")
+            choices.append(lambda _: f"{self.one(*self.known('S'))}.{self.one('a', 'b.x', 'b.y')}")
         if self.functions:
-            found.append(lambda d: self.called("F", d))
-        return found
+            choices.append(lambda d: self.called("F", d))
+        return choices
 
     def _I(self) -> list[Callable[[int], str]]:  # noqa: N802 (of a type)
         v = self.value
-        found = [
+        choices = [
             lambda _: self._leaf("I"),
             lambda d: f"({v('I', d)} {self.one('+', '-')} {v('I', d)})",
             lambda d: f"({v('I', d)} & {self.rng.integers(1, 15)})",
@@ -126,8 +126,8 @@ class Program:
         ]
         # WGSL alone defines the remainders of negative numbers whose signs differ.
         inner = "({})" if self.language == "wgsl" else "abs({})"
-        found.append(lambda d: f"({inner.format(v('I', d))} {self.one('%', '/')} {self.rng.integers(2, 7)})")
-        return found
+        choices.append(lambda d: f"({inner.format(v('I', d))} {self.one('%', '/')} {self.rng.integers(2, 7)})")
+        return choices
 
     def shifted(self, depth: int) -> str:
         by = self.rng.integers(1, 4)
@@ -135,7 +135,7 @@ class Program:
 
     def _B(self) -> list[Callable[[int], str]]:  # noqa: N802 (of a type)
         v = self.value
-        found = [
+        choices = [
             lambda d: f"({v('F', d)} {self.one('<', '>', '<=', '>=')} {v('F', d)})",
             lambda d: f"({v('I', d)} {self.one('==', '!=', '<')} {v('I', d)})",
             lambda d: f"!{v('B', d)}",
@@ -143,19 +143,19 @@ class Program:
             lambda d: f"{self.one('any', 'all')}({self.truths(d)})",
         ]
         if self.language == "glsl":
-            found.append(lambda d: f"(floor({v('V', d)}) {self.one('==', '!=')} floor({v('V', d)}))")
+            choices.append(lambda d: f"(floor({v('V', d)}) {self.one('==', '!=')} floor({v('V', d)}))")
         if self.language == "wgsl":
-            found.append(lambda d: f"({v('B', d)} {self.one('&', '|')} {v('B', d)})")
-        return found
+            choices.append(lambda d: f"({v('B', d)} {self.one('&', '|')} {v('B', d)})")
+        return choices
 
     def truths(self, depth: int) -> str:
-        """One truth value for each component."""
+        """Return an expression with one truth value for each component."""
         a, b = self.value("V", depth), self.value("V", depth)
         return f"lessThan({a}, {b})" if self.language == "glsl" else f"({a} < {b})"
 
     def _V(self) -> list[Callable[[int], str]]:  # noqa: N802 (of a type)
         v = self.value
-        found = [
+        choices = [
             lambda _: self._leaf("V"),
             lambda d: f"{self.types['V']}({v('F', d)}, {v('F', d)})",
             lambda d: f"({v('V', d)} {self.one('+', '-', '*')} {v('V', d)})",
@@ -167,10 +167,10 @@ class Program:
             self.chosen_by_parts,
         ]
         if self.known("S"):
-            found.append(lambda _: f"{self.one(*self.known('S'))}.{self.one('b', 'b.yx')}")
+            choices.append(lambda _: f"{self.one(*self.known('S'))}.{self.one('b', 'b.yx')}")
         if self.functions:
-            found.append(lambda d: self.called("V", d))
-        return found
+            choices.append(lambda d: self.called("V", d))
+        return choices
 
     def chosen(self, kind: str, depth: int) -> str:
         condition, a, b = self.value("B", depth), self.value(kind, depth), self.value(kind, depth)
@@ -191,16 +191,16 @@ class Program:
         return f"{name}[{self.value('I', depth)} & {count - 1}]"
 
     def called(self, kind: str, depth: int) -> str:
-        of_kind = [one for one in self.functions if one[2] == kind and not any(one[0] in s.names for s in self.scopes)]
+        of_kind = [sig for sig in self.functions if sig[2] == kind and not any(sig[0] in s.names for s in self.scopes)]
         if not of_kind or depth > 2:
             return self._leaf(kind)
         name, given, _ = of_kind[self.rng.integers(len(of_kind))]
-        return f"{name}({', '.join(self.value(one, depth + 1) for one in given)})"
+        return f"{name}({', '.join(self.value(parameter, depth + 1) for parameter in given)})"
 
     # Statements.
 
     def bounded(self, kind: str) -> str:
-        """A value that stays small."""
+        """Return an expression whose value stays small."""
         value = self.value(kind)
         if kind == "F":
             return f"clamp({value}, -3.0, 3.0)"
@@ -212,7 +212,7 @@ class Program:
         return value
 
     def declare(self, kind: str, value: str | None = None, is_changed: bool = True) -> str:
-        """A variable, under a new name or one that hides another."""
+        """Return the declaration of a variable, with a new name or a name that hides another."""
         value = value or self.bounded(kind)
         here = self.scopes[-1].names
         free = [name for name in self.names if name not in here]
@@ -248,7 +248,7 @@ class Program:
         return ways[self.rng.integers(len(ways))]()
 
     def structure(self) -> str:
-        """A variable of the structure, whose name may be that of one around it."""
+        """Return the declaration of a structure variable, which may hide another in an outer block."""
         self.loops += 1
         name = self.one(f"q{self.loops}", "q0")
         if name in self.scopes[-1].names:
@@ -288,7 +288,7 @@ class Program:
         return f"{text} else {self.block(1)}" if self.chance(0.5) else text
 
     def loop(self) -> str:
-        """Of a few turns, by a counter that nothing else changes."""
+        """Return a loop of a few turns, with a counter that nothing else changes."""
         self.loops += 1
         i, turns = f"i{self.loops}", self.rng.integers(1, 4)
         ended = f" if ({self.value('B')}) {{ {self.one('break', 'continue')}; }}" if self.chance(0.3) else ""
@@ -299,7 +299,7 @@ class Program:
         return f"for (int {i} = 0; {i} < {turns}; {i}++) {inner}"
 
     def halving(self) -> str:
-        """A loop that asks a vector which changes in it, and turns four times at most."""
+        """Return a loop of at most four turns, whose condition depends on a vector that changes in the loop."""
         self.loops += 1
         v, count, inner = f"h{self.loops}", f"c{self.loops}", self.block(1)
         kinds = ("var", "var") if self.language == "wgsl" else (self.types["V"], "int")
@@ -309,29 +309,29 @@ class Program:
         return f"{begin} {loop} {self.declare('F', f'{v}.x + {v}.y')}"
 
     def array(self) -> str:
-        """A local array that is written and read."""
+        """Return the code of a local array that is written and read."""
         self.loops += 1
         name, values = f"l{self.loops}", [self.bounded("F"), self.bounded("F")]
-        at = f"[{self.value('I')} & 1]"
+        index = f"[{self.value('I')} & 1]"
         if self.language == "wgsl":
-            made = f"var {name} = array({', '.join(values)});"
+            declared = f"var {name} = array({', '.join(values)});"
         elif self.language == "glsl":
-            made = f"float {name}[2] = float[2]({', '.join(values)});"
+            declared = f"float {name}[2] = float[2]({', '.join(values)});"
         else:
-            made = f"float {name}[2] = {{ {', '.join(values)} }};"
-        return f"{made} {name}{at} = {self.bounded('F')}; {self.declare('F', f'{name}[0] + {name}[1] * 0.5')}"
+            declared = f"float {name}[2] = {{ {', '.join(values)} }};"
+        return f"{declared} {name}{index} = {self.bounded('F')}; {self.declare('F', f'{name}[0] + {name}[1] * 0.5')}"
 
     # The whole.
 
     def text(self) -> str:
-        """The program."""
+        """Return the program text."""
         kinds = self.types["F"], self.types["V"]
         struct = f"a: {kinds[0]}, b: {kinds[1]}" if self.language == "wgsl" else f"{kinds[0]} a; {kinds[1]} b;"
         end = "" if self.language == "wgsl" else ";"
         parts = [f"struct Pair {{ {struct} }}{end}"] if self.has_struct else []
-        parts += [self.table(at) for at in range(self.rng.integers(0, 3))]
-        parts += [self.constant(at) for at in range(CONSTANTS)]
-        parts += [self.function(at) for at in range(self.rng.integers(0, 3))]
+        parts += [self.table(number) for number in range(self.rng.integers(0, 3))]
+        parts += [self.constant(number) for number in range(CONSTANTS)]
+        parts += [self.function(number) for number in range(self.rng.integers(0, 3))]
         return "\n".join([*parts, self.encode(), self.decode(), ""])
 
     def table(self, at: int) -> str:
@@ -355,13 +355,13 @@ class Program:
         kind, given = self.one("F", "V"), [self.one("F", "V", "I") for _ in range(self.rng.integers(1, 3))]
         names = [str(name) for name in self.rng.choice(self.names, len(given), replace=False)]
         changes = self.language != "wgsl"
-        self.scopes.append(Scope({name: (one, changes) for name, one in zip(names, given, strict=True)}))
+        self.scopes.append(Scope({name: (parameter, changes) for name, parameter in zip(names, given, strict=True)}))
         body = " ".join(self.statement() for _ in range(2))
-        made = f"return {self.bounded(kind)};"
+        returned = f"return {self.bounded(kind)};"
         self.scopes.pop()
         name = f"f{at}"
         self.functions.append((name, given, kind))
-        return f"{self.head(name, names, given, kind)} {{ {body} {made} }}"
+        return f"{self.head(name, names, given, kind)} {{ {body} {returned} }}"
 
     def head(self, name: str, names: list[str], given: list[str], kind: str) -> str:
         if self.language == "wgsl":
@@ -388,5 +388,5 @@ class Program:
     def decode(self) -> str:
         w = self.types["W"]
         given, kinds = (["e", "view"], ["V", "W"]) if self.language == "glsl" else (["e"], ["V"])
-        made = f"return normalize({w}(e, 1.0 - abs(e.x) - abs(e.y)));"
-        return f"{self.head('mine_decode', given, kinds, 'W')} {{ {made} }}"
+        returned = f"return normalize({w}(e, 1.0 - abs(e.x) - abs(e.y)));"
+        return f"{self.head('mine_decode', given, kinds, 'W')} {{ {returned} }}"

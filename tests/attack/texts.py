@@ -57,7 +57,7 @@ EMPTY = TABLES["quality"].empty()
 
 
 def made_up(cases: Any, _: Any) -> Iterator[dict[str, Any]]:
-    """Rows without a measurement."""
+    """Return rows without measuring anything."""
     return (EMPTY | {"encoding": case.codec.name} for case in cases)
 
 
@@ -93,7 +93,7 @@ TEXTS = {
 
 
 def texts(kind: str, folder: Path) -> Attack:
-    """What it says, or one line that names the file."""
+    """Return an attack on a text file: it is read, or refused in one line that names the file."""
     name, text, read, refused = TEXTS[kind]
     path = folder / name
     os.chdir(folder)
@@ -121,7 +121,7 @@ CHECK = (
 
 
 def runs(commands: str, folder: Path) -> Attack:
-    """A folder of results that somebody edited: other bytes, or other values; half of them not finished."""
+    """Return an attack on an edited results folder: other bytes or other values; half of the runs are unfinished."""
     os.chdir(folder)
     status, _, err = command(*RUN, "-o", "whole")
     assert status == 0, err
@@ -143,12 +143,12 @@ def runs(commands: str, folder: Path) -> Attack:
         rng = np.random.default_rng(seed)
         words = ways[commands.split(",")[seed % len(commands.split(","))]]
         kept, lines = (facts, open_facts)[int(rng.integers(2))], rows.splitlines()
-        at = int(rng.integers(len(lines) + 1))
+        index = int(rng.integers(len(lines) + 1))
         change = (mutated, revalued)[int(rng.random() < 0.8)]
-        if at == len(lines):
+        if index == len(lines):
             kept = change(kept, rng)
         else:
-            lines[at] = change(lines[at], rng)
+            lines[index] = change(lines[index], rng)
         Path("run", "run.json").write_bytes(kept)
         Path("run", "rows.jsonl").write_bytes(b"\n".join(lines) + b"\n")
         status, _, err = command(*words)

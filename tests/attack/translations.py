@@ -1,4 +1,4 @@
-"""Programs from seeds, read in four languages and written in eight: what they mean must stay."""
+"""Programs from seeds, read in four languages and written in eight: their meaning must not change."""
 
 from __future__ import annotations
 
@@ -29,27 +29,27 @@ SEAMS = 1e-3
 
 
 def written_here() -> tuple[list[str], list[str]]:
-    """The languages that this machine runs, and a line with the reason for each other one."""
-    found, left_out = [], []
+    """Return the languages that this machine runs, and a line with the reason for every other language."""
+    languages, left_out = [], []
     for name in RUN:
         try:
             runner(name).how()
-            found.append(name)
+            languages.append(name)
         except (MissingError, NoDeviceError) as error:
             left_out.append(f"left out: programs written in {LANGUAGES[name].title}: {error}")
-    return found, left_out
+    return languages, left_out
 
 
 def translated_here(file: UserFile, by: str, kind: kinds.Kind) -> dict[str, object]:
-    """A translation in this process: the attack limits itself."""
-    found = answer(file, file.path.parent, by, kind)
-    if "error" in found:
-        raise UsageError(str(found["error"]))
-    return found
+    """Translate a file in this process, because the attack sets its own limits."""
+    translation = answer(file, file.path.parent, by, kind)
+    if "error" in translation:
+        raise UsageError(str(translation["error"]))
+    return translation
 
 
 def translations(folder: Path) -> Attack:
-    """A program that is measured as it is meant, and written in another language, or refused in one line."""
+    """Return an attack: a program is measured correctly and written in another language, or refused in one line."""
     translated._by_child = translated_here
     written, _ = written_here()
 
@@ -57,13 +57,13 @@ def translations(folder: Path) -> Attack:
         language = GIVEN[seed % len(GIVEN)]
         path = folder / f"mine.{language}"
         path.write_text(Program(language, seed).text())
-        found = first_look(path)
-        said = found.get("error", found.get("broken", ""))
-        assert "disagree" not in said, f"{said}\n{path.read_text()}"
-        if said:
-            assert said.isprintable() and len(said) < 2000, said
+        look = first_look(path)
+        message = look.get("error", look.get("broken", ""))
+        assert "disagree" not in message, f"{message}\n{path.read_text()}"
+        if message:
+            assert message.isprintable() and len(message) < 2000, message
             return REFUSED
-        encoding = read_encoding(path, "no twin", found.get("biased", False), found.get("by", ""))
+        encoding = read_encoding(path, "no twin", look.get("biased", False), look.get("by", ""))
         codec, to = Codec(encoding, STORAGES["rg16"], "nearest"), written[seed // len(GIVEN) % len(written)]
         try:
             code = code_of(codec, to, "p")

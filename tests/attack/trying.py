@@ -1,4 +1,4 @@
-"""Cases in a process of their own: how they ended, and what must not happen."""
+"""Cases in a process of their own: how they ended, and which outcomes are not allowed."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ ENOUGH = 5
 
 @dataclass(frozen=True)
 class Chunk:
-    """Cases of one kind with seeds that follow each other."""
+    """Cases of one kind with consecutive seeds."""
 
     kind: str
     first: int
@@ -57,7 +57,7 @@ class Chunk:
         return f"{self.kind} {self.first}+{self.count}"
 
     def halves(self) -> list[Chunk]:
-        """Two halves; of a single case, itself."""
+        """Return the two halves of the chunk; a single case stays whole."""
         if self.count == 1:
             return [self]
         half = self.count // 2
@@ -65,10 +65,10 @@ class Chunk:
 
 
 def chunks_of(cases: int, seed: int) -> list[Chunk]:
-    """The cases of every kind, in all about as many as are asked for; the slowest first."""
+    """Return the cases of every kind, about as many in total as requested; the slowest kinds come first."""
     share = cases / sum(kind.cases for kind in KINDS)
-    found = [chunk for kind in KINDS for chunk in _chunks(kind, max(round(kind.cases * share), 1), seed)]
-    return sorted(found, key=lambda chunk: -BY_NAME[chunk.kind].seconds)
+    chunks = [chunk for kind in KINDS for chunk in _chunks(kind, max(round(kind.cases * share), 1), seed)]
+    return sorted(chunks, key=lambda chunk: -BY_NAME[chunk.kind].seconds)
 
 
 def _chunks(kind: Kind, cases: int, seed: int) -> Iterator[Chunk]:
@@ -77,12 +77,12 @@ def _chunks(kind: Kind, cases: int, seed: int) -> Iterator[Chunk]:
 
 
 def limit_of(chunk: Chunk) -> float:
-    """Seconds after which its process hangs, and is not merely slow."""
+    """Return the seconds after which a chunk's process counts as hanging, not slow."""
     return 120 + chunk.count * BY_NAME[chunk.kind].seconds
 
 
 class TooLongError(BaseException):
-    """A case took longer than it may; no `except Exception` of the product swallows it."""
+    """A case took longer than allowed; no `except Exception` of the product catches this error."""
 
 
 def _too_long(*_: object) -> NoReturn:
@@ -90,8 +90,8 @@ def _too_long(*_: object) -> NoReturn:
 
 
 def tried(chunk: Chunk) -> tuple[Counter[str], list[str]]:
-    """How the cases ended, and a line for each of the first that ended as none may."""
-    kind, counts, said = BY_NAME[chunk.kind], Counter[str](), []
+    """Return how the cases ended, and a line for each of the first few that ended in a way that is not allowed."""
+    kind, counts, lines = BY_NAME[chunk.kind], Counter[str](), []
     here = Path.cwd()
     with tempfile.TemporaryDirectory(prefix="attack-", ignore_cleanup_errors=True) as folder:
         try:
@@ -102,14 +102,14 @@ def tried(chunk: Chunk) -> tuple[Counter[str], list[str]]:
             for seed in range(chunk.first, chunk.first + chunk.count):
                 ended, why = one(attack, kind, seed)
                 counts[ended] += 1
-                said += [f"seed {seed}: {why}"] * (ended == ODD and len(said) < ENOUGH)
+                lines += [f"seed {seed}: {why}"] * (ended == ODD and len(lines) < ENOUGH)
         finally:
             os.chdir(here)
-    return counts, said
+    return counts, lines
 
 
 def one(attack: Attack, kind: Kind, seed: int) -> tuple[str, str]:
-    """How a case ended, and why if that is not allowed."""
+    """Return how a case ended, and the reason if that is not allowed."""
     signal.signal(signal.SIGALRM, _too_long)
     # A case that waits for a pipe takes no processor time.
     signal.setitimer(signal.ITIMER_REAL, 5 * kind.seconds + 5)

@@ -64,7 +64,7 @@ WORDS = (*PLAIN.split(), *ODD, *LONG, "a folder", "best_fit:table=a folder")
 
 
 def prepare(folder: Path) -> None:
-    """Files of each odd kind: pipes, links that go round, what cannot be read, byte-order marks."""
+    """Write a file of each odd kind: pipes, links in a loop, unreadable files, byte-order marks."""
     os.chdir(folder)
     Path("a folder").mkdir(exist_ok=True)
     for name in ("pipe", "pipe.png", "pipe.npy", "pipe.glsl", "pipe.hlsl", "pipe.toml", "pipe.glb"):
@@ -92,12 +92,12 @@ MEASURING = "here it would be measured"
 
 
 def would_measure(*_: object) -> NoReturn:
-    """In place of the measurement, which for some words is of everything there is."""
+    """Raise an error instead of measuring, because some words select the whole catalogue."""
     raise UsageError(MEASURING)
 
 
 def odd_words(folder: Path) -> Attack:
-    """One or two odd words in a command; the command ends soon whatever they are."""
+    """Return an attack with one or more odd words in a command, which must always end soon."""
     prepare(folder)
 
     def case(seed: int) -> str:

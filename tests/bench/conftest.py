@@ -29,6 +29,6 @@ def slang():
 
 @pytest.fixture(params=["hlsl", "slang"])
 def ending(request):
-    """Each language by what its files end in."""
+    """The file extension of each language."""
     request.getfixturevalue(request.param)
     return request.param

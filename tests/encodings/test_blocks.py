@@ -1,4 +1,4 @@
-"""Decoders of compressed blocks, against texture2ddecoder's and the GL device's, and against values by hand."""
+"""Decoders of compressed blocks, compared with texture2ddecoder, the OpenGL device and values by hand."""
 
 import numpy as np
 import pytest
@@ -18,19 +18,19 @@ BC7, BC5, BC5_SIGNED, RG11, RG11_SIGNED = 0x8E8C, 0x8DBD, 0x8DBE, 0x9272, 0x9273
 
 
 def halves(decode, blocks, *options):
-    """Both halves of 16 bytes by a decoder of 8, (count, 16, 2)."""
-    return np.stack([decode(np.ascontiguousarray(blocks[:, at : at + 8]), *options) for at in (0, 8)], axis=2)
+    """Return both halves of 16 bytes by a decoder of 8, (count, 16, 2)."""
+    return np.stack([decode(np.ascontiguousarray(blocks[:, start : start + 8]), *options) for start in (0, 8)], axis=2)
 
 
 def on_device(gl, blocks, internal_format):
-    """Blocks as the GL device decodes them, (count, 16, 4); a row of blocks at a time."""
+    """Return blocks as the OpenGL device decodes them, (count, 16, 4); a row of blocks at a time."""
     rows = blocks.reshape(-1, 1000, 16)
     images = (device_texels(gl, row.tobytes(), (4000, 4), internal_format) for row in rows)
     return np.concatenate([by_block(image) for image in images])
 
 
-def test_bc5_is_what_an_independent_decoder_gives_before_it_rounds():
-    """texture2ddecoder cuts off to 8 bits, the specification does not: the whole steps agree bit for bit."""
+def test_bc5_matches_an_independent_decoder_before_rounding():
+    """texture2ddecoder truncates to 8 bits, the specification does not: the whole steps agree bit for bit."""
     blocks = random_blocks(COUNT, seed=3)
     expected = from_bgra(texture2ddecoder.decode_bc5(blocks.tobytes(), 4 * COUNT, 4), COUNT)[..., :2]
     wrong = (halves(bc4_parts, blocks) // PARTS != expected).any(axis=(1, 2))
@@ -40,18 +40,18 @@ def test_bc5_is_what_an_independent_decoder_gives_before_it_rounds():
 def test_the_device_decodes_bc5_within_two_steps(gl):
     """llvmpipe keeps 8 bits and is a step too low between ends in ascending order; the specification rounds nothing.
 
-    An H200 goes 0.3735 and 0.6265 of the way between such ends in place of 2/5 and 3/5, and keeps 8 bits as well.
+    An H200 goes 0.3735 and 0.6265 of the way between such ends instead of 2/5 and 3/5, and keeps 8 bits as well.
     """
     blocks = random_blocks(COUNT, seed=4)
-    for internal_format, is_signed, one in ((BC5, False, 255), (BC5_SIGNED, True, 127)):
-        apart = np.abs(on_device(gl, blocks, internal_format)[..., :2] - decode_bc5(blocks, is_signed)) * one
+    for internal_format, is_signed, scale in ((BC5, False, 255), (BC5_SIGNED, True, 127)):
+        apart = np.abs(on_device(gl, blocks, internal_format)[..., :2] - decode_bc5(blocks, is_signed)) * scale
         # Between the ends there are 255 steps, or 254.
         most = 2 if gl.is_software else (0.4 - 0.3735) * 255 + 1
         assert apart.max() < most, f"{apart.max()} steps, signed: {is_signed}"
 
 
 def test_values_between_the_ends_of_bc4_are_exact():
-    """Of the ends 255 and 0 the eight values are 1, 0 and six sevenths, of 0 and 255 fifths, 0 and 1."""
+    """For the ends 255 and 0 the eight values are 1, 0 and sevenths; for 0 and 255 they are 0, 1 and fifths."""
     codes = sum(k % 8 << 3 * k for k in range(16)).to_bytes(6, "little")
     blocks = np.frombuffer(bytes([255, 0]) + codes + bytes([0, 255]) + codes, np.uint8).reshape(2, 8)
     down, up = bc4_parts(blocks)[:, :8] / (255 * PARTS)
@@ -60,12 +60,12 @@ def test_values_between_the_ends_of_bc4_are_exact():
 
 
 def test_the_lowest_end_of_signed_bc4_is_minus_one():
-    """-128 is -1, as -127 is; and it is compared before that."""
+    """-128 means -1, as -127 does, but the ends are compared before that."""
     blocks = np.frombuffer(bytes([0x80, 0x81]) + bytes(6), np.uint8).reshape(1, 8)
     assert (bc4_parts(blocks, True) == -127 * PARTS).all()
 
 
-def test_eac_is_what_an_independent_decoder_gives():
+def test_eac_matches_an_independent_decoder():
     """texture2ddecoder keeps the upper 8 of 11 bits."""
     blocks = random_blocks(COUNT, seed=5)
     expected = from_bgra(texture2ddecoder.decode_eacrg(blocks.tobytes(), 4 * COUNT, 4), COUNT)[..., :2]
@@ -74,8 +74,8 @@ def test_eac_is_what_an_independent_decoder_gives():
 
 
 @pytest.mark.parametrize(("internal_format", "is_signed", "one"), [(RG11, False, 2047), (RG11_SIGNED, True, 1023)])
-def test_eac_is_what_the_device_decodes(gl, internal_format, is_signed, one):
-    """In 11 bits, of which the device makes 16: a thirtieth of a step is its own rounding."""
+def test_eac_matches_the_device(gl, internal_format, is_signed, one):
+    """The device expands the 11 bits to 16; its own rounding is a thirtieth of a step."""
     blocks = random_blocks(COUNT, seed=6)
     apart = np.abs(on_device(gl, blocks, internal_format)[..., :2] * one - halves(eac_r11, blocks, is_signed))
     assert apart.max() < 0.04, f"{apart.max()} steps of {one}"

@@ -1,4 +1,4 @@
-"""Chains: an encoding of what comes back from another codec."""
+"""Chains: an encoding of the decoded result of another codec."""
 
 import numpy as np
 import pytest
@@ -19,16 +19,16 @@ def directions(count: int) -> np.ndarray:
 
 
 def codec(name: str, storage: str = "rgba16f"):
-    (found,) = codecs_named(name, storage, "nearest")
-    return found
+    (named_codec,) = codecs_named(name, storage, "nearest")
+    return named_codec
 
 
 def test_a_chain_is_worse_than_either():
     """RTX Remix and Bevy give a denoiser octahedral 12:12 in half floats: their errors add up as squares."""
     n = directions(2**16)
     rms = [
-        float(np.sqrt(np.mean(angles_deg(n, round_trip(one, n, n)) ** 2)))
-        for one in (codec("octahedral", "rgb8_12_12"), codec("xyz_renormalised"), codec(CHAIN))
+        float(np.sqrt(np.mean(angles_deg(n, round_trip(one_codec, n, n)) ** 2)))
+        for one_codec in (codec("octahedral", "rgb8_12_12"), codec("xyz_renormalised"), codec(CHAIN))
     ]
     assert rms[2] == pytest.approx(np.hypot(*rms[:2]), rel=0.02), rms
 
@@ -62,7 +62,7 @@ def test_a_chain_is_not_rendered():
         ("octahedral/all+xyz", "a chain has one codec and one encoding"),
     ],
 )
-def test_a_chain_that_cannot_be_is_one_line(word, said):
+def test_impossible_chain_is_a_one_line_error(word, said):
     with pytest.raises(UsageError) as caught:
         codecs_named(word, "rgba16f", "nearest")
     assert said in str(caught.value) and "\n" not in str(caught.value)

@@ -1,4 +1,4 @@
-"""Chains: an encoding of what comes back from another codec."""
+"""Chains: an encoding of the decoded result of another codec."""
 
 import numpy as np
 from test_chains import CHAIN, codec, directions
@@ -8,7 +8,7 @@ from normalbench.bench.tables.quality.measure import round_trip
 
 
 def test_a_chain_is_one_codec_after_the_other():
-    """To a unit in the last place of what is renormalised between them."""
+    """The results agree to a unit in the last place of the normals that are renormalised in between."""
     n = directions(4096)
     first = round_trip(codec("octahedral", "rgb8_12_12"), n, n)
     first = first / np.linalg.norm(first, axis=1, keepdims=True)

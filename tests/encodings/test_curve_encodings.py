@@ -1,4 +1,4 @@
-"""Curves: they rise from nothing to the range, come back, and have the values that their sources give."""
+"""Curves: they rise from 0 to the range, can be undone, and have the values of their sources."""
 
 import numpy as np
 import pytest
@@ -14,9 +14,8 @@ EVERY = sorted(CURVE_ENCODINGS)
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_a_curve_leads_from_nothing_to_the_range_and_back(name):
-    """0 and the range are the ends of the numbers, no step goes the other way, and what comes back is what was
-    given."""
+def test_a_curve_goes_from_0_to_the_range_and_back(name):
+    """0 and the range are the ends of the numbers, the curve is monotonic, and decoding gives back the input."""
     encoding, largest = CURVE_ENCODINGS[name], np.float32(range_of(CURVE_ENCODINGS[name]))
     x = np.sort(np.minimum(shares() * largest, largest))
     numbers = np.asarray(encoding.encode(x, largest))
@@ -50,12 +49,12 @@ def test_a_curve_leads_from_nothing_to_the_range_and_back(name):
     ],
 )
 def test_a_curve_has_the_values_of_its_source(name, limit, quantity, number):
-    found = float(CURVE_ENCODINGS[name].encode(np.float32(quantity), np.float32(limit)))
-    assert found == pytest.approx(number, abs=1e-6)
+    code = float(CURVE_ENCODINGS[name].encode(np.float32(quantity), np.float32(limit)))
+    assert code == pytest.approx(number, abs=1e-6)
 
 
 def test_unitys_polynomial_is_within_a_sixth_of_a_percent_of_its_curve():
-    """Its codes come back up to 0.00167 off without any storage: 0.4 steps of 8 bits."""
+    """Decoded values are up to 0.00167 off even without a storage: 0.4 steps of 8 bits."""
     fast = CURVE_ENCODINGS["fast_srgb"]
     x = np.linspace(0, 1, 100_001)
     off = np.abs(np.asarray(fast.decode(fast.encode(x, 1.0), 1.0)) - x).max()
@@ -66,11 +65,11 @@ def test_unitys_polynomial_is_within_a_sixth_of_a_percent_of_its_curve():
     "name, first",
     [("linear", 1 / 255), ("square_root", 1 / 255**2), ("squared", 1 / 255**0.5), ("srgb", 1 / 255 / 12.92)],
 )
-def test_the_first_step_from_nothing_is_the_curves(name, first):
-    """In 8 bits: what the code 1 stands for. Half of it, on the curve, still comes back as 0."""
+def test_the_first_step_above_0_is_that_of_the_curve(name, first):
+    """In 8 bits: the value of code 1. Values up to half a code, on the curve, decode to 0."""
     codec = CurveCodec(CURVE_ENCODINGS[name], CURVE_STORAGES["r8"])
-    found = np.asarray(codec.round_trip(np.linspace(0, 0.1, 200_001, dtype=np.float32)))
-    assert found[0] == 0 and found[found > 0].min() == pytest.approx(first, rel=1e-5)
+    decoded = np.asarray(codec.round_trip(np.linspace(0, 0.1, 200_001, dtype=np.float32)))
+    assert decoded[0] == 0 and decoded[decoded > 0].min() == pytest.approx(first, rel=1e-5)
 
 
 # A number f in [0, 1] and an integer in one byte, as engines write them: the byte of f and of an integer, and back.
@@ -83,7 +82,7 @@ MIXED = {
 
 @pytest.mark.parametrize("bits, written", MIXED.values(), ids=MIXED)
 @pytest.mark.parametrize("integer", [0, 1])
-def test_a_number_that_shares_a_byte_is_one_of_fewer_bits(bits, written, integer):
+def test_a_number_that_shares_a_byte_is_like_a_number_of_fewer_bits(bits, written, integer):
     """The hardware rounds the sum to a byte, in which the number has the steps of `unorm:7` or `unorm:5`."""
     f = np.random.default_rng(0).random(2**14)
     byte = np.rint(255 * written(f, integer))
@@ -94,7 +93,7 @@ def test_a_number_that_shares_a_byte_is_one_of_fewer_bits(bits, written, integer
     assert differs.mean() < 1e-3, f[differs][:3]
 
 
-def test_more_than_the_range_is_cut_off_by_fixed_point_and_kept_by_floats():
+def test_fixed_point_clips_values_above_the_range_and_floats_keep_them():
     x = np.float32([0.2])
     for storage, kept in (("r8", 0.1), ("r16f", 0.2)):
         codec = CurveCodec(CURVE_ENCODINGS["linear"], CURVE_STORAGES[storage], 0.1)

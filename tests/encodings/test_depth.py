@@ -1,4 +1,4 @@
-"""Depth codes: the projection is the encoding's own, signs survive, and no error is above its bound."""
+"""Depth encodings: their own projections, signs that survive, and errors within their bounds."""
 
 import jax
 import jax.numpy as jnp
@@ -25,7 +25,7 @@ STRANGE = np.float32([np.nan, np.inf, -np.inf, 3e38, -3e38, 1e-45, -1e-45, 1e-40
 
 @pytest.mark.parametrize("name", WINDOWS)
 def test_the_projection_is_the_encodings_own(name):
-    """What the inverse projection makes of an exact number lies at the depth it stands for, and on the eye's ray."""
+    """The inverse projection of an exact number is at the depth that the number stands for, and on the eye's ray."""
     encoding, camera = DEPTH_ENCODINGS[name], CAMERAS[0]
     depths, place = np.geomspace(camera.near, camera.far, 50), np.array([0.5, -0.25])
     numbers, _ = exact_and_units(encoding.encode, depths, camera)
@@ -44,16 +44,16 @@ def test_a_depth_buffer_clamps_as_the_emulation_does(gl, name):
     # Of 1/2, which lies between two codes, devices take either.
     numbers = np.float32([1.5, -1, 3e38, np.inf, -np.inf, 0, 1, 0.25])
     got = depth_passes.through(gl, storage, numbers)
-    found = same_bits(name, numbers, np.asarray(store_depth(jnp.asarray(numbers), storage)), got)
-    assert found.agrees, found
+    comparison = same_bits(name, numbers, np.asarray(store_depth(jnp.asarray(numbers), storage)), got)
+    assert comparison.agrees, comparison
 
 
 @pytest.mark.parametrize("far", [1.0, 1000.0])
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
-def test_sixteen_bits_in_8_to_8_are_exact_to_half_a_code(gl, backend, far):
+def test_16_bits_in_two_bytes_are_exact_to_half_a_code(gl, backend, far):
     """Linear depth, every code and every tie between codes with neighbours: the stored code is within half a code of
-    the exact one, but for what float32 does to the number (a rounding of d / far, one of its product with 65535, and
-    one of the share that comes back: two units in the last place), whether or not the low byte carries."""
+    the exact code, whether or not the low byte carries, except for the rounding of float32 (of d / far, of its
+    product with 65535 and of the share that comes back: two units in the last place)."""
     codec, camera = DepthCodec(DEPTH_ENCODINGS["linear"], DEPTH_STORAGES["packed16"]), Camera(0.1, far, 60.0, 1.0)
     codes = np.arange(2.0**16)
     depths = around(np.concatenate([codes, codes[:-1] + 0.5]) / 65535 * far, 1)
@@ -70,7 +70,7 @@ def test_sixteen_bits_in_8_to_8_are_exact_to_half_a_code(gl, backend, far):
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
 @pytest.mark.parametrize("storage", [name for name, s in DEPTH_STORAGES.items() if s.is_signed])
 @pytest.mark.parametrize("name", SIGNED)
-def test_the_sign_of_z_survives_at_the_least_depths(gl, name, storage, backend):
+def test_the_sign_of_z_survives_at_the_smallest_depths(gl, name, storage, backend):
     """Codes 0 and 1 of either sign, -0 and +0 too, come back with their signs and their magnitudes."""
     codec, camera = DepthCodec(DEPTH_ENCODINGS[name], DEPTH_STORAGES[storage]), CAMERAS[0]
     scale = codec.storage.scale // 2 or 2**10
@@ -83,9 +83,9 @@ def test_the_sign_of_z_survives_at_the_least_depths(gl, name, storage, backend):
 
 
 @pytest.mark.parametrize("codec", CODECS, ids=lambda codec: codec.name)
-def test_whatever_comes_in_a_number_is_stored(gl, codec):
-    """NaN, infinity and what is beyond far are stored as far is, under their sign where there is one; without one a
-    negative depth is stored as 0 is. Both languages, and no texel that is not a number."""
+def test_nan_infinity_and_depths_beyond_far_are_stored_as_finite_numbers(gl, codec):
+    """NaN, infinity and depths beyond far are stored like far, with their sign if the encoding has a sign; otherwise
+    a negative depth is stored like 0. This holds for both languages, and every texel is finite."""
     camera = CAMERAS[0]
     beyond = ~(abs(STRANGE) <= camera.far)
     magnitudes = np.where(beyond, np.float32(camera.far), abs(STRANGE))
@@ -112,9 +112,10 @@ DISTANCES = (1.0, 10.0, 100.0, 900.0)
 
 
 def test_reversed_depth_in_floats_beats_z_over_w_by_the_ratio_of_their_steps():
-    """z/w = 1 - r moves the depth as much as r does, d^2 (f - n) / (n f) for a unit. So where float32 holds the exact
-    number, and nothing else rounds, the errors are as the steps: 2^-24 for z/w in [1/2, 1), 2^(floor(log2 r) - 23) for
-    r. In the middle of an octave of r that is 2^(-1 - floor(log2 r)): 16 at depth 1 for near 0.1, 2^14 at 900."""
+    """z/w = 1 - r moves the depth as much as r does, d^2 (f - n) / (n f) per unit. So if float32 holds the exact
+    number and nothing else rounds, the errors are in the ratio of the steps: 2^-24 for z/w in [1/2, 1),
+    2^(floor(log2 r) - 23) for r. In the middle of an octave of r the ratio is 2^(-1 - floor(log2 r)): 16 at depth 1
+    for near 0.1, 2^14 at 900."""
     camera = Camera(0.1, 1000.0, 60.0, 1.0)
     for distance in DISTANCES:
         exact = np.random.default_rng(0).uniform(0.97 * distance, 1.03 * distance, 2**14)

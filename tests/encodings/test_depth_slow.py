@@ -1,4 +1,4 @@
-"""Depth codes: the projection is the encoding's own, signs survive, and no error is above its bound."""
+"""Depth encodings: their own projections, signs that survive, and errors within their bounds."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -16,7 +16,7 @@ from normalbench.encodings.storages.depth_storage import DEPTH_STORAGES
 
 
 def test_logarithms_and_powers_are_within_two_units_in_the_last_place():
-    """Against float64: every octave, both sides of 1, and what the decoder asks for."""
+    """Compared with float64 in every octave, on both sides of 1, and at the arguments of the decoder."""
     x = np.concatenate([2.0 ** np.random.default_rng(0).uniform(-120, 120, 2**16), 1 + np.linspace(-0.3, 0.45, 2**14)])
     x = x.astype(np.float32)
     log2 = np.log2(x.astype(np.float64))
@@ -33,9 +33,9 @@ def test_logarithms_and_powers_are_within_two_units_in_the_last_place():
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
 @pytest.mark.usefixtures("gl")
 def test_reversed_depth_beats_z_over_w_in_shaders_by_the_distance_over_near(backend):
-    """In float32 all the way each rounding of z/w, which is near 1, moves the depth by d^2 / n times 2^-24, and each of
-    r, which is relative, by d times 2^-24 (and the position's own do as much): the ratio is d / n times that of how
-    many roundings count, which are as many in both within a factor of two."""
+    """In float32 throughout, each rounding of z/w, which is near 1, moves the depth by d^2 / n times 2^-24, and each
+    rounding of r, which is relative, by d times 2^-24 (as do those of the position). The ratio is d / n times the
+    ratio of the numbers of roundings, which are equal within a factor of two."""
     camera = Camera(0.1, 1000.0, 60.0, 16 / 9)
     worst = {}
     for name in WINDOWS:
@@ -48,8 +48,9 @@ def test_reversed_depth_beats_z_over_w_in_shaders_by_the_distance_over_near(back
 
 
 def test_half_a_step_is_what_the_derivative_says():
-    """Linear: f / (2 (2^n - 1)) anywhere, twice that with a sign. z/w: d^2 (f - n) / (n f) times 1 / (2 (2^n - 1)), to
-    first order. Logarithmic: d ln(f / n) as much. Half floats: half of 2^-10 of the depth's octave."""
+    """Linear: f / (2 (2^n - 1)) anywhere, twice that with a sign. z/w: d^2 (f - n) / (n f) times 1 / (2 (2^n - 1)),
+    to first order. Logarithmic: d ln(f / n) times the same factor. Half floats: half of 2^-10 of the depth's
+    octave."""
     camera, d = Camera(0.1, 1000.0, 60.0, 1.0), np.array([1.0, 10.0])
 
     def half(encoding: str, storage: str) -> np.ndarray:
@@ -69,10 +70,10 @@ def test_an_error_is_along_the_eyes_ray():
     camera = Camera(0.1, 1000.0, 60.0, 16 / 9)
     on = depth.points(camera, None, 256, 0)
     codec = DepthCodec(DEPTH_ENCODINGS["linear"], DEPTH_STORAGES["packed16"])
-    found = depth.through(depth.DepthCase(codec, "eye_ray", "jax", camera, (None,), 256, 0), on)
+    measured = depth.through(depth.DepthCase(codec, "eye_ray", "jax", camera, (None,), 256, 0), on)
     back = np.asarray(codec.round_trip(jnp.asarray(on.depths), np.float32(0.1), np.float32(1000)), np.float64)
     expected = np.linalg.norm(on.rays(camera), axis=1) * abs(back - on.depths)
-    assert found.errors == pytest.approx(expected, rel=1e-3, abs=1e-3)
+    assert measured.errors == pytest.approx(expected, rel=1e-3, abs=1e-3)
 
 
 def cases(backend: str, camera: Camera) -> list:
@@ -88,13 +89,13 @@ def cases(backend: str, camera: Camera) -> list:
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
 @pytest.mark.usefixtures("gl")
 def test_no_error_is_above_its_bound(backend, camera):
-    """Every code in every storage by every way: each point's own bound, not the row's."""
+    """Every encoding in every storage, reconstructed in every way: each point has its own bound, not the row's."""
     for case in cases(backend, camera):
         on = depth.all_points(camera, case.distances, case.count, case.seed)
-        found = depth.through(case, on)
+        measured = depth.through(case, on)
         with np.errstate(invalid="ignore"):
-            share = np.where(np.isfinite(found.bounds), found.errors / found.bounds, 0)
+            share = np.where(np.isfinite(measured.bounds), measured.errors / measured.bounds, 0)
         i = int(np.argmax(share))
         story = f"{case.name} by {case.rebuilt}, depth {on.depths[i]!r}"
-        assert share[i] <= 1, f"{story}: off by {found.errors[i]:.6g}, bound {found.bounds[i]:.6g}"
-        assert not found.lost.any(), f"{case.name}: {found.lost.sum()} signs lost"
+        assert share[i] <= 1, f"{story}: off by {measured.errors[i]:.6g}, bound {measured.bounds[i]:.6g}"
+        assert not measured.lost.any(), f"{case.name}: {measured.lost.sum()} signs lost"

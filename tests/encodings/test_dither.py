@@ -1,4 +1,4 @@
-"""Noise before rounding: the tile is blue noise, the noise a step wide, and the mean of what is stored the code."""
+"""Noise before rounding: a tile of blue noise, one step wide, and a mean that nears the code."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -16,7 +16,7 @@ CODEC = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
 
 
 def low_share(tile: np.ndarray) -> float:
-    """Energy at frequencies below a tenth of a pixel's, of that of white noise."""
+    """Return the energy at frequencies below a tenth per pixel, relative to white noise."""
     energy = abs(np.fft.fft2(tile - tile.mean())) ** 2 / tile.size / tile.var()
     frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(SIZE), np.fft.fftfreq(SIZE)))
     return float(energy[(frequency > 0) & (frequency < 0.1)].mean())
@@ -28,16 +28,16 @@ def test_every_number_is_in_the_tile_once():
 
 
 def test_the_tile_has_little_energy_at_low_frequencies():
-    """Its own numbers in another order have a thousand times as much."""
-    found = low_share(blue_noise())
+    """The same numbers in random order have about a thousand times as much."""
+    share = low_share(blue_noise())
     white = low_share(np.random.default_rng(0).permutation(blue_noise().ravel()).reshape(SIZE, SIZE))
-    assert found < 1e-3, found
+    assert share < 1e-3, share
     assert 0.5 < white < 2, white
 
 
 @pytest.mark.parametrize("name", FIXED)
 def test_noise_is_a_step_wide(name):
-    """A step is what lies between two numbers that a channel tells apart."""
+    """A step is the distance between adjacent numbers of a channel."""
     codec = Codec(ENCODINGS["octahedral"], STORAGES[name])
     added = codec.dither(0).added.astype(np.float64)
     for number in range(2):
@@ -49,7 +49,7 @@ def test_noise_is_a_step_wide(name):
 
 
 def test_numbers_and_frames_have_noise_of_their_own():
-    """No part of the tile comes twice, and none is like another."""
+    """No part of the tile is used twice, and the parts are not correlated."""
     parts = [Codec(ENCODINGS["xyz"], STORAGES["rgb10a2"]).dither(frame).added[..., :NUMBERS] for frame in range(8)]
     several = np.concatenate([part.reshape(-1, NUMBERS) for part in parts], axis=1).T
     alike = np.corrcoef(several) - np.eye(len(several))
@@ -62,9 +62,9 @@ def test_the_mean_of_moving_noise_nears_the_code():
     step = STORAGES["rg8"].step(0)
 
     def off(frames: range) -> float:
-        """The error of the mean, root mean square, in steps."""
+        """Return the root mean square error of the mean, in steps."""
         noise = (np.moveaxis(CODEC.dither(frame).added[..., :2], -1, 0) for frame in frames)
-        stored = [np.array(CODEC.store(Vec2(*map(jnp.asarray, codes + one)))) for one in noise]
+        stored = [np.array(CODEC.store(Vec2(*map(jnp.asarray, codes + tile)))) for tile in noise]
         return float(np.sqrt(np.mean((np.mean(stored, axis=0) - codes) ** 2)) / step)
 
     # A number that is rounded up for a share p of frames is off by sqrt(p (1 - p)): a step / sqrt(6) over all p.
@@ -85,13 +85,13 @@ def test_the_mean_of_moving_noise_nears_the_code():
         ("octahedral_precise", "rg8", "nearest", "only with rounding to nearest"),
     ],
 )
-def test_what_is_not_dithered_says_why(encoding, storage, rounding, said):
+def test_codecs_that_are_not_dithered_say_why(encoding, storage, rounding, said):
     reason = Codec(ENCODINGS[encoding], STORAGES[storage], rounding).undithered
     assert reason and said in reason and "\n" not in reason
 
 
 def test_a_number_of_few_values_is_left_as_it_is():
-    """Of a cube's code the third number is one of six faces."""
+    """The third number of a cube code is one of six faces."""
     codec = Codec(ENCODINGS["cube"], STORAGES["rgb8_10_10_3"])
     added = codec.dither(0).added
     assert codec.undithered is None and CODEC.undithered is None

@@ -1,4 +1,4 @@
-"""Documents that others wrote, in JSON and in TOML: each number of them is finite, or is refused with its place."""
+"""JSON and TOML documents by others: every number is finite, or is refused with its place."""
 
 import pytest
 
@@ -48,6 +48,6 @@ def test_a_long_name_does_not_make_a_long_line():
 
 
 @pytest.mark.parametrize("data, said", [(b"\xff", "it is not text in UTF-8"), ("[" * 9999, "it is nested too deep")])
-def test_what_is_not_json_is_said(data, said):
+def test_invalid_json_is_refused_with_the_reason(data, said):
     with pytest.raises(ValueError, match=said):
         parsed_json(data)

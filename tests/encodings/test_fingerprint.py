@@ -1,4 +1,4 @@
-"""The fingerprint of an encoding: it changes with whatever makes its figures, and with nothing else."""
+"""The fingerprint of an encoding: it changes with everything that affects the figures, and with nothing else."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -27,7 +27,7 @@ def fingerprint(folder: Path, glsl: str = GLSL, twin: str = TWIN, scale: str = "
     return read_encoding(folder / "mine.glsl").fingerprint
 
 
-def test_it_is_the_files_wherever_they_lie(tmp_path):
+def test_the_fingerprint_does_not_depend_on_the_folder(tmp_path):
     first = fingerprint(tmp_path / "one")
     assert first == fingerprint(tmp_path / "other") and len(first) == 16 and int(first, 16)
 
@@ -41,18 +41,18 @@ def test_it_is_the_files_wherever_they_lie(tmp_path):
     ],
     ids=("glsl", "twin", "included"),
 )
-def test_one_changed_constant_in_a_users_file_changes_it(tmp_path, changed):
+def test_one_changed_constant_in_a_users_file_changes_the_fingerprint(tmp_path, changed):
     assert fingerprint(tmp_path) != fingerprint(tmp_path, **changed)
 
 
-def test_a_twin_that_is_there_is_part_of_it(tmp_path):
+def test_an_existing_twin_is_part_of_the_fingerprint(tmp_path):
     before = fingerprint(tmp_path)
     (tmp_path / "mine.py").unlink()
     assert read_encoding(tmp_path / "mine.glsl").fingerprint != before
 
 
-def test_what_the_name_does_not_say_changes_it():
-    """Parameters, tables and precise rounding of one pair of files; the name alone does not."""
+def test_parameters_tables_and_rounding_change_the_fingerprint():
+    """The files are the same. A new name alone does not change the fingerprint."""
     octahedral, stereographic, spherical = (ENCODINGS[n] for n in ("octahedral", "stereographic", "spherical_lut"))
     (sampler, table), *_ = spherical.tables().items()
     others = [

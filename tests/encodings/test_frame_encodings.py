@@ -1,4 +1,4 @@
-"""Tangent frame codes: no frame is far off, no hand is lost, and what was stored is stored again as it is."""
+"""Tangent frame encodings: limited errors, no lost hands, and frames that are stored again unchanged."""
 
 import inspect
 
@@ -32,7 +32,7 @@ def test_a_frame_encoding_is_complete(name):
 
 
 def angles_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """The angle of the rotation between frames, whatever their hands, in degrees."""
+    """Return the angle of the rotation between frames, whatever their hands, in degrees."""
     axes = []
     for frames in (one.astype(np.float64), other.astype(np.float64)):
         n, t = frames[:, :3], frames[:, 4:7]
@@ -53,10 +53,10 @@ STEPS = {"hexadecachoral": np.sqrt(48), "rotation_rodrigues": np.sqrt(12), "axis
 
 
 def most(codec: FrameCodec) -> float:
-    """What a frame can be off at most, in degrees, to first order.
+    """Return the largest possible error of a frame in degrees, to first order.
 
-    In steps of the widest number: sqrt(11) of smallest three, whose third number has steps twice as wide, where all
-    four are equal; 2.7 of the others. And what float32 adds.
+    In steps of the widest number: sqrt(11) for smallest three, whose third number has steps twice as wide, where all
+    four are equal; 2.7 for the others. The error of float32 is added.
     """
     step = max(2.0 / (codec.storage.levels(i) - 1) for i, levels in enumerate(codec.encoding.levels) if not levels)
     if codec.encoding.name == OF_A_ROOT:
@@ -68,21 +68,19 @@ def most(codec: FrameCodec) -> float:
 @pytest.mark.parametrize("codec", CODECS[:6], ids=lambda c: c.name)
 def test_no_frame_is_far_off_and_no_hand_is_lost(gl, codec):
     frames = padded(hard_frames())
-    for language, found in (("JAX", trip(codec)), ("GLSL", gl_trip(gl, codec))):
-        assert np.isfinite(found).all(), language
-        angles, lost = angles_between(frames, found), found[:, 3] != frames[:, 3]
+    for language, back in (("JAX", trip(codec)), ("GLSL", gl_trip(gl, codec))):
+        assert np.isfinite(back).all(), language
+        angles, lost = angles_between(frames, back), back[:, 3] != frames[:, 3]
         i = int(np.argmax(angles))
-        assert angles[i] <= most(codec), f"{language}: {frames[i]!r} is {found[i]!r}, {angles[i]:.4g} degrees off"
-        assert codec.encoding.hand_in is None or not lost.any(), (
-            f"{language}: {frames[lost][0]!r} is {found[lost][0]!r}"
-        )
+        assert angles[i] <= most(codec), f"{language}: {frames[i]!r} is {back[i]!r}, {angles[i]:.4g} degrees off"
+        assert codec.encoding.hand_in is None or not lost.any(), f"{language}: {frames[lost][0]!r} is {back[lost][0]!r}"
 
 
 @pytest.mark.parametrize("codec", CODECS[:6], ids=lambda c: c.name)
-def test_what_was_stored_is_stored_again_as_it_is(codec):
-    """A code stands for a frame whose code it is: always where the angle is of the stored normal. Few of a quaternion's
-    do not: of two components that are nearly equal the other becomes the largest, and four come back at length 1, which
-    is off their steps."""
+def test_a_decoded_frame_is_stored_again_unchanged(codec):
+    """A decoded frame has its own code: always if the angle is about the stored normal, and for nearly all
+    quaternions. If two components are nearly equal, the other may become the largest, and four components come
+    back at length 1, which is off their steps."""
     first = trip(codec)
     second = round_trip(codec)(first)
     moved = angles_between(first, second) > (BY_A_ROOT_DEG if codec.encoding.name == OF_A_ROOT else 1e-4)
@@ -100,15 +98,15 @@ def test_half_turns_and_the_identity_have_their_quaternions():
     assert quaternions == pytest.approx(expected, abs=1e-7)
 
 
-def test_the_angles_ends_are_one_angle():
-    """A tangent opposite to the fixed one is at -1 or 1, whichever: both come back as it."""
+def test_both_ends_of_the_angle_are_the_same_angle():
+    """A tangent opposite to the fixed tangent is stored as -1 or 1; both decode to the same tangent."""
     encoding = FRAME_ENCODINGS["octahedral_angle"]
     ends = np.float32([[0.3, -0.2, angle, 1] for angle in (-1, 1)])
-    one, other = decoded(encoding, ends)
-    assert one == pytest.approx(other, abs=2 * ULP)
+    lower, other = decoded(encoding, ends)
+    assert lower == pytest.approx(other, abs=2 * ULP)
 
 
-def test_a_number_of_many_values_is_laid_into_no_single_bit_that_nobody_said():
-    """qtangent's fourth number in the one bit of 10:10:11:1."""
-    found = FrameCodec(FRAME_ENCODINGS["qtangent"], FRAME_STORAGES["rgba8_10_10_11_1"]).misfit
-    assert found == "component 4 has only 1 bits in 10:10:11:1 in RGBA8; ordinary components need at least 4"
+def test_a_number_of_many_values_does_not_fit_a_single_bit():
+    """The fourth number of qtangent does not fit the one bit of 10:10:11:1."""
+    reason = FrameCodec(FRAME_ENCODINGS["qtangent"], FRAME_STORAGES["rgba8_10_10_11_1"]).misfit
+    assert reason == "component 4 has only 1 bits in 10:10:11:1 in RGBA8; ordinary components need at least 4"

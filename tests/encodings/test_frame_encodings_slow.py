@@ -1,4 +1,4 @@
-"""Tangent frame codes: no frame is far off, no hand is lost, and what was stored is stored again as it is."""
+"""Tangent frame encodings: limited errors, no lost hands, and frames that are stored again unchanged."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ from normalbench.encodings.storages.rules import by_rule
 
 
 def test_a_hand_at_an_end_of_its_range_is_kept():
-    """Where the third of three is at its lower end, and where w is 0: the number is a step, and not 0."""
+    """If the third of three numbers is at its lower end, or if w is 0, a step is stored instead of 0."""
     third = of_quaternions(np.array([[1.0, 0.0, 0.0, 1e-6 - 1.0]]))
     half_turn = of_quaternions(np.array([[0.6, 0.0, 0.8, 0.0]]))
     for name, frames, number in (("smallest_three", third, 2), ("qtangent", half_turn, 3)):
@@ -30,7 +30,7 @@ def test_a_hand_at_an_end_of_its_range_is_kept():
 
 @pytest.mark.parametrize("name", ["qtangent", "smallest_three"])
 def test_a_hand_is_kept_in_floats_of_any_form(name):
-    """Its least number is the form's least normal float."""
+    """The smallest number is the smallest normal float of the form."""
     codec = FrameCodec(FRAME_ENCODINGS[name], by_rule("float", (4, 3)))
     frames = hard_frames()
     assert codec.least == 2.0**-6 and np.array_equal(as_rows(codec.round_trip(as_frame(frames)))[:, 3], frames[:, 3])
@@ -45,5 +45,5 @@ def test_no_frame_is_far_off_and_no_hand_is_lost_of_any_codec(gl, codec):
 
 
 @pytest.mark.parametrize("codec", a_tenth(MORE), ids=lambda c: c.name)
-def test_what_was_stored_is_stored_again_as_it_is_of_any_codec(codec):
-    test_frame_encodings.test_what_was_stored_is_stored_again_as_it_is(codec)
+def test_a_decoded_frame_is_stored_again_unchanged_in_any_codec(codec):
+    test_frame_encodings.test_a_decoded_frame_is_stored_again_unchanged(codec)

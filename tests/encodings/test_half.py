@@ -1,4 +1,4 @@
-"""Half arithmetic: every step of an encoding rounded to 16 bits, by emulation and on a device that computes so."""
+"""Half arithmetic: every step of an encoding rounded to 16 bits, by emulation and on a 16-bit device."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -31,7 +31,7 @@ def directions(count: int) -> np.ndarray:
 
 
 def by_numpy(n: np.ndarray, divides: bool) -> np.ndarray:
-    """Octahedral 10:10 with every step rounded to float16, each operation by itself; by division or by a reciprocal."""
+    """Return octahedral 10:10 with each operation rounded to float16; by division or by a reciprocal."""
     x, y, z = (c.astype(H) for c in n.T)
     size = abs(x) + abs(y) + abs(z)
     p = [c / size if divides else c * (H(1) / size) for c in (x, y)]
@@ -47,7 +47,7 @@ def by_numpy(n: np.ndarray, divides: bool) -> np.ndarray:
 
 
 def test_the_emulation_rounds_every_step():
-    """NumPy, an operation at a time, has the same angles: nothing is kept in 32 bits between steps."""
+    """NumPy, one operation at a time, has the same angles: nothing is kept in 32 bits between steps."""
     n = directions(2**18)
     ours = angles_deg(n, round_trip(Codec(in_half(ENCODINGS["octahedral"]), STORAGES["rgb10a2"]), n, n))
     theirs = angles_deg(n, by_numpy(n, divides=False))
@@ -56,7 +56,8 @@ def test_the_emulation_rounds_every_step():
 
 
 def test_octahedral_10_10_loses_a_fifth_in_half_arithmetic():
-    """Mean +21 % and 0.42 degrees at most by division, measured outside; the reciprocal is one rounding more."""
+    """By division the mean grows by 21% and the largest error is 0.42 degrees, as measured elsewhere; the reciprocal
+    adds one rounding."""
     n = directions(2**20)
     exact = angles_deg(n, round_trip(Codec(ENCODINGS["octahedral"], STORAGES["rgb10a2"]), n, n)).mean()
     divided, multiplied = (angles_deg(n, by_numpy(n, divides)) for divides in (True, False))
@@ -79,27 +80,27 @@ ROUNDED = "every step rounded"
 
 
 @pytest.mark.parametrize("codec", CODECS, ids=lambda codec: codec.name)
-def test_a_device_of_16_bits_agrees(codec):
-    """The same GLSL in 16-bit types: RMS angles within 7 % where each step is rounded, and within 40 % where a device
-    keeps more digits of some, as an H200 does: it loses up to 34 % more in 10 bits."""
+def test_a_device_with_16_bit_types_agrees(codec):
+    """The same GLSL in 16-bit types: RMS angles agree within 7% if each step is rounded, and within 40% if the device
+    keeps more digits in some steps. An H200 does, and loses up to 34% more in 10 bits."""
     try:
         compute.half_device()
     except MissingError as error:
         pytest.skip(str(error))
     n = directions(2**14)
     four = np.concatenate([n, np.zeros((len(n), 1), np.float32)], axis=1)
-    found = (round_trip(codec, n, n), HalfPasses(codec).round_trip(four, four))
-    rms = [float(np.sqrt(np.nanmean(angles_deg(n, decoded) ** 2))) for decoded in found]
+    trips = (round_trip(codec, n, n), HalfPasses(codec).round_trip(four, four))
+    rms = [float(np.sqrt(np.nanmean(angles_deg(n, decoded) ** 2))) for decoded in trips]
     most = APART.get(codec.encoding.prefix, 0.07) if compute.name().endswith(ROUNDED) else 0.4
     assert abs(rms[1] / rms[0] - 1) <= most, f"{rms[1]:.5f} degrees, {rms[0]:.5f} by emulation"
 
 
 def test_a_device_says_whether_it_rounds_every_step():
     try:
-        said = compute.name()
+        name = compute.name()
     except MissingError as error:
         pytest.skip(str(error))
-    assert said.endswith((ROUNDED, "some steps keep more digits"))
+    assert name.endswith((ROUNDED, "some steps keep more digits"))
 
 
 @pytest.mark.parametrize(
@@ -113,14 +114,14 @@ def test_a_device_says_whether_it_rounds_every_step():
         ("x = 1.3e36;", "x = 65504.0hf;"),
     ],
 )
-def test_glsl_in_16_bit_types(line, wanted):
+def test_glsl_is_rewritten_in_16_bit_types(line, wanted):
     assert in_halves(line) == wanted
 
 
-def test_names_and_the_option_say_half():
-    (one,) = codecs_named("octahedral:arithmetic=half", "rg8", "nearest")
-    assert one.encoding.is_half and one.name == "octahedral:arithmetic=half/rg8"
-    both = with_arithmetics([ENCODINGS["octahedral"], one.encoding], "float,half")
+def test_half_arithmetic_is_chosen_by_name_or_by_option():
+    (codec,) = codecs_named("octahedral:arithmetic=half", "rg8", "nearest")
+    assert codec.encoding.is_half and codec.name == "octahedral:arithmetic=half/rg8"
+    both = with_arithmetics([ENCODINGS["octahedral"], codec.encoding], "float,half")
     assert [e.name for e in both] == ["octahedral", "octahedral:arithmetic=half", "octahedral:arithmetic=half"]
     with pytest.raises(UsageError, match="unknown arithmetic 'double'"):
         codecs_named("octahedral", "rg8", "nearest", "double")
@@ -137,7 +138,7 @@ def test_names_and_the_option_say_half():
         ("xyz", None),
     ],
 )
-def test_what_half_arithmetic_cannot_be_measured_of(name, said):
+def test_encodings_that_do_not_suit_half_arithmetic_say_why(name, said):
     misfit = Codec(in_half(ENCODINGS[name]), STORAGES["rgb10a2"]).misfit
     assert misfit is None if said is None else said in (misfit or "")
 
@@ -147,7 +148,7 @@ def test_a_renderer_of_32_bits_refuses_half_arithmetic():
         encoding_defines(in_half(ENCODINGS["octahedral"]))
 
 
-def test_the_table_names_the_codes_that_survive():
+def test_the_table_names_the_encodings_that_survive():
     rows = [
         {"encoding": name, "storage": "rg8", "rounding": "nearest", "normals": "sphere", "backend": "jax"}
         | {"angle_rms_deg": rms}

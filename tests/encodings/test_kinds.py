@@ -1,4 +1,4 @@
-"""Every kind of encoding keeps the same rules, and a codec of any kind can be asked the same."""
+"""All kinds of encodings: the same rules, and the same interface of their codecs."""
 
 import inspect
 import re
@@ -31,7 +31,7 @@ from normalbench.encodings.storages.storage import (
 from normalbench.encodings.vec import Vec2, Vec3, Vec4
 
 ROOT = Path(__file__).parents[2]
-EVERY = [pytest.param(e, id=f"{kind.name} {e.name}") for kind, found in BY_KIND.items() for e in found.values()]
+EVERY = [pytest.param(e, id=f"{kind.name} {e.name}") for kind, named in BY_KIND.items() for e in named.values()]
 USUAL = {
     DEPTH: (DepthCodec, DEPTH_STORAGES),
     FRAME: (FrameCodec, FRAME_STORAGES),
@@ -86,14 +86,14 @@ def test_an_encoding_is_complete(encoding):
 
 
 @pytest.mark.parametrize("encoding", EVERY)
-def test_the_twins_carry_the_same_formula(encoding):
-    """The formula stands above the line in both languages, in the same symbols."""
+def test_the_twins_have_the_same_formula(encoding):
+    """The formula is above the line in both languages, in the same symbols."""
     python = set(re.findall(r"^    # (.+)$", encoding.glsl.with_suffix(".py").read_text(), re.M))
     assert python == set(re.findall(r"^    // (.+)$", encoding.glsl.read_text(), re.M))
 
 
 @pytest.mark.parametrize("kind", USUAL, ids=lambda kind: kind.name)
-def test_the_storages_that_an_encoding_is_usually_in_are_there_and_hold_it(kind):
+def test_the_usual_storages_of_an_encoding_exist_and_fit_it(kind):
     codec, storages = USUAL[kind]
     for encoding in BY_KIND[kind].values():
         assert [codec(encoding, storages[name]).misfit for name in encoding.storages] == [None] * len(encoding.storages)
@@ -101,27 +101,27 @@ def test_the_storages_that_an_encoding_is_usually_in_are_there_and_hold_it(kind)
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
-def test_a_codec_of_any_kind_is_asked_the_same(kind):
-    """What is stored is what a round trip decodes; nothing here depends on the kind."""
+def test_codecs_of_every_kind_have_the_same_interface(kind):
+    """Storing and a round trip give finite numbers, one per value; nothing here depends on the kind."""
     codec, given, bits, codes = CODECS[kind]
     assert codec.misfit is None and codec.encoding.name in codec.name
     assert (codec.bits, codec.codes) == (bits, codes)
-    leaves = [np.asarray(leaf) for made in (codec.stored(*given), codec.round_trip(*given)) for leaf in planes(made)]
+    leaves = [np.asarray(leaf) for tree in (codec.stored(*given), codec.round_trip(*given)) for leaf in planes(tree)]
     assert all(leaf.shape == (1,) and np.isfinite(leaf).all() for leaf in leaves)
 
 
 def test_a_sign_is_a_bit_of_the_codec():
-    """X and Y in bytes, the sign of z elsewhere; and in few values, where all of the channel counts."""
+    """x and y have a byte each, and the sign of z is one bit more."""
     codec = Codec(BY_KIND[NORMAL]["xy_sign"], STORAGES["rg8"])
     assert (codec.bits, codec.codes) == (17, 2**17)
 
 
 def planes(made) -> list:
-    """The arrays of a number, a vector or a tangent frame."""
+    """Return the arrays of a number, a vector or a tangent frame."""
     return [leaf for part in made for leaf in planes(part)] if isinstance(made, tuple) else [made]
 
 
-def test_an_encoding_of_another_name_than_its_file_is_refused(monkeypatch):
+def test_an_encoding_that_is_not_named_after_its_file_is_refused(monkeypatch):
     monkeypatch.setattr(catalogue, "import_module", lambda *_: SimpleNamespace(ENCODING=catalogue.ENCODINGS["xyz"]))
     with pytest.raises(CatalogueError, match=r"encodings/normals/xy\.py: its ENCODING is named 'xyz', not 'xy'"):
         catalogue._loaded_encoding(NORMAL, "xy")
@@ -131,6 +131,6 @@ def test_an_encoding_of_another_name_than_its_file_is_refused(monkeypatch):
     "folder", sorted({path.parent for path in (ROOT / "encodings").rglob("*.py")}), ids=lambda path: path.name
 )
 def test_a_folder_can_be_taken_in_at_a_glance(folder):
-    """A pair counts as one; the encodings of normals are the exception."""
+    """A folder holds at most 15 encodings; a pair of files counts as one. Normal encodings are the exception."""
     things = {path.stem for path in folder.iterdir() if path.name != "__pycache__"}
     assert len(things) <= 15 or folder.name == NORMAL.folder, f"{folder.name} holds {len(things)} things"

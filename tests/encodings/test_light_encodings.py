@@ -1,4 +1,4 @@
-"""Light codes: what they hold, and that formats store as emulated."""
+"""Light encodings: their ranges, and formats that store as emulated."""
 
 from pathlib import Path
 
@@ -31,7 +31,7 @@ def test_a_light_encoding_is_blended_in_a_known_way(name):
 
 
 def test_a_light_buffer_is_an_encoding_in_a_storage():
-    """A buffer goes by its encoding's name, or by its format's where a texel is the light itself."""
+    """A buffer is named after its encoding, or after its format if a texel is the light itself."""
     plain = [name for name, codec in LIGHT_BUFFERS.items() if codec.encoding is LIGHT_ENCODINGS["plain"]]
     assert plain == ["rgba32f", "rgba16f", "r11g11b10f"]
     assert list(LIGHT_BUFFERS) == [*plain, "linear", "srgb", *LIGHT_NAMES[2:]]
@@ -49,7 +49,7 @@ def round_trip(name: str, light) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_no_light_is_exactly_none_and_what_an_empty_buffer_holds(name):
+def test_zero_light_is_stored_exactly_and_is_what_an_empty_buffer_holds(name):
     encoding = LIGHT_BUFFERS[name]
     assert np.all(round_trip(name, 0.0) == 0.0)
     empty = Vec4(*[jnp.full(1, encoding.no_light, jnp.float32)] * 4)
@@ -57,8 +57,8 @@ def test_no_light_is_exactly_none_and_what_an_empty_buffer_holds(name):
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_the_limit_is_the_most_white_light_that_comes_back(name):
-    """The catalogue's figure: log2(255) = 7.994 for log, the range of linear, sRGB and RGBM, the formats' largest."""
+def test_the_limit_is_the_brightest_white_light_that_comes_back(name):
+    """The catalogue's figure: log2(255) = 7.994 for log, the range of linear, sRGB and RGBM, a format's largest."""
     encoding = LIGHT_BUFFERS[name]
     below = np.float32(min(encoding.limit * 0.999, BRIGHTEST))
     kept, most = round_trip(name, below)[0, :3], round_trip(name, 1e30)[0, :3]
@@ -73,14 +73,14 @@ def test_the_limit_is_the_most_white_light_that_comes_back(name):
 
 
 @pytest.mark.parametrize("name", ["linear:1.7", "srgb:5.3", "rgbm:11.1"])
-def test_a_range_that_is_no_power_of_two_is_the_same_in_both_languages(gl, name):
-    """A unit each for the reciprocal, the product and the way back."""
+def test_a_range_that_is_not_a_power_of_two_is_the_same_in_both_languages(gl, name):
+    """One unit each for the reciprocal, the product and the decoding."""
     (encoding,) = light_buffers_named(name)
     light = lights(2**12)
     texels = rows(jax.jit(lambda light: encoding.encode(light_or_none(light)))(planes(light)))
     given = given_texels(encoding, texels)
     gl_texels, gl_light = exact_light(gl, encoding, light, given)
-    by_jax, *as_light = (rows(jax.jit(encoding.decode)(planes(found))) for found in (given, texels, gl_texels))
+    by_jax, *as_light = (rows(jax.jit(encoding.decode)(planes(stored))) for stored in (given, texels, gl_texels))
     for what, ulps in (("encode", apart(*as_light).max()), ("decode", apart(by_jax, gl_light).max())):
         assert ulps <= 4, f"{name} {what}: {ulps:.1f} ulp"
 
@@ -92,15 +92,15 @@ def test_the_log_codes_range_is_7_994():
 
 
 def test_nao32_multiplies_by_the_inverse_of_its_matrix():
-    """Published with four digits; these make a product of the two one to float32."""
+    """The inverse was published with four digits; with these digits the product is the identity in float32."""
     product = np.reshape(MATRIX, (3, 3)) @ np.reshape(INVERSE, (3, 3))
     assert np.abs(product - np.eye(3)).max() < 2e-8
     published = np.array([6.0013, -2.7, -1.7995, -1.332, 3.1029, -5.772, 0.3007, -1.088, 5.6268])
     assert np.abs(published - INVERSE).max() < 1e-3
 
 
-def test_a_half_and_three_roots_are_remixs():
-    """Against its arithmetic in NumPy: the half of the largest, and roots of shares of it in eight bits."""
+def test_a_half_and_three_roots_match_rtx_remix():
+    """Compared with RTX Remix in NumPy: the largest number as a half, and roots of shares of it in eight bits."""
     rng = np.random.default_rng(0)
     light = np.exp2(rng.uniform(-14, 17, (4096, 1)) + rng.uniform(-9, 0, (4096, 4))).astype(np.float32)
     clamped = np.minimum(light[:, :3], 65504).astype(np.float32)
@@ -113,11 +113,11 @@ def test_a_half_and_three_roots_are_remixs():
     assert (rows(LIGHT_BUFFERS["chroma_half"].decode(endless))[:, :3] == 65504).all()
 
 
-def test_light_lies_in_any_bits_that_fit():
-    """Its name, and how it is added: what lies across channels is read."""
-    said = "ufloat:6:9,plain/float:8:7,linear/unorm:10:10:10,linear:4/unorm:10:10:10:2,linear/rgba16,plain/rgba16f"
-    made = light_buffers_named(said)
-    assert [(codec.name, codec.blend, codec.bits, codec.bytes_per_pixel) for codec in made] == [
+def test_light_can_be_stored_in_any_bits_that_fit():
+    """The name and the blending of each buffer: numbers that span channels are read, not blended."""
+    names = "ufloat:6:9,plain/float:8:7,linear/unorm:10:10:10,linear:4/unorm:10:10:10:2,linear/rgba16,plain/rgba16f"
+    codecs = light_buffers_named(names)
+    assert [(codec.name, codec.blend, codec.bits, codec.bytes_per_pixel) for codec in codecs] == [
         ("ufloat_6_9", "read", 60, 16),
         ("float_8_7", "read", 64, 16),
         ("linear/rgba8_10_10_10", "read", 30, 8),
@@ -125,7 +125,7 @@ def test_light_lies_in_any_bits_that_fit():
         ("linear/rgba16", "add", 64, 8),
         ("rgba16f", "add", 64, 8),
     ]
-    assert [codec.limit for codec in made[2:5]] == [2, 4, 2] and not made[2].has_alpha
+    assert [codec.limit for codec in codecs[2:5]] == [2, 4, 2] and not codecs[2].has_alpha
     assert light_buffers_named("plain/rgba16f") == [LIGHT_BUFFERS["rgba16f"]]
 
 
@@ -140,7 +140,7 @@ def test_light_lies_in_any_bits_that_fit():
         ("cubic/unorm:8:8:8", "expected one of plain, linear"),
     ],
 )
-def test_light_that_does_not_fit_is_a_line(name, said):
+def test_light_that_does_not_fit_is_a_one_line_error(name, said):
     with pytest.raises(UsageError) as error:
         light_buffers_named(name)
     assert said in str(error.value) and "\n" not in str(error.value)
@@ -152,7 +152,7 @@ def stored_texels(name: str, light: np.ndarray) -> Vec4:
 
 
 def small_floats(bits: int) -> np.ndarray:
-    """Every finite unsigned float of 11 or 10 bits: five of exponent."""
+    """Return every finite unsigned float of 11 or 10 bits, with five bits of exponent."""
     mantissa = bits - 5
     codes = np.arange(31 << mantissa)
     exponent, fraction = codes >> mantissa, (codes & (1 << mantissa) - 1) / (1 << mantissa)
@@ -161,8 +161,8 @@ def small_floats(bits: int) -> np.ndarray:
 
 @pytest.mark.parametrize("bits", [11, 10])
 @pytest.mark.parametrize("rounding", ["nearest", "truncate"])
-def test_small_floats_round_to_the_nearest_or_are_cut_off(bits, rounding):
-    """Every value, every tie and what lies beside them, against a search of all values."""
+def test_small_floats_round_to_nearest_or_truncate(bits, rounding):
+    """Every value, every tie and their neighbours, compared with a search of all values."""
     values = small_floats(bits)
     ties = (values[1:] + values[:-1]) / 2
     x = np.concatenate([values, ties, ties * (1 + 1e-6), ties * (1 - 1e-6), [values[-1] * 2, 1e30]]).astype(np.float32)
@@ -182,7 +182,7 @@ def test_small_floats_have_no_sign_and_keep_infinity_and_nan():
     assert np.array_equal(np.asarray(store_small_float(x, FORMS[11])), [0, 0, 0, np.inf, np.nan], equal_nan=True)
 
 
-def test_the_device_stores_small_floats_as_it_is_said_to(gl):
+def test_the_device_stores_small_floats_with_the_rounding_that_it_reports(gl):
     values = np.concatenate(
         [small_floats(11), np.random.default_rng(0).uniform(0, 4, 4096), [7e4, np.inf, -1, -np.inf]]
     )
@@ -203,7 +203,7 @@ def test_whole_powers_and_logarithms_are_exact():
     assert float(floor_log2(jnp.float32(0))) == -127
 
 
-def test_what_is_no_light_is_none_and_infinite_light_is_bounded():
+def test_invalid_light_becomes_0_and_infinite_light_is_bounded():
     light = light_or_none(Vec4(*(jnp.float32([x]) for x in (-1.0, np.nan, np.inf, 2.0))))
     assert [float(c[0]) for c in light] == [0, 0, BRIGHTEST, 2]
 
@@ -219,7 +219,7 @@ def test_a_highlight_has_the_diffuse_lights_colour_and_black_gives_no_nan():
 
 
 def test_both_languages_rebuild_the_same_colour(gl):
-    """chromaticity.glsl beside chromaticity.py, black and nearly black included."""
+    """chromaticity.glsl is compared with chromaticity.py, including black and nearly black."""
     rng = np.random.default_rng(0)
     given = np.exp2(rng.uniform(-110, 20, (4096, 4))).astype(np.float32)
     given[:64, :3], given[64:128, :2] = 0, 0

@@ -1,4 +1,4 @@
-"""Light codes: what they hold, and that formats store as emulated."""
+"""Light encodings: their ranges, and formats that store as emulated."""
 
 import colorsys
 
@@ -17,9 +17,9 @@ from normalbench.encodings.vec import light_or_none
 
 @pytest.mark.parametrize("name", ["rgbm", "rgb9e5", "linear", "srgb"])
 def test_light_that_is_read_and_written_again_stays_as_it_is(name):
-    """A light pass that adds nothing changes nothing: no step is lost to a rounding crumb, again and again.
+    """A light pass that adds nothing changes nothing: rounding never loses a step, however often light is rewritten.
 
-    The first time RGBM may find a smaller multiplier for what it kept; from then on it stays.
+    The first time RGBM may find a smaller multiplier for the stored light; after that nothing changes.
     """
     encoding = LIGHT_BUFFERS[name]
     light = np.random.default_rng(0).uniform(0, 1.5, (4096, 4)).astype(np.float32)
@@ -33,7 +33,7 @@ def test_light_that_is_read_and_written_again_stays_as_it_is(name):
 
 
 def test_rgb9e5_stores_what_the_specification_says():
-    """Against the specification's arithmetic in float64: B = 15, N = 9, the largest 65408."""
+    """Compared with the specification's arithmetic in float64: B = 15, N = 9, the largest 65408."""
     rng = np.random.default_rng(0)
     light = np.exp2(rng.uniform(-26, 17, (4096, 1)) + rng.uniform(-11, 0, (4096, 4))).astype(np.float32)
     clamped = np.minimum(light[:, :3].astype(np.float64), 65408)
@@ -62,7 +62,7 @@ DAGORS = {
 
 
 def test_hues_and_saturations_are_those_of_dagors_table():
-    """At the largest light, 16; and each is stored as itself, but for the last hue, which is the first one's colour."""
+    """At the largest light, 16, each code is stored as itself, except for the last hue, which equals the first."""
     code = np.array(list(DAGORS))
     texels = np.stack([(code & 63) / 63, (code >> 6) / 3, np.ones(len(code)), 0 * code], axis=1).astype(np.float32)
     light = rows(LIGHT_BUFFERS["hue_saturation"].decode(planes(texels)))
@@ -72,8 +72,8 @@ def test_hues_and_saturations_are_those_of_dagors_table():
     assert np.array_equal(again[~is_last], code[~is_last]) and (again[is_last] == code[is_last] - 63).all()
 
 
-def test_hue_and_saturation_are_colorsyss():
-    """In float64: what has less than 1/4 of saturation is white, and of others hue and saturation are the nearest."""
+def test_hue_and_saturation_match_colorsys():
+    """Compared in float64: light with a saturation below 1/4 is white; other hues and saturations are the nearest."""
     light = np.random.default_rng(0).uniform(0, 16, (2048, 4)).astype(np.float32)
     exact = np.array([colorsys.rgb_to_hsv(*map(float, row[:3])) for row in light])
     got = rows(stored_texels("hue_saturation", light))[:, :3]
@@ -85,7 +85,7 @@ def test_hue_and_saturation_are_colorsyss():
     assert abs(got[:, 2] - np.sqrt(exact[:, 2] / 16)).max() < 0.5001 / 255
 
 
-def test_the_srgb_curve_is_the_standards():
+def test_the_srgb_curve_is_that_of_the_standard():
     """IEC 61966-2-1 in float64; the two branches meet, and every code comes back as itself."""
     x = np.linspace(0, 1, 100_001)
     exact = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)

@@ -1,4 +1,4 @@
-"""Motion codes: no motion has an exact code where it should, and what is beyond the range is clipped or kept."""
+"""Motion encodings: rest is exact where it should be, and motion beyond the range is clipped or kept."""
 
 import numpy as np
 import pytest
@@ -12,9 +12,9 @@ from normalbench.encodings.storages.storage import FORMATS, MOTION_STORAGES, STO
 from normalbench.encodings.vec import Vec2
 
 
-def test_unreals_velocity_is_linear_in_centred_bits_over_a_range_a_little_larger():
+def test_unreals_velocity_is_linear_in_centred_bits_with_a_larger_range():
     """0.2495 d + 32767 / 65535 of a difference d of clip space up to 2, in UNORM of 16 bits (Unreal Engine 4.27,
-    Common.ush): the clear value 0 is never met."""
+    Common.ush): the clear value 0 never occurs."""
     screens = np.random.default_rng(0).uniform(-1, 1, (2**16, 2)).astype(np.float32)
     theirs = 65535 * (0.2495 * 2 * screens.astype(np.float64)) + 32767
     codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rg16_centred"])
@@ -30,15 +30,15 @@ def test_the_constant_of_the_logarithm_is_a_pixel_of_2047():
 
 
 @pytest.mark.parametrize("codec", CODECS[:17], ids=lambda c: c.name)
-def test_no_motion_is_exact_but_in_unorm_that_is_not_centred(gl, codec):
+def test_rest_is_exact_except_in_unorm_that_is_not_centred(gl, codec):
     """UNORM has no code for 0: its two middle codes are half a step from it."""
-    for found in (through_jax(codec)[STILL], through_gl(gl, codec)[STILL]):
-        assert np.isfinite(found).all() and (found == found[0]).all()
-        assert (found[0] != 0).all() == codec.storage.is_biased, found[0]
+    for decoded in (through_jax(codec)[STILL], through_gl(gl, codec)[STILL]):
+        assert np.isfinite(decoded).all() and (decoded == decoded[0]).all()
+        assert (decoded[0] != 0).all() == codec.storage.is_biased, decoded[0]
 
 
 @pytest.mark.parametrize("storage", [s for s in MOTION_STORAGES.values() if s.is_centred], ids=lambda s: s.name)
-def test_centred_is_snorms_integers_in_the_unorm_target(storage: Storage):
+def test_centred_stores_the_integers_of_snorm_in_a_unorm_target(storage: Storage):
     """The bias is 127 / 255, 511 / 1023 or 32767 / 65535, as engines write it; the top code is not used."""
     steps = 2 ** storage.bits[0] - 1
     assert storage.target.kind == "unorm" and storage.target.scale(0) == steps
@@ -48,8 +48,8 @@ def test_centred_is_snorms_integers_in_the_unorm_target(storage: Storage):
 def test_linear_in_32_bit_floats_is_exact_and_needs_no_range(gl):
     codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rgba32f"])
     assert not codec.needs_range and not codec.clips
-    for found in (through_jax(codec), through_gl(gl, codec)):
-        assert np.array_equal(found[MOVING], motions()[-MOVING.stop :])
+    for decoded in (through_jax(codec), through_gl(gl, codec)):
+        assert np.array_equal(decoded[MOVING], motions()[-MOVING.stop :])
 
 
 @pytest.mark.parametrize(
@@ -58,5 +58,5 @@ def test_linear_in_32_bit_floats_is_exact_and_needs_no_range(gl):
     ids=lambda s: str(s)[:12],
 )
 def test_a_storage_needs_two_channels(storage: Storage, why: str | None):
-    found = MotionCodec(MOTION_ENCODINGS["linear"], storage).misfit
-    assert (why in found) if why else found is None, found
+    reason = MotionCodec(MOTION_ENCODINGS["linear"], storage).misfit
+    assert (why in reason) if why else reason is None, reason

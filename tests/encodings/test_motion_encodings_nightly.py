@@ -1,4 +1,4 @@
-"""Motion codes: no motion has an exact code where it should, and what is beyond the range is clipped or kept."""
+"""Motion encodings: rest is exact where it should be, and motion beyond the range is clipped or kept."""
 
 import pytest
 import test_motion_encodings
@@ -6,5 +6,5 @@ from test_motion_encodings_slow import MORE
 
 
 @pytest.mark.parametrize("codec", MORE, ids=lambda c: c.name)
-def test_no_motion_is_exact_but_in_unorm_that_is_not_centred_of_every_codec(gl, codec):
-    test_motion_encodings.test_no_motion_is_exact_but_in_unorm_that_is_not_centred(gl, codec)
+def test_rest_is_exact_in_every_codec_except_in_unorm_that_is_not_centred(gl, codec):
+    test_motion_encodings.test_rest_is_exact_except_in_unorm_that_is_not_centred(gl, codec)

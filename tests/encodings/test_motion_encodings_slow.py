@@ -1,4 +1,4 @@
-"""Motion codes: no motion has an exact code where it should, and what is beyond the range is clipped or kept."""
+"""Motion encodings: rest is exact where it should be, and motion beyond the range is clipped or kept."""
 
 import numpy as np
 import pytest
@@ -18,17 +18,17 @@ EVERY = sorted(MOTION_ENCODINGS)
 
 @pytest.mark.parametrize("name", EVERY)
 def test_an_encoding_is_odd_and_rises_from_0_to_1_at_the_range(name):
-    """No motion is 0, the range is 1, and what goes the other way has the other sign."""
+    """Rest is 0, the range is 1, and opposite motions have opposite signs."""
     encoding, largest = MOTION_ENCODINGS[name], np.float32(RANGE)
     codes = rows(encoding.encode(planes(Vec2, np.float32([[0, -0.0], [RANGE, -RANGE]])), largest))
     assert codes == pytest.approx(np.float32([[0, 0], [1, -1]]), abs=4 * ULP)
     line = np.linspace(0, RANGE, 4097, dtype=np.float32)
-    one, other = rows(encoding.encode(planes(Vec2, np.stack([line, -line], axis=1)), largest)).T
-    assert np.array_equal(one, -other) and (np.diff(one) > 0).all()
+    forward, other = rows(encoding.encode(planes(Vec2, np.stack([line, -line], axis=1)), largest)).T
+    assert np.array_equal(forward, -other) and (np.diff(forward) > 0).all()
 
 
 def test_a_bias_in_half_floats_loses_slow_motion():
-    """1/2 plus half of the motion: 0.05 pixels of 1920 come back as none (ufloat:5:10 is the positive halves)."""
+    """1/2 plus half of the motion: 0.05 pixels of 1920 come back as 0 (ufloat:5:10 is the positive halves)."""
     slow = planes(Vec2, np.float32([[0.05 / 1920, -0.05 / 1920]]))
     biased = MotionCodec(MOTION_ENCODINGS["linear"], by_rule("ufloat", (5, 10)))
     assert np.array_equal(rows(biased.round_trip(slow, np.float32(1))), [[0, 0]])
@@ -37,18 +37,18 @@ def test_a_bias_in_half_floats_loses_slow_motion():
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_what_is_beyond_the_range_is_clipped_by_fixed_point_and_kept_by_floats(gl, name):
+def test_fixed_point_clips_motion_beyond_the_range_and_floats_keep_it(gl, name):
     """Twice the range comes back as the range, and in half floats as itself."""
     for storage in MOTION_STORAGES.values():
         codec = MotionCodec(MOTION_ENCODINGS[name], storage)
         end = RANGE if codec.clips else 2 * RANGE
-        for found in (through_jax(codec)[BEYOND], through_gl(gl, codec)[BEYOND]):
-            assert found[0] == pytest.approx([end, -end], rel=0.005), codec.name
+        for decoded in (through_jax(codec)[BEYOND], through_gl(gl, codec)[BEYOND]):
+            assert decoded[0] == pytest.approx([end, -end], rel=0.005), codec.name
 
 
 MORE = CODECS[17:]
 
 
 @pytest.mark.parametrize("codec", a_tenth(MORE), ids=lambda c: c.name)
-def test_no_motion_is_exact_but_in_unorm_that_is_not_centred_of_any_codec(gl, codec):
-    test_motion_encodings.test_no_motion_is_exact_but_in_unorm_that_is_not_centred(gl, codec)
+def test_rest_is_exact_in_any_codec_except_in_unorm_that_is_not_centred(gl, codec):
+    test_motion_encodings.test_rest_is_exact_except_in_unorm_that_is_not_centred(gl, codec)

@@ -1,4 +1,4 @@
-"""Codes of normals: both back ends have the same errors, and every direction comes back."""
+"""Normal encodings: both backends have the same errors, and every direction comes back."""
 
 import numpy as np
 import pytest
@@ -20,8 +20,8 @@ def params(*given, **named) -> list:
 
 @pytest.mark.parametrize("where", ["rgb10a2", "rgba8_snorm", "rgba16f", "rgba16_snorm", "r11g11b10f"])
 @pytest.mark.parametrize("name", ["spherical_fibonacci", "signed_octahedral"])
-def test_a_number_of_few_values_has_those_nearest_to_it(name, where):
-    """Of a storage's numbers; of two that are as near the lower one."""
+def test_a_number_of_few_values_uses_the_nearest_numbers_of_its_storage(name, where):
+    """If two numbers are equally near, the lower is used."""
     codec = Codec(ENCODINGS[name], STORAGES[where])
     few = [i for i in range(codec.encoding.components) if codec.encoding.levels_of(i)]
     assert few

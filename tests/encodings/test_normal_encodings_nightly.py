@@ -1,4 +1,4 @@
-"""Codes of normals: both back ends have the same errors, and every direction comes back."""
+"""Normal encodings: both backends have the same errors, and every direction comes back."""
 
 import pytest
 import test_normal_encodings

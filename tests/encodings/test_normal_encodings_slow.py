@@ -1,4 +1,4 @@
-"""Codes of normals: both back ends have the same errors, and every direction comes back."""
+"""Normal encodings: both backends have the same errors, and every direction comes back."""
 
 import pytest
 
@@ -10,8 +10,8 @@ from normalbench.encodings.storages.storage import STORAGES
 
 
 @pytest.mark.usefixtures("gl")
-def test_the_stereographic_scale_is_one_field_for_both_languages():
-    """At scale 1 the disk is the hemisphere: better there than a scale for a wider view, and the same by both."""
+def test_both_languages_use_the_same_stereographic_scale():
+    """At scale 1 the disk is the hemisphere: there it is better than a scale for a wider view, in both languages."""
     psnr = {}
     for scale in (1.0, 1.7777):
         codec = Codec(ENCODINGS["stereographic"].with_parameters({"scale": scale}), STORAGES["rgba8"])

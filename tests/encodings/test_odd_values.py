@@ -1,5 +1,5 @@
-"""Light, quantities, motion and depth that no image should hold: NaN, infinities, negatives, denormals, -0, and one
-step beyond each range. The same of emitted code: bench/shaders/code/test_odd_code.py."""
+"""Light, quantities, motion and depth that no image should hold: NaN, infinities, negatives, denormals, -0, and
+one step beyond each range. bench/shaders/code/test_odd_code.py checks emitted code in the same way."""
 
 from itertools import product
 
@@ -29,14 +29,14 @@ KEPT = {"linear/r16f", "reflectivity/r16f"}
 
 
 def light_of(name: str, light) -> np.ndarray:
-    """What comes back of lights, (count, 3), alone in a buffer."""
+    """Return the decoded light of lights, (count, 3), each alone in a buffer."""
     planes = [jnp.asarray(np.float32(light)[:, i]) for i in range(3)]
     return rows(jax.jit(LIGHT_BUFFERS[name].round_trip)(Vec4(*planes, jnp.zeros_like(planes[0]))))[:, :3]
 
 
 @pytest.mark.parametrize("name", COMPUTED)
-def test_light_that_is_negative_or_nan_is_none(name):
-    """In each channel, next to channels that are lit: EXT_texture_shared_exponent says so of RGB9E5."""
+def test_negative_and_nan_light_become_0(name):
+    """In each channel, next to channels that are lit: EXT_texture_shared_exponent requires this of RGB9E5."""
     lights = [np.roll([odd, *others], channel) for odd in NOTHING for channel in range(3) for others in LIT]
     dark = np.where(np.isin(lights, NOTHING) | np.isnan(lights), 0, lights)
     back, expected = light_of(name, lights), light_of(name, dark)
@@ -48,8 +48,8 @@ LIT = ((0.0, 0.0), (1.0, 0.25), (NAN, -1.0))
 
 
 @pytest.mark.parametrize("name", COMPUTED)
-def test_light_beyond_the_limit_is_the_most_that_comes_back(name):
-    """A step beyond, far beyond, and infinite light; white light of a logarithm of 16 bits ends at 2^64."""
+def test_light_beyond_the_limit_comes_back_as_the_limit(name):
+    """One step beyond, far beyond and infinite light; white light of a 16-bit logarithm ends at 2^64."""
     limit = np.float32(min(COMPUTED[name].limit, 1e38))
     white = np.repeat(np.float32([limit, np.nextafter(limit, np.float32(INF)), 3e38, INF])[:, None], 3, axis=1)
     back = light_of(name, white)
@@ -65,7 +65,7 @@ def test_rgb9e5_is_black_for_negative_light_and_65408_at_most():
 
 @pytest.mark.parametrize("codec", [codec for codec in CURVES if codec.name not in KEPT], ids=lambda codec: codec.name)
 def test_a_quantity_that_is_negative_or_nan_is_0(codec):
-    """A root, a power or a logarithm of it is undefined in GLSL. In fixed point it is 0 by the format."""
+    """The root, power or logarithm of such a quantity is undefined in GLSL. In fixed point the format makes it 0."""
     back = np.asarray(jax.jit(codec.round_trip)(jnp.asarray(NOTHING)))
     zero = np.asarray(jax.jit(codec.round_trip)(jnp.zeros(1, jnp.float32)))
     assert (back == zero).all(), dict(zip(NOTHING.tolist(), back.tolist(), strict=True))
@@ -82,7 +82,7 @@ def test_a_quantity_beyond_the_range_is_the_range_in_fixed_point(codec):
 
 @pytest.mark.parametrize("storage", ["rg8", "rg16_snorm", "rg16_centred", "rg16f", "rgba32f"])
 @pytest.mark.parametrize("name", MOTION_ENCODINGS)
-def test_motion_that_is_nan_is_none_and_infinite_motion_the_range(name, storage):
+def test_nan_motion_becomes_rest_and_infinite_motion_becomes_the_range(name, storage):
     """`linear` leaves NaN to the format: code 0 of UNORM, which is the range to the left."""
     codec = MotionCodec(MOTION_ENCODINGS[name], MOTION_STORAGES[storage])
     given = np.float32([0.0, NAN, -0.0, DENORMAL, INF, -INF, 1.0, -1.0])

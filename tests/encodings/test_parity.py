@@ -1,4 +1,4 @@
-"""The two languages agree: before storage to a few units in the last place, after it code for code."""
+"""Agreement of the two languages: to a few units in the last place before storage, code for code after storage."""
 
 import numpy as np
 import pytest
@@ -8,11 +8,11 @@ from parity.kinds import PARITY
 
 from normalbench.encodings.catalogue import BY_KIND
 
-EVERY = [pytest.param(kind, e, id=f"{kind.name} {e.name}") for kind, found in BY_KIND.items() for e in found.values()]
+EVERY = [pytest.param(kind, e, id=f"{kind.name} {e.name}") for kind, named in BY_KIND.items() for e in named.values()]
 
 
 def codecs(which: str) -> list:
-    """The codecs of all kinds that the quick test or the slow one compares."""
+    """Return the codecs of all kinds that the quick test or the slow test compares."""
     quick = {f"{kind.name} {codec.name}": (kind, codec) for kind, parity in PARITY.items() for codec in parity.codecs}
     more = {
         f"{kind.name} {codec.name}": (kind, codec) for kind, parity in PARITY.items() for codec in parity.more_codecs
@@ -22,17 +22,17 @@ def codecs(which: str) -> list:
 
 
 @pytest.mark.parametrize("kind, encoding", EVERY)
-def test_before_storage_the_languages_differ_by_no_more_than_the_encoding_states(gl, kind, encoding):
+def test_the_languages_agree_before_storage_within_the_stated_error(gl, kind, encoding):
     for case in PARITY[kind].cases(encoding):
-        for found in PARITY[kind].compared(gl, case):
-            assert found.agrees, found
+        for comparison in PARITY[kind].compared(gl, case):
+            assert comparison.agrees, comparison
 
 
 @pytest.mark.parametrize("kind, codec", codecs("codecs"))
 def test_after_storage_the_codes_are_the_same(gl, kind, codec):
-    """But for few where float32 falls on either side of a tie; the module of the kind says how few."""
-    for found in PARITY[kind].stored(gl, codec, False):
-        assert found.agrees, found
+    """A few codes may differ where float32 falls on either side of a tie; the module of the kind says how many."""
+    for comparison in PARITY[kind].stored(gl, codec, False):
+        assert comparison.agrees, comparison
 
 
 def test_every_encoding_is_compared_after_storage():
@@ -41,11 +41,11 @@ def test_every_encoding_is_compared_after_storage():
 
 
 @pytest.mark.parametrize("kind, encoding", [param for param in EVERY if PARITY[param.values[0]].guarded])
-def test_what_means_nothing_has_the_same_code_in_both_languages(gl, kind, encoding):
-    """NaN, infinities and vectors without a direction: codes are numbers."""
+def test_invalid_values_have_the_same_code_in_both_languages(gl, kind, encoding):
+    """NaN, infinities and vectors without a direction: their codes are numbers."""
     for case in PARITY[kind].cases(encoding):
-        for found in PARITY[kind].guarded(gl, case):
-            assert found.agrees, found
+        for comparison in PARITY[kind].guarded(gl, case):
+            assert comparison.agrees, comparison
 
 
 @pytest.mark.parametrize(
@@ -58,21 +58,21 @@ def test_what_means_nothing_has_the_same_code_in_both_languages(gl, kind, encodi
         ([0.0, 0.0], [True, False], False),
     ],
 )
-def test_a_comparison_fails_where_one_is_too_far_apart_or_too_few_are_the_same(apart, same, agrees):
-    """At most 2 units apart, and 60 % the same; what is not a number is too far apart."""
+def test_a_comparison_fails_if_one_row_is_too_far_or_too_few_are_equal(apart, same, agrees):
+    """At most 2 units apart, and 60% equal; a value that is not a number is too far apart."""
     rows = np.zeros((2, 1))
-    found = Comparison("a codec", rows, rows, rows, np.array(apart), 2.0, same=np.array(same), share=0.6)
-    assert found.agrees == agrees, found
+    comparison = Comparison("a codec", rows, rows, rows, np.array(apart), 2.0, same=np.array(same), share=0.6)
+    assert comparison.agrees == agrees, comparison
 
 
 def swaps(kind, encoding) -> list:
-    """Every two arguments of a call in the GLSL of an encoding exchanged: what, the file and its text."""
-    found = mutants(encoding.glsl, PARITY[kind].shared.get(encoding.name, ()))
-    return [swap for swap in found if swap[0] not in PARITY[kind].same]
+    """Return every exchange of two arguments of a call in the GLSL of an encoding: what, the file and its text."""
+    all_swaps = mutants(encoding.glsl, PARITY[kind].shared.get(encoding.name, ()))
+    return [swap for swap in all_swaps if swap[0] not in PARITY[kind].same]
 
 
-def test_there_is_something_to_swap():
-    """In each encoding whose functions have two arguments, and in the functions that several share."""
+def test_every_encoding_with_two_arguments_has_something_to_swap():
+    """Functions that several encodings share count too."""
     tried = {(kind, encoding.name): len(swaps(kind, encoding)) for kind, encoding in (p.values for p in EVERY)}
     assert not [e.name for kind, e in (p.values for p in EVERY) if "," in e.signatures[0] and not tried[kind, e.name]]
     counts = {kind.name: sum(count for (other, _), count in tried.items() if other is kind) for kind in PARITY}

@@ -1,4 +1,4 @@
-"""The two languages agree: before storage to a few units in the last place, after it code for code."""
+"""Agreement of the two languages: to a few units in the last place before storage, code for code after storage."""
 
 import pytest
 import test_parity_slow
@@ -7,7 +7,7 @@ from test_parity_slow import is_unseen
 
 
 @pytest.mark.parametrize("kind, encoding", EVERY)
-def test_swapping_two_arguments_is_noticed_wherever_it_is(gl, monkeypatch, kind, encoding):
+def test_every_swap_of_two_arguments_is_noticed(gl, monkeypatch, kind, encoding):
     several = swaps(kind, encoding)
     assert not [what for what, *swap in several if is_unseen(gl, monkeypatch, kind, encoding, *swap)]
 

@@ -1,4 +1,4 @@
-"""Angular errors of published and independently computed codes are reproduced."""
+"""Angular errors of published and independently computed encodings are reproduced."""
 
 import math
 
@@ -46,8 +46,8 @@ FIGURES = [
 
 @pytest.mark.parametrize("encoding, storage, rounding, normals, mean, rms, sup", FIGURES[:4])
 def test_the_reference_figures_are_reproduced(normalbench, encoding, storage, rounding, normals, mean, rms, sup):
-    """Means within 0.2 %, RMS within 0.5 %, suprema within 0.1 %; the largest of a million samples is below the
-    supremum, and not far."""
+    """Means within 0.2%, RMS within 0.5%, suprema within 0.1%; the largest of a million samples is slightly below the
+    supremum."""
     how = {"encoding": encoding, "storage": storage, "rounding": rounding, "normals": normals}
     row = normalbench.quality(**how, count=COUNT, worst_case=True)
     assert row["count"] == COUNT
@@ -77,7 +77,7 @@ def test_the_lambert_spheremap_loses_the_far_pole_in_float32(normalbench):
     assert 10 < largest["spheremap"] < 100 and max(largest["spheremap_classic"], largest["cryengine3"]) < 0.2, largest
 
 
-def test_effective_bits_of_the_limit_itself():
+def test_the_limit_itself_has_all_effective_bits():
     """65536 codes at the hexagonal bound, RMS 0.31773 degrees, are worth 16 bits."""
     from normalbench.bench.measures.metrics.code_limits import effective_bits
 
@@ -85,7 +85,7 @@ def test_effective_bits_of_the_limit_itself():
 
 
 def test_unorm8_cannot_hold_an_axis_and_snorm8_can(normalbench):
-    """Every floor and wall: octahedral UNORM8 is 0.32 degrees off, SNORM8 is exact to the set's own few ulps."""
+    """Every floor and wall: octahedral UNORM8 is 0.32 degrees off, SNORM8 is exact except for the ulps of the set."""
     largest = {storage: normalbench.quality(storage=storage, normals="axes") for storage in ("rg8", "rg8_snorm")}
     # The nearest code to the centre is (1/255, 1/255), which is the direction (1, 1, 253) / 255.
     assert largest["rg8"]["angle_max_deg"] == pytest.approx(math.degrees(math.atan(math.sqrt(2) / 253)), abs=1e-4)
@@ -104,33 +104,33 @@ def test_lattices_are_as_good_as_published(normalbench):
     rings.assert_that(angle_max_deg="at least 0.5596")
 
 
-def test_of_the_fibonacci_lattice_the_nearest_point_is_found():
-    """Of all 2^16 points by a tree, for 2^16 directions: none is nearer by more than float32's rounding."""
+def test_the_fibonacci_lattice_finds_the_nearest_point():
+    """A tree of all 2^16 points finds no nearer point for 2^16 directions, beyond float32's rounding."""
     encoding = ENCODINGS["spherical_fibonacci"]
     index = jnp.arange(2**16, dtype=jnp.float32)
     codes = Vec2(*(number * (2 / 255) - 1 for number in (jnp.floor(index / 256), index % 256)))
     n = jax.tree.map(lambda plane: plane[: 2**16], sphere(2**16).chunk(0).n)
     decoded = jax.jit(lambda n: encoding.decode(encoding.encode(n, n), n))(n)
-    lattice, given, found = (np.asarray(to_array(v), np.float64) for v in (encoding.decode(codes, n), n, decoded))
-    nearer = np.linalg.norm(found - given, axis=1) - cKDTree(lattice).query(given)[0]
+    lattice, given, nearest = (np.asarray(to_array(v), np.float64) for v in (encoding.decode(codes, n), n, decoded))
+    nearer = np.linalg.norm(nearest - given, axis=1) - cKDTree(lattice).query(given)[0]
     assert nearer.max() < 1e-6, f"{given[nearer.argmax()]} has a point nearer by {nearer.max():.2g}"
 
 
-def test_a_tetrahedrons_faces_are_as_far_from_each_other_as_can_be():
-    """Any two of their normals, (+-SIDE, 0, UP) and (0, +-SIDE, -UP), have the cosine -1/3."""
+def test_the_faces_of_a_tetrahedron_are_as_far_apart_as_possible():
+    """Any two of the face normals, (+-SIDE, 0, UP) and (0, +-SIDE, -UP), have the cosine -1/3."""
     faces = np.array([(SIDE, 0, UP), (-SIDE, 0, UP), (0, SIDE, -UP), (0, -SIDE, -UP)])
     np.testing.assert_allclose(faces @ faces.T, np.full((4, 4), -1 / 3) + np.eye(4) * 4 / 3, atol=1e-15)
 
 
 def test_no_normal_is_farther_from_its_tetrahedrons_face_than_a_corner():
-    """Four faces are as far from their corners as 1/3 is the cosine of: a disk of radius sqrt(8)/3."""
+    """The angle between a face and its corners has the cosine 1/3: a disk of radius sqrt(8)/3."""
     n = sphere(2**16).chunk(0).n
     code = ENCODINGS["tetrahedral"].encode(n, n)
     assert np.hypot(code.x, code.y).max() == pytest.approx(math.sqrt(8) / 3, abs=1e-3)
 
 
-def test_twelve_bits_cut_off_by_hand(normalbench):
-    """floor(f 4095) doubles the mean error of octahedral 12:12; floor(f 4095.5) leaves 39 % more of it."""
+def test_twelve_truncated_bits_match_the_figures_by_hand(normalbench):
+    """floor(f 4095) doubles the mean error of octahedral 12:12; floor(f 4095.5) raises it by 39%."""
     mean = {
         rounding: normalbench.quality(
             encoding="octahedral", storage="rgb8_12_12", rounding=rounding, normals="sphere", backend="jax", count=2**20
@@ -143,8 +143,8 @@ def test_twelve_bits_cut_off_by_hand(normalbench):
 
 @pytest.mark.parametrize("kind", ["unorm", "snorm"])
 @pytest.mark.parametrize("bits", range(2, 17))
-def test_octahedral_of_any_bits_is_as_exact_as_in_float64(kind, bits):
-    """The mean angle over 2^16 normals within half a percent of NumPy's in float64, written by itself."""
+def test_octahedral_of_any_bits_is_as_accurate_as_in_float64(kind, bits):
+    """The mean angle over 2^16 normals is within half a percent of that of a separate NumPy version in float64."""
     n = np.random.default_rng(0).normal(size=(2**16, 3))
     n /= np.linalg.norm(n, axis=1, keepdims=True)
     scale = 2 ** (bits - (kind == "snorm")) - 1
@@ -157,6 +157,6 @@ def test_octahedral_of_any_bits_is_as_exact_as_in_float64(kind, bits):
     right = np.arctan2(np.linalg.norm(np.cross(n, back), axis=1), np.sum(n * back, axis=1)).mean()
     codec = Codec(ENCODINGS["octahedral"], by_rule(kind, (bits, bits)))
     planes = Vec3(*(np.float32(n[:, axis]) for axis in range(3)))
-    found = np.stack([np.asarray(c, np.float64) for c in codec.round_trip(planes, planes)], axis=1)
-    angle = np.arctan2(np.linalg.norm(np.cross(n, found), axis=1), np.sum(n * found, axis=1)).mean()
+    decoded = np.stack([np.asarray(c, np.float64) for c in codec.round_trip(planes, planes)], axis=1)
+    angle = np.arctan2(np.linalg.norm(np.cross(n, decoded), axis=1), np.sum(n * decoded, axis=1)).mean()
     assert angle == pytest.approx(right, rel=0.005), f"{np.degrees(angle):.5f} degrees, not {np.degrees(right):.5f}"

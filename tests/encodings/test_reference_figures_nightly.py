@@ -1,4 +1,4 @@
-"""Angular errors of published and independently computed codes are reproduced."""
+"""Angular errors of published and independently computed encodings are reproduced."""
 
 import pytest
 import test_reference_figures

@@ -1,4 +1,4 @@
-"""Angular errors of published and independently computed codes are reproduced."""
+"""Angular errors of published and independently computed encodings are reproduced."""
 
 import pytest
 from exact_codes import storage as made
@@ -36,14 +36,14 @@ PUBLISHED = [
 
 @pytest.mark.parametrize("codec, mean, largest", PUBLISHED, ids=lambda value: getattr(value, "name", ""))
 def test_published_maxima_are_those_of_samples(codec, mean, largest):
-    """Some hundred thousand samples have the published maximum, give or take; the supremum is 1.0 to 1.4 % above it."""
+    """A few hundred thousand samples have about the published maximum; the supremum is 1.0 to 1.4% above it."""
     few, many = (quality.measure(quality.QualityCase(codec, sphere(2**bits), "jax")) for bits in (14, 22))
     assert many["angle_mean_deg"] == pytest.approx(mean, rel=0.002)
     assert few["angle_max_deg"] < largest < many["angle_max_deg"]
     assert 0.010 < 1 - largest / worst_case(codec).angle_deg < 0.014
 
 
-def test_an_axis_is_never_opposite_in_a_code_for_the_whole_sphere(normalbench):
-    """Poles and rims included, none of the six axes comes back as another direction."""
+def test_no_encoding_for_the_whole_sphere_turns_an_axis_around(normalbench):
+    """None of the six axes comes back as another direction, including poles and rims."""
     whole = ",".join(name for name, encoding in ENCODINGS.items() if encoding.domain == "sphere")
     normalbench.quality(encoding=whole, normals="axes").assert_that(angle_max_deg="at most 12")

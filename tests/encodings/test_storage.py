@@ -1,4 +1,4 @@
-"""What the emulation stores is what the GL device stores, bit for bit."""
+"""Storage: the emulation and the OpenGL device store the same bits."""
 
 import itertools
 from contextlib import ExitStack
@@ -34,13 +34,13 @@ INTEGERS = [name for name, s in STORAGES.items() if s.kind != "float" and not s.
 CHANNELS = [(name, STORAGES[name].bits.index(bits)) for name in INTEGERS for bits in dict.fromkeys(STORAGES[name].bits)]
 
 
-FORMS_SAID = [by_rule(*said) for said in (("float", (2, 1)), ("float", (3, 4)), ("float", (4, 3)), ("float", (5, 2)))]
+FORMS_SAID = [by_rule(*rule) for rule in (("float", (2, 1)), ("float", (3, 4)), ("float", (4, 3)), ("float", (5, 2)))]
 
 
-FORMS_SAID += [by_rule(*said) for said in (("float", (6, 9)), ("float", (8, 7)), ("float", (7, 13)))]
+FORMS_SAID += [by_rule(*rule) for rule in (("float", (6, 9)), ("float", (8, 7)), ("float", (7, 13)))]
 
 
-FORMS_SAID += [by_rule(*said) for said in (("ufloat", (4, 4)), ("ufloat", (5, 6)), ("ufloat", (8, 12)))]
+FORMS_SAID += [by_rule(*rule) for rule in (("ufloat", (4, 4)), ("ufloat", (5, 6)), ("ufloat", (8, 12)))]
 
 
 FLOATS = [name for name, s in STORAGES.items() if s.kind == "float" and s.bits[0] < 32]
@@ -53,7 +53,8 @@ OUTSIDE = np.array([0.0, -0.0, 1, -1, 1.5, -1.5, 1e-30, -1e-30, 3e38, -3e38, np.
 
 
 def integer_inputs(storage) -> np.ndarray:
-    """Every code and every tie between codes with neighbours, values out of range, infinities, and random ones."""
+    """Return every code and every tie between codes with neighbours, values out of range, infinities and random
+    values."""
     scale = storage.scale(0)
     codes = np.arange(-scale if storage.kind == "snorm" else 0, storage.most(0) + 1)
     random = np.random.default_rng(0).uniform(-1.2, 1.2, 2**16)
@@ -61,7 +62,7 @@ def integer_inputs(storage) -> np.ndarray:
 
 
 def half_inputs() -> np.ndarray:
-    """All finite half floats and every tie between neighbours, with their float32 neighbours, and what overflows."""
+    """Return all finite half floats and all ties between them, with float32 neighbours, and values that overflow."""
     halves = np.arange(2**16, dtype=np.uint16).view(np.float16)
     exact = np.unique(halves[np.isfinite(halves)].astype(np.float32))
     ties = (exact[1:] + exact[:-1]) / 2
@@ -77,7 +78,7 @@ def as_pixels(values: np.ndarray) -> np.ndarray:
 
 
 def steps_of(storage, channel: int = 0):
-    """Texels of a channel to the whole numbers that it holds; None of floats."""
+    """Return the function from texels of a channel to whole numbers; None for floats."""
     return None if storage.kind == "float" else partial(in_steps, storage=storage, channel=channel)
 
 
@@ -97,11 +98,11 @@ def assert_same_bits(values, expected, got, what: str) -> None:
 
 
 def assert_same_texels(gl, values, expected, got, held, what: str) -> None:
-    """What a device gave back: bit for bit in software. A GPU may divide by a format's scale where another one takes
-    its reciprocal: it holds the same whole numbers, and gives them back to 2^-23.
+    """Check the texels of a device: bit for bit in software. A GPU may divide by a format's scale instead of
+    multiplying by its reciprocal: it holds the same whole numbers, and gives them back to 2^-23.
 
     Args:
-        held: texels to the whole numbers that the format holds; None of floats.
+        held: the function from texels to the whole numbers that the format holds; None for floats.
     """
     if gl.is_software or held is None:
         assert_same_bits(values, expected, got, what)
@@ -118,7 +119,7 @@ def assert_all(same, values, expected, got, what: str) -> None:
 
 @pytest.mark.parametrize("name", [*INTEGERS, *FLOATS])
 def test_the_device_stores_what_the_emulation_says(gl, name):
-    """The format's own conversion, for the rounding the device was found to use."""
+    """The format's own conversion is compared, with the rounding that the device was found to use."""
     storage = STORAGES[name]
     rounding = gl.native_rounding(storage)
     values = half_inputs() if storage.kind == "float" else integer_inputs(storage)
@@ -138,7 +139,8 @@ def test_the_device_stores_what_the_emulation_says(gl, name):
 
 
 def assert_within_direct3ds_tolerance(values: np.ndarray, got: np.ndarray, storage) -> None:
-    """Any whole number within 0.6 of the exact one (Direct3D 11.3, 3.2.3.6): an H200 cuts off up to 0.56."""
+    """Check that each whole number is within 0.6 of the exact number (Direct3D 11.3, 3.2.3.6). An H200 truncates up
+    to 0.56."""
     finite = np.isfinite(values)
     exact = np.clip(values[finite].astype(np.float64), 0 if storage.is_biased else -1, 1) * storage.scale(0)
     off = abs(in_steps(got[finite], storage) - exact)
@@ -146,7 +148,7 @@ def assert_within_direct3ds_tolerance(values: np.ndarray, got: np.ndarray, stora
 
 
 def rounded_in_the_shader(gl, values: np.ndarray, storage, rounding: str) -> np.ndarray:
-    """Numbers rounded by storage.glsl, written to the format and read back; (count, 4)."""
+    """Return numbers rounded by storage.glsl, written to the format and read back; (count, 4)."""
     with ExitStack() as stack:
         defines = storage_defines(storage, [rounding] * storage.channels, shader_rounds=True)
         writes, reads = (
@@ -166,7 +168,7 @@ def rounded_in_the_shader(gl, values: np.ndarray, storage, rounding: str) -> np.
     "name, rounding", [*itertools.product(INTEGERS, ROUNDINGS), *itertools.product(FLOATS, FLOAT_ROUNDINGS)]
 )
 def test_the_shader_rounds_as_the_emulation_does(gl, name, rounding):
-    """Rounded in the shader, then written: what the device's conversion does no longer matters."""
+    """Numbers are rounded in the shader before they are written, so the device's conversion no longer matters."""
     storage = STORAGES[name]
     values = half_inputs() if storage.kind == "float" else integer_inputs(storage)
     got = rounded_in_the_shader(gl, values, storage, rounding)[:, 0]
@@ -175,7 +177,8 @@ def test_the_shader_rounds_as_the_emulation_does(gl, name, rounding):
 
 
 def form_inputs(form) -> np.ndarray:
-    """Every float of up to 16 bits, or 2^16 of more, ties between neighbours, and what is beyond; -1 to 1 mostly."""
+    """Return every float of up to 16 bits, or 2^16 of more, ties between neighbours, and values beyond the largest;
+    mostly from -1 to 1."""
     every = every_float(form)
     some = every[:: max(1, len(every) // 2**16)]
     ties = ((some[1:].astype(np.float64) + some[:-1]) / 2).astype(np.float32)
@@ -186,7 +189,7 @@ def form_inputs(form) -> np.ndarray:
 
 
 def every_float(form) -> np.ndarray:
-    """The finite floats of a form from 0 on, ascending, by what their bits mean; of many every so many."""
+    """Return the finite floats of a form from 0 on, ascending, from the meaning of their bits; of many, a sample."""
     count = (2**form.exponent - 1) << form.mantissa
     bits = np.arange(0, count, max(1, count // 2**18))
     exponent, mantissa = bits >> form.mantissa, bits & 2**form.mantissa - 1
@@ -197,8 +200,8 @@ def every_float(form) -> np.ndarray:
 
 @pytest.mark.parametrize("rounding", FLOAT_ROUNDINGS)
 @pytest.mark.parametrize("storage", [s for s in FORMS_SAID if s.form.bits <= 16], ids=lambda s: s.name)
-def test_floats_of_any_form_are_the_nearest_ones_or_those_below(storage, rounding):
-    """Against a search among all floats of the form, in float64."""
+def test_floats_of_any_form_are_the_nearest_or_the_next_below(storage, rounding):
+    """Compared with a search among all floats of the form, in float64."""
     form = storage.form
     every = every_float(form).astype(np.float64)
     values = np.concatenate([form_inputs(form), -form_inputs(form)])
@@ -220,7 +223,7 @@ def test_floats_of_any_form_are_the_nearest_ones_or_those_below(storage, roundin
 @pytest.mark.parametrize("rounding", FLOAT_ROUNDINGS)
 @pytest.mark.parametrize("storage", FORMS_SAID, ids=lambda s: s.name)
 def test_floats_of_any_form_come_back_from_their_bits(gl, storage, rounding):
-    """Rounded, laid across channels by their bits, and read: what the emulation says, and the bits are the float's."""
+    """The floats are rounded, their bits are put across channels and read. The result is that of the emulation."""
     values = np.concatenate([form_inputs(storage.form), -form_inputs(storage.form)])
     with np.errstate(over="ignore"):
         numbers = values * 2 - 1 if storage.is_biased else values
@@ -260,7 +263,7 @@ def test_every_half_float_survives_both_roundings():
 
 
 def test_half_floats_round_as_numpy_rounds():
-    """NumPy's conversion is the oracle for nearest even, and for its overflow to infinity at 65520."""
+    """NumPy's conversion is the reference for nearest even, and for the overflow to infinity at 65520."""
     values = half_inputs()
     with np.errstate(over="ignore"):
         expected = values.astype(np.float16).astype(np.float32)
@@ -299,8 +302,8 @@ def test_ties_of_the_float32_product_go_to_the_even_code(name, channel):
     assert np.all(stored % 2 == 0), f"{name}: {middle[ties][stored % 2 == 1][0]!r} goes to an odd code"
 
 
-def test_what_is_not_a_number_takes_the_lower_end(gl):
-    """Documented of the emulation, and what llvmpipe does; other devices may differ, and no encoder makes one."""
+def test_nan_becomes_the_lowest_code(gl):
+    """The emulation documents this, and llvmpipe does it. Other devices may differ, but no encoder makes a NaN."""
     nan = np.float32([np.nan])
     for name, lower in (("rgba8", 0), ("rgba8_snorm", -1)):
         assert emulated(nan, STORAGES[name], "nearest")[0] == lower
@@ -309,21 +312,21 @@ def test_what_is_not_a_number_takes_the_lower_end(gl):
 
 
 def test_snorm_has_no_code_below_minus_one():
-    """-128 would equal -127: the emulation never makes it, and -1 is exact."""
+    """-128 would equal -127: the emulation never uses -128, and -1 is exact."""
     assert emulated(np.float32([-1, -1.003, -5]), STORAGES["rg8_snorm"], "nearest").tolist() == [-1, -1, -1]
 
 
 @pytest.mark.parametrize("name", [name for name, s in STORAGES.items() if s.bits[0] <= 16])
 def test_every_number_has_bits_of_its_own(name):
-    """The bits of a channel's numbers are all different, and in the order of the numbers where the format is UNORM."""
+    """The bits of a channel's numbers are all different, and in the order of the numbers if the format is UNORM."""
     storage = STORAGES[name]
     for channel, bits in enumerate(storage.bits):
         numbers = storage.numbers(channel)
-        found = words(numbers, storage, channel)
-        assert found.dtype == np.uint32 and found.max() < 2**bits
-        assert len(np.unique(found)) == len(numbers), f"{name}, channel {channel}"
+        patterns = words(numbers, storage, channel)
+        assert patterns.dtype == np.uint32 and patterns.max() < 2**bits
+        assert len(np.unique(patterns)) == len(numbers), f"{name}, channel {channel}"
         if storage.kind == "unorm":
-            assert (np.diff(found.astype(np.int64)) > 0).all()
+            assert (np.diff(patterns.astype(np.int64)) > 0).all()
 
 
 @pytest.mark.parametrize(
@@ -344,28 +347,28 @@ def test_every_number_has_bits_of_its_own(name):
         ("rg16f", np.nan, 0x7E00),
     ],
 )
-def test_the_bits_of_a_number_are_the_formats(name, number, bits):
+def test_the_bits_of_a_number_are_those_of_the_format(name, number, bits):
     """OpenGL 4.6, sections 2.3.4 and 2.3.5; an 11-bit float has the exponent of a half and six bits of mantissa."""
     assert int(words(np.array(number), STORAGES[name], 0)) == bits
 
 
 @pytest.mark.parametrize("name", sorted(STORAGES))
 def test_a_format_that_stands_for_others_stores_the_same(name):
-    """One program serves all formats that `shared` gives the same stand-in: with a format's own scales its numbers are
-    that format's, bit for bit, however many channels are used."""
+    """One program serves all formats that `shared` gives the same stand-in: with a format's own scales its numbers
+    are the same as the format's, bit for bit, however many channels are used."""
     storage = STORAGES[name]
     c = jnp.asarray(np.random.default_rng(1).uniform(-1.1, 1.1, 4096), jnp.float32)
     for count in range(1, storage.channels + 1):
         like, scales = shared(storage, count)
         for channel in range(count):
-            found = store_number(c, fixed(like, scales), channel)
-            assert np.array_equal(found, store_number(c, storage, channel)), (count, channel)
+            stored = store_number(c, fixed(like, scales), channel)
+            assert np.array_equal(stored, store_number(c, storage, channel)), (count, channel)
 
 
 @pytest.mark.parametrize("bits", [(4, 4), (9, 7), (12, 12), (11, 11, 10), (20, 20), (12, 12, 12), (20, 20, 20)])
 @pytest.mark.parametrize("kind", ["unorm", "snorm", "float"])
 def test_a_packing_writes_the_channels_that_its_target_has(kind, bits):
-    """Two at least, as GLSL has no vectors of one; as many as the numbers lie across."""
+    """A packing has two channels or more, because GLSL has no vectors of one, and enough for all numbers."""
     storage = by_rule(kind, bits) if kind != "float" else by_rule("float", (8, 7))
     numbers = min(len(bits), 3)
     packing = StoragePacking(storage, numbers)

@@ -1,4 +1,4 @@
-"""What the emulation stores is what the GL device stores, bit for bit."""
+"""Storage: the emulation and the OpenGL device store the same bits."""
 
 import pytest
 import test_storage_slow

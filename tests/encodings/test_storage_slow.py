@@ -1,4 +1,4 @@
-"""What the emulation stores is what the GL device stores, bit for bit."""
+"""Storage: the emulation and the OpenGL device store the same bits."""
 
 import itertools
 from functools import partial
@@ -45,7 +45,7 @@ DRAWN += [(storage, ROUNDINGS[0]) for storage in BY_RULE if storage.is_packed an
 
 @pytest.mark.parametrize("storage, rounding", params([*NEAREST, *a_tenth(DRAWN)]))
 def test_numbers_across_channels_come_back_as_the_emulation_says(gl, storage, rounding):
-    """Every code of every number and every tie, by the integer's own bits; the other numbers have the same one."""
+    """Every code of every number and every tie, by the integer's own bits; all numbers of a texel have one value."""
     values = integer_inputs(storage)
     with np.errstate(over="ignore"):
         values = values * 2 - 1 if storage.is_biased else values

@@ -1,4 +1,4 @@
-"""Encodings with another axis or sign: the same code of other axes, in both languages."""
+"""Encodings with another axis or sign: the same encoding about other axes, in both languages."""
 
 import numpy as np
 import pytest
@@ -30,8 +30,8 @@ def directions(count: int = 4096) -> np.ndarray:
 
 @pytest.mark.parametrize("values", TURNS, ids=str)
 @pytest.mark.parametrize("name", ["octahedral", "spheremap"])
-def test_the_pole_of_the_code_is_where_it_was_asked_for(name, values):
-    """0, 0 of the code is the axis, or its opposite."""
+def test_the_pole_of_the_encoding_is_the_requested_axis(name, values):
+    """The code 0, 0 is the axis, or its opposite."""
     pole = np.array(POLES[values.get("axis", "z")], np.float32) * float(values.get("sign", "1"))
     encoding = variant(ENCODINGS[name], values)
     code = encoding.encode(from_array(pole[None]), from_array(pole[None]))
@@ -40,7 +40,7 @@ def test_the_pole_of_the_code_is_where_it_was_asked_for(name, values):
 
 @pytest.mark.parametrize("name", CAN_TURN)
 def test_a_turned_encoding_is_as_good_on_the_sphere(name):
-    """The error of uniform directions does not depend on the axis, but for what sampling makes of it."""
+    """Except for sampling, the error of uniform directions does not depend on the axis."""
     n = directions(2**15)
     rms = []
     for encoding in (ENCODINGS[name], variant(ENCODINGS[name], {"axis": "x", "sign": "-1"})):
@@ -69,7 +69,7 @@ def test_a_turned_encoding_has_a_fingerprint_of_its_own():
         ("xy_sign:axis=x", "has no parameter 'axis'"),
     ],
 )
-def test_an_axis_that_cannot_be_is_one_line(word, said):
+def test_invalid_axis_is_a_one_line_error(word, said):
     with pytest.raises(UsageError) as caught:
         tuned(word)
     assert said in str(caught.value) and "\n" not in str(caught.value)

@@ -1,4 +1,4 @@
-"""Encodings with another axis or sign: the same code of other axes, in both languages."""
+"""Encodings with another axis or sign: the same encoding about other axes, in both languages."""
 
 import pytest
 import test_turned_slow

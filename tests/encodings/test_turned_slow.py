@@ -1,4 +1,4 @@
-"""Encodings with another axis or sign: the same code of other axes, in both languages."""
+"""Encodings with another axis or sign: the same encoding about other axes, in both languages."""
 
 from itertools import product
 
@@ -18,8 +18,8 @@ EACH = [*product(["octahedral", "spheremap", "spherical", "cube", "best_fit", "t
 
 @pytest.mark.parametrize("name, values", a_tenth(EACH), ids=str)
 def test_both_languages_turn_alike(gl, name, values):
-    """Codes and decodes differ by no more than those of the encoding that is not turned, singular points apart."""
-    found = []
+    """Except at singular points, codes and decodes differ by no more than those of the unturned encoding."""
+    figures = []
     for encoding in (ENCODINGS[name], variant(ENCODINGS[name], values)):
         n = directions(1024)
         four = np.concatenate([n, np.zeros((len(n), 1), np.float32)], axis=1)
@@ -28,7 +28,7 @@ def test_both_languages_turn_alike(gl, name, values):
         codes[:, : by_jax.shape[1]] = by_jax
         by_gl, decoded = exact_values(gl, encoding, four, four, codes)
         same = np.abs(by_gl[:, : by_jax.shape[1]] - by_jax).max(axis=1) < 1e-5
-        found.append((same.mean(), np.quantile(angles_deg(n, decoded[:, :3].astype(np.float64)), 0.98)))
-    (plain, plain_angle), (turned, turned_angle) = found
+        figures.append((same.mean(), np.quantile(angles_deg(n, decoded[:, :3].astype(np.float64)), 0.98)))
+    (plain, plain_angle), (turned, turned_angle) = figures
     assert turned >= plain - 0.01, f"{turned:.3%} of codes agree, {plain:.3%} where it is not turned"
     assert turned_angle <= max(2 * plain_angle, 1e-3), f"{turned_angle:.3g} degrees off without storage"

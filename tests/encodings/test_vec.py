@@ -1,4 +1,4 @@
-"""Vectors, and the functions both languages share."""
+"""Vectors, and the functions that both languages share."""
 
 import jax
 import jax.numpy as jnp
@@ -42,7 +42,7 @@ def test_arrays_convert_there_and_back():
         vec.from_array(np.zeros(4))
 
 
-def test_what_is_no_direction_becomes_forward():
+def test_a_vector_without_a_direction_becomes_forward():
     assert np.array_equal(vec.to_array(vec.from_array(NOT_DIRECTIONS)), np.tile([0, 0, 1], (len(NOT_DIRECTIONS), 1)))
 
 
@@ -51,8 +51,8 @@ def test_unit_of_zero_is_the_first_axis():
     assert [float(c) for c in vec.unit(Vec3(*[jnp.float32(0)] * 3))] == [1, 0, 0]
 
 
-def test_the_polynomials_are_as_exact_as_they_say():
-    """The coefficients as shipped, in float64."""
+def test_the_polynomials_are_as_accurate_as_stated():
+    """The shipped coefficients are evaluated in float64."""
     s = np.linspace(1e-12, 1, 100_001)
     r = np.sqrt(s)
     assert abs(np.polyval(ATAN_PI[::-1], s) / (np.arctan(r) / r / np.pi) - 1).max() < 5e-8
@@ -62,7 +62,7 @@ def test_the_polynomials_are_as_exact_as_they_say():
 
 
 def test_the_angle_is_the_arc_tangent_within_two_units():
-    """Against float64 over the whole circle, axes, diagonals and both zeros; all scales from 1e-18 to 1e18."""
+    """Compared with float64 over the whole circle, axes, diagonals and both zeros; all scales from 1e-18 to 1e18."""
     turns = np.linspace(-1, 1, 200_001)
     y, x = (np.concatenate([f(np.pi * turns) * s for s in (1, 1e-18, 1e18)]) for f in (np.sin, np.cos))
     y, x = y.astype(np.float32), x.astype(np.float32)
@@ -75,16 +75,16 @@ def test_the_angle_is_the_arc_tangent_within_two_units():
     assert float(atan2_pi(jnp.float32(0), jnp.float32(-1))) == 1
 
 
-def test_the_arc_tangent_of_a_number_is_that_of_the_angle():
-    """Where nobody needs the other octants, to the bit."""
+def test_the_arc_tangent_of_one_number_equals_the_angle():
+    """The functions agree to the bit in the octants that both cover."""
     t = jnp.linspace(-1, 1, 99_999, dtype=jnp.float32)
     np.testing.assert_array_equal(jax.jit(atan_pi)(t), jax.jit(atan2_pi)(t, jnp.ones_like(t)))
 
 
 @pytest.mark.parametrize("is_wide", [False, True])
-def test_a_number_of_python_does_not_make_the_angle_another_function(is_wide):
-    """Rows are measured where Python's numbers are float64: beside a float32 they still take the polynomial that GLSL
-    has, and not JAX's function."""
+def test_a_python_number_does_not_select_another_angle_function(is_wide):
+    """Rows are measured where Python's numbers are float64. Next to a float32 such numbers still use the polynomial
+    of GLSL, not JAX's function."""
     y = jnp.linspace(-3, 3, 999, dtype=jnp.float32)
     with jax.enable_x64(is_wide):
         got, traced = jax.jit(lambda y: atan2_pi(y, 1.0))(y), str(jax.make_jaxpr(lambda y: atan2_pi(y, 1.0))(y))

@@ -1,4 +1,4 @@
-"""Codes of normals up to an angle from the line of sight: what they gain, and what becomes of the rest."""
+"""Encodings of normals up to an angle from the line of sight: the gain, and the normals outside."""
 
 import jax
 import numpy as np
@@ -55,7 +55,7 @@ def test_normals_up_to_the_cap_come_back_and_others_come_to_its_rim(name, cap):
         assert np.abs(rim - cap).max() < 0.01
 
 
-def test_half_of_the_octahedron_is_the_hemi_octahedral_map_in_the_pixels_frame():
+def test_half_of_the_octahedron_is_hemi_octahedral_in_the_per_pixel_frame():
     encoding = ENCODINGS["view_octahedral"].with_parameters({"cap": 90.0})
     facing = ANGLES < 90.0
     x, y, z = view_frame(planes(VIEW))
@@ -65,8 +65,9 @@ def test_half_of_the_octahedron_is_the_hemi_octahedral_map_in_the_pixels_frame()
     assert np.abs(np.asarray(to_array(code)) - np.asarray(to_array(turned)))[facing].max() < 1e-6
 
 
-def test_a_cap_has_a_share_of_the_codes_for_its_share_of_the_sphere():
-    """What is even on a cap is even on the square, whose steps gain 10 log10(2 / (1 - cos c)) less their stretch."""
+def test_a_cap_has_codes_in_proportion_to_its_area():
+    """Uniform normals on a cap are uniform on the square, whose steps gain 10 log10(2 / (1 - cos c)) less their
+    stretch."""
     whole = rms_deg(ENCODINGS["equal_area_octahedral"], ANGLES <= 180.0)
     for cap in (90.0, 100.0):
         encoding, held = ENCODINGS["view_equal_area"].with_parameters({"cap": cap}), cap >= ANGLES

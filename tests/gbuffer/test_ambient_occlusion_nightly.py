@@ -1,4 +1,4 @@
-"""Ambient occlusion of further closed forms and pipelines."""
+"""Ambient occlusion with other closed forms and other pipelines."""
 
 import pytest
 import test_ambient_occlusion_slow
@@ -6,8 +6,8 @@ from occluded import SOLID
 
 
 @pytest.mark.parametrize("name", [name for name in SOLID if name not in test_ambient_occlusion_slow.FORMS])
-def test_gtao_is_what_further_closed_forms_say(gl, name):
-    test_ambient_occlusion_slow.test_gtao_is_what_the_closed_form_says(gl, name)
+def test_gtao_matches_other_closed_forms(gl, name):
+    test_ambient_occlusion_slow.test_gtao_matches_the_closed_form(gl, name)
 
 
 OTHERS = [(pipeline, {"full": "half", "half": "full"}[size]) for pipeline, size in test_ambient_occlusion_slow.PIPED]

@@ -1,4 +1,4 @@
-"""Ambient occlusion: the arcs of GTAO against integrals, and what all methods must give over simple bodies."""
+"""Ambient occlusion: the arcs of GTAO against integrals, and the results of all methods on simple bodies."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def unit(v: np.ndarray) -> np.ndarray:
 
 
 def slice_of(phi, n, v):
-    """o, |m| and g of slices: angles of any shape (..., slices), normals and lines of sight (..., 3)."""
+    """Return o, |m| and g of slices: angles of any shape (..., slices), normals and lines of sight (..., 3)."""
     right = unit(np.stack([v[..., 2], 0 * v[..., 2], -v[..., 0]], axis=-1))
     up, v, n, right = (a[..., None, :] for a in (np.cross(v, right), v, n, right))
     o = np.cos(phi)[..., None] * right + np.sin(phi)[..., None] * up
@@ -68,7 +68,8 @@ def bent(h0, h1, g):
 
 
 def normals_and_sights(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lines of sight up to 50 degrees off the axis, and normals that face them by more than 1 degree."""
+    """Return normals and lines of sight: sights up to 50 degrees off the axis, and normals that face them by more
+    than 1 degree."""
     rng = np.random.default_rng(seed)
     sights = unit(np.stack([*rng.uniform(-0.84, 0.84, (2, count)), np.ones(count)], axis=1))
     normals = unit(rng.normal(size=(count, 3)))
@@ -78,7 +79,7 @@ def normals_and_sights(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_arcs_are_the_integrals_between_horizons():
-    """Of cos(t - g)|sin t|, and of that times sin t and cos t: 1e-7, what the midpoints of 20 000 parts come to."""
+    """The integrals of cos(t - g)|sin t|, and of that times sin t and cos t: 1e-7, the error of 20 000 midpoints."""
     rng = np.random.default_rng(2)
     g = rng.uniform(-1.5, 1.5, 50)
     h0, h1 = (np.clip(h, g - np.pi / 2, g + np.pi / 2) for h in (-rng.uniform(0, 3, 50), rng.uniform(0, 3, 50)))
@@ -88,12 +89,12 @@ def test_arcs_are_the_integrals_between_horizons():
         t = h[:, None] * steps
         weight = np.cos(t - g[:, None]) * np.abs(np.sin(t)) * np.abs(h[:, None]) / 20000
         sums += [np.sum(weight * f, axis=1) for f in (1 + 0 * t, np.sin(t), np.cos(t))]
-    found = np.stack([arc(h0, g) + arc(h1, g), *bent(h0, h1, g)])
-    assert np.abs(found - sums).max() < 1e-7, np.abs(found - sums).max(axis=1)
+    arcs = np.stack([arc(h0, g) + arc(h1, g), *bent(h0, h1, g)])
+    assert np.abs(arcs - sums).max() < 1e-7, np.abs(arcs - sums).max(axis=1)
 
 
 def test_open_slices_have_a_mean_of_one_for_every_normal():
-    """|m| (a(g - pi/2) + a(g + pi/2)) over 1024 slices: 1 to 1e-6. A slice by itself is more than 10 % off."""
+    """|m| (a(g - pi/2) + a(g + pi/2)) over 1024 slices is 1 to 1e-6. A single slice can be more than 10% off."""
     normals, sights = normals_and_sights(1000, 3)
     phi = np.broadcast_to(np.pi * (np.arange(1024) + 0.5) / 1024, (len(normals), 1024))
     _, share, g = slice_of(phi, normals, sights)
@@ -128,7 +129,7 @@ void main() {
 
 @pytest.fixture(scope="module")
 def slices(gl, tmp_path_factory):
-    """What GLSL says of slices with given normals, lines of sight and horizons, and what they were."""
+    """Slices with given normals, lines of sight and horizons, and the results of GLSL for them."""
     normals, sights = (a[:512] for a in normals_and_sights(1000, 4))
     rng = np.random.default_rng(5)
     phi = rng.uniform(0, np.pi, len(normals))
@@ -138,12 +139,12 @@ def slices(gl, tmp_path_factory):
     given = {"given_normal": normals, "given_sight": sights, "given_horizons": np.stack([h0, h1, phi], axis=1)}
     shader = tmp_path_factory.mktemp("slices") / "slices.frag"
     shader.write_text(SLICES)
-    found, directions = (Resource(name, "rgba32f", scale=(len(normals), 1)) for name in ("found", "directions"))
+    arcs, directions = (Resource(name, "rgba32f", scale=(len(normals), 1)) for name in ("found", "directions"))
 
     def build(canvas):
         whole = {k: np.pad(a, [(0, 0), (0, 1)])[None].astype(np.float32) for k, a in given.items()}
         textures = {k: canvas.device.owned(canvas.frame.stack, canvas.device.upload(a)) for k, a in whole.items()}
-        target, covers = canvas.target(found, directions), canvas.fullscreen(shader, **CONSTANTS, **GTAO)
+        target, covers = canvas.target(arcs, directions), canvas.fullscreen(shader, **CONSTANTS, **GTAO)
 
         def run():
             target.use()
@@ -153,19 +154,19 @@ def slices(gl, tmp_path_factory):
 
         return run
 
-    pipeline = Pipeline("slices", "slices", "a test", (Pass("slices", (), (found, directions), build),))
-    with rendering(gl, pipeline, scene_of("room"), plan_of(SIZE)) as made:
-        made.draw()
-        return given, made.read(found)[0][0], made.read(directions)[0][0]
+    pipeline = Pipeline("slices", "slices", "a test", (Pass("slices", (), (arcs, directions), build),))
+    with rendering(gl, pipeline, scene_of("room"), plan_of(SIZE)) as drawing:
+        drawing.draw()
+        return given, drawing.read(arcs)[0][0], drawing.read(directions)[0][0]
 
 
-def test_the_shader_computes_those_arcs(slices):
-    """Visibility and bent normal of a slice, 2e-6 and 5e-6: a few steps of float32 at sums of up to ten terms."""
-    given, found, directions = slices
+def test_the_shader_computes_the_same_arcs(slices):
+    """Visibility of a slice to 2e-6, bent normal to 5e-6: a few steps of float32 in sums of up to ten terms."""
+    given, arcs, directions = slices
     n, v, (h0, h1, phi) = given["given_normal"], given["given_sight"], given["given_horizons"].T
     o, share, g = (a[:, 0] for a in slice_of(phi[:, None], n, v))
     exact = share * (arc(h0, g) + arc(h1, g))
-    off = np.abs(found[:, 0] - exact)
+    off = np.abs(arcs[:, 0] - exact)
     assert off.max() < 2e-6, f"{off.max():.2g} at normal {n[off.argmax()]}"
     t0, t1 = bent(h0, h1, g)
     off = np.abs(directions[:, :3] - (share * t0)[:, None] * o - (share * t1)[:, None] * v)
@@ -179,10 +180,10 @@ def test_open_slices_of_the_shader_have_a_mean_of_one(slices):
 
 
 def middle_of_floor(gl, meshes) -> float:
-    """By GTAO from above, with a radius that fades nothing within 1.9 m. The mean of 25 pixels, 17 cm across: each has
-    24 slices of its own, and a ball lies in a few of them."""
-    found, *_ = drawn_effect(gl, scene_of_meshes(*meshes), "gtao:slices=24:steps=80:radius=5", (141, 141))
-    return float(found[68:73, 68:73].mean())
+    """Return the visibility by GTAO from above, with a radius that fades nothing within 1.9 m. The mean is of
+    25 pixels, 17 cm across: each has its own 24 slices, and a ball is in a few of these."""
+    visibility, *_ = drawn_effect(gl, scene_of_meshes(*meshes), "gtao:slices=24:steps=80:radius=5", (141, 141))
+    return float(visibility[68:73, 68:73].mean())
 
 
 # The first, and the one that is farthest off; the others at night.
@@ -190,51 +191,51 @@ FORMS = ("ball on the floor", "deep pit")
 
 
 @pytest.mark.parametrize("name", FORMS)
-def test_gtao_is_what_the_closed_form_says(gl, name):
-    """0.02. Where the horizon lies a step of 80 is 6 cm long, and finds it that much late."""
+def test_gtao_matches_the_closed_form(gl, name):
+    """The tolerance is 0.02: at the horizon one of 80 steps is 6 cm long, and finds the horizon that much late."""
     meshes, expected = CLOSED[name]
-    found = middle_of_floor(gl, meshes)
-    assert abs(found - expected) < 0.02, f"{name}: {found:.4f}, not {expected:.4f}"
+    visibility = middle_of_floor(gl, meshes)
+    assert abs(visibility - expected) < 0.02, f"{name}: {visibility:.4f}, not {expected:.4f}"
 
 
 @pytest.mark.parametrize("x", [1.0, 1.2])
-def test_gtao_takes_all_that_is_behind_a_surface_for_solid(gl, x):
-    """A ball that hides the air under it darkens as one on a pillar does, by rays: 0.01. The closed form of the ball
-    alone is brighter, by twice that or more."""
+def test_gtao_treats_everything_behind_a_surface_as_solid(gl, x):
+    """A ball that hides the air under it darkens like a ball on a pillar by rays, to 0.01. The closed form of the
+    ball alone is brighter by at least twice that."""
     y = 1.0
     meshes = (floor(), ball(0.5, x, y))
     exact = RayCaster(triangles_of(scene_of_meshes(*meshes, pillar(0.5, x, y)))).visible(
         np.array([[0.0, 1e-4, 0.0]]), np.array([[0.0, 1.0, 0.0]]), 200_000, lambda t: (t < 1e30).astype(float)
     )
-    found = middle_of_floor(gl, meshes)
-    assert abs(found - exact.visibility[0]) < 0.01, f"{found:.4f}, not {exact.visibility[0]:.4f}"
-    assert by_ball(0.5, x, y) - found > 0.02
+    visibility = middle_of_floor(gl, meshes)
+    assert abs(visibility - exact.visibility[0]) < 0.01, f"{visibility:.4f}, not {exact.visibility[0]:.4f}"
+    assert by_ball(0.5, x, y) - visibility > 0.02
 
 
 SLANTED = View((0.0, 2.0, 4.0), (0.0, 0.0, 0.0), 40.0, 0.5, 60.0, up=(0.3, 1.0, 0.0))
 
 
 def open_to(gl) -> float:
-    """What is open, to the last digit; a GPU's mean of ones may be two units in the last place less."""
+    """Return the visibility of open surfaces; a GPU's mean of ones may be two units in the last place lower."""
     return 1.0 if gl.is_software else 1 - 2.0**-22
 
 
 @pytest.mark.parametrize("text", BOTH)
 def test_nothing_occludes_an_open_plane_or_a_convex_body(gl, text):
-    """1 at every pixel of a level floor, seen aslant, and of a box that has nothing around it."""
+    """The visibility is 1 at every pixel of a level floor, seen at an angle, and of a box with nothing around it."""
     for name, mesh in (("floor", floor()), ("box", box(1.2, 1.0, 0.8))):
-        found, position, _ = drawn_effect(gl, scene_of_meshes(mesh, view=SLANTED), text, SIZE)
+        visibility, position, _ = drawn_effect(gl, scene_of_meshes(mesh, view=SLANTED), text, SIZE)
         covered = position[..., 2] != 0
         assert covered.sum() > 500
-        assert found[covered].min() >= open_to(gl), f"{name}: {found[covered].min():.9f}"
-        assert not (found[~covered] != 1.0).any(), "the background"
+        assert visibility[covered].min() >= open_to(gl), f"{name}: {visibility[covered].min():.9f}"
+        assert not (visibility[~covered] != 1.0).any(), "the background"
 
 
 def test_the_bent_normal_of_an_open_plane_is_its_normal(gl):
-    """With 64 slices, to 0.1 degrees; of a floor beside a box it leans away from the box."""
+    """With 64 slices both agree to 0.1 degrees. On a floor next to a box, the bent normal leans away from the box."""
     text = "gtao:slices=64"
-    found, _, direction = drawn_effect(gl, scene_of_meshes(floor(), view=SLANTED), text, SIZE, BENT_NORMAL)
-    across = np.linalg.norm(np.cross(found[..., :3], direction[..., :3]), axis=-1)
+    bent_normal, _, direction = drawn_effect(gl, scene_of_meshes(floor(), view=SLANTED), text, SIZE, BENT_NORMAL)
+    across = np.linalg.norm(np.cross(bent_normal[..., :3], direction[..., :3]), axis=-1)
     assert np.degrees(across.max()) < 0.1
     crate = box(1.0, 0.5, 1.0).placed(np.eye(3), (-0.5, 0.25, 0.0))
     beside, *_ = drawn_effect(gl, scene_of_meshes(floor(), crate), f"{text}:radius=3", (121, 121), BENT_NORMAL)
@@ -245,7 +246,8 @@ def test_the_bent_normal_of_an_open_plane_is_its_normal(gl):
 
 @pytest.mark.parametrize("text", [*METHODS, "gtao:size=half"])
 def test_turning_scene_and_camera_changes_nothing(gl, text):
-    """The same noise and taps: equal to 1e-3 but where a tap falls on another pixel or over an edge, 1 % of them."""
+    """Noise and taps are the same. Fewer than 1% of the pixels differ by more than 1e-3: a tap falls on another pixel
+    there, or over an edge."""
     room = replace(scene_of("room"), lights=())
     turn = rotation(0.7, 0.4, 1.1)
     before, after = (drawn_effect(gl, scene, text, SIZE)[0] for scene in (room, turned(room, turn)))
@@ -261,19 +263,19 @@ PIPED = [("deferred", "full"), ("prepass", "half"), ("hybrid", "full"), ("inferr
 
 @pytest.mark.parametrize("pipeline, size", PIPED)
 def test_ambient_light_is_multiplied_by_the_visibility(gl, pipeline, size):
-    """In a room with ambient light alone and nothing of glass, over all kinds of material."""
+    """The room has only ambient light and no glass, and shows all other kinds of material."""
     room = scene_of("room")
     solid = tuple(part for part in room.parts if room.materials[part.materials[0]].alpha == 1)
     dark = replace(room, lights=(), parts=solid, ambient=(0.5, 0.25, 1.0))
     dark = replace(dark, materials=tuple(replace(m, emissive=(0.0, 0.0, 0.0)) for m in room.materials))
     plan = replace(plan_of(SIZE), light_targets=min(PIPELINES[pipeline].light_targets))
     chosen_effect = effect(f"gtao:size={size}")
-    with rendering(gl, PIPELINES[pipeline], dark, plan) as made:
-        made.draw()
-        plain = made.image()
-    with rendering(gl, PIPELINES[pipeline].with_effect(chosen_effect.passes()), dark, plan) as made:
-        made.draw()
-        image, visibility = made.image(), made.read(VISIBILITY)[0].reshape(SIZE[::-1])
+    with rendering(gl, PIPELINES[pipeline], dark, plan) as drawing:
+        drawing.draw()
+        plain = drawing.image()
+    with rendering(gl, PIPELINES[pipeline].with_effect(chosen_effect.passes()), dark, plan) as drawing:
+        drawing.draw()
+        image, visibility = drawing.image(), drawing.read(VISIBILITY)[0].reshape(SIZE[::-1])
     assert np.abs(image - plain * visibility[..., None]).max() < 1e-6
     assert visibility.min() < 0.7
 
@@ -289,36 +291,36 @@ void main() {
 
 
 def test_upsampling_keeps_to_the_surface(gl, tmp_path):
-    """A buffer of half size that is 0 and 1 on surfaces in turn: each pixel is its own surface's, but for 2 % that find
-    it in none of their four texels, at silhouettes."""
+    """A buffer of half size is 0 and 1 on alternate surfaces: each pixel gets the value of its own surface, except
+    for 2% at silhouettes, whose surface is in none of their four texels."""
     (tmp_path / "steps.frag").write_text(STEPS)
     stages = list(passes("sao.frag", "half", False, SEED=0))
     stages[1] = replace(
         stages[1], build=lambda canvas: canvas.over(tmp_path / "steps.frag", HALF_VISIBILITY, **CONSTANTS)
     )
     pipeline = PIPELINES["deferred"].with_effect(stages)
-    with rendering(gl, pipeline, scene_of("room"), plan_of((161, 121))) as made:
-        made.draw()
-        position, *_ = made.gbuffer()
-        found = made.read(VISIBILITY)[0].reshape(121, 161)
+    with rendering(gl, pipeline, scene_of("room"), plan_of((161, 121))) as drawing:
+        drawing.draw()
+        position, *_ = drawing.gbuffer()
+        upsampled = drawing.read(VISIBILITY)[0].reshape(121, 161)
     expected = position[..., 3].astype(int) % 2
-    wrong = np.mean(np.abs(found - expected) > 1e-6)
+    wrong = np.mean(np.abs(upsampled - expected) > 1e-6)
     assert 0.3 < expected.mean() < 0.7
     assert wrong < 0.02, f"{wrong:.2%} of the pixels"
 
 
-def test_hair_has_the_normal_of_its_depths(gl):
-    """The room's ball of hair is convex, like the one of skin: at most 0.1 darker in the mean, by facets and seams."""
+def test_hair_uses_the_normal_from_its_depths(gl):
+    """The room's ball of hair is convex, like its ball of skin: facets and seams darken its mean by at most 0.1."""
     room = scene_of("room")
-    found, _, direction = drawn_effect(gl, room, "hbao", (160, 120))
-    hair, skin = (found[direction[..., 3] == KINDS.index(kind)].mean() for kind in ("hair", "skin"))
+    visibility, _, direction = drawn_effect(gl, room, "hbao", (160, 120))
+    hair, skin = (visibility[direction[..., 3] == KINDS.index(kind)].mean() for kind in ("hair", "skin"))
     assert hair > skin - 0.1, f"hair {hair:.3f}, skin {skin:.3f}"
 
 
 def test_one_pipeline_takes_one_method():
-    one, other = effect("gtao"), effect("hbao")
+    gtao, other = effect("gtao"), effect("hbao")
     with pytest.raises(PipelineError) as refused:
-        PIPELINES["deferred"].with_effect(one.passes()).with_effect(other.passes())
+        PIPELINES["deferred"].with_effect(gtao.passes()).with_effect(other.passes())
     assert str(refused.value) == "pipeline deferred: pass occluder_depth has the name of another pass"
 
 
@@ -345,26 +347,26 @@ def test_settings_out_of_range_are_refused(name, given, said):
 @pytest.mark.parametrize("size", [(1, 1), (2, 1), (5, 3)])
 @pytest.mark.parametrize("text", [f"{name}:size=half" for name in METHODS])
 def test_half_of_the_smallest_picture_is_one_pixel(gl, text, size):
-    found, *_ = drawn_effect(gl, scene_of_meshes(floor(), view=FROM_ABOVE), text, size)
-    assert (found >= open_to(gl)).all(), found.min()
+    visibility, *_ = drawn_effect(gl, scene_of_meshes(floor(), view=FROM_ABOVE), text, size)
+    assert (visibility >= open_to(gl)).all(), visibility.min()
 
 
-def test_depth_may_be_kept_in_the_layout_or_beside_it(gl):
-    """Four taps a pixel see the same room whether depth is a float of the layout or the depth buffer's 24 bits."""
+def test_depth_can_be_in_the_layout_or_in_the_depth_buffer(gl):
+    """Four taps per pixel see the same room whether depth is a float of the layout or the depth buffer's 24 bits."""
     room, bare = (
         scene_of("room"),
         replace(FP32, targets=(replace(FP32.targets[0], holds="normal.x normal.y normal.z"), *FP32.targets[1:])),
     )
-    one, other = (drawn_effect(gl, room, "hbao", SIZE, layout=layout)[0] for layout in (FP32, bare))
-    assert np.mean(np.abs(one - other) > 0.01) < 0.01
+    in_layout, other = (drawn_effect(gl, room, "hbao", SIZE, layout=layout)[0] for layout in (FP32, bare))
+    assert np.mean(np.abs(in_layout - other) > 0.01) < 0.01
 
 
 @pytest.mark.parametrize("text", METHODS)
 def test_a_seed_changes_the_noise_and_nothing_else(gl, text):
-    """Equal for one seed, different for another, with means no more than 0.01 apart."""
-    one, same, other = (drawn_effect(gl, scene_of("room"), f"{text}:seed={s}", SIZE)[0] for s in (1, 1, 2))
-    assert np.array_equal(one, same)
-    assert np.mean(one != other) > 0.05 and abs(float(one.mean() - other.mean())) < 0.01
+    """The image is the same for the same seed, and different for another seed, with means at most 0.01 apart."""
+    first, same, other = (drawn_effect(gl, scene_of("room"), f"{text}:seed={s}", SIZE)[0] for s in (1, 1, 2))
+    assert np.array_equal(first, same)
+    assert np.mean(first != other) > 0.05 and abs(float(first.mean() - other.mean())) < 0.01
 
 
 def test_the_spirals_turns_share_no_factor_with_its_taps():
@@ -372,9 +374,9 @@ def test_the_spirals_turns_share_no_factor_with_its_taps():
 
 
 @pytest.mark.parametrize("text", ["gtao", "hbao", "gtao:slices=16:steps=16"])
-def test_what_a_finer_normal_changes_shrinks_with_its_error(gl, text):
-    """Octahedral codes of 10 bits against 6, in the room: the mean change for each degree of error stays within a
-    factor of 2. A threshold that open surfaces sit on would make it grow without end."""
+def test_the_change_by_a_less_accurate_normal_shrinks_with_its_error(gl, text):
+    """Octahedral codes of 10 bits against 6, in the room: the mean change per degree of error stays within a factor
+    of 2. A threshold at open surfaces would make it grow without limit."""
 
     def coded(bits: int):
         words = Target("rgba8", f"normal.x:{bits} normal.y:{bits}")
@@ -385,9 +387,9 @@ def test_what_a_finer_normal_changes_shrinks_with_its_error(gl, text):
     exact, _, normal = drawn_effect(gl, scene_of("room"), text, SIZE)
     slopes = []
     for bits in (6, 10):
-        found, _, decoded = drawn_effect(gl, scene_of("room"), text, SIZE, layout=coded(bits))
+        coarse, _, decoded = drawn_effect(gl, scene_of("room"), text, SIZE, layout=coded(bits))
         here = normal[..., 3] != KINDS.index("hair")
         angle = angles_deg(normal[here][:, :3], decoded[here][:, :3])
-        slopes.append(float(np.abs(found - exact)[here].mean() / angle.mean()))
+        slopes.append(float(np.abs(coarse - exact)[here].mean() / angle.mean()))
     assert 0.5 < slopes[1] / slopes[0] < 2, f"{slopes[0]:.5f} a degree, then {slopes[1]:.5f}"
     assert 1e-4 < slopes[0] < 0.0079

@@ -1,4 +1,4 @@
-"""Bad mesh files: each is refused in one line, and nothing is read outside its folder."""
+"""Bad mesh files: each is refused in one line, and nothing outside its folder is read."""
 
 import json
 import os
@@ -64,10 +64,10 @@ def not_finite() -> Document:
 
 
 @pytest.mark.parametrize("what", BAD_GLTF)
-def test_a_bad_gltf_is_one_line(tmp_path, run, what):
-    make, said = BAD_GLTF[what]
+def test_bad_gltf_is_a_one_line_error(tmp_path, run, what):
+    make, parts = BAD_GLTF[what]
     err = refusal(run, make().write(tmp_path / "bad.glb"))
-    assert all(part in err for part in said), err
+    assert all(part in err for part in parts), err
 
 
 ADDRESSES = {
@@ -93,7 +93,7 @@ ADDRESSES = {
 
 @pytest.mark.parametrize("what", ADDRESSES)
 def test_nothing_is_read_outside_the_folder_or_from_the_network(tmp_path, run, opened, what):
-    address, said = ADDRESSES[what]
+    address, reason = ADDRESSES[what]
     folder = tmp_path / "scene"
     folder.mkdir()
     (tmp_path / "secret.bin").write_bytes(bytes(999))
@@ -107,7 +107,7 @@ def test_nothing_is_read_outside_the_folder_or_from_the_network(tmp_path, run, o
     opened.clear()
     for name in ("a.gltf", "a.obj") if "link" in what else ("a.gltf",):
         err = refusal(run, folder / name)
-        assert said in err, err
+        assert reason in err, err
     assert opened and not any(name.endswith(("secret.bin", "hostname", "pipe")) for name in opened), opened
 
 
@@ -149,22 +149,22 @@ BAD_TEXTS = {
 
 
 @pytest.mark.parametrize("what", BAD_TEXTS)
-def test_a_bad_text_is_one_line(tmp_path, run, what):
-    name, text, said = BAD_TEXTS[what]
+def test_bad_text_is_a_one_line_error(tmp_path, run, what):
+    name, text, parts = BAD_TEXTS[what]
     (tmp_path / name).write_text(text)
     err = refusal(run, tmp_path / name)
-    assert all(part in err for part in said), err
+    assert all(part in err for part in parts), err
 
 
 @pytest.mark.parametrize("cut", [0, 3, 11, 19, 40, 300, -1])
-def test_a_truncated_glb_is_one_line(tmp_path, run, cut):
+def test_truncated_glb_is_a_one_line_error(tmp_path, run, cut):
     whole = chained().write(tmp_path / "a.glb").read_bytes()
     (tmp_path / "a.glb").write_bytes(whole[:cut])
     assert "export it again" in refusal(run, tmp_path / "a.glb")
 
 
-def test_budgets_are_of_all_places_together(tmp_path, monkeypatch):
-    """Ten places of a mesh count ten times."""
+def test_every_instance_of_a_mesh_counts_toward_the_limit(tmp_path, monkeypatch):
+    """Ten nodes with the same mesh count ten times."""
     document = Document()
     mesh = document.mesh(POSITIONS, NORMALS)
     for _ in range(10):
@@ -175,7 +175,7 @@ def test_budgets_are_of_all_places_together(tmp_path, monkeypatch):
         read_mesh_file(path)
 
 
-def test_no_two_files_have_one_name(run, tmp_path):
+def test_two_files_of_the_same_name_are_refused(run, tmp_path):
     for folder in ("a", "b"):
         (tmp_path / folder).mkdir()
         chained().write(tmp_path / folder / "x.glb")

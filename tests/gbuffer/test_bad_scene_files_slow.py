@@ -1,11 +1,11 @@
-"""Bad mesh files: each is refused in one line, and nothing is read outside its folder."""
+"""Bad mesh files: each is refused in one line, and nothing outside its folder is read."""
 
 from damaged import refusal
 from written import ply
 
 
-def test_what_is_too_large_is_refused_before_it_is_read(tmp_path, run):
-    """A file of a terabyte that holds nothing, and a PLY header that promises more than there is room for."""
+def test_large_files_are_refused_before_they_are_read(tmp_path, run):
+    """An empty file of a terabyte, and a PLY header that declares too many vertices."""
     with (tmp_path / "a.glb").open("wb") as file:
         file.truncate(2**40)
     assert "1099511627776 bytes" in refusal(run, tmp_path / "a.glb")

@@ -1,4 +1,4 @@
-"""What a material is on a curve, or in a code of light: the image follows, and a layout says what cannot be."""
+"""Material attributes on a curve or in a light encoding: the image follows, and layouts report bad requests."""
 
 from dataclasses import replace
 
@@ -33,27 +33,28 @@ def exact(gl) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", CURVE_ENCODINGS)
-def test_in_floats_a_curve_leaves_the_image_as_it_is(gl, exact, name):
-    """Every quantity on it: 75 dB. The fast curve does not quite undo itself: 55 to 75; eight rays have nine values."""
+def test_a_curve_in_floats_does_not_change_the_image(gl, exact, name):
+    """With every quantity on the curve: above 75 dB. The fast curve is not exactly undone: 55 to 75 dB. `ray_bits`
+    has only nine values: 10 to 55 dB."""
     on = {q: f"{name}({q})" for q in ("base_color", "metallic", "roughness", "f0", "ao", "emissive")}
     targets = "rgba32f: {base_color} {metallic}; rgba32f: {roughness} {f0} {ao}; rgba32f: {emissive}"
-    found = apart(image(gl, targets.format(**on)), exact)
+    decibels = apart(image(gl, targets.format(**on)), exact)
     off = CURVE_ENCODINGS[name].inverse_error
     least, most = (75, np.inf) if not off else (55, 75) if off < 0.01 else (10, 55)
-    assert least < found <= most, f"{found:.1f} dB"
+    assert least < decibels <= most, f"{decibels:.1f} dB"
 
 
 @pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
 @pytest.mark.parametrize("name", WHOLE)
-def test_a_light_is_kept_by_a_code_of_a_texel(gl, exact, pipeline, name):
-    """As well as its light buffer keeps it: above 40 dB, and not exactly."""
+def test_a_layout_can_store_emissive_light_in_a_light_encoding(gl, exact, pipeline, name):
+    """The image is above 40 dB, as with the light buffer, but not exact."""
     others = "rgba32f: base_color metallic; rgba32f: roughness f0 ao"
-    found = apart(image(gl, f"{others}; rgba8: {name}(emissive)", pipeline), exact)
-    assert 40 < found < 90, f"{found:.1f} dB"
+    decibels = apart(image(gl, f"{others}; rgba8: {name}(emissive)", pipeline), exact)
+    assert 40 < decibels < 90, f"{decibels:.1f} dB"
 
 
-def test_two_ranges_of_one_code_are_told_apart(gl):
-    """Its files have one range: that of the light buffer would be that of the emissive."""
+def test_two_ranges_of_one_light_encoding_are_refused(gl):
+    """The shader files have only one range, so the light buffer would use the range of the emissive attribute."""
     layout = layout_of("rgba32f: base_color metallic; rgba32f: roughness f0 ao; rgba8: rgbm(emissive)")
     buffer = replace(LIGHT_BUFFERS["rgbm"], encoding=rgbm.ranged(8.0))
     plan = Plan(SIZE, 1, layout, buffer, 2, False, 1.0)
@@ -84,12 +85,12 @@ def test_two_ranges_of_one_code_are_told_apart(gl):
         ("rgba8: rgb9e5(emissive):8", "each component of rgb9e5 needs its own channel"),
     ],
 )
-def test_a_curve_that_cannot_be_is_a_line(targets, message):
+def test_invalid_curve_is_refused_with_the_reason(targets, message):
     with pytest.raises(LayoutError, match=message):
         layout_of(targets)
 
 
-def test_a_file_says_curves_as_presets_do(tmp_path):
+def test_a_layout_file_names_curves_like_presets(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(
         'encoding = "octahedral"\n[[targets]]\nformat = "rg16"\nholds = "normal.x normal.y"\n'

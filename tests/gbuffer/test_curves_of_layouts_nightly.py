@@ -1,4 +1,4 @@
-"""What a material is on a curve, or in a code of light: the image follows, and a layout says what cannot be."""
+"""Material attributes on a curve or in a light encoding: the image follows, and layouts report bad requests."""
 
 import json
 import re
@@ -11,8 +11,8 @@ exact = test_curves_of_layouts.exact
 
 
 @pytest.mark.parametrize("first", ["roughness", "f0", "base_color"])
-def test_the_manual_says_what_a_curve_is_worth(gl, run, tmp_path, first):  # noqa: ARG001 # a device is needed
-    """Each row of its table that keeps this quantity, by `render` of a layout file; to a tenth of a decibel."""
+def test_the_manual_gives_the_psnr_of_each_curve(gl, run, tmp_path, first):  # noqa: ARG001 # a device is needed
+    """Each row of the manual's table that stores this quantity, by `render` of a layout file; to 0.1 dB."""
     page = (Path(__file__).parents[2] / "docs" / "render.md").read_text()
     rows = re.findall(rf"^\| `([\w:.]*\(?{first}\)?)`[^|]*\| ([\d.]+) \|$", page, re.M)
     others = {"base_color", "metallic", "roughness", "f0", "ao"} - {first}
@@ -27,6 +27,6 @@ def test_the_manual_says_what_a_curve_is_worth(gl, run, tmp_path, first):  # noq
         paths[-1].write_text(f'encoding = "xyz"\nspace = "world"\n{exact}{own}')
     status, out, err = run("render", "--layout", ",".join(map(str, paths)), "--repeats", "0", "--format", "json")
     assert status == 0, err
-    found = {row["layout"]: row["psnr_db"] for row in json.loads(out)}
+    measured = {row["layout"]: row["psnr_db"] for row in json.loads(out)}
     assert len(rows) == 3
-    assert [found[path.stem] for path in paths] == pytest.approx([float(kept) for _, kept in rows], abs=0.1)
+    assert [measured[path.stem] for path in paths] == pytest.approx([float(kept) for _, kept in rows], abs=0.1)

@@ -1,4 +1,4 @@
-"""What a material is on a curve, or in a code of light: the image follows, and a layout says what cannot be."""
+"""Material attributes on a curve or in a light encoding: the image follows, and layouts report bad requests."""
 
 from dataclasses import replace
 
@@ -24,11 +24,11 @@ DARK = replace(
     ids=["sRGB", "square root", "square", "range"],
 )
 def test_in_few_bits_the_curve_decides(gl, scene, better, worse):
-    """Colours want a gamma, a roughness even steps, and a f0 of 0.04 a range of its own: 3 dB and more."""
+    """Colours need a gamma, roughness even steps, and an f0 of 0.04 its own range: at least 3 dB better."""
     floats = {"base_color", "metallic", "roughness", "f0", "ao"} - {worse.rstrip("):45").split("(")[-1]}
     targets = "; ".join(f"rgba32f: {quantity}" for quantity in sorted(floats))
     right = draw(gl, "hybrid", scene).image
-    found = [
+    decibels = [
         apart(draw(gl, "hybrid", scene, layout_of(f"rgba8: {w}; {targets}")).image, right) for w in (better, worse)
     ]
-    assert 15 < found[1] < found[0] - 3 and found[0] < 75, f"{found[0]:.1f} and {found[1]:.1f} dB"
+    assert 15 < decibels[1] < decibels[0] - 3 and decibels[0] < 75, f"{decibels[0]:.1f} and {decibels[1]:.1f} dB"

@@ -1,4 +1,4 @@
-"""Passes and resources: what a pipeline refuses, what a resource can be, and how an effect is added."""
+"""Passes and resources: invalid pipelines, the kinds of resources, and adding an effect."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def piped(*stages: Pass) -> Pipeline:
 
 
 def rendered(gl, *stages: Pass, scene=None):
-    """Passes behind forward shading of the room."""
+    """Return the rendering of passes after forward shading of the room."""
     return rendering(gl, piped(shadow_map(), forward(), *stages), scene or scene_of("room"), PLAN)
 
 
@@ -112,7 +112,7 @@ def test_a_pipeline_that_does_not_fit_is_refused_in_one_line(stages, said):
     assert str(refused.value).startswith(f"pipeline mine: {said}") and "\n" not in str(refused.value), refused.value
 
 
-def test_an_effect_behind_no_pass_is_refused():
+def test_an_effect_after_a_missing_pass_is_refused():
     glow = Pass("glow", (FINAL,), (FINAL,), nothing, after=("bloom", "haze"))
     with pytest.raises(
         PipelineError, match=r"^pipeline forward: pass glow comes after bloom or haze; known: shadow_map, for"
@@ -122,11 +122,11 @@ def test_an_effect_behind_no_pass_is_refused():
 
 def test_effects_follow_the_pass_they_name_in_the_order_they_are_added():
     first, second = (Pass(name, (GBUFFER,), (HALF,), nothing, after=("geometry", "forward")) for name in ("one", "two"))
-    made = PIPELINES["hybrid"].with_effect([first]).with_effect([second])
-    assert [stage.name for stage in made.stages][:5] == ["shadow_map", "geometry", "one", "two", "linear_depth"]
+    pipeline = PIPELINES["hybrid"].with_effect([first]).with_effect([second])
+    assert [stage.name for stage in pipeline.stages][:5] == ["shadow_map", "geometry", "one", "two", "linear_depth"]
 
 
-def test_what_a_pass_does_not_declare_it_cannot_use(gl, tmp_path):
+def test_a_pass_cannot_use_resources_that_it_does_not_declare(gl, tmp_path):
     (tmp_path / "mine.frag").write_text(
         HEAD + "uniform sampler2D final;\nout vec4 o;\nvoid main() { o = texelFetch(final, ivec2(0), 0); }\n"
     )
@@ -141,7 +141,7 @@ def test_what_a_pass_does_not_declare_it_cannot_use(gl, tmp_path):
         pass
 
 
-def test_what_a_pipeline_needs_and_holds_follows_from_its_passes():
+def test_the_needs_of_a_pipeline_follow_from_its_passes():
     facts = {n: (p.light_targets, p.scaled, p.starts_light, "shading_model" in p.needs) for n, p in PIPELINES.items()}
     assert facts == {
         "forward": ((), False, False, False),
@@ -154,7 +154,8 @@ def test_what_a_pipeline_needs_and_holds_follows_from_its_passes():
 
 
 def test_a_resource_counts_in_the_bytes_of_a_pixel():
-    """Half the size a quarter; every copy that the next frame reads; not what has a size in pixels, nor the image."""
+    """Half the size counts as a quarter, and every copy that the next frame reads counts. Resources with a size in
+    pixels do not count, nor does the image."""
     plain = bytes_per_pixel(piped(shadow_map(), forward()), PLAN)
     assert plain == 5, "depth and stencil"
     sizes = {
@@ -166,12 +167,12 @@ def test_a_resource_counts_in_the_bytes_of_a_pixel():
         replace(DEPTH, name="another"): 5,
     }
     for resource, expected in sizes.items():
-        made = piped(shadow_map(), forward(), Pass("mine", (), (resource,), nothing))
-        assert bytes_per_pixel(made, PLAN) == plain + expected, resource
+        pipeline = piped(shadow_map(), forward(), Pass("mine", (), (resource,), nothing))
+        assert bytes_per_pixel(pipeline, PLAN) == plain + expected, resource
 
 
-def test_a_volume_is_drawn_by_slices_and_read_as_one(gl, tmp_path):
-    """Slice 2 is left as it was cleared; a later pass reads slice 3."""
+def test_a_volume_is_drawn_in_slices_and_read_as_a_whole(gl, tmp_path):
+    """Slice 2 stays cleared; a later pass reads slice 3."""
     volume, read = Resource("fog", "rgba32f", (8, 6), depth=4), Resource("seen", "rgba32f", (8, 6))
     (tmp_path / "fill.frag").write_text(
         HEAD + "uniform float at;\nout vec4 o;\nvoid main() { o = vec4(floor(gl_FragCoord.xy), at, 1); }\n"
@@ -186,9 +187,9 @@ def test_a_volume_is_drawn_by_slices_and_read_as_one(gl, tmp_path):
 
         def run():
             canvas.device.state(None)
-            for at in (0, 1, 3):
-                target.use(at=at)
-                covers.program["at"] = at
+            for layer in (0, 1, 3):
+                target.use(at=layer)
+                covers.program["at"] = layer
                 canvas.prepare(covers.program)
                 covers.render(vertices=3)
 
@@ -198,20 +199,20 @@ def test_a_volume_is_drawn_by_slices_and_read_as_one(gl, tmp_path):
         Pass("fill", (), (volume,), fill),
         Pass("read", (volume,), (read,), lambda canvas: canvas.over(tmp_path / "read.frag", read)),
     )
-    with rendered(gl, *stages) as made:
-        made.draw()
-        made.draw()
-        found = np.frombuffer(made.frame.textures(volume)[0].read(), np.float32).reshape(4, 6, 8, 4)
-        seen = made.read(read)[0][::-1]
+    with rendered(gl, *stages) as drawing:
+        drawing.draw()
+        drawing.draw()
+        slices = np.frombuffer(drawing.frame.textures(volume)[0].read(), np.float32).reshape(4, 6, 8, 4)
+        seen = drawing.read(read)[0][::-1]
     y, x = np.mgrid[:6, :8].astype(np.float32)
-    expected = np.stack([np.stack([x, y, np.full_like(x, at), np.ones_like(x)], axis=-1) for at in range(4)])
+    expected = np.stack([np.stack([x, y, np.full_like(x, layer), np.ones_like(x)], axis=-1) for layer in range(4)])
     expected[2] = 0
-    assert np.array_equal(found, expected), f"{(found != expected).sum()} of {found.size} numbers differ"
+    assert np.array_equal(slices, expected), f"{(slices != expected).sum()} of {slices.size} numbers differ"
     assert np.array_equal(seen, expected[3]), f"{(seen != expected[3]).sum()} of {seen.size} numbers differ"
 
 
 def one_more(tmp_path, name: str) -> Path:
-    """A shader that adds 1 to the copy before."""
+    """Return the path of a shader that adds 1 to the previous copy."""
     path = tmp_path / "more.frag"
     path.write_text(
         f"{HEAD}uniform sampler2D {name}_before;\nout vec4 o;\n"
@@ -221,7 +222,7 @@ def one_more(tmp_path, name: str) -> Path:
 
 
 def test_copies_are_read_and_written_in_turn(gl, tmp_path):
-    """Five turns that add 1 each make 5, in every frame anew."""
+    """Five turns that add 1 each make 5, again in every frame."""
     pong = Resource("pong", "rgba32f", scale=0.25, copies=2)
 
     def build(canvas):
@@ -234,30 +235,30 @@ def test_copies_are_read_and_written_in_turn(gl, tmp_path):
 
         return run
 
-    with rendered(gl, Pass("turns", (), (pong,), build)) as made:
+    with rendered(gl, Pass("turns", (), (pong,), build)) as drawing:
         for _ in range(3):
-            made.draw()
-            found = made.read(pong)[0]
-            assert found.shape == (9, 12, 4) and np.all(found == 5), f"{found.min()} to {found.max()}"
+            drawing.draw()
+            texels = drawing.read(pong)[0]
+            assert texels.shape == (9, 12, 4) and np.all(texels == 5), f"{texels.min()} to {texels.max()}"
 
 
 @pytest.mark.parametrize("copies", [2, 3])
-def test_what_is_kept_is_there_in_the_next_frame(gl, tmp_path, copies):
-    """A pass that adds 1 to the frame before counts the frames, from 0; an earlier pass reads the frame before."""
+def test_a_kept_resource_is_available_in_the_next_frame(gl, tmp_path, copies):
+    """A pass that adds 1 to the previous frame counts frames, from 0; an earlier pass reads the previous frame."""
     history = Resource("history", "rgba32f", copies=copies, kept=True)
     late = Resource("late", "rgba32f")
     counts = Pass("counts", (history,), (history,), lambda c: c.over(one_more(tmp_path, "history"), history))
     before = Pass("before", (history,), (late,), lambda c: c.over(one_more(tmp_path, "history"), late))
-    with rendered(gl, before, counts) as made:
+    with rendered(gl, before, counts) as drawing:
         for frame in range(1, 6):
-            made.draw()
-            counted, read = made.read(history)[0], made.read(late)[0]
+            drawing.draw()
+            counted, read = drawing.read(history)[0], drawing.read(late)[0]
             assert np.all(counted == frame), f"frame {frame}: {counted.min()} to {counted.max()}"
             assert np.all(read == frame), f"frame {frame}, the pass before: {read.min()} to {read.max()}"
 
 
-def test_a_pass_may_look_from_anywhere(gl, tmp_path):
-    """From a view of its own a pass draws what it draws where the camera stands there: positions, bit for bit."""
+def test_a_pass_can_have_its_own_view(gl, tmp_path):
+    """With its own view a pass draws the same positions as a camera with this view, bit for bit."""
     room = scene_of("room")
     turned = replace(room.view, eye=room.view.target, target=room.view.eye, fov=70.0)
     seen, depth = Resource("seen", "rgba32f"), replace(DEPTH, name="own_depth")
@@ -281,9 +282,9 @@ def test_a_pass_may_look_from_anywhere(gl, tmp_path):
 
     shader, images = tmp_path / "positions.frag", []
     for scene, view in ((room, turned), (replace(room, view=turned), None), (room, None)):
-        with rendered(gl, looks(view), scene=scene) as made:
-            made.draw()
-            images.append(made.read(seen)[0])
+        with rendered(gl, looks(view), scene=scene) as drawing:
+            drawing.draw()
+            images.append(drawing.read(seen)[0])
     assert np.array_equal(images[0], images[1]), f"{np.abs(images[0] - images[1]).max():.3g} apart"
     assert np.mean(images[0] != images[2]) > 0.3, "the two views show the same"
 
@@ -311,7 +312,7 @@ WORN = Effect(
         ({"depth": "0.5", "taps": "8"}, "worn"),
     ],
 )
-def test_an_effect_is_named_by_what_is_not_as_usual(given, name):
+def test_an_effect_is_named_by_the_settings_that_are_not_the_default(given, name):
     assert chosen(WORN, given).name == name
 
 
@@ -325,7 +326,7 @@ def test_an_effect_is_named_by_what_is_not_as_usual(given, name):
         ({"size": "third"}, "effect worn: size=third is not full or half"),
     ],
 )
-def test_a_setting_that_cannot_be_is_refused_in_one_line(given, said):
+def test_invalid_setting_is_a_one_line_error(given, said):
     with pytest.raises(EffectError) as refused:
         chosen(WORN, given)
     assert str(refused.value) == said

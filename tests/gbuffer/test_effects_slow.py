@@ -1,4 +1,4 @@
-"""Passes and resources: what a pipeline refuses, what a resource can be, and how an effect is added."""
+"""Passes and resources: invalid pipelines, the kinds of resources, and adding an effect."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ ROOT = Path(__file__).parents[2]
 
 
 def stepped_aside(scene: Scene, by: float) -> Scene:
-    """The scene from elsewhere, in more ambient light."""
+    """Return the scene from another viewpoint, in more ambient light."""
     x, y, z = scene.view.eye
     return replace(scene, view=replace(scene.view, eye=(x + by, y, z)), ambient=(by, by, by))
 
 
 @pytest.mark.parametrize("pipeline", ["hybrid", "inferred", "forward_multipass"])
 def test_a_scene_may_move_between_frames(gl, pipeline):
-    """Moments drawn one after the other, the camera moving too, are those that are drawn alone, bit for bit; another
-    scene is refused."""
+    """Moments that are drawn in sequence, with a moving camera, equal those that are drawn alone, bit for bit.
+    Another scene is refused."""
     moments = [stepped_aside(SCENES["room"].make(Setting(lights=4, time=time)), time) for time in (0.0, 0.3, 0.6)]
     plan, alone = replace(PLAN, shadows=True), []
     for moment in moments:
-        with rendering(gl, PIPELINES[pipeline], moment, plan) as made:
-            made.draw()
-            alone.append(made.image())
-    with rendering(gl, PIPELINES[pipeline], moments[0], plan) as made:
+        with rendering(gl, PIPELINES[pipeline], moment, plan) as drawing:
+            drawing.draw()
+            alone.append(drawing.image())
+    with rendering(gl, PIPELINES[pipeline], moments[0], plan) as drawing:
         for number, moment in enumerate(moments):
-            made.draw(moment)
-            differ = np.mean(made.image() != alone[number])
+            drawing.draw(moment)
+            differ = np.mean(drawing.image() != alone[number])
             assert differ == 0, f"{differ:.1%} of moment {number} differs"
         with pytest.raises(ValueError, match="only a scene of the same meshes"):
-            made.draw(scene_of("objects"))
+            drawing.draw(scene_of("objects"))
     assert np.mean(alone[0] != alone[1]) > 0.3, "the scene stands still"
 
 
@@ -130,7 +130,7 @@ np.savez(sys.argv[1], **found)
 
 
 def copied_tree(folder: Path) -> Path:
-    """The rooms of the renderer in a package of their own."""
+    """Copy the renderer's folders into a package of their own and return its path."""
     package = folder / "normalbench"
     for room in ("encodings", "gbuffer"):
         shutil.copytree(ROOT / room, package / room, ignore=shutil.ignore_patterns("__pycache__"))
@@ -140,7 +140,7 @@ def copied_tree(folder: Path) -> Path:
 
 @pytest.mark.usefixtures("gl")
 def test_an_effect_is_a_pair_of_files_and_one_line(tmp_path):
-    """In a copy of the tree: the image is what it was, times what the effect says of the depth and its setting."""
+    """In a copy of the tree, the effect multiplies the image by a factor of the depth and its setting."""
     effects = copied_tree(tmp_path) / "gbuffer" / "effects"
     (effects / "dusk.py").write_text(EFFECT)
     (effects / "dusk.frag").write_text(SHADER)
@@ -151,11 +151,11 @@ def test_an_effect_is_a_pair_of_files_and_one_line(tmp_path):
     command = [sys.executable, "-c", RENDERS, str(tmp_path / "found.npz")]
     done = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(tmp_path)})
     assert done.returncode == 0, done.stderr
-    found = np.load(tmp_path / "found.npz")
+    arrays = np.load(tmp_path / "found.npz")
     # Rows are counted from the top here, and from the bottom where the half-size target reads every odd one.
-    depth = found["plain_depth"][::-1][1::2, 1::2].repeat(2, axis=0).repeat(2, axis=1)[::-1]
-    expected = found["plain"] / (1 + depth[..., None]) ** 2
-    error = np.abs(found["dusk"] - expected).max() / expected.max()
+    depth = arrays["plain_depth"][::-1][1::2, 1::2].repeat(2, axis=0).repeat(2, axis=1)[::-1]
+    expected = arrays["plain"] / (1 + depth[..., None]) ** 2
+    error = np.abs(arrays["dusk"] - expected).max() / expected.max()
     assert error < 1e-6, f"{error:.2g} of the brightest pixel"
-    changed = np.mean(np.abs(found["dusk"] - found["plain"]).max(axis=2) > 0.01)
+    changed = np.mean(np.abs(arrays["dusk"] - arrays["plain"]).max(axis=2) > 0.01)
     assert changed > 0.5, f"{changed:.0%} of the pixels changed"

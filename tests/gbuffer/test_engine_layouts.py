@@ -1,4 +1,4 @@
-"""The layouts of engines: their codes have the errors that were measured for them outside, and all of them render."""
+"""The layouts of engines: their encodings have the errors measured for them elsewhere, and all of them render."""
 
 from dataclasses import replace
 from itertools import accumulate
@@ -92,7 +92,7 @@ def test_there_are_forty_presets_with_their_engine_and_source():
 
 
 @pytest.mark.parametrize("name", FIGURES)
-def test_a_presets_code_has_the_axes_measured_outside(name):
+def test_the_encoding_of_a_preset_has_the_axis_error_measured_elsewhere(name):
     """The largest error of the six axis directions."""
     encoding, storage, rounding, *_, wanted = FIGURES[name]
     codec = Codec(ENCODINGS[encoding], storage_of(storage) or STORAGES[storage], rounding)
@@ -102,30 +102,30 @@ def test_a_presets_code_has_the_axes_measured_outside(name):
 
 
 def test_a_whole_layout_takes_the_bytes_of_its_engine():
-    """And keeps what its engine does of how much a surface reflects."""
-    found = {
-        name: (one.bytes_per_pixel, one.bytes_with_light, one.reflects_by)
-        for name, one in LAYOUTS.items()
-        if one.is_whole
+    """The layout also stores reflectance as its engine does."""
+    figures = {
+        name: (layout.bytes_per_pixel, layout.bytes_with_light, layout.reflects_by)
+        for name, layout in LAYOUTS.items()
+        if layout.is_whole
     }
-    assert found == WHOLE
+    assert figures == WHOLE
 
 
-def test_a_pipeline_that_a_layout_does_not_suit_names_one_that_it_does(gl):
+def test_an_unsuitable_pipeline_is_refused_with_one_that_suits_the_layout(gl):
     granite = plan(LAYOUTS["granite"])
-    said = r"^hybrid needs shading_model, which layout granite does not store; --pipeline deferred does not need it$"
-    with pytest.raises(LayoutError, match=said):
+    message = r"^hybrid needs shading_model, which layout granite does not store; --pipeline deferred does not need it$"
+    with pytest.raises(LayoutError, match=message):
         check(gl, PIPELINES["hybrid"], granite, is_metal_rough=True)
 
 
 def test_a_layout_of_a_normal_alone_says_so():
     others = [LAYOUTS[name] for name in ENGINES if not LAYOUTS[name].is_whole]
-    assert len(others) > 20 and all(one.title.startswith(f"the normal of {one.engine}: ") for one in others)
+    assert len(others) > 20 and all(layout.title.startswith(f"the normal of {layout.engine}: ") for layout in others)
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
 def test_a_presets_fields_take_all_bits_of_their_formats(name):
-    """Nothing of a texel is left unsaid: what holds nothing is free."""
+    """The layout specifies all bits of a texel; unused bits are marked as free."""
     for target in LAYOUTS[name].targets:
         bits, taken = target.storage.bits, 0
         ends = list(accumulate(bits))
@@ -139,19 +139,19 @@ def test_a_presets_fields_take_all_bits_of_their_formats(name):
     "format", ["rgba8", "rgba8_snorm", "rgb10a2", "rgba16", "rgba16f", "r11g11b10f", "r16f", "r32f"]
 )
 @pytest.mark.parametrize("quantity", ["roughness", "power"])
-def test_a_quantity_carries_a_sign(gl, format, quantity):
-    """Every normal keeps its side, and a quantity of 0 too, in every format that a sign can ride in."""
+def test_a_quantity_can_store_the_sign_of_the_normal(gl, format, quantity):
+    """Every normal keeps its side, even with a quantity of 0, in every format that can store a sign this way."""
     word = f"{quantity}*normal.z"
     carried, plain = (
         Layout("mine", "", (Target("rgba16", "normal.x normal.y" + own), home), ENCODINGS["signed_octahedral"], "")
         for own, home in (("", Target(format, word)), (" normal.z", Target("rgba32f", quantity)))
     )
-    found = []
+    normals = []
     for layout in (carried, plain):
-        with rendering(gl, PIPELINES["prepass"], GLOSS, plan(layout)) as made:
-            made.draw()
-            found.append(made.gbuffer()[1][..., :3])
-    assert np.array_equal(*found), f"{np.mean(found[0] != found[1]):.3%} of the numbers differ"
+        with rendering(gl, PIPELINES["prepass"], GLOSS, plan(layout)) as drawing:
+            drawing.draw()
+            normals.append(drawing.gbuffer()[1][..., :3])
+    assert np.array_equal(*normals), f"{np.mean(normals[0] != normals[1]):.3%} of the numbers differ"
     storage = carried.targets[1].storage
     least = least_carried(storage, storage.bits[0])
-    assert 0 < least < 0.05 and len(np.unique(np.sign(found[1][..., 2]))) > 1
+    assert 0 < least < 0.05 and len(np.unique(np.sign(normals[1][..., 2]))) > 1

@@ -1,4 +1,4 @@
-"""The layouts of engines: their codes have the errors that were measured for them outside, and all of them render."""
+"""The layouts of engines: their encodings have the errors measured for them elsewhere, and all of them render."""
 
 from itertools import product
 

@@ -1,4 +1,4 @@
-"""The layouts of engines: their codes have the errors that were measured for them outside, and all of them render."""
+"""The layouts of engines: their encodings have the errors measured for them elsewhere, and all of them render."""
 
 from functools import cache
 from itertools import product
@@ -22,8 +22,8 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 
 @pytest.mark.parametrize("name", FIGURES)
-def test_a_presets_code_has_the_error_measured_outside(name):
-    """Within 1 % on uniform directions, or half of the last digit given; the largest one met within 3 %."""
+def test_the_encoding_of_a_preset_has_the_error_measured_elsewhere(name):
+    """Within 1% on uniform directions, or half of the last digit given; the largest sampled error within 3%."""
     encoding, storage, rounding, mean, rms, largest, _ = FIGURES[name]
     preset = LAYOUTS[name]
     assert (preset.encoding.name, preset.rounding if rounding != preset.packing else rounding) == (encoding, rounding)
@@ -43,21 +43,22 @@ STUDIO = SCENES["studio"].make(Setting())
 
 @cache
 def image_of(gl, pipeline: str, scene: str, layout: str) -> np.ndarray:
-    one = plan(LAYOUTS[layout], light_targets=1 if pipeline == "deferred" else 2)
+    layout_plan = plan(LAYOUTS[layout], light_targets=1 if pipeline == "deferred" else 2)
     scenes = {"gloss": GLOSS, "studio": STUDIO}
-    check(gl, PIPELINES[pipeline], one, scenes[scene].is_metal_rough)
-    with rendering(gl, PIPELINES[pipeline], scenes[scene], one) as made:
-        made.draw()
-        return made.image()
+    check(gl, PIPELINES[pipeline], layout_plan, scenes[scene].is_metal_rough)
+    with rendering(gl, PIPELINES[pipeline], scenes[scene], layout_plan) as drawing:
+        drawing.draw()
+        return drawing.image()
 
 
 @pytest.mark.parametrize("pipeline, name", a_tenth(product(["deferred", "hybrid"], ENGINES)))
 def test_every_engines_layout_renders(gl, pipeline, name):
-    """The image is finite, lit, and near the one from 32-bit floats. Materials that are whole are of metal or not."""
+    """The image is finite, lit and near the image from 32-bit floats. Whole layouts are tested on metallic-roughness
+    materials, the others on glossy materials."""
     layout = LAYOUTS[name]
     if missing := PIPELINES[pipeline].needs - layout.metal_rough_components:
         pytest.skip(f"{pipeline} needs {', '.join(missing)}")
-    images = [image_of(gl, pipeline, "studio" if layout.is_whole else "gloss", one) for one in (name, "fp32")]
+    images = [image_of(gl, pipeline, "studio" if layout.is_whole else "gloss", preset) for preset in (name, "fp32")]
     assert np.isfinite(images[0]).all() and images[1].max() > 0.1
     apart = np.sqrt(np.mean((np.clip(images[0], 0, 1) - np.clip(images[1], 0, 1)) ** 2))
     # The square of a roughness in 8 bits, FidelityFX's, is 0.037 off where surfaces are nearly mirrors.

@@ -1,4 +1,4 @@
-"""The playground's four lamp arms have the statistics of the original's, and each of their parts is as it is called."""
+"""The playground's four lamp arms: the statistics of the original arms, and the shapes of the parts."""
 
 from functools import cache
 
@@ -24,7 +24,7 @@ BY_FACING = (0.01, 0.05, 0.09, 0.18, 0.42, 1.09, 2.32, 4.52, 8.10, 10.6, 11.8, 1
 
 @cache
 def seen() -> tuple[np.ndarray, np.ndarray]:
-    """The arms' normals where they are seen, and the directions to the eye: (pixels, 3) each."""
+    """Return the visible normals of the arms and the directions to the eye: (pixels, 3) each."""
     whole, rest = playground(), rasterise(facing(joined(in_view_space()[: -len(ARMS)])), CAMERA)
     of_arms = whole.covered & np.any(whole.positions != rest.positions, axis=-1)
     normals, positions = (a[of_arms].astype(np.float64) for a in (whole.normals, whole.positions))
@@ -32,24 +32,23 @@ def seen() -> tuple[np.ndarray, np.ndarray]:
 
 
 def percent(values: np.ndarray, steps: int) -> np.ndarray:
-    """Of values up to 1, by steps of 0.1; what is below the first counts there."""
+    """Return the percentages of values up to 1 in steps of 0.1; lower values count in the first step."""
     edges = np.linspace(1 - 0.1 * steps, 1, steps + 1)
     return 100 * np.histogram(np.clip(values, edges[0], 1), edges)[0] / len(values)
 
 
-def test_as_many_normals_have_negative_z_and_face_away():
+def test_the_shares_with_negative_z_and_facing_away_match_the_original():
     normals, to_eye = seen()
     assert 100 * np.mean(normals[:, 2] < 0) == pytest.approx(NEGATIVE, abs=0.5)
     assert 100 * np.mean(np.sum(normals * to_eye, axis=1) < 0) == pytest.approx(AWAY, abs=0.06)
 
 
-def test_their_normals_are_spread_as_the_originals():
-    """Of what is in a bin about half lies in another one at most where bins are small, and 5 of 100 pixels where they
-    are not."""
+def test_the_normals_of_the_arms_are_distributed_like_the_original():
+    """A bin differs by at most about half of its share, and by at most 5 of 100 pixels."""
     normals, to_eye = seen()
     for values, expected in ((normals[:, 2], BY_Z), (np.sum(normals * to_eye, axis=1), BY_FACING)):
-        found, known = percent(values, len(expected)), np.array(expected)
-        assert np.all(abs(found - known) <= np.minimum(0.55 * known + 0.02, 5.0)), f"{found.round(2)}, not {known}"
+        shares, known = percent(values, len(expected)), np.array(expected)
+        assert np.all(abs(shares - known) <= np.minimum(0.55 * known + 0.02, 5.0)), f"{shares.round(2)}, not {known}"
 
 
 def test_every_normal_has_length_1_and_every_part_is_in_the_arm():
@@ -83,13 +82,13 @@ def test_a_tubes_normals_point_away_from_its_path():
 
 
 def test_a_plate_is_flat_and_its_rim_faces_outwards():
-    made = plate(np.array([0.0, 0.0]), np.array([2.0, 1.0]), 0.4, 0.3, 0.1)
-    flat = abs(made.normals[:, 1]) > 1 - 1e-9
-    assert np.all(made.positions[flat, 1] * made.normals[flat, 1] > 0)
-    assert np.allclose(made.normals[~flat, 1], 0, atol=1e-9)
+    mesh = plate(np.array([0.0, 0.0]), np.array([2.0, 1.0]), 0.4, 0.3, 0.1)
+    flat = abs(mesh.normals[:, 1]) > 1 - 1e-9
+    assert np.all(mesh.positions[flat, 1] * mesh.normals[flat, 1] > 0)
+    assert np.allclose(mesh.normals[~flat, 1], 0, atol=1e-9)
 
 
-def test_a_facets_corners_share_one_normal_which_is_the_triangles():
+def test_the_corners_of_a_facet_share_the_normal_of_the_triangle():
     shade = faceted(turned([(0.0, 0.0), (0.5, 0.0), (1.0, 1.0)], 6))
     a, b, c = np.moveaxis(shade.positions[shade.triangles], 1, 0)
     across = np.cross(b - a, c - a)

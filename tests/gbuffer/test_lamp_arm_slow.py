@@ -1,4 +1,4 @@
-"""The playground's four lamp arms have the statistics of the original's, and each of their parts is as it is called."""
+"""The playground's four lamp arms: the statistics of the original arms, and the shapes of the parts."""
 
 import pytest
 from test_lamp_arm import seen
@@ -10,7 +10,7 @@ from normalbench.gbuffer.scenes.built_in.playground import playground
 COVERED, OF_ARMS = 300990, 120231
 
 
-def test_they_cover_what_the_originals_cover():
+def test_the_arms_cover_as_many_pixels_as_the_original_arms():
     normals, _ = seen()
     assert playground().covered.sum() == pytest.approx(COVERED, rel=0.01)
     assert len(normals) == pytest.approx(OF_ARMS, rel=0.03)

@@ -1,12 +1,12 @@
-"""What outlives frames on a device."""
+"""Objects on a device that outlive frames."""
 
 from contextlib import ExitStack
 
 from normalbench.gbuffer.gl.lasting import Lasting
 
 
-def test_what_is_in_use_is_not_released():
-    """Of the others the one that was asked for longest ago."""
+def test_objects_in_use_are_not_released():
+    """Of the other objects, the least recently used is released."""
     released = []
     held = Lasting(2, released.append)
     with ExitStack() as outer:

@@ -1,4 +1,4 @@
-"""What outlives frames on a device."""
+"""Objects on a device that outlive frames."""
 
 import numpy as np
 
@@ -11,15 +11,15 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 
 def test_an_open_frame_is_lit_the_same_after_others_were_drawn(gl, monkeypatch):
-    """On a device that keeps nothing that is not in use."""
+    """The device keeps nothing that is not in use."""
     for kept in (gl._programs, gl._textures):
         monkeypatch.setattr(kept, "_most", 0)
     stage = Stage(SCENES["studio"], Setting(), (64, 48))
-    with rendering(gl, PIPELINES["deferred"], stage.scene, stage.plan(EXACT)) as made:
-        seen = made.surfaces()
-        first = made.lit(seen)
+    with rendering(gl, PIPELINES["deferred"], stage.scene, stage.plan(EXACT)) as drawing:
+        seen = drawing.surfaces()
+        first = drawing.lit(seen)
         for name in ("unreal4", "second_life"):
             with rendering(gl, PIPELINES["deferred"], stage.scene, stage.plan(LAYOUTS[name])) as other:
                 other.draw()
-        again = made.lit(seen)
+        again = drawing.lit(seen)
     assert first.max() > 1 and np.array_equal(first, again), f"{np.abs(first - again).max():.3g} apart"

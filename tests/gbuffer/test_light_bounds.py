@@ -1,4 +1,4 @@
-"""The bounds that lights are drawn as: nothing missed, little wasted, no light where none reaches."""
+"""The bounds that lights are drawn with: they miss nothing, waste little, and add no light out of reach."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from normalbench.gbuffer.scenes.scene import Light, Material, Scene, ScenePart, 
 
 
 def shaded(gl, scene: Scene, size) -> tuple[np.ndarray, relighting.Surfaces]:
-    """Pixels that each local light's bounds shade, and the surfaces."""
+    """Return the number of pixels that each local light's bounds shade, and the surfaces."""
     plan = Plan(size, 1, FP32, LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     with rendering(gl, PIPELINES["prepass"], scene, plan) as r:
         r.draw()
@@ -30,8 +30,8 @@ def shaded(gl, scene: Scene, size) -> tuple[np.ndarray, relighting.Surfaces]:
 
 
 def test_bounds_of_spots_hold_their_cones(gl):
-    """In the room: never fewer pixels than lie within a spot's radius and outer angle, and together at most half as
-    many again."""
+    """In the room: at least as many pixels as are within a spot's radius and outer angle, and together at most half
+    as many again."""
     scene = scene_of("room")
     counted, seen = shaded(gl, scene, SIZE)
     spots = [index for index, light in enumerate(lamps(scene)) if light.kind == "spot"]
@@ -54,19 +54,19 @@ def in_world(light: Light, view: View) -> Light:
 
 
 @pytest.mark.parametrize("index", [0, 5, 11])
-def test_the_eye_may_stand_in_a_light(gl, index):
-    """Among the objects, deferred against forward shading: 70 dB."""
+def test_the_eye_can_be_inside_a_light(gl, index):
+    """Among the objects, deferred shading agrees with forward shading to 70 dB."""
     scene = scene_of("objects")
     eye = np.array(lamps(scene)[index].position)
     view = replace(scene.view, eye=tuple(eye), target=tuple(eye + np.array([0.4, -0.15, -1.0])), near=0.2)
     moved = replace(scene, view=view)
-    found = apart(draw(gl, "deferred", moved).image, draw(gl, "forward", moved).image)
-    assert found >= 70, f"{found:.1f} dB"
+    decibels = apart(draw(gl, "deferred", moved).image, draw(gl, "forward", moved).image)
+    assert decibels >= 70, f"{decibels:.1f} dB"
 
 
 @pytest.mark.parametrize("kind", ["point", "spot"])
-def test_no_light_past_the_radius_or_beside_the_cone(gl, kind):
-    """Exactly none, in the light buffer and in forward shading; within there is some."""
+def test_no_light_reaches_past_the_radius_or_outside_the_cone(gl, kind):
+    """Outside, the light is exactly 0, in the light buffer and in forward shading; inside, most pixels are lit."""
     lamp = Light(kind, (9.0, 9.0, 9.0), (0.5, 3.5, 0.0), 4.0, tuple(np.array([0.6, -0.8, 0.0])), 20.0, 40.0)
     scene = scene_of("room")
     dull = tuple(replace(material, emissive=(0.0, 0.0, 0.0)) for material in scene.materials)
@@ -107,8 +107,8 @@ LAMPS = {
 @pytest.mark.parametrize("pipeline", ["forward", "deferred"])
 @pytest.mark.parametrize("side", LAMPS)
 def test_a_surface_is_brightest_at_the_foot_of_its_lamp(gl, side, pipeline):
-    """N.L over the squared distance peaks where the lamp is closest: within two pixels, whichever way the camera looks;
-    so no axis is swapped or turned around, and the distance does not count more than once."""
+    """N.L over the squared distance has its peak where the lamp is closest: within two pixels, whichever way the
+    camera looks. So no axis is swapped or reversed, and the distance does not count more than once."""
     ground, lamp, foot = LAMPS[side]
     view = View((3.0, -2.0, 5.0), (-4.0, 1.5, 9.0), 50.0, 0.5, 50.0)
     model = np.eye(4)

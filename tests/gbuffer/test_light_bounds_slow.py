@@ -1,4 +1,4 @@
-"""The bounds that lights are drawn as: nothing missed, little wasted, no light where none reaches."""
+"""The bounds that lights are drawn with: they miss nothing, waste little, and add no light out of reach."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 
 def test_bounds_shade_little_more_than_lights_reach(gl):
-    """64 point lights over the objects at 640 x 480: never fewer pixels than lie within each radius, and together at
-    most half as many again."""
+    """64 point lights over the objects at 640 x 480: at least as many pixels as are within each radius, and together
+    at most half as many again."""
     scene = SCENES["objects"].make(Setting(lights=64))
     counted, seen = shaded(gl, scene, (640, 480))
     reached = np.array(
@@ -52,7 +52,7 @@ IN_VIEW = {
 @pytest.mark.parametrize("far", [40.0, 11.0])
 @pytest.mark.parametrize("placed_at", IN_VIEW)
 def test_bounds_around_the_eye_and_across_the_planes_miss_nothing(gl, placed_at, far):
-    """Deferred against forward shading in the room, one light alone, the far plane behind the room or in it: 70 dB."""
+    """Deferred against forward shading in the room with one light, the far plane behind the room or in it: 70 dB."""
     scene = scene_of("room")
     view = replace(scene.view, far=far)
     scene = replace(scene, view=view, lights=(in_world(IN_VIEW[placed_at], view),))
@@ -60,5 +60,5 @@ def test_bounds_around_the_eye_and_across_the_planes_miss_nothing(gl, placed_at,
     unlit = draw(gl, "forward", replace(scene, lights=())).image
     reached = np.mean(abs(forward - unlit).max(axis=2) > 0.002)
     assert reached > 0.02, f"the light reaches {reached:.1%} of the image"
-    found = apart(draw(gl, "deferred", scene).image, forward)
-    assert found >= 70, f"{found:.1f} dB"
+    decibels = apart(draw(gl, "deferred", scene).image, forward)
+    assert decibels >= 70, f"{decibels:.1f} dB"

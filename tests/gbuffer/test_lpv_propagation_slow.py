@@ -1,4 +1,4 @@
-"""Light propagation in a lattice: what it keeps, its symmetries, what blocks it; shaders against NumPy in float64."""
+"""Light propagation in a lattice: conservation, symmetry and blocking; shaders against NumPy in float64."""
 
 from __future__ import annotations
 
@@ -34,20 +34,20 @@ ISOTROPIC = np.array([1 / (2 * np.sqrt(np.pi)), 0, 0, 0])
 
 
 def lit(cell=MIDDLE, coefficients=ISOTROPIC, cells=CELLS) -> np.ndarray:
-    """One VPL: of flux 1 in red, 1/2 in green and 1/4 in blue."""
+    """Return a field with one VPL, of flux 1 in red, 1/2 in green and 1/4 in blue."""
     field = np.zeros((cells, cells, cells, 4, 3))
     field[cell] = coefficients[:, None] * [1, 0.5, 0.25]
     return field
 
 
 def flat(field: np.ndarray) -> np.ndarray:
-    """(x, y, z, 4) as slices side by side, row 0 first."""
+    """Return (x, y, z, 4) as slices side by side, row 0 first."""
     x, y, z, _ = field.shape
     return np.ascontiguousarray(field.transpose(1, 2, 0, 3).reshape(y, z * x, 4), np.float32)
 
 
 def given(volumes: Volumes, fields, potentials) -> Pass:
-    """What the injection would have written: a field for each cascade, and what blocks each."""
+    """Return a pass that writes a field and blockers for each cascade, in place of the injection."""
 
     def build(canvas):
         def run():
@@ -64,7 +64,7 @@ def given(volumes: Volumes, fields, potentials) -> Pass:
 
 
 def read_volume(texture, cells: int, cascades: int) -> np.ndarray:
-    """(cascades, x, y, z, 4) float64."""
+    """Return a volume as (cascades, x, y, z, 4) in float64."""
     kind = {"f4": np.float32, "f2": np.float16, "f1": np.uint8}[texture.dtype]
     data = np.frombuffer(texture.read(), kind).reshape(cascades, cells, cells, cells, 4)
     values = unpacked(data) if kind == np.uint8 else data.astype(float)
@@ -72,35 +72,35 @@ def read_volume(texture, cells: int, cascades: int) -> np.ndarray:
 
 
 def unpacked(texels: np.ndarray) -> np.ndarray:
-    """Four bytes, the lowest first, to the numbers that they pack."""
+    """Return the numbers that four bytes pack, the lowest byte first."""
     word = texels.astype(np.int64) @ (1 << np.array([0, 8, 16, 24]))
     mantissas = np.stack([word // LEVELS**i % LEVELS for i in range(4)], axis=-1) - LEVELS // 2
     return mantissas * (2.0 ** (word // LEVELS**4 - BIAS) / (LEVELS // 2))[..., None]
 
 
 def run(gl, fields, steps, potentials=None, amplifier=0.0, form="rgba32f"):
-    """The travelling light and the sum after so many steps on the device, each (cascades, x, y, z, 4, 3)."""
+    """Return the travelling light and the sum after `steps` steps on the device, each (cascades, x, y, z, 4, 3)."""
     cells = fields[0].shape[0]
     volumes = Volumes(cells, len(fields), form, "rgba32f", 16)
     passes = given(volumes, fields, potentials), propagate(volumes, steps, amplifier)
     pipeline = Pipeline("mine", "propagation", "this test", (shadow_map(), forward(), *passes))
-    with rendering(gl, pipeline, scene_of("room"), PLAN) as made:
-        made.draw()
+    with rendering(gl, pipeline, scene_of("room"), PLAN) as drawing:
+        drawing.draw()
         return tuple(
-            np.stack([read_volume(made.frame.textures(r)[0], cells, len(fields)) for r in resources], axis=-1)
+            np.stack([read_volume(drawing.frame.textures(r)[0], cells, len(fields)) for r in resources], axis=-1)
             for resources in (volumes.wave, volumes.light)
         )
 
 
 @pytest.fixture(scope="module")
 def stepped(gl):
-    """One isotropic VPL on the device, by number of steps: the travelling light and the sum."""
+    """The travelling light and the sum of one isotropic VPL on the device, by the number of steps."""
     return {steps: tuple(f[0] for f in run(gl, [lit()], steps)) for steps in range(9)}
 
 
 def test_constants_are_the_integrals_they_stand_for():
-    """By quadrature over the sphere, to 1e-9: the basis is orthonormal, the lobe its projection of max(n.w, 0), and the
-    faces' solid angles what the centre of the next cell sees of them."""
+    """By quadrature over the sphere, to 1e-9: the basis is orthonormal, the lobe is its projection of max(n.w, 0),
+    and the faces have the solid angles that the centre of the next cell sees."""
     nodes, weights = np.polynomial.legendre.leggauss(400)
     # Each hemisphere by itself: the lobe has an edge between them.
     z = np.concatenate([(nodes - 1) / 2, (nodes + 1) / 2])
@@ -119,8 +119,8 @@ def test_constants_are_the_integrals_they_stand_for():
     # dOmega = cos / r^2 dA: the far face 1.5 away; a side face half a cell aside, from half to one and a half ahead
     front = np.sum(part * 1.5 / (x**2 + y**2 + 1.5**2) ** 1.5)
     side = np.sum(part * 0.5 / (x**2 + (y + 1) ** 2 + 0.5**2) ** 1.5)
-    found = harmonics.FRONT - front, harmonics.SIDE - side
-    assert np.abs(found).max() < 1e-9, found
+    errors = harmonics.FRONT - front, harmonics.SIDE - side
+    assert np.abs(errors).max() < 1e-9, errors
     # As published, where a digit is often wrong: 0.4234413544 and 1.02333671.
     published = (0.4006696846, 0.4234313544, 0.886226925, 1.02332671, 0.282094792, 0.488602512)
     own = (harmonics.FRONT, harmonics.SIDE, harmonics.LOBE0, harmonics.LOBE1, harmonics.SH0, harmonics.SH1)
@@ -128,7 +128,7 @@ def test_constants_are_the_integrals_they_stand_for():
 
 
 def test_the_twin_has_the_same_constants():
-    """It derives its own; they agree to 1e-15."""
+    """The twin derives its own constants; they agree to 1e-15."""
     own = (twin.FRONT, twin.SIDE, twin.BAND0, twin.BAND1, *(twin.lobe((0, 0, 1))[[0, 2]]), twin.SHIFT)
     theirs = ("FRONT", "SIDE", "SH0", "SH1", "LOBE0", "LOBE1")
     apart = np.abs(np.array(own) - [*(getattr(harmonics, name) for name in theirs), SHIFT])
@@ -148,16 +148,16 @@ def test_the_twin_has_the_same_constants():
     ids=["1/pi", "1/(2 pi)", "1/(4 pi)", "1", "1/pi clamped"],
 )
 def test_only_one_normaliser_conserves_flux(normaliser, clamps, expected):
-    """Of what there is in the wild: the flux of a VPL that faces z, after each of five steps, to 1e-8 of it."""
-    field, found = lit(coefficients=twin.lobe((0, 0, 1)) / np.pi), []
+    """Of the published normalisers: the flux of a VPL that faces z, after each of five steps, to a relative 1e-8."""
+    field, fluxes = lit(coefficients=twin.lobe((0, 0, 1)) / np.pi), []
     for _ in expected:
         field = twin.step(field, normaliser=normaliser, clamps=clamps)
-        found.append(twin.flux(field)[0])
-    assert found == pytest.approx(expected, rel=1e-8)
+        fluxes.append(twin.flux(field)[0])
+    assert fluxes == pytest.approx(expected, rel=1e-8)
 
 
 def test_flux_of_the_travelling_light_is_constant(stepped):
-    """On the device, in each channel: to 1e-5 at every step, and the sum has k + 1 times the flux after k of them."""
+    """On the device, in each channel, to 1e-5 at every step. The sum has k + 1 times the flux after k steps."""
     for steps, (wave, light) in stepped.items():
         travelling, total = twin.flux(wave) / [1, 0.5, 0.25], twin.flux(light) / [1, 0.5, 0.25]
         assert np.abs(travelling - 1).max() < 1e-5, f"step {steps}: {travelling}"
@@ -165,7 +165,7 @@ def test_flux_of_the_travelling_light_is_constant(stepped):
 
 
 def test_light_reaches_one_cell_further_with_each_step(stepped):
-    """1, 25, 129 cells for 0, 2, 4 steps: (2k + 1)(2k^2 + 2k + 3) / 3, those within a Manhattan distance of k."""
+    """1, 25, 129 cells for 0, 2, 4 steps: (2k + 1)(2k^2 + 2k + 3) / 3, the cells within a Manhattan distance of k."""
     distance = np.abs(np.indices((CELLS,) * 3) - CELLS // 2).sum(axis=0)
     for steps, (_, light) in stepped.items():
         reached = np.any(light != 0, axis=(3, 4))
@@ -176,26 +176,26 @@ def test_light_reaches_one_cell_further_with_each_step(stepped):
 
 
 def cube_symmetries() -> list[np.ndarray]:
-    """The 48 signed permutations of the axes."""
+    """Return the 48 signed permutations of the axes."""
     return [np.diag(s) @ np.eye(3)[list(p)] for p in permutations(range(3)) for s in product((1, -1), repeat=3)]
 
 
 def turned(field: np.ndarray, turn: np.ndarray) -> np.ndarray:
-    """A field turned about the middle of its volume."""
+    """Return a field turned about the middle of its volume."""
     source = np.argmax(np.abs(turn), axis=1)
     signs = turn[np.arange(3), source]
-    found = field.transpose(*source, 3, 4)
+    rotated = field.transpose(*source, 3, 4)
     for axis in np.flatnonzero(signs < 0):
-        found = np.flip(found, axis)
+        rotated = np.flip(rotated, axis)
     # Band 1 is (-y, z, -x) of a vector, which turns.
-    vector = np.stack([-found[..., 3, :], -found[..., 1, :], found[..., 2, :]], axis=3)
+    vector = np.stack([-rotated[..., 3, :], -rotated[..., 1, :], rotated[..., 2, :]], axis=3)
     x, y, z = np.moveaxis(np.einsum("ij,xyzjc->xyzic", turn, vector), 3, 0)
-    return np.stack([found[..., 0, :], -y, z, -x], axis=3)
+    return np.stack([rotated[..., 0, :], -y, z, -x], axis=3)
 
 
 @pytest.mark.parametrize("who", ["twin", "device"])
 def test_light_of_an_isotropic_source_has_the_48_symmetries(stepped, who):
-    """All axis swaps and sign flips of the field are the field, to 1e-6 of its brightest number."""
+    """The field equals itself after any axis swap or sign flip, to 1e-6 of its brightest number."""
     field = twin.propagated(lit(), 8) if who == "twin" else stepped[8][1]
     worst = max(np.abs(turned(field, turn) - field).max() for turn in cube_symmetries()) / np.abs(field).max()
     assert worst < 1e-6, f"{worst:.3g}"
@@ -203,7 +203,7 @@ def test_light_of_an_isotropic_source_has_the_48_symmetries(stepped, who):
 
 @pytest.mark.parametrize("who", ["twin", "device"])
 def test_a_source_that_is_turned_gives_the_turned_field(gl, who):
-    """The lobe along each axis, and a slanted one: by 90 degrees about each axis, to 1e-6 of the brightest number."""
+    """A lobe along an axis and a slanted lobe, turned by 90 degrees about two axes: to 1e-6 of the brightest."""
     go = partial(run, gl, steps=6) if who == "device" else None
     slanted = np.array([0.48, 0.6, 0.64])
     turns = [np.array(t, float) for t in ([[1, 0, 0], [0, 0, -1], [0, 1, 0]], [[0, -1, 0], [1, 0, 0], [0, 0, 1]])]
@@ -213,21 +213,22 @@ def test_a_source_that_is_turned_gives_the_turned_field(gl, who):
     totals = go(fields)[1] if go else [twin.propagated(field, 6) for field in fields]
     for index, way in enumerate(ways):
         first = totals[3 * index]
-        for turn, found in zip(turns, totals[3 * index + 1 : 3 * index + 3], strict=True):
-            worst = np.abs(turned(first, turn) - found).max() / np.abs(first).max()
+        for turn, total in zip(turns, totals[3 * index + 1 : 3 * index + 3], strict=True):
+            worst = np.abs(turned(first, turn) - total).max() / np.abs(first).max()
             assert worst < 1e-6, f"{way} turned by {turn.tolist()}: {worst:.3g}"
 
 
 def wall(cells: int, share: float = 1.0) -> np.ndarray:
-    """Potentials of surfels that face -z at the corners in the middle of the volume: a wall."""
+    """Return the potentials of a wall: surfels that face -z at the corners in the middle of the volume."""
     potentials = np.zeros((cells + 1, cells + 1, cells + 1, 4))
     potentials[:, :, cells // 2 + 1] = share * twin.lobe((0, 0, -1))
     return potentials
 
 
 def test_a_full_surfel_leaks_a_quarter_along_its_normal():
-    """Two bands of a cosine lobe are 1/4 + 1/2 along the normal: 0.75 is blocked there, 0.25 sideways. A side face lies
-    at a cosine of 2 / sqrt(5): 30.3 % pass. At 4/3 of that nothing passes along the normal, 7.0 % to side faces."""
+    """Two bands of a cosine lobe are 1/4 + 1/2 along the normal: 0.75 is blocked there, 0.25 sideways. A side face
+    is at a cosine of 2 / sqrt(5): 30.3% passes. With an amplifier of 4/3 nothing passes along the normal, and 7.0%
+    to side faces."""
     potential = twin.lobe((0, 0, -1))
     ways = {"ahead": (0, 0, 1), "side face": (1 / np.sqrt(5), 0, 2 / np.sqrt(5)), "across": (1, 0, 0)}
     leaks = {
@@ -239,10 +240,10 @@ def test_a_full_surfel_leaks_a_quarter_along_its_normal():
 
 
 @pytest.mark.parametrize("amplifier", [0.0, 1.0, 4 / 3])
-def test_a_wall_lets_pass_what_its_potential_says(gl, amplifier):
-    """A VPL faces a wall two cells on. Its first step is free, the second meets the wall: the device has the twin's
-    field, and behind the wall there is 1/4 of what went ahead and 30.3 % of what went to side faces; at 4/3 none, and
-    7.0 %; all of it where nothing blocks. To 1e-5 of the flux."""
+def test_a_wall_lets_through_as_much_as_its_potential_says(gl, amplifier):
+    """A VPL faces a wall two cells away. The first step is free, the second meets the wall: the device has the twin's
+    field. Behind the wall is 1/4 of the light that went ahead and 30.3% of the light to side faces; with an amplifier
+    of 4/3 none and 7.0%; all of it if nothing blocks. To 1e-5 of the flux."""
     before = lit((*MIDDLE[:2], MIDDLE[2] - 1), twin.lobe((0, 0, 1)) / np.pi)
     once, layer = twin.step(before), np.s_[:, :, MIDDLE[2]]
     wave = run(gl, [before], 2, [wall(CELLS)], amplifier)[0][0]
@@ -259,15 +260,15 @@ def test_a_wall_lets_pass_what_its_potential_says(gl, amplifier):
 
 
 def test_surfels_of_several_views_block_no_more_than_a_full_one(gl):
-    """Three times the potential of a wall is that wall, bit for bit but for rounding: 1e-6."""
+    """Three times the potential of a wall blocks like that wall, except for rounding: 1e-6."""
     field = lit(coefficients=twin.lobe((0, 0, 1)) / np.pi)
-    one, three = (run(gl, [field], 4, [wall(CELLS, share)], 1.0)[1] for share in (1.0, 3.0))
-    worst = np.abs(one - three).max() / np.abs(one).max()
+    single, three = (run(gl, [field], 4, [wall(CELLS, share)], 1.0)[1] for share in (1.0, 3.0))
+    worst = np.abs(single - three).max() / np.abs(single).max()
     assert worst < 1e-6, f"{worst:.3g}"
 
 
 def test_cascades_do_not_know_of_each_other(gl):
-    """Three in one run have, each, what it has alone: bit for bit."""
+    """Each of three cascades in one run has the same light as alone, bit for bit."""
     fields = [lit((2, 3, 16)), lit((8, 0, 0)), lit()]
     together = run(gl, fields, 3)[1]
     for index, field in enumerate(fields):
@@ -276,8 +277,8 @@ def test_cascades_do_not_know_of_each_other(gl):
 
 
 def above_a_patch(cell: int, steps: int, heights: list[float], begins: int = 8) -> np.ndarray:
-    """NumPy's light at heights above the middle of a lit square of 16 x 16 metres, in cells of so many metres; of the
-    square from x = `begins` on. The square reaches from 8 to 24 metres."""
+    """Return NumPy's light at heights above the middle of a lit square of 16 x 16 metres, in cells of `cell` metres.
+    Only the part of the square from x = `begins` on is lit; the whole square reaches from 8 to 24 metres."""
     x, y = np.meshgrid(np.arange(begins, 24) + 0.5, np.arange(8, 24) + 0.5, indexing="ij")
     vpls = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
     up = np.broadcast_to([0, 0, 1.0], vpls.shape)
@@ -286,10 +287,11 @@ def above_a_patch(cell: int, steps: int, heights: list[float], begins: int = 8) 
     return twin.looked_up(total, seen / cell, -np.broadcast_to([0, 0, 1.0], seen.shape), cell)[:, 0]
 
 
-def test_half_the_cell_needs_four_times_the_steps():
-    """Light spreads as by diffusion: its reach grows with the square root of steps, in cells. Two, four and six metres
-    above a lit floor cells of one metre have after 32 steps what cells of two have after 8, to a quarter of it; after
-    as many steps, 8, they have less than 0.6, 0.2 and 0.05 of it. That is the seam between cascades."""
+def test_half_the_cell_size_needs_four_times_the_steps():
+    """Light spreads as by diffusion: its reach in cells grows with the square root of the steps. Two, four and six
+    metres above a lit floor, cells of one metre have after 32 steps the light of cells of two metres after 8, to a
+    quarter of it. After the same 8 steps, they have less than 0.6, 0.2 and 0.05 of it. That is the seam between
+    cascades."""
     heights = [2.0, 4.0, 6.0]
     coarse = above_a_patch(2, 8, heights)
     ratios = {steps: above_a_patch(1, steps, heights) / coarse for steps in (8, 16, 32)}
@@ -297,16 +299,16 @@ def test_half_the_cell_needs_four_times_the_steps():
     assert np.all(ratios[8] < [0.6, 0.2, 0.05]) and np.all(ratios[16] < ratios[32]), ratios
 
 
-def test_sources_beyond_a_volume_are_missed_at_its_end_alone():
-    """A volume that ends in the middle of a lit floor has, two metres above its very end, half the light; what lies
-    more than four cells outside adds less than a hundredth."""
+def test_sources_outside_a_volume_are_missed_only_at_its_end():
+    """A volume that ends in the middle of a lit floor has half the light two metres above its end. Sources more than
+    four cells outside add less than a hundredth."""
     whole, ended, four_more = (above_a_patch(1, 8, [2.0], begins)[0] for begins in (8, 16, 12))
     assert ended / whole == pytest.approx(0.5, abs=1e-9)
     assert four_more / whole > 0.99, f"{four_more / whole:.4f}"
 
 
 def random_field(cells: int) -> np.ndarray:
-    """VPLs of random place, way and flux over four decades."""
+    """Return a field of VPLs with random places, directions and fluxes over four decades."""
     rng = np.random.default_rng(5)
     ways = rng.normal(size=(200, 3))
     fluxes = 10 ** rng.uniform(-3, 1, (200, 3))
@@ -316,32 +318,32 @@ def random_field(cells: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("form, least", [("rgba32f", 144), ("rgba16f", 66), ("shared", 40)])
-def test_a_format_costs_what_its_mantissa_says(gl, form, least):
-    """Against NumPy after 8 steps, as PSNR over the brightest coefficient: what it would be if each number were as
-    large and off by half a step of the mantissa, 2^-24, 2^-11 and 1/106. Nine stores are worse than one, but nearly all
-    numbers are far smaller."""
+def test_the_loss_of_a_format_follows_from_its_mantissa(gl, form, least):
+    """Compared with NumPy after 8 steps, as PSNR over the brightest coefficient: at least as good as if all numbers
+    were that large and off by half a step of the mantissa, 2^-24, 2^-11 and 1/106. Nine stores are worse than one,
+    but nearly all numbers are far smaller."""
     field = random_field(12)
     _, light = run(gl, [field], 8, form=form)
     expected = twin.propagated(field, 8)
-    found = psnr(light[0] - expected, np.abs(expected).max())
-    assert found >= least, f"{form}: {found:.1f} dB"
+    decibels = psnr(light[0] - expected, np.abs(expected).max())
+    assert decibels >= least, f"{form}: {decibels:.1f} dB"
 
 
 def test_a_packed_texel_is_32_bits():
-    """Four mantissas and an exponent fill them, and one more level would not fit."""
+    """Four mantissas and an exponent use all bits; one more level would not fit."""
     assert EXPONENTS * LEVELS**4 <= 2**32 < EXPONENTS * (LEVELS + 1) ** 4
 
 
 @pytest.mark.parametrize("cells, cascades, iterations", [(8, 1, 0), (8, 1, 4), (16, 1, 4), (8, 3, 8)])
 def test_cost_is_cells_times_steps(gl, cells, cascades, iterations):
-    """Fragments of propagation that the device counts: each cell of each cascade once a step, and once before."""
+    """The device counts the fragments of propagation: each cell of each cascade once per step, and once before."""
     volumes = Volumes(cells, cascades, "rgba32f", "rgba32f", 16)
     passes = given(volumes, [lit((0, 0, 0), cells=cells)] * cascades, None), propagate(volumes, iterations, 0.0)
     pipeline = Pipeline("mine", "propagation", "this test", (shadow_map(), forward(), *passes))
-    with rendering(gl, pipeline, scene_of("room"), PLAN) as made:
-        made.draw()
+    with rendering(gl, pipeline, scene_of("room"), PLAN) as drawing:
+        drawing.draw()
         query = gl.context.query(samples=True)
         with query:
-            made.passes["lpv_propagate"]()
+            drawing.passes["lpv_propagate"]()
         expected = cells**3 * cascades * (iterations + 1)
         assert query.samples == expected, f"{query.samples} fragments, not {expected}"

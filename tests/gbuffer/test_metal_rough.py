@@ -1,4 +1,4 @@
-"""Metal/rough surfaces: against their formulas in float64, in every pipeline, through what a layout keeps of them."""
+"""Metallic-roughness surfaces: against their formulas in float64, in every pipeline and in several layouts."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ UPRIGHT = np.array([(1.0, 0, 0), (0, 0, 1.0), (0, -1.0, 0)])
 
 
 def scene_of(*materials: MetalRough, ambient=(0.0, 0.0, 0.0), lamps=LAMPS, balls: int | None = None) -> Scene:
-    """A ball of each material, or of the first ones, over a plane of the last one, before the eye."""
+    """Return a scene with a ball of each material, or of the first `balls`, over a plane of the last material."""
     count = balls or len(materials)
     across = 2.4 * (np.arange(count) - (count - 1) / 2)
     balls = ScenePart(
@@ -57,20 +57,20 @@ def scene_of(*materials: MetalRough, ambient=(0.0, 0.0, 0.0), lamps=LAMPS, balls
 
 
 def slanted() -> Map:
-    """A normal map of one normal: (0.3, -0.4) and what is left."""
+    """Return a normal map of a single normal: (0.3, -0.4) and the z that makes the length 1."""
     normal = np.array([0.3, -0.4, np.sqrt(0.75), 1.0])
     return Map(np.round((normal * 0.5 + 0.5) * 65535).astype(np.uint16)[None, None])
 
 
 def test_a_normal_map_tilts_the_normal_in_the_tangent_frame(gl):
-    """x along u, y against v, as glTF has it: a plane whose u goes right and whose v goes up."""
+    """x along u, y against v, as in glTF: a plane whose u goes right and whose v goes up."""
     scene = scene_of(MetalRough(), MetalRough(normal_map=slanted()))
     normal = draw(gl, "hybrid", scene).gbuffer[1][4, 4, :3]
     assert normal == pytest.approx((0.3, 0.4, np.sqrt(0.75)), abs=2e-5)
 
 
 def _answers(gl, light, eye, roughness, albedo, f0) -> tuple[np.ndarray, np.ndarray]:
-    """What GLSL gives for single lights, and for even light, (count,) each."""
+    """Return the results of GLSL for single lights and for even light, (count,) each."""
     count = len(light)
     columns = [np.broadcast_to(np.asarray(x, float), (count,)) for x in (roughness, albedo, f0)]
     lights = np.concatenate([light, columns[0][:, None]], axis=1)
@@ -90,7 +90,7 @@ def _answers(gl, light, eye, roughness, albedo, f0) -> tuple[np.ndarray, np.ndar
 
 @cache
 def _halves(count: int = 96) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes in [0, 1] and [0, 2 pi) and their weights: Gauss-Legendre's by the midpoint rule."""
+    """Return nodes in [0, 1] and [0, 2 pi) with their weights: Gauss-Legendre times the midpoint rule."""
     heights, of_heights = np.polynomial.legendre.leggauss(count)
     turns = (np.arange(2 * count) + 0.5) * np.pi / count
     u, p = np.meshgrid((heights + 1) / 2, turns, indexing="ij")
@@ -98,7 +98,7 @@ def _halves(count: int = 96) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _reflected(gl, n_v: float, roughness: float, f0: float) -> float:
-    """The integral of a black surface's answer over all directions, by normals that GGX has."""
+    """Return the integral of the light that a black surface reflects, over all directions, by the normals of GGX."""
     (u, p), weight = _halves()
     a2 = roughness**4
     # D n.h dw is uniform in u where tan^2 of the angle is a^2 u / (1 - u).
@@ -115,7 +115,7 @@ def _reflected(gl, n_v: float, roughness: float, f0: float) -> float:
 
 
 def _scattered(gl, n_v: float, roughness: float) -> float:
-    """The integral of what a white dielectric answers beyond a black one, by the cosine."""
+    """Return the integral of the light that a white dielectric reflects more than a black one, by the cosine."""
     (u, p), weight = _halves(48)
     eye = np.array([np.sqrt(1 - n_v**2), 0, n_v])
     light = np.stack([np.sqrt(u) * np.cos(p), np.sqrt(u) * np.sin(p), np.sqrt(1 - u)], axis=1)
@@ -125,7 +125,7 @@ def _scattered(gl, n_v: float, roughness: float) -> float:
 
 @pytest.mark.parametrize("roughness", [0.045, 0.1, 0.3, 0.5, 0.7, 1.0])
 def test_a_white_surface_gives_back_all_light(gl, roughness):
-    """A white furnace of single lights, metal and dielectric: within 1 %, n.v from 0.05."""
+    """A white furnace of single lights, metal and dielectric: within 1%, n.v from 0.05."""
     for n_v in (0.05, 0.2, 0.5, 0.8, 1.0):
         metal = _reflected(gl, n_v, roughness, 1.0)
         white = _reflected(gl, n_v, roughness, 0.04) + _scattered(gl, n_v, roughness)
@@ -134,7 +134,7 @@ def test_a_white_surface_gives_back_all_light(gl, roughness):
 
 
 def test_even_light_makes_white_surfaces_white(gl):
-    """The furnace of light from everywhere, metal and dielectric, every roughness: within 1 %."""
+    """A furnace with light from all directions, metal and dielectric, every roughness: within 1%."""
     n_v, roughness = (x.ravel() for x in np.meshgrid(np.linspace(0.05, 1, 20), np.linspace(0, 1, 21)))
     eyes = np.stack([np.sqrt(1 - n_v**2), 0 * n_v, n_v], axis=1)
     for name, albedo, f0 in (("metal", 0.0, 1.0), ("dielectric", 1.0, 0.04)):
@@ -142,13 +142,13 @@ def test_even_light_makes_white_surfaces_white(gl):
         assert np.abs(even - 1).max() < 0.01, f"{name}: {even.min():.4f} to {even.max():.4f}"
 
 
-def test_without_what_is_given_back_the_lobe_is_the_split_sum(gl):
-    """Single scattering of a metal is scale + bias: the gain divided out, within 0.002."""
+def test_without_multiple_scattering_the_lobe_is_the_split_sum(gl):
+    """Divided by its gain, the lobe of a metal is scale + bias, within 0.002."""
     for roughness in (0.3, 0.7, 1.0):
         for n_v in (0.2, 0.5, 1.0):
             single = sum(float(x) for x in dfg(np.array(n_v), np.array(roughness)))
-            found = _reflected(gl, n_v, roughness, 1.0) * single
-            assert abs(found - single) < 0.002, f"roughness {roughness}, n.v {n_v}: {found:.4f}, not {single:.4f}"
+            lobe = _reflected(gl, n_v, roughness, 1.0) * single
+            assert abs(lobe - single) < 0.002, f"roughness {roughness}, n.v {n_v}: {lobe:.4f}, not {single:.4f}"
 
 
 VARIED = (
@@ -162,7 +162,7 @@ LIT = scene_of(*VARIED, ambient=(0.5, 0.5, 0.55))
 
 
 @pytest.mark.parametrize("name", ["prepass", "inferred"])
-def test_a_light_prepass_says_that_it_cannot_carry_them(gl, name):
+def test_light_prepass_refuses_metallic_roughness_surfaces(gl, name):
     with pytest.raises(LayoutError, match="use forward, forward_multipass, deferred or hybrid"):
         draw(gl, name, LIT)
 
@@ -196,30 +196,30 @@ KEPT = {
 
 
 def kept(name: str) -> Layout:
-    """A layout that keeps one attribute coarsely, and all others in floats."""
+    """Return a layout that stores one attribute coarsely, and all others in floats."""
     *exact, coarse = KEPT[name]
     targets = [f"rgba32f: {words}" for words in (NORMAL, *exact) if words] + ([f"rgba8: {coarse}"] if coarse else [])
     return Layout("kept", "kept", targets_of("; ".join(targets)), ENCODINGS["octahedral"], "test")
 
 
 @pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
-def test_a_layout_of_metalness_in_floats_gives_the_same_image(gl, pipeline):
-    """Base colour and metalness, or the two colours that follow from them: 80 dB."""
-    found = apart(draw(gl, pipeline, LIT, kept("")).image, draw(gl, pipeline, LIT).image)
-    assert found >= 80, f"{found:.1f} dB"
+def test_a_layout_with_metallic_in_floats_gives_the_same_image(gl, pipeline):
+    """Base colour and metallic, or the two colours that follow from these attributes: 80 dB."""
+    decibels = apart(draw(gl, pipeline, LIT, kept("")).image, draw(gl, pipeline, LIT).image)
+    assert decibels >= 80, f"{decibels:.1f} dB"
 
 
 @pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
 @pytest.mark.parametrize("name", list(KEPT)[1:])
-def test_each_attribute_in_a_bit_or_two_shows(gl, pipeline, name):
-    """Between 5 and 45 dB of the image in floats."""
-    found = apart(draw(gl, pipeline, LIT, kept(name)).image, draw(gl, pipeline, LIT).image)
-    assert 5 < found < 45, f"{found:.1f} dB"
+def test_each_attribute_in_one_or_two_bits_changes_the_image(gl, pipeline, name):
+    """The PSNR against the image in floats is between 5 and 45 dB."""
+    decibels = apart(draw(gl, pipeline, LIT, kept(name)).image, draw(gl, pipeline, LIT).image)
+    assert 5 < decibels < 45, f"{decibels:.1f} dB"
 
 
 @pytest.mark.parametrize("layout", ["fp32", "metal_rough"])
 def test_extremes_are_finite(gl, layout):
-    """A stored roughness of exactly 0, metalness of 0 and of 1, a black base colour, under every kind of light."""
+    """A stored roughness of exactly 0, metallic of 0 and of 1, a black base colour, under every kind of light."""
     extremes = [MetalRough((base,) * 3, metalness, 0.0) for base in (0.0, 1.0) for metalness in (0.0, 1.0)]
     scene = scene_of(*extremes, ambient=(1.0, 1.0, 1.0))
     spot = Light("spot", (5.0, 5.0, 5.0), (0.0, 0.0, 5.0), 20.0, (0.0, 0.0, -1.0), 20.0, 40.0)
@@ -229,15 +229,15 @@ def test_extremes_are_finite(gl, layout):
         assert np.isfinite(image).all() and image.max() > 0, f"{name}: {np.sum(~np.isfinite(image))} are not finite"
 
 
-def test_a_mirror_shows_what_lies_around_by_hand(gl):
-    """Even light, a mirror of reflectance (0.9, 0.6, 0.3): its colour is that everywhere."""
+def test_a_mirror_in_even_light_has_the_colour_of_its_reflectance(gl):
+    """In even light, a mirror of reflectance (0.9, 0.6, 0.3) has this colour."""
     image = draw(gl, "hybrid", scene_of(MetalRough((0.9, 0.6, 0.3), 1.0, 0.0), ambient=(1, 1, 1), lamps=())).image
     middle = image[SIZE[1] // 2, SIZE[0] // 2]
     assert middle == pytest.approx((0.9, 0.6, 0.3), rel=2e-3)
 
 
-def test_normals_that_a_pixel_sees_many_of_make_it_rougher(gl):
-    """Of a mirror ball's rim, and hardly of a plane; switched off, not at all."""
+def test_a_pixel_that_covers_many_normals_is_rougher(gl):
+    """The rim of a mirror ball is rougher, a plane hardly. Without antialiasing neither is."""
     scene = scene_of(MetalRough(metalness=1.0, roughness=0.0))
     widened, plain = (draw(gl, "hybrid", scene, antialiased=on).gbuffer[2][..., 3] for on in (True, False))
     assert plain.max() == 0
@@ -246,9 +246,9 @@ def test_normals_that_a_pixel_sees_many_of_make_it_rougher(gl):
 
 @pytest.mark.parametrize("authored", [False, True], ids=["made tangents", "the file's tangents"])
 @pytest.mark.parametrize("way", range(len(WAYS)), ids=["as it is", "turned", "mirrored", "mirrored and turned"])
-def test_a_dome_of_a_normal_map_is_lit_as_a_modelled_one(gl, tmp_path, way, authored):
-    """From the same side and as bright: each half of the two domes has the same mean colour within 3 %. Both are dull,
-    as the eye sees them from two sides."""
+def test_a_normal_mapped_dome_is_lit_like_a_modelled_dome(gl, tmp_path, way, authored):
+    """From the same side and as bright: each half of the two domes has the same mean colour within 3%. Both are
+    rough, because the eye sees them from two sides."""
     material = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0}}
     file = read_mesh_file(halves(WAYS[way], authored, **material).write(tmp_path / "halves.glb"))
     sun = Light("sun", (1.0, 1.0, 1.0), direction=(0.6, -0.48, -0.64))
@@ -257,7 +257,7 @@ def test_a_dome_of_a_normal_map_is_lit_as_a_modelled_one(gl, tmp_path, way, auth
     right = drawn.gbuffer[0][..., 0]
 
     def mean(middle: float, low: float, high: float) -> tuple[float, ...]:
-        """Of what lies so far to the right of a square's middle; its rim is not in the picture everywhere."""
+        """Return the mean colour from `low` to `high` right of `middle`; the rim is partly outside the image."""
         return tuple(map(float, drawn.image[(right > middle + low) & (right < middle + high)].mean(axis=0)))
 
     for low, high in ((-0.9, -0.1), (0.1, 0.9)):
@@ -267,7 +267,7 @@ def test_a_dome_of_a_normal_map_is_lit_as_a_modelled_one(gl, tmp_path, way, auth
 
 
 def test_a_mirror_shows_the_environment_where_it_points(gl):
-    """A quarter of all directions has a colour of its own: a mirror ball shows the one behind the eye in its middle."""
+    """The half of the directions behind the eye has its own colour, which a mirror ball shows in its middle."""
     towards = directions(64)
     light = np.where(towards[..., 2:] > 0, (0.1, 0.8, 0.2), (0.7, 0.1, 0.1)).astype(np.float32)
     scene = replace(scene_of(MetalRough((1.0, 1.0, 1.0), 1.0, 0.0), lamps=()), environment=Environment("two", light))
@@ -276,7 +276,7 @@ def test_a_mirror_shows_the_environment_where_it_points(gl):
 
 
 def test_a_sun_in_an_environment_becomes_the_scenes_sun():
-    """Of the same irradiance: a light of colour c gives pi c."""
+    """The irradiance is the same: a light of colour c gives pi c."""
     towards = directions(64)
     way = np.array((0.6, 0.64, 0.48))
     light = np.where((towards @ way)[..., None] > np.cos(np.radians(3)), 5000.0, 0.5) * np.ones(3)
@@ -289,10 +289,10 @@ def test_a_sun_in_an_environment_becomes_the_scenes_sun():
 
 
 def test_a_bump_of_a_normal_map_is_a_hollow_from_behind(gl):
-    """A sheet seen from its back: the front's normal, turned round."""
+    """A sheet that is seen from its back has the normal of its front, reversed."""
     mapped = MetalRough(normal_map=slanted())
     away = plane(8.0, 8.0).placed(UPRIGHT @ np.diag([1.0, 1.0, -1.0]), (0.0, 0.0, -1.0))
     sheet = ScenePart(away, placed((0, 0, 0)), np.array([0]), casts=False, two_sided=True)
-    found = draw(gl, "hybrid", replace(scene_of(mapped), parts=(sheet,))).gbuffer[1][4, 4, :3]
+    normal = draw(gl, "hybrid", replace(scene_of(mapped), parts=(sheet,))).gbuffer[1][4, 4, :3]
     # The sheet is the one that faces the eye, seen in a mirror along z: (0.3, 0.4, -0.87), turned round.
-    assert found == pytest.approx((-0.3, -0.4, np.sqrt(0.75)), abs=2e-5)
+    assert normal == pytest.approx((-0.3, -0.4, np.sqrt(0.75)), abs=2e-5)

@@ -1,4 +1,4 @@
-"""Metal/rough surfaces: against their formulas in float64, in every pipeline, through what a layout keeps of them."""
+"""Metallic-roughness surfaces: against their formulas in float64, in every pipeline and in several layouts."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ REST = [(0.1, 0.0), (0.25, 1.0), (0.5, 0.0), (0.5, 1.0), (0.75, 0.0), (1.0, 1.0)
 
 
 @pytest.mark.parametrize("roughness, metalness", REST)
-def test_all_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, metalness):
-    test_metal_rough_slow.test_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, metalness)
+def test_the_light_on_all_surfaces_matches_the_formulas_in_float64(gl, roughness, metalness):
+    test_metal_rough_slow.test_the_light_on_surfaces_matches_the_formulas_in_float64(gl, roughness, metalness)

@@ -1,4 +1,4 @@
-"""Metal/rough surfaces: against their formulas in float64, in every pipeline, through what a layout keeps of them."""
+"""Metallic-roughness surfaces: against their formulas in float64, in every pipeline and in several layouts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from normalbench.gbuffer.scenes.scene import ScenePart, placed
 
 # Of a metal the sharpest light, of a dielectric the dullest: roughness and metalness are numbers of one formula.
 @pytest.mark.parametrize("roughness, metalness", [(0.1, 1.0), (1.0, 0.0)])
-def test_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, metalness):
+def test_the_light_on_surfaces_matches_the_formulas_in_float64(gl, roughness, metalness):
     """Point lights on a ball and on a normal-mapped plane, forward and hybrid: each pixel within 1e-3 in software."""
     plain = MetalRough((0.8, 0.5, 0.2), metalness, roughness)
     scene = scene_of(plain, replace(plain, normal_map=slanted()), balls=1)
@@ -38,9 +38,9 @@ def test_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, 
         f0 = 0.04 + (base - 0.04) * metalness
         right += colour * answer(n, v, l, np.full((len(n), 1), roughness), base * (1 - metalness), f0)
     for name in ("hybrid", "forward"):
-        found = (drawn if name == "hybrid" else draw(gl, name, scene, antialiased=False)).image.reshape(-1, 3)[seen]
+        shown = (drawn if name == "hybrid" else draw(gl, name, scene, antialiased=False)).image.reshape(-1, 3)[seen]
         # A pixel that is nearly black is held to a thousandth of what is dim.
-        off = np.abs(found - right) / np.maximum(right, 1e-3 * right.max())
+        off = np.abs(shown - right) / np.maximum(right, 1e-3 * right.max())
         # A ball's edge, where the split sum's table is coarse.
         faces = dot(n, v)[:, 0] > 0.05
         worst = off[faces].max()
@@ -50,31 +50,31 @@ def test_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, 
 
 
 def test_pipelines_agree_on_metal_rough_surfaces(gl):
-    """Forward, in passes or not, deferred and hybrid, in 32-bit floats: 70 dB."""
+    """Forward, multipass forward, deferred and hybrid, in 32-bit floats: 70 dB."""
     right = draw(gl, "forward", LIT).image
     for name in ("forward_multipass", "deferred", "hybrid"):
-        found = apart(draw(gl, name, LIT).image, right)
-        assert found >= 70, f"{name}: {found:.1f} dB"
+        decibels = apart(draw(gl, name, LIT).image, right)
+        assert decibels >= 70, f"{name}: {decibels:.1f} dB"
 
 
 @pytest.mark.parametrize("layout", ["fp32", "metal_rough", "hybrid"])
 def test_the_image_follows_each_target_of_the_gbuffer(gl, layout):
-    """After the geometry pass a target is overwritten by a constant: the image is another."""
+    """If a target is overwritten by a constant after the geometry pass, the image changes."""
     plan = Plan(SIZE, 1, LAYOUTS[layout], LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
-    with rendering(gl, PIPELINES["hybrid"], LIT, plan) as made:
-        made.draw()
-        right = made.image().copy()
-        for number, texture in enumerate(made.frame.textures(GBUFFER)):
-            made.frame.advance()
-            for name, run in made.passes.items():
+    with rendering(gl, PIPELINES["hybrid"], LIT, plan) as drawing:
+        drawing.draw()
+        right = drawing.image().copy()
+        for number, texture in enumerate(drawing.frame.textures(GBUFFER)):
+            drawing.frame.advance()
+            for name, run in drawing.passes.items():
                 run()
                 if name == "geometry":
-                    made.frame.framebuffer([texture]).clear(0.6, 0.6, 0.6, 0.6)
-            assert apart(made.image(), right) < 40, f"target {number}: {LAYOUTS[layout].targets[number].holds}"
+                    drawing.frame.framebuffer([texture]).clear(0.6, 0.6, 0.6, 0.6)
+            assert apart(drawing.image(), right) < 40, f"target {number}: {LAYOUTS[layout].targets[number].holds}"
 
 
 def test_maps_look_the_same_on_many_triangles_as_on_two(gl):
-    """At triangles' edges as well, where a map's footprint is taken from pixels that lie on neither: 70 dB."""
+    """Edges of triangles count too, where a map's footprint comes from pixels on neither triangle: 70 dB."""
     texels = np.random.default_rng(5).integers(0, 256, (128, 128, 4), np.uint8)
     material = MetalRough(roughness=0.4, base_map=Map(texels, is_srgb=True), normal_map=Map(texels | 128))
     images = []
@@ -90,5 +90,5 @@ def test_maps_look_the_same_on_many_triangles_as_on_two(gl):
 
 
 @pytest.mark.parametrize("roughness, metalness", [(0.25, 0.0), (0.75, 1.0)])
-def test_more_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, metalness):
-    test_lights_on_surfaces_are_those_of_the_formulas_in_float64(gl, roughness, metalness)
+def test_the_light_on_more_surfaces_matches_the_formulas_in_float64(gl, roughness, metalness):
+    test_the_light_on_surfaces_matches_the_formulas_in_float64(gl, roughness, metalness)

@@ -1,4 +1,4 @@
-"""glTF files whose meshes are packed: the same meshes as those of plain files, or one line."""
+"""glTF files with packed meshes: the same meshes as from plain files, or a one-line error."""
 
 import sys
 from dataclasses import replace
@@ -30,12 +30,12 @@ def read(document: Document, tmp_path) -> Mesh:
 
 
 def corners(mesh: Mesh) -> np.ndarray:
-    """What each triangle's corners are, (triangles, 24), in an order that does not depend on how they are listed."""
-    found = np.concatenate([mesh.positions, mesh.normals, mesh.uv], axis=1)[mesh.triangles]
+    """Return the corners of all triangles, (triangles, 24), in an order that does not depend on that of the file."""
+    vertices = np.concatenate([mesh.positions, mesh.normals, mesh.uv], axis=1)[mesh.triangles]
     # The uv tell a ball's vertices apart: each triangle starts by the one of the least.
-    first = np.argmin(found[..., 6] + 100 * found[..., 7], axis=1)
+    first = np.argmin(vertices[..., 6] + 100 * vertices[..., 7], axis=1)
     turned = np.stack(
-        [np.take_along_axis(found, ((first + k) % 3)[:, None, None], axis=1)[:, 0] for k in range(3)], axis=1
+        [np.take_along_axis(vertices, ((first + k) % 3)[:, None, None], axis=1)[:, 0] for k in range(3)], axis=1
     )
     rows = turned.reshape(-1, 24)
     return rows[np.lexsort(np.round(rows[:, [6, 7, 14, 15, 22, 23]], 3).T)]
@@ -47,8 +47,8 @@ def corners(mesh: Mesh) -> np.ndarray:
 @pytest.mark.parametrize("kind", [np.uint16, np.int16, np.uint8, np.int8])
 @pytest.mark.parametrize("is_normalised", [True, False])
 def test_quantised_attributes_are_what_their_integers_mean(tmp_path, kind, is_normalised):
-    """KHR_mesh_quantization: positions and uv as integers, plain ones or shares of the largest; normals and tangents
-    as signed shares. Half a step of what was rounded is left."""
+    """KHR_mesh_quantization: positions and uv as integers, plain or as shares of the largest; normals and tangents as
+    signed shares. The remaining error is half a step."""
     most = np.iinfo(kind).max
     step = 1 / most if is_normalised else 1.0
     low = 0 if np.iinfo(kind).min == 0 else -1
@@ -61,10 +61,10 @@ def test_quantised_attributes_are_what_their_integers_mean(tmp_path, kind, is_no
     attributes["NORMAL"] = document.accessor(short, normalized=True)
     attributes["TEXCOORD_0"] = document.accessor(np.round(BALL.uv * most).astype(kind), normalized=is_normalised)
     document.json["extensionsRequired"] = ["KHR_mesh_quantization"]
-    made = read(document, tmp_path)
-    assert np.allclose(made.positions, stored.astype(float) * step, atol=1e-12)
-    assert np.allclose(made.uv * (1 if is_normalised else 1 / most), BALL.uv, atol=0.51 / most)
-    assert np.sum(made.normals * BALL.normals, axis=1).min() > np.cos(2 / np.iinfo(signed).max)
+    mesh = read(document, tmp_path)
+    assert np.allclose(mesh.positions, stored.astype(float) * step, atol=1e-12)
+    assert np.allclose(mesh.uv * (1 if is_normalised else 1 / most), BALL.uv, atol=0.51 / most)
+    assert np.sum(mesh.normals * BALL.normals, axis=1).min() > np.cos(2 / np.iinfo(signed).max)
 
 
 # EXT_meshopt_compression
@@ -73,7 +73,7 @@ meshoptimizer = pytest.importorskip("meshoptimizer")
 
 
 def meshopt(change=None, required: bool = True) -> Document:
-    """The ball by meshopt: floats and triangles packed, their plain copy in a buffer that no one has."""
+    """Return the ball in meshopt form: floats and triangles packed, with the plain copy in a missing buffer."""
     document = plain()
     plain_data, packed = document.data, []
     document.data = b""
@@ -89,9 +89,9 @@ def meshopt(change=None, required: bool = True) -> Document:
             data = encode(np.frombuffer(body, np.float32).reshape(accessor["count"], -1), accessor["count"], stride)
         packed.append(bytes(data))
         fields = {"count": accessor["count"], "byteStride": stride, "mode": "TRIANGLES" if triangles else "ATTRIBUTES"}
-        at = {"buffer": 0, "byteOffset": len(document.data), "byteLength": len(data)}
+        place = {"buffer": 0, "byteOffset": len(document.data), "byteLength": len(data)}
         document.data += bytes(data) + bytes(-len(data) % 4)
-        view |= {"buffer": 1, "extensions": {MESHOPT: fields | at}}
+        view |= {"buffer": 1, "extensions": {MESHOPT: fields | place}}
     if required:
         document.json["extensionsRequired"] = [MESHOPT]
     if change:
@@ -102,19 +102,19 @@ def meshopt(change=None, required: bool = True) -> Document:
 
 @pytest.mark.parametrize("required", [True, False])
 def test_meshopt_gives_the_plain_files_mesh(tmp_path, required):
-    """Also where the file does not require it and has no plain copy."""
-    made, expected = (corners(read(document, tmp_path)) for document in (meshopt(required=required), plain()))
-    assert np.array_equal(made, expected)
+    """The extension may also be optional, without a plain copy."""
+    unpacked, expected = (corners(read(document, tmp_path)) for document in (meshopt(required=required), plain()))
+    assert np.array_equal(unpacked, expected)
 
 
 def filtered(name: str, stored: np.ndarray, width: int, components: int, normalised: bool) -> Document:
-    """The ball with normals packed through a filter."""
+    """Return the ball with normals packed through a filter."""
     document = plain()
     data = bytes(meshoptimizer.encode_vertex_buffer(stored, len(stored), stored.itemsize * stored.shape[1]))
     stride = stored.itemsize * stored.shape[1]
     fields = {"count": len(stored), "byteStride": stride, "mode": "ATTRIBUTES", "filter": name}
-    at = document.view(data)
-    view = document.json["bufferViews"].pop(at)
+    index = document.view(data)
+    view = document.json["bufferViews"].pop(index)
     packed = {"buffer": 0, "byteOffset": view["byteOffset"], "byteLength": len(data)}
     document.json["bufferViews"].append(
         {
@@ -124,7 +124,7 @@ def filtered(name: str, stored: np.ndarray, width: int, components: int, normali
             "extensions": {MESHOPT: fields | packed},
         }
     )
-    accessor = {"bufferView": at, "componentType": components, "count": len(stored), "type": f"VEC{width}"}
+    accessor = {"bufferView": index, "componentType": components, "count": len(stored), "type": f"VEC{width}"}
     document.json["accessors"].append(accessor | {"normalized": normalised})
     document.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = len(document.json["accessors"]) - 1
     document.others = [{"byteLength": stride * len(stored)}]
@@ -132,22 +132,22 @@ def filtered(name: str, stored: np.ndarray, width: int, components: int, normali
 
 
 def test_the_octahedral_filter_gives_normals(tmp_path):
-    """The extension's text: x and y of the octahedron, 1 in the third number, as signed bytes."""
+    """By the text of the extension: x and y of the octahedron, 1 as the third number, as signed bytes."""
     n = BALL.normals / abs(BALL.normals).sum(axis=1, keepdims=True)
     folded = (1 - abs(n[:, 1::-1])) * np.where(n[:, :2] < 0, -1, 1)
     xy = np.where(n[:, 2:] < 0, folded, n[:, :2])
     stored = np.round(np.concatenate([xy, np.ones_like(xy[:, :1]), 0 * xy[:, :1]], axis=1) * 127).astype(np.int8)
-    made = read(filtered("OCTAHEDRAL", stored, 3, 5120, True), tmp_path)
-    assert np.sum(made.normals * BALL.normals, axis=1).min() > np.cos(np.radians(1.2))
+    mesh = read(filtered("OCTAHEDRAL", stored, 3, 5120, True), tmp_path)
+    assert np.sum(mesh.normals * BALL.normals, axis=1).min() > np.cos(np.radians(1.2))
 
 
 def test_the_exponential_filter_gives_floats(tmp_path):
-    """The extension's text: 24 bits of a whole number, times 2 to an exponent of 8 bits."""
+    """By the text of the extension: a 24-bit integer, times 2 to an 8-bit exponent."""
     exponent = -20
     whole = np.round(BALL.normals * 2.0**-exponent).astype(np.int64)
     stored = ((exponent & 255) << 24 | (whole & 0xFFFFFF)).astype(np.uint32)
-    made = read(filtered("EXPONENTIAL", stored, 3, 5126, False), tmp_path)
-    assert np.allclose(made.normals, BALL.normals, atol=2.0**-20)
+    mesh = read(filtered("EXPONENTIAL", stored, 3, 5126, False), tmp_path)
+    assert np.allclose(mesh.normals, BALL.normals, atol=2.0**-20)
 
 
 BAD_MESHOPT = {
@@ -163,11 +163,11 @@ BAD_MESHOPT = {
 
 
 @pytest.mark.parametrize("what", BAD_MESHOPT)
-def test_a_bad_meshopt_view_is_one_line(tmp_path, what):
-    change, said = BAD_MESHOPT[what]
+def test_bad_meshopt_view_is_a_one_line_error(tmp_path, what):
+    change, parts = BAD_MESHOPT[what]
     with pytest.raises(SceneFileError) as refusal:
         read(meshopt(change), tmp_path)
-    assert all(part in str(refusal.value) for part in ("a.glb", *said)) and "\n" not in str(refusal.value)
+    assert all(part in str(refusal.value) for part in ("a.glb", *parts)) and "\n" not in str(refusal.value)
 
 
 # KHR_draco_mesh_compression
@@ -185,9 +185,9 @@ def draco(change=None) -> Document:
         tex_coord=BALL.uv,
         quantization_bits=16,
     )
-    found = {int(a["attribute_type"]): a["unique_id"] for a in DracoPy.decode(data).attributes}
+    unique_ids = {int(a["attribute_type"]): a["unique_id"] for a in DracoPy.decode(data).attributes}
     primitive = document.json["meshes"][0]["primitives"][0]
-    ids = {"POSITION": found[0], "NORMAL": found[1], "TEXCOORD_0": found[3]}
+    ids = {"POSITION": unique_ids[0], "NORMAL": unique_ids[1], "TEXCOORD_0": unique_ids[3]}
     primitive["extensions"] = {DRACO: {"bufferView": document.view(data), "attributes": ids}}
     points = len(DracoPy.decode(data).points)
     for name in ids:
@@ -202,10 +202,10 @@ def draco(change=None) -> Document:
 
 
 def test_draco_gives_the_plain_files_mesh(tmp_path):
-    """Within what its quantisation leaves: 16 bits of positions and uv, 8 bits of octahedral normals by default."""
-    made, expected = (corners(read(document, tmp_path)) for document in (draco(), plain()))
-    assert made.shape == expected.shape
-    apart = abs(made - expected).reshape(-1, 8)
+    """The meshes agree within the quantisation: 16 bits for positions and uv, 8-bit octahedral normals by default."""
+    unpacked, expected = (corners(read(document, tmp_path)) for document in (draco(), plain()))
+    assert unpacked.shape == expected.shape
+    apart = abs(unpacked - expected).reshape(-1, 8)
     assert apart[:, [0, 1, 2, 6, 7]].max() < 5e-5 and apart[:, 3:6].max() < 0.03, apart.max(axis=0)
 
 
@@ -230,25 +230,25 @@ BAD_DRACO = {
 
 
 def many_triangles(document: Document) -> None:
-    """2^35 vertices in the header."""
-    at = document.json["bufferViews"][-1]["byteOffset"] + 10
-    head = document.data[: at + 1]
-    document.data = head + b"\xff\xff\xff\xff\x7f" + document.data[at + 6 :]
+    """Write 2^35 vertices into the header."""
+    offset = document.json["bufferViews"][-1]["byteOffset"] + 10
+    head = document.data[: offset + 1]
+    document.data = head + b"\xff\xff\xff\xff\x7f" + document.data[offset + 6 :]
 
 
 @pytest.mark.parametrize("what", BAD_DRACO)
-def test_a_bad_draco_primitive_is_one_line(tmp_path, what):
-    change, said = BAD_DRACO[what]
+def test_bad_draco_primitive_is_a_one_line_error(tmp_path, what):
+    change, parts = BAD_DRACO[what]
     with pytest.raises(SceneFileError) as refusal:
         read(draco(change), tmp_path)
-    assert all(part in str(refusal.value) for part in ("a.glb", *said)) and "\n" not in str(refusal.value)
+    assert all(part in str(refusal.value) for part in ("a.glb", *parts)) and "\n" not in str(refusal.value)
 
 
 # Both
 
 
 @pytest.mark.parametrize("make, package", [(draco, "DracoPy"), (meshopt, "meshoptimizer")])
-def test_a_missing_package_is_one_line(tmp_path, monkeypatch, make, package):
+def test_missing_package_is_an_error_that_says_what_to_install(tmp_path, monkeypatch, make, package):
     document = make()
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(SceneFileError, match=rf"a\.glb: .*needs {package}; pip install normalbench\[compressed\]"):
@@ -257,7 +257,7 @@ def test_a_missing_package_is_one_line(tmp_path, monkeypatch, make, package):
 
 @pytest.mark.parametrize("make", [draco, meshopt])
 def test_damaged_packed_files_are_read_or_refused(tmp_path, make):
-    """Only what is packed is damaged."""
+    """Only the packed data are damaged."""
     document = make()
     rng = np.random.default_rng(0)
     whole, refused = document.data, 0
@@ -271,8 +271,8 @@ def test_damaged_packed_files_are_read_or_refused(tmp_path, make):
     assert refused > 10, refused
 
 
-def test_a_missing_package_is_what_the_machine_lacks(tmp_path, monkeypatch, run):
-    """Exit status 3, as of other packages."""
+def test_missing_package_gives_exit_status_3(tmp_path, monkeypatch, run):
+    """The status is the same as for other missing packages."""
     path = draco().write(tmp_path / "a.glb")
     monkeypatch.setitem(sys.modules, "DracoPy", None)
     status, out, err = run("quality", "--normals", str(path), "--backend", "jax")

@@ -1,4 +1,4 @@
-"""The article's quality table comes out of the article's scene."""
+"""The article's scene, which reproduces the article's quality table."""
 
 import numpy as np
 import pytest
@@ -11,21 +11,21 @@ pytestmark = pytest.mark.usefixtures("rows_are_shared")
 
 
 def of_picture(seen: Rendered, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Normals, (0, 0, 1) on the background; what comes back of them; and which are covered."""
+    """Return normals, (0, 0, 1) on the background; the decoded normals; and which pixels are covered."""
     n = np.where(seen.covered[..., None], seen.normals, (0, 0, 1)).reshape(-1, 3).astype(np.float64)
     view = seen.positions.reshape(-1, 3).astype(np.float64)
     return n, independent.BASELINES[name](n, view, independent.quantise_unorm), seen.covered.ravel()
 
 
 def article_mse(n: np.ndarray, decoded: np.ndarray, covered: np.ndarray) -> float:
-    """Of the difference image in 8 bits, background included."""
+    """Return the mean squared error of the difference image in 8 bits, including the background."""
     difference = np.where(covered[:, None], np.abs(n - decoded), 0)
     return float(np.mean((np.round(np.minimum(difference, 1) * 255) / 255) ** 2))
 
 
 @pytest.mark.parametrize("name", sorted(independent.BASELINES))
 def test_an_independent_float64_implementation_gives_the_same_row(normalbench, name):
-    """NumPy in float64, whole arrays, nothing shared with the catalogue: PSNR within 0.005 dB, angles within 0.1 %."""
+    """NumPy in float64, whole arrays, nothing shared with the catalogue: PSNR within 0.005 dB, angles within 0.2%."""
     n, decoded, covered = of_picture(rendered(), name)
     mse, _, mean, rms, p99, largest = independent.whole_row(n[covered], decoded[covered])
     row = normalbench.quality(encoding=name)
@@ -37,8 +37,8 @@ def test_an_independent_float64_implementation_gives_the_same_row(normalbench, n
         assert row[column] == pytest.approx(value, rel=2e-3), f"{name} {column}"
 
 
-def test_the_scene_is_the_articles():
-    """Facts of the original: about 2 % background, 15 % of the rest with z < 0, under 0.5 % facing away."""
+def test_the_scene_is_that_of_the_article():
+    """Facts about the original: about 2% background, 15% of the rest with z < 0, under 0.5% facing away."""
     seen = rendered()
     normals, positions = seen.normals[seen.covered], seen.positions[seen.covered]
     assert seen.covered.shape == (480, 640)

@@ -1,4 +1,4 @@
-"""The article's quality table comes out of the article's scene."""
+"""The article's scene, which reproduces the article's quality table."""
 
 from collections.abc import Sequence
 
@@ -21,7 +21,7 @@ WITHIN, WIDER = 0.35, {"spherical": 0.8, "per_pixel_view": 0.5}
 
 
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
-def test_every_row_is_near_the_articles_and_in_its_order(normalbench, backend):
+def test_every_row_is_near_the_article_and_in_the_same_order(normalbench, backend):
     rows = {name: normalbench.quality(encoding=name, backend=backend) for name in published.PSNR_DB}
     for name, figure in published.PSNR_DB.items():
         within = WIDER.get(name, WITHIN)
@@ -32,20 +32,20 @@ def test_every_row_is_near_the_articles_and_in_its_order(normalbench, backend):
 
 
 def article_rows(seen: Rendered) -> dict[str, float]:
-    """The article's rows of a picture, by the independent implementation."""
+    """Return the article's rows for an image, by the independent implementation."""
     return {name: 10 * np.log10(1 / article_mse(*of_picture(seen, name))) for name in published.PSNR_DB}
 
 
 def off(meshes: Sequence[Mesh], culls: bool) -> dict[str, float]:
-    """How far the rows of a scene are from the article's, in dB."""
+    """Return the differences between the rows of a scene and those of the article, in dB."""
     whole = joined(meshes)
     rows = article_rows(rasterise(facing(whole) if culls else whole, CAMERA))
     return {name: rows[name] - figure for name, figure in published.PSNR_DB.items()}
 
 
 def test_the_arms_and_culling_are_each_needed():
-    """Without the arms nothing faces away, and per-pixel view space is 8 dB too good. With both sides drawn one looks
-    into the teapots, whose insides face away. The one in place of the other makes up for it, which is two errors."""
+    """Without the arms nothing faces away, and per-pixel view space is 8 dB too good. If both sides are drawn, the
+    camera looks into the teapots, whose insides face away. The two errors would compensate for each other."""
     meshes = in_view_space()
     without_arms, both_sides = off(meshes[: -len(ARMS)], True), off(meshes, False)
     assert without_arms["per_pixel_view"] > 8 and without_arms["spherical"] < -WITHIN

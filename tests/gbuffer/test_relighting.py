@@ -1,4 +1,4 @@
-"""The renderer's light, shadows and positions against formulas in float64."""
+"""The renderer's light, shadows and positions, compared with formulas in float64."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from normalbench.gbuffer.scenes.scene import KINDS, LIGHT_KINDS, Light, Material
 
 @cache
 def lit(gl, scene: str):
-    """A scene's surfaces, and the light on them by the formulas, with shadows."""
+    """Return a scene's surfaces, and the light on them by the formulas, with shadows."""
     frame = drawn(gl, "prepass", scene, True)
     seen = surfaces(scene_of(scene), frame.gbuffer)
     return seen, relight(scene_of(scene), seen, frame.shadow_map)
@@ -34,9 +34,9 @@ def lit(gl, scene: str):
 
 @pytest.mark.parametrize("which", ["diffuse", "specular"])
 @pytest.mark.parametrize("name", BLINN_PHONG)
-def test_the_light_buffer_holds_what_the_formulas_say(gl, name, which):
+def test_the_light_buffer_matches_the_formulas(gl, name, which):
     """D in the first target and S in the second, all lights and shadows, over the pixels of each material kind: 80 dB
-    below the light's own peak or 1, whichever is more. Where float32 cannot tell a shadow either answer counts."""
+    below the light's own peak or 1, whichever is higher. Where float32 leaves a shadow undecided, either is right."""
     seen, sums = lit(gl, name)
     expected, slack = getattr(sums, which), getattr(sums, f"{which}_slack")
     light = drawn(gl, "prepass", name, True).light[which == "specular"]
@@ -44,12 +44,12 @@ def test_the_light_buffer_holds_what_the_formulas_say(gl, name, which):
     error = np.maximum(abs(light[seen.covered][:, :3] - expected) - slack, 0)
     for kind in np.unique(seen.kind):
         here = seen.kind == kind
-        found = psnr(error[here], max(expected.max(), 1.0))
-        assert found >= 80, f"{name}, {which} light on {KINDS[kind]}: {found:.1f} dB, largest {error[here].max():.2g}"
+        ratio = psnr(error[here], max(expected.max(), 1.0))
+        assert ratio >= 80, f"{name}, {which} light on {KINDS[kind]}: {ratio:.1f} dB, largest {error[here].max():.2g}"
 
 
 @pytest.mark.parametrize("name", BLINN_PHONG)
-def test_the_deferred_colour_is_what_the_formulas_say(gl, name):
+def test_the_deferred_colour_matches_the_formulas(gl, name):
     """Emitted and reflected light in the light buffer of deferred shading, as displayed: 80 dB."""
     scene, (seen, sums) = scene_of(name), lit(gl, name)
     frame = drawn(gl, "deferred", name, True)
@@ -59,19 +59,19 @@ def test_the_deferred_colour_is_what_the_formulas_say(gl, name):
     expected = relighting.emissive(scene, seen) + seen.albedo * sums.diffuse + seen.specular * sums.specular
     slack = seen.albedo * sums.diffuse_slack + seen.specular * sums.specular_slack
     got = frame.light[0][seen.covered][:, :3]
-    found = apart(got, np.clip(got, expected - slack, expected + slack))
-    assert found >= 80, f"{name}: {found:.1f} dB, largest {abs(got - expected).max():.2g}"
+    decibels = apart(got, np.clip(got, expected - slack, expected + slack))
+    assert decibels >= 80, f"{name}: {decibels:.1f} dB, largest {abs(got - expected).max():.2g}"
 
 
 @pytest.mark.parametrize("pipeline", EXACT)
 @pytest.mark.parametrize("name", ["playground", "objects", "gloss"])
-def test_the_image_is_what_the_formulas_say(gl, name, pipeline):
-    """Of the scenes without transparent surfaces, ambient light included, without shadows: 80 dB as displayed."""
+def test_the_image_matches_the_formulas(gl, name, pipeline):
+    """In the scenes without transparent surfaces, with ambient light and without shadows: 80 dB as displayed."""
     scene = scene_of(name)
     seen = lit(gl, name)[0]
     expected = relighting.image(scene, seen, unshadowed(gl, name))
-    found = apart(drawn(gl, pipeline, name, False).image, expected)
-    assert found >= 80, f"{pipeline} on {name}: {found:.1f} dB"
+    decibels = apart(drawn(gl, pipeline, name, False).image, expected)
+    assert decibels >= 80, f"{pipeline} on {name}: {decibels:.1f} dB"
 
 
 @cache
@@ -80,8 +80,8 @@ def unshadowed(gl, name: str):
 
 
 def test_hardly_any_shadow_is_undecided(gl):
-    """Of the pixels that the sun can light, float32 is in doubt about fewer than one in a thousand; and there are
-    shadows to speak of. The playground's upper slab keeps nearly all of the sun out."""
+    """Of the pixels that the sun can light, fewer than one in a thousand are undecided in float32, and a notable
+    share is in shadow. The playground's upper slab keeps out nearly all of the sun."""
     for name in BLINN_PHONG:
         (seen, _), scene = lit(gl, name), scene_of(name)
         low, high = relighting.sunlit(scene, seen.position, drawn(gl, "prepass", name, True).shadow_map)
@@ -97,7 +97,7 @@ def test_hardly_any_shadow_is_undecided(gl):
 
 
 def test_the_room_shows_every_kind_of_light_and_of_material(gl):
-    """Each material on 20 pixels or more; each kind of light brings D of a hundredth or more to 500."""
+    """Each material covers at least 20 pixels; each kind of light gives at least 500 pixels a D above a hundredth."""
     scene, (seen, _) = scene_of("room"), lit(gl, "room")
     assert all(np.sum(seen.kind == number) >= 20 for number in range(len(KINDS)))
     for kind in LIGHT_KINDS:
@@ -108,7 +108,7 @@ def test_the_room_shows_every_kind_of_light_and_of_material(gl):
 
 @cache
 def line_up() -> Scene:
-    """A ball of each material kind in a row, strands upright; white lamps of each kind in the order of LIGHT_KINDS."""
+    """Return a row of balls of each material kind, strands upright, and white lamps in the order of LIGHT_KINDS."""
     upright = sphere(1.0, 96, 64).placed(np.array([(1.0, 0, 0), (0, 0, -1.0), (0, 1.0, 0)]), (0, 0, 0))
     places = [(-2.4, 0, 0), (-0.8, 0.3, -0.5), (0.8, -0.2, 0.3), (2.4, 0.1, 0)]
     materials = (
@@ -133,8 +133,8 @@ def line_up() -> Scene:
 
 
 @pytest.mark.parametrize("kind", LIGHT_KINDS)
-def test_each_kind_of_light_on_each_kind_of_material(gl, kind):
-    """One lamp alone: D and S on each ball 80 dB below their own peak there, which is bright enough to tell."""
+def test_each_kind_of_light_matches_the_formulas_on_each_material(gl, kind):
+    """One lamp alone: the errors of D and S on each ball are 80 dB below their own peak, which is bright enough."""
     scene = replace(line_up(), lights=(line_up().lights[LIGHT_KINDS.index(kind)],))
     frame = draw(gl, "prepass", scene)
     seen = surfaces(scene, frame.gbuffer)
@@ -144,12 +144,12 @@ def test_each_kind_of_light_on_each_kind_of_material(gl, kind):
             here = seen.kind == number
             lit_pixels = np.sum(expected[here].max(axis=1) > 0.02)
             assert lit_pixels > 50, f"{kind} light on {material}: {which} on {lit_pixels} pixels"
-            found = psnr(light[seen.covered][here][:, :3] - expected[here], expected[here].max())
-            assert found >= 80, f"{kind} light on {material}: {which} {found:.1f} dB"
+            decibels = psnr(light[seen.covered][here][:, :3] - expected[here], expected[here].max())
+            assert decibels >= 80, f"{kind} light on {material}: {which} {decibels:.1f} dB"
 
 
 def test_strands_of_hair_run_along_v(gl):
-    """Upright on a ball whose axis is upright: along the meridians, and in either sign that faces the eye."""
+    """On a ball with an upright axis strands follow the meridians, with the sign that faces the eye."""
     scene = line_up()
     seen = surfaces(scene, draw(gl, "prepass", scene).gbuffer)
     hair = seen.kind == KINDS.index("hair")
@@ -164,8 +164,8 @@ def test_strands_of_hair_run_along_v(gl):
 
 
 def test_the_normal_map_tilts_against_its_slopes(gl):
-    """A level plane seen from above: its normal is N - strength (dh/du T + dh/dv B), T the way u grows and B the way v
-    does, to 0.02; the map is read back and magnified bilinearly."""
+    """A level plane seen from above: its normal is N - strength (dh/du T + dh/dv B), T in the direction of u and B in
+    that of v, to 0.02; the map is read back and magnified bilinearly."""
     view = View((0.3, 3.0, 0.2), (0.3, 0.0, 0.0), 40.0, 0.5, 20.0)
     bumpy = Material(bump=0.8, bump_repeat=1.0)
     scene = Scene((ScenePart(plane(6.0, 6.0), placed((0, 0, 0)), np.array([0])),), (bumpy,), (), (0.0,) * 3, view, view)
@@ -191,31 +191,31 @@ def test_the_normal_map_tilts_against_its_slopes(gl):
 
 @pytest.mark.parametrize("name", ["objects", "room"])
 def test_one_target_holds_diffuse_light_and_specular_luminance(gl, name):
-    """RGB is D, A the Rec. 709 luminance of S, 80 dB below the peak or 1; the material pass gives the highlight the
+    """RGB is D, A the Rec. 709 luminance of S, 80 dB below the peak or 1. The material pass gives the highlight the
     colour of D: 80 dB as displayed."""
     scene, seen, sums = scene_of(name), lit(gl, name)[0], unshadowed(gl, name)
     frame = draw(gl, "prepass", scene, targets=1)
     luma = np.array([0.2126, 0.7152, 0.0722])
     expected = np.concatenate([sums.diffuse, (sums.specular @ luma)[:, None]], axis=1)
-    found = psnr(frame.light[0][seen.covered] - expected, max(expected.max(), 1))
-    assert found >= 80, f"{name}: light {found:.1f} dB"
+    decibels = psnr(frame.light[0][seen.covered] - expected, max(expected.max(), 1))
+    assert decibels >= 80, f"{name}: light {decibels:.1f} dB"
     brightness = np.where(expected[:, :3].any(axis=1), sums.diffuse @ luma, 1.0)[:, None]
     coloured = replace(sums, specular=sums.diffuse / brightness * expected[:, 3:])
     opaque = ~covered_by_glass(gl, name)
-    found = apart(frame.image[opaque], relighting.image(scene, seen, coloured)[opaque])
-    assert found >= 80, f"{name}: image {found:.1f} dB"
+    decibels = apart(frame.image[opaque], relighting.image(scene, seen, coloured)[opaque])
+    assert decibels >= 80, f"{name}: image {decibels:.1f} dB"
 
 
-def test_one_white_light_gets_its_power_back_from_a_light_pass_without_powers(gl):
+def test_a_single_white_light_gets_its_power_back_in_the_material_pass(gl):
     """[S / sum(N.L att)]^(m/n) sum(N.L att) is exact for a single white light: 60 dB to forward shading, on general
-    materials; highlights of power 4 to 1024 from one of 32."""
+    materials; highlights of power 4 to 1024 from a power of 32."""
     lamp = Light("point", (3.0, 3.0, 3.0), (2.0, 1.5, 5.0), 14.0)
     scene = replace(scene_of("gloss"), lights=(lamp,))
     bare = Layout("bare", "", (Target("rgba32f", "normal.x normal.y normal.z depth"),), ENCODINGS["xyz"], "")
     expected = draw(gl, "forward", scene).image
     for targets in (1, 2):
-        found = apart(draw(gl, "prepass", scene, layout=bare, targets=targets).image, expected)
-        assert found >= 60, f"{targets} targets: {found:.1f} dB"
+        decibels = apart(draw(gl, "prepass", scene, layout=bare, targets=targets).image, expected)
+        assert decibels >= 60, f"{targets} targets: {decibels:.1f} dB"
     fixed = replace(scene, materials=tuple(replace(m, power=CONSTANTS["LIGHT_PASS_POWER"]) for m in scene.materials))
     assert apart(draw(gl, "forward", fixed).image, expected) < 40, "the powers make no difference"
 
@@ -228,7 +228,7 @@ BLOCK = np.array([(-0.8, 0.5, -0.5), (0.8, 1.6, 0.5)])
 
 @cache
 def block_over_floor() -> Scene:
-    """A box that hovers over a wide floor under an oblique sun, white, with nothing but diffuse light."""
+    """Return a scene with a box over a wide floor under an oblique sun, white, with only diffuse light."""
     size = BLOCK[1] - BLOCK[0]
     white = Material(albedo=(1.0, 1.0, 1.0), specular=(0.0, 0.0, 0.0))
     view = View((3.0, 4.0, 6.0), (0.4, 0.3, -0.3), 50.0, 0.5, 50.0)
@@ -246,21 +246,21 @@ def block_over_floor() -> Scene:
 
 
 def meets_block(points: np.ndarray, grown: float) -> np.ndarray:
-    """Whether a ray from each point to the sun meets the box, grown by that much to each side."""
+    """Whether a ray from each point to the sun meets the box, grown by `grown` on each side."""
     low, high = ((side - points) / -np.array(SUN) for side in (BLOCK[0] - grown, BLOCK[1] + grown))
     enters, leaves = np.minimum(low, high).max(axis=1), np.maximum(low, high).min(axis=1)
     return (leaves > enters) & (leaves > 0)
 
 
 def within_block(points: np.ndarray) -> np.ndarray:
-    """How far points on the box are from the nearest edge of their face."""
+    """Return the distance of points on the box from the nearest edge of their face."""
     return np.sort(np.minimum(points - BLOCK[0], BLOCK[1] - points), axis=1)[:, 1]
 
 
 @pytest.mark.parametrize("pipeline", ["forward", "deferred"])
-def test_shadows_lie_where_rays_to_the_sun_are_blocked(gl, pipeline):
-    """On the floor, but for three texels on either side of the shadow's edge: dark inside, N.L outside. What the sun
-    sees of the box itself is fully lit up to three texels from its edges."""
+def test_shadows_are_where_rays_to_the_sun_are_blocked(gl, pipeline):
+    """On the floor, except for three texels on either side of the shadow's edge: dark inside, N.L outside. The sides
+    of the box that face the sun are fully lit up to three texels from their edges."""
     scene = block_over_floor()
     image = draw(gl, pipeline, scene, shadows=True).image[..., 0]
     seen = surfaces(scene, draw(gl, "deferred", scene, shadows=True).gbuffer)
@@ -279,8 +279,8 @@ def test_shadows_lie_where_rays_to_the_sun_are_blocked(gl, pipeline):
 
 
 def test_a_coarse_ball_does_not_shadow_what_its_normals_say_is_lit(gl):
-    """Smooth normals on flat faces: some faces that look away from the sun are lit all the same. All
-    pixels with an N.L of 0.05 or more are."""
+    """Smooth normals on flat faces: some faces that look away from the sun are still lit. All pixels with an N.L of
+    at least 0.05 are lit."""
     view = View((-3.0, 3.0, 5.0), (0.0, 0.0, 0.0), 30.0, 0.5, 50.0)
     ball = ScenePart(sphere(1.0, 18, 12), placed((0, 0, 0)), np.array([0]))
     white = Material(albedo=(1.0, 1.0, 1.0), specular=(0.0, 0.0, 0.0))

@@ -19,21 +19,22 @@ from normalbench.gbuffer.scenes.mesh import joined
 from normalbench.gbuffer.scenes.rasterise import Camera, rasterise
 
 
-def test_special_materials_may_give_off_light(gl):
-    """Every ball of the line-up glows, under all its lamps, the sun the last of them: 80 dB to the formulas."""
+def test_special_materials_can_emit_light(gl):
+    """Every ball of the line-up emits light, under all lamps and the sun: at least 80 dB against the formulas."""
     scene = line_up()
     glowing = tuple(replace(m, emissive=(0.1, 0.2 + 0.1 * i, 0.3)) for i, m in enumerate(scene.materials))
     scene = replace(scene, materials=glowing, ambient=(0.1, 0.05, 0.02))
     seen = surfaces(scene, draw(gl, "prepass", scene).gbuffer)
     expected = relighting.image(scene, seen, relight(scene, seen, None))
     for pipeline in EXACT:
-        found = apart(draw(gl, pipeline, scene).image, expected)
-        assert found >= 80, f"{pipeline}: {found:.1f} dB"
+        decibels = apart(draw(gl, pipeline, scene).image, expected)
+        assert decibels >= 80, f"{pipeline}: {decibels:.1f} dB"
 
 
 def test_the_shadow_map_holds_the_far_sides_of_casters(gl):
-    """Every texel but those at outlines and edges: where the sun's ray through its middle leaves the box, moved away by
-    so many of that side's slopes, by either of GL's measures, and steps of 24 bits; 1 where the ray passes by."""
+    """Except near outlines and edges, each texel stores the depth at which the sun's ray through its centre leaves
+    the box. The depth is offset by a multiple of that side's slope, by either measure that OpenGL allows, and by
+    steps of 24-bit depth. Where the ray misses the box, the depth is 1."""
     scene = block_over_floor()
     depths = draw(gl, "deferred", scene, shadows=True).shadow_map
     matrix = sun_matrix(scene)
@@ -54,21 +55,22 @@ def test_the_shadow_map_holds_the_far_sides_of_casters(gl):
         here &= np.sort(leaves, axis=2)[..., 1] > way + 10 * texel
         across = np.linalg.inv(matrix[:3, :3]).T @ np.eye(3)[axis]
         slope = abs(across[:2] / across[2]) / SHADOW_SIZE
-        found = depths[here] - way[here] * per_way
+        offsets = depths[here] - way[here] * per_way
         # Corners lie on a grid of 1/256 texel, as a GPU snaps them: half of it, along each axis, moves a side.
         snapped = slope.sum() / 512
         least = slopes * slope.max() - snapped - 1e-6
         most = slopes * np.linalg.norm(slope) + 2 * steps * 2.0**-24 + snapped + 1e-6
         assert here.sum() > 5000
-        assert found.min() >= least and found.max() <= most, (
-            f"side {axis}: {found.min():.3g} to {found.max():.3g} behind, not {least:.3g} to {most:.3g}"
+        assert offsets.min() >= least and offsets.max() <= most, (
+            f"side {axis}: {offsets.min():.3g} to {offsets.max():.3g} behind, not {least:.3g} to {most:.3g}"
         )
 
 
 def test_positions_from_either_depth_agree(gl):
-    """From z/w by the inverse projection, and from linear depth along the eye's ray. A step of 2^-24 in z/w is
-    d^2 (f - n) / (f n) 2^-24 in depth; positions agree to eight of those and 2^-20 of the depth. From pixel to pixel
-    depth changes by a pixel's extent over the cosine, and a place on the screen is exact to 2^-16 of a pixel."""
+    """Positions are reconstructed from z/w by the inverse projection, and from linear depth along the eye's ray. A
+    step of 2^-24 in z/w is d^2 (f - n) / (f n) 2^-24 in depth; positions agree to eight such steps plus 2^-20 of the
+    depth. From pixel to pixel, depth changes by a pixel's extent over the cosine, and screen positions are accurate
+    to 2^-16 of a pixel."""
     for name in BLINN_PHONG:
         scene = scene_of(name)
         near, far = scene.view.near, scene.view.far
@@ -85,9 +87,9 @@ def test_positions_from_either_depth_agree(gl):
         assert np.all(error <= allowed), f"{name}: {np.max(error / allowed):.2f} of what is allowed"
 
 
-def test_positions_are_those_of_the_software_rasteriser(gl):
-    """On the playground: within a hundredth of a pixel's own extent along the surface and 1e-5 of the depth, where GL
-    moves vertices by up to 1/512 of a pixel; but for one pixel in 500, at edges, where another surface is seen."""
+def test_positions_match_the_software_rasteriser(gl):
+    """On the playground, positions agree to 0.01 of a pixel's extent along the surface plus 1e-5 of the depth; OpenGL
+    moves vertices by up to 1/512 of a pixel. Up to one pixel in 500, at edges, may show another surface."""
     scene = scene_of("playground")
     reference = rasterise(joined(in_view_space()), Camera(*SIZE, scene.view.fov, scene.view.near, scene.view.far))
     seen = drawn(gl, "deferred", "playground", False).gbuffer

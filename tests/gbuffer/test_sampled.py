@@ -1,4 +1,4 @@
-"""Pixels that are sampled from a frame are lit as in that frame."""
+"""Sampled pixels of a frame, lit as in the whole frame."""
 
 from contextlib import ExitStack
 
@@ -18,25 +18,25 @@ SIZE = (160, 120)
 
 
 @pytest.mark.parametrize("scene", ["playground", "room", "studio"])
-def test_sampled_pixels_are_those_of_the_frame(gl, scene):
-    """Bit for bit: lamps, suns with shadows, special materials and environments, with normals that are not the
-    frame's own."""
+def test_sampled_pixels_match_the_frame(gl, scene):
+    """The match is bit for bit for lamps, suns with shadows, special materials and environments, also with normals
+    that are not the frame's own."""
     what = SCENES[scene].make(Setting(lights=8))
     plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, True, 1.0)
     with ExitStack() as stack:
-        made = stack.enter_context(rendering(gl, PIPELINES["deferred"], what, plan))
-        made.draw()
-        surfaces = made.surfaces()
-        covered = made.covered(surfaces)
+        drawing = stack.enter_context(rendering(gl, PIPELINES["deferred"], what, plan))
+        drawing.draw()
+        surfaces = drawing.surfaces()
+        covered = drawing.covered(surfaces)
         tilted = (covered.normals + np.array([0.1, -0.2, 0.05])).astype(np.float32)
-        frames = [made.lit(covered.with_normals(surfaces, n), upto="transparent") for n in (covered.normals, tilted)]
+        frames = [drawing.lit(covered.with_normals(surfaces, n), upto="transparent") for n in (covered.normals, tilted)]
         chosen = np.sort(np.random.default_rng(0).choice(len(tilted), 500, replace=False))
         rows, columns = np.argwhere(covered.pixels)[chosen].T
         pixels = np.stack([SIZE[1] - 1 - rows, columns], axis=1)
         sampled = SampledScene(gl, stack, what, SIZE, pixels, covered.position[chosen], 3)
         own = [texels[pixels[:, 0], pixels[:, 1]] for texels in surfaces]
-        found = sampled.lit(what, own, np.stack([covered.normals[chosen], tilted[chosen]]))
-    for row, frame in zip(found, frames, strict=True):
+        lights = sampled.lit(what, own, np.stack([covered.normals[chosen], tilted[chosen]]))
+    for row, frame in zip(lights, frames, strict=True):
         apart = np.abs(row - frame[pixels[:, 0], pixels[:, 1]])
         assert apart.max() == 0, f"{np.count_nonzero(apart)} numbers differ, by up to {apart.max():g}"
 

@@ -1,4 +1,4 @@
-"""Normal maps as pixels see them, without a GL driver."""
+"""Normal maps as pixels sample them, without an OpenGL driver."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ SQUARE = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
 
 
 def square(data: bytes, uv, away: float = 3.0, info=None, **more) -> Document:
-    """A square of 2 x 2 that faces a camera, wholly in the picture; `more` are attributes."""
+    """Return a 2 x 2 square that faces a camera, entirely in the image; `more` are vertex attributes."""
     document = Document()
     document.texture(data, wrapS=33071, wrapT=33071)
     document.material(normalTexture={"index": 0, **(info or {})})
@@ -29,18 +29,18 @@ def square(data: bytes, uv, away: float = 3.0, info=None, **more) -> Document:
 
 
 def as_seen(document: Document, tmp_path):
-    """Normals of what is covered, and where it lies on the square."""
-    made = seen(read_mesh_file(document.write(tmp_path / "a.glb")), (SIDE, SIDE))
-    inner = made.covered & (abs(made.positions[..., :2]).max(axis=-1) < 0.97)
+    """Return the normals of covered pixels inside the square, and their positions on it."""
+    shown = seen(read_mesh_file(document.write(tmp_path / "a.glb")), (SIDE, SIDE))
+    inner = shown.covered & (abs(shown.positions[..., :2]).max(axis=-1) < 0.97)
     assert inner.sum() > 100
-    return made.normals[inner], made.positions[inner]
+    return shown.normals[inner], shown.positions[inner]
 
 
 @pytest.mark.parametrize("way", range(len(WAYS)))
 @pytest.mark.parametrize("how", ["computed", "authored", "transformed"])
-def test_a_dome_in_a_map_is_a_dome_however_its_picture_lies(tmp_path, how, way):
-    """Turned, mirrored, by the file's tangents or by ones that follow from the uv: the dome bulges towards the eye, and
-    its left faces left."""
+def test_dome_in_a_map_is_a_dome_in_every_orientation(tmp_path, how, way):
+    """The image is turned or mirrored, with tangents from the file or computed from the uv coordinates: the dome
+    bulges towards the eye, and its left side faces left."""
     turn = WAYS[way]
     more, info = {}, None
     if how == "authored":
@@ -56,17 +56,17 @@ def test_a_dome_in_a_map_is_a_dome_however_its_picture_lies(tmp_path, how, way):
 @pytest.mark.parametrize("way", range(len(WAYS)))
 @pytest.mark.parametrize("authored", [False, True])
 def test_modelled_and_mapped_normals_are_the_same(tmp_path, way, authored):
-    """Pixel by pixel: the squares are two apart and a tenth each way, which is a whole number of pixels here."""
-    made = seen(read_mesh_file(halves(WAYS[way], authored).write(tmp_path / "a.glb")), (256, 128))
-    columns = np.nonzero(made.covered.any(axis=0))[0]
+    """The comparison is pixel by pixel: the distance between the squares is a whole number of pixels here."""
+    shown = seen(read_mesh_file(halves(WAYS[way], authored).write(tmp_path / "a.glb")), (256, 128))
+    columns = np.nonzero(shown.covered.any(axis=0))[0]
     gap = np.flatnonzero(np.diff(columns) > 1)
     left, right = np.split(columns, gap + 1)
     assert len(left) == len(right) > 40
-    normals = [made.normals[:, half][made.covered[:, half].all(axis=1)][2:-2, 2:-2] for half in (left, right)]
+    normals = [shown.normals[:, half][shown.covered[:, half].all(axis=1)][2:-2, 2:-2] for half in (left, right)]
     assert abs(normals[0] - normals[1]).max() < 0.02, f"{WAYS[way].tolist()}: {abs(normals[0] - normals[1]).max():.3f}"
 
 
-def test_the_scale_of_a_normal_map_is_of_its_slopes(tmp_path):
+def test_normal_map_scale_multiplies_the_slopes(tmp_path):
     document = square(picture(dome), uv_of(WAYS[0]), info={"scale": 0.5})
     normals, positions = as_seen(document, tmp_path)
     xy = RIM * positions[:, :2]
@@ -76,8 +76,8 @@ def test_the_scale_of_a_normal_map_is_of_its_slopes(tmp_path):
     assert abs(normals - expected).max() < 2e-3
 
 
-def test_slopes_that_are_finer_than_pixels_are_their_mean(tmp_path):
-    """Stripes of a texel, a hundred of them in a pixel: flat, but for what is flat in the map."""
+def test_slopes_finer_than_a_pixel_are_averaged(tmp_path):
+    """Stripes one texel wide, a hundred per pixel, average to flat; the constant slope of the map remains."""
     stripes = picture(lambda right, up: (0.5 * np.sign(np.sin(right * 64 * np.pi)), np.full_like(up, 0.25)))
     document = square(stripes, uv_of(WAYS[0]) * 40)
     document.json["samplers"][0] = {}
@@ -86,14 +86,14 @@ def test_slopes_that_are_finer_than_pixels_are_their_mean(tmp_path):
     assert abs(normals - n / np.linalg.norm(n)).max() < 0.02
 
 
-def test_stripes_seen_at_a_slant_keep_what_runs_along_them():
-    """A footprint of 16 texels by one, along the stripes: an isotropic filter would see their mean."""
+def test_stripes_seen_at_a_slant_are_not_averaged():
+    """The footprint is 16 texels by one, along the stripes; an isotropic filter would return their mean."""
     texels = np.zeros((64, 64, 4), np.uint8)
     texels[:, ::2] = 255
     pyramid = Pyramid(Map(texels))
     uv = np.array([(8.5 / 64, 0.5), (9.5 / 64, 0.5)])
-    one, sixteen = np.array([(1 / 64, 0)] * 2), np.array([(0, 16 / 64)] * 2)
-    for sides in ((one, sixteen), (sixteen, one)):
+    single, sixteen = np.array([(1 / 64, 0)] * 2), np.array([(0, 16 / 64)] * 2)
+    for sides in ((single, sixteen), (sixteen, single)):
         assert np.allclose(pyramid.through(uv, *sides), [[1] * 3, [-1] * 3])
 
 
@@ -107,31 +107,31 @@ def test_every_level_has_the_mean_of_the_map(shape):
 
 
 @pytest.mark.parametrize("wrap, mode", [("repeat", "wrap"), ("mirror", "symmetric"), ("clamp", "edge")])
-def test_beyond_a_picture_lies_what_its_sampler_says(wrap, mode):
-    """Centres of texels up to twice its size outside, against NumPy's own ways of padding."""
+def test_texels_outside_an_image_follow_its_wrap_mode(wrap, mode):
+    """Texel centres up to twice the image's size outside are compared with NumPy's padding modes."""
     texels = np.random.default_rng(0).integers(0, 256, (3, 5, 4), np.uint8)
     padded = np.pad(texels, ((6, 6), (10, 10), (0, 0)), mode)[..., :3] / 255 * 2 - 1
     row, column = np.indices(padded.shape[:2]).reshape(2, -1)
     uv = np.stack([(column - 10 + 0.5) / 5, (row - 6 + 0.5) / 3], axis=1)
     still = np.zeros_like(uv)
-    found = Pyramid(Map(texels, wrap=(wrap, wrap))).through(uv, still, still)
-    assert abs(found - padded[row, column]).max() < 1e-6
+    normals = Pyramid(Map(texels, wrap=(wrap, wrap))).through(uv, still, still)
+    assert abs(normals - padded[row, column]).max() < 1e-6
 
 
-def test_pixels_say_their_triangle(tmp_path):
-    """Whose corners, weighed, are where the pixel is."""
+def test_pixels_record_their_triangle(tmp_path):
+    """Pixels above the square's diagonal belong to triangle 1, and coverage does not depend on the normal map."""
     file = read_mesh_file(square(picture(lambda x, y: (0 * x, 0 * y)), uv_of(WAYS[0])).write(tmp_path / "a.glb"))
-    made = seen(file, (SIDE, SIDE))
-    above = made.positions[..., 1] > made.positions[..., 0]
-    assert np.array_equal(made.triangle[made.covered & above] == 1, np.ones((made.covered & above).sum(), bool))
-    assert not made.triangle[made.covered & ~above].all()
+    shown = seen(file, (SIDE, SIDE))
+    above = shown.positions[..., 1] > shown.positions[..., 0]
+    assert np.array_equal(shown.triangle[shown.covered & above] == 1, np.ones((shown.covered & above).sum(), bool))
+    assert not shown.triangle[shown.covered & ~above].all()
     plain = replace(file, materials=tuple(replace(m, normal_map=None) for m in file.materials))
-    assert np.array_equal(seen(plain, (SIDE, SIDE)).covered, made.covered)
+    assert np.array_equal(seen(plain, (SIDE, SIDE)).covered, shown.covered)
 
 
 @pytest.mark.parametrize("cutoff, share", [(0.0, 1.0), (0.5, 0.75), (1.5, 0.0)])
-def test_what_is_cut_out_shows_what_is_behind(tmp_path, cutoff, share):
-    """A square whose picture is clear in its upper left quarter, before one that fills the view and faces up."""
+def test_masked_texels_show_the_surface_behind(tmp_path, cutoff, share):
+    """A square with a transparent upper left quarter is in front of one that fills the view and faces up."""
     texels = np.full((64, 64, 4), 255, np.uint8)
     texels[:32, :32, 3] = 0
     document = square(picture(dome), uv_of(WAYS[0]))
@@ -139,17 +139,17 @@ def test_what_is_cut_out_shows_what_is_behind(tmp_path, cutoff, share):
     document.json["materials"][0] = {"alphaMode": "MASK", "alphaCutoff": cutoff, "pbrMetallicRoughness": pbr}
     behind = document.mesh(np.array(SQUARE) * 40, [(0, 1, 0)] * 4, [(0, 1, 2), (0, 2, 3)])
     document.node(mesh=behind, translation=[0, 0, -1])
-    made = seen(read_mesh_file(document.write(tmp_path / "a.glb")), (SIDE, SIDE))
-    front = made.normals[..., 2] > 0.5
-    assert made.covered.all()
+    shown = seen(read_mesh_file(document.write(tmp_path / "a.glb")), (SIDE, SIDE))
+    front = shown.normals[..., 2] > 0.5
+    assert shown.covered.all()
     whole = (2 / (2 * 3 * np.tan(0.35)) * SIDE) ** 2
     assert front.sum() == pytest.approx(share * whole, rel=0.05)
     quarter = front[: SIDE // 2, : SIDE // 2]
     assert quarter.any() == (cutoff == 0)
 
 
-def test_a_map_of_8_bits_is_off_as_far_as_one_of_16_shows(tmp_path):
-    """Found without the map of 16 bits, within a fifth. Half of what is seen has no map and is exact."""
+def test_error_of_an_8_bit_map_matches_the_16_bit_map(tmp_path):
+    """The error is estimated without the 16-bit map, to a fifth. Half of the image has no map and is exact."""
     fine, coarse = (
         seen(read_mesh_file(halves(WAYS[0], kind=kind).write(tmp_path / f"{kind.__name__}.glb")), (160, 120))
         for kind in (np.uint16, np.uint8)

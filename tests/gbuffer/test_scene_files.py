@@ -1,4 +1,4 @@
-"""Users' meshes as scenes: normals under every transform, the formats, cameras, and what bad files get."""
+"""Users' meshes as scenes: normals under every transform, file formats and cameras."""
 
 from dataclasses import replace
 
@@ -15,11 +15,11 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 
 @pytest.mark.parametrize("how", ["glb", "beside", "data"])
-def test_a_mirrored_uneven_node_in_a_chain_gives_the_normals_computed_by_hand(tmp_path, how):
-    """The normal (1, 2, 2) goes by (-1/2, 1, 2) to (-1/2, 2, 4), which is (-1, 4, 8) / 9 when unit; a quarter turn
-    about z takes (x, y, z) to (-y, x, z). The tangent (2, 1, -2) goes as positions do, by (-2, 1, 1/2), and then turns;
-    a mirror turns its sign around, so that the bitangent lies where the mirrored one does. The file's bitangent goes up
-    in a picture, and the one that is kept along v, which is down."""
+def test_chain_with_a_mirrored_uneven_node_gives_hand_computed_normals(tmp_path, how):
+    """The normal (1, 2, 2) is scaled by (-1/2, 1, 2) to (-1/2, 2, 4), which is (-1, 4, 8) / 9 when normalised; a
+    quarter turn about z takes (x, y, z) to (-y, x, z). The tangent (2, 1, -2) is scaled like positions, by (-2, 1,
+    1/2), and then turned. A mirror flips the tangent's sign, so that the bitangent stays on the side of the mirrored
+    bitangent. The file's bitangent points up in the image, and the stored bitangent along v, which is down."""
     file = read_mesh_file(chained().write(tmp_path / ("a.glb" if how == "glb" else "a.gltf"), how))
     mesh = file.baked
     assert abs(mesh.normals - np.array([-4, -1, 8]) / 9).max() < 1e-15, mesh.normals
@@ -31,12 +31,12 @@ def test_a_mirrored_uneven_node_in_a_chain_gives_the_normals_computed_by_hand(tm
     assert (placed[:, 3] == 1).all()
     n, t = np.array([1, 2, 2]) / 3, np.array([2, 1, -2]) / 3
     bitangent = piece.model[:3, :3] @ np.cross(n, t)
-    made = placed[0, 3] * np.cross(mesh.normals[0], placed[0, :3])
+    kept_bitangent = placed[0, 3] * np.cross(mesh.normals[0], placed[0, :3])
     # At right angles to the normal by construction; the mirrored one lies on the same side.
-    assert made @ bitangent < -0.3 * np.linalg.norm(bitangent)
+    assert kept_bitangent @ bitangent < -0.3 * np.linalg.norm(bitangent)
 
 
-def test_the_normals_that_the_renderer_keeps_are_those_computed_by_hand(tmp_path, gl):
+def test_renderer_stores_the_hand_computed_normals(tmp_path, gl):
     """A square with the normal (1, 2, 2) / 3 in a mirrored, unevenly scaled node, seen by a camera on the z axis."""
     document = Document()
     square = [(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)]
@@ -51,7 +51,7 @@ def test_the_normals_that_the_renderer_keeps_are_those_computed_by_hand(tmp_path
     assert abs(seen(file, (64, 48)).normals - by_hand).max() < 1e-7
 
 
-def test_a_matrix_is_read_column_by_column_and_chains(tmp_path):
+def test_node_matrix_is_column_major_and_applies_to_children(tmp_path):
     document = Document()
     child = document.node(mesh=document.mesh(POSITIONS, NORMALS), translation=[1, 0, 0])
     document.node(children=[child], matrix=[0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 3, 0, 5, 6, 7, 1])
@@ -62,7 +62,7 @@ def test_a_matrix_is_read_column_by_column_and_chains(tmp_path):
     assert np.allclose(mesh.normals, by_hand / np.linalg.norm(by_hand), atol=1e-15)
 
 
-def test_rigid_places_are_instances_and_others_are_baked(tmp_path):
+def test_rigid_transforms_become_instances_and_others_are_baked(tmp_path):
     document = Document()
     mesh = document.mesh(POSITIONS, NORMALS)
     for scale in ([1, 1, 1], [2, 2, 2], [-1, 1, 1], [1, 2, 1]):
@@ -84,9 +84,9 @@ def test_strips_fans_sparse_and_quantised_accessors_are_read(tmp_path):
     ):
         document = Document()
         document.node(mesh=document.mesh(square, triangles=corners, mode=mode))
-        made = read_mesh_file(document.write(tmp_path / "a.glb")).baked
-        assert made.triangles.tolist() == [list(t) for t in expected]
-        assert np.array_equal(made.normals, np.tile([0.0, 0, 1], (4, 1))), "all wound one way"
+        baked = read_mesh_file(document.write(tmp_path / "a.glb")).baked
+        assert baked.triangles.tolist() == [list(t) for t in expected]
+        assert np.array_equal(baked.normals, np.tile([0.0, 0, 1], (4, 1))), "all wound one way"
     document = Document()
     mesh = document.mesh(square, triangles=[0, 1, 2])
     attributes = document.json["meshes"][mesh]["primitives"][0]["attributes"]
@@ -96,12 +96,12 @@ def test_strips_fans_sparse_and_quantised_accessors_are_read(tmp_path):
     sparse = {"count": 1, "indices": index | {"componentType": 5121}, "values": value}
     document.json["accessors"][attributes["POSITION"]]["sparse"] = sparse
     document.node(mesh=mesh)
-    made = read_mesh_file(document.write(tmp_path / "a.glb")).baked
-    assert np.array_equal(made.normals, np.tile([1.0, 0, 0], (4, 1)))
-    assert made.positions.tolist() == [[0, 0, 0], [1, 0, 0], [0, 5, 0], [1, 1, 0]]
+    baked = read_mesh_file(document.write(tmp_path / "a.glb")).baked
+    assert np.array_equal(baked.normals, np.tile([1.0, 0, 0], (4, 1)))
+    assert baked.positions.tolist() == [[0, 0, 0], [1, 0, 0], [0, 5, 0], [1, 1, 0]]
 
 
-def test_a_material_without_pictures_is_its_numbers(tmp_path):
+def test_material_without_textures_uses_its_factors(tmp_path):
     document = Document()
     plain = {"baseColorFactor": [0.5, 0.25, 1, 0.5], "metallicFactor": 0, "roughnessFactor": 0.5}
     metal = {"baseColorFactor": [1, 0.5, 0, 0.5], "roughnessFactor": 0.25}
@@ -135,7 +135,7 @@ def test_a_material_without_pictures_is_its_numbers(tmp_path):
     assert scene.is_metal_rough
 
 
-def test_obj_quads_negative_indices_and_materials(tmp_path):
+def test_obj_quads_negative_indices_and_materials_are_read(tmp_path):
     (tmp_path / "a.obj").write_text(OBJ)
     (tmp_path / "colours.mtl").write_text("newmtl red\nKd 1 0 0\nKs 0.5\nNs 4000\nnewmtl blue\nKd 0 0 1\nd 0.5\n")
     file = read_mesh_file(tmp_path / "a.obj")
@@ -150,15 +150,15 @@ def test_obj_quads_negative_indices_and_materials(tmp_path):
     assert file.notes == ()
 
 
-def test_a_negative_index_counts_from_the_line_that_it_is_in(tmp_path):
-    """Two triangles whose faces read alike are apart."""
-    one, other = ("\n".join([f"v 0 0 {z}", f"v 1 0 {z}", f"v 0 1 {z}", "f -3 -2 -1"]) for z in (0, 5))
-    (tmp_path / "a.obj").write_text(f"{one}\n{other}\n")
+def test_negative_index_counts_back_from_its_own_line(tmp_path):
+    """Two triangles with identical face lines have different vertices."""
+    first, other = ("\n".join([f"v 0 0 {z}", f"v 1 0 {z}", f"v 0 1 {z}", "f -3 -2 -1"]) for z in (0, 5))
+    (tmp_path / "a.obj").write_text(f"{first}\n{other}\n")
     mesh = read_mesh_file(tmp_path / "a.obj").baked
     assert sorted(mesh.positions[mesh.triangles][:, :, 2].tolist()) == [[0, 0, 0], [5, 5, 5]]
 
 
-def test_a_note_of_an_obj_is_said_once(tmp_path):
+def test_repeated_obj_note_is_reported_once(tmp_path):
     (tmp_path / "a.obj").write_text(OBJ)
     (tmp_path / "colours.mtl").write_text("newmtl red\nmap_Kd a.png\nmap_Ks b.png\nnewmtl blue\nmap_Kd c.png\n")
     assert read_mesh_file(tmp_path / "a.obj").notes == ("textures are not read: only colours",)
@@ -168,7 +168,7 @@ def test_a_note_of_an_obj_is_said_once(tmp_path):
 @pytest.mark.parametrize(
     "faces, expected", [([[0, 1, 2]], 1), ([[0, 1, 2], [2, 0, 1]], 2), ([[0, 1, 2, 0], [0, 1, 2]], 2)]
 )
-def test_ply_of_every_byte_order(tmp_path, order, faces, expected):
+def test_ply_is_read_in_every_byte_order(tmp_path, order, faces, expected):
     (tmp_path / "a.ply").write_bytes(ply(order, faces))
     mesh = read_mesh_file(tmp_path / "a.ply").baked
     assert np.array_equal(mesh.positions, POSITIONS) and np.allclose(mesh.normals, NORMALS / 3, atol=1e-15)
@@ -176,13 +176,13 @@ def test_ply_of_every_byte_order(tmp_path, order, faces, expected):
 
 
 @pytest.mark.parametrize("ending", ["glb", "gltf", "obj", "ply"])
-def test_files_of_another_program_are_read_as_it_reads_them(tmp_path, ending):
-    """trimesh as an oracle: a ball and its normals."""
+def test_files_written_by_trimesh_are_read_back_correctly(tmp_path, ending):
+    """The positions and normals of a ball match those in trimesh."""
     ball = trimesh.creation.icosphere(2)
     normals = ball.vertex_normals
     if ending in ("glb", "gltf"):
-        found = trimesh.Scene([ball]).export(file_type=ending, include_normals=True)
-        files = {f"a.{ending}": found} if ending == "glb" else {**found, "a.gltf": found["model.gltf"]}
+        exported = trimesh.Scene([ball]).export(file_type=ending, include_normals=True)
+        files = {f"a.{ending}": exported} if ending == "glb" else {**exported, "a.gltf": exported["model.gltf"]}
     else:
         options = {"include_normals": True} if ending == "obj" else {"vertex_normal": True}
         text = ball.export(file_type=ending, **options)
@@ -198,7 +198,7 @@ def test_files_of_another_program_are_read_as_it_reads_them(tmp_path, ending):
 
 @pytest.mark.parametrize("size", [(80, 60), (60, 60)])
 def test_a_scene_without_a_camera_is_framed(tmp_path, size):
-    """Everything is in the picture, nothing is cut by a plane, and it fills a good part of it."""
+    """The whole scene is in the image and between the clip planes, and it fills a good part of the image."""
     document = Document()
     slab = box(7.0, 2.0, 1.0).placed(np.eye(3), (100.0, -20.0, 3.0))
     document.node(mesh=document.mesh(slab.positions, slab.normals, slab.triangles))
@@ -213,7 +213,7 @@ def test_a_scene_without_a_camera_is_framed(tmp_path, size):
 
 
 def test_the_files_own_camera_is_used_with_its_roll(tmp_path):
-    """A camera that looks along +x, its up along +z, by 90 degrees; what is seen in the upper half lies at larger z."""
+    """The camera looks along +x with +z up and a 90° field of view; the upper half of the image has larger z."""
     document = Document()
     document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": np.pi / 2, "znear": 0.1}}]
     # Columns: right = -y, up = +z, back = -x; at (-5, 0, 0).
@@ -221,10 +221,10 @@ def test_the_files_own_camera_is_used_with_its_roll(tmp_path):
     ball = sphere(1.0, 24, 12)
     document.node(mesh=document.mesh(ball.positions, ball.normals, ball.triangles), translation=[0, 0, 2])
     file = read_mesh_file(document.write(tmp_path / "a.glb"))
-    made = seen(file, (80, 80))
-    rows, columns = np.nonzero(made.covered)
+    shown = seen(file, (80, 80))
+    rows, columns = np.nonzero(shown.covered)
     # The ball's middle is seen at 2 / 5 of the half height above the middle.
     assert pytest.approx(rows.mean(), abs=1.5) == 39.5 * (1 - 0.4) and columns.mean() == pytest.approx(39.5, abs=0.5)
-    rims = made.normals[[rows.min() + 1, rows.max() - 1], 40, 1]
+    rims = shown.normals[[rows.min() + 1, rows.max() - 1], 40, 1]
     assert rims[0] > 0.3 and rims[1] < -0.3, f"the upper rim faces up in the picture, the lower one down: {rims}"
-    assert made.normals[int(rows.mean()), 40, 2] > 0.8
+    assert shown.normals[int(rows.mean()), 40, 2] > 0.8

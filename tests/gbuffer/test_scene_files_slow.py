@@ -1,4 +1,4 @@
-"""Users' meshes as scenes: normals under every transform, the formats, cameras, and what bad files get."""
+"""Users' meshes as scenes: generated normals, reading time, rendering and measuring."""
 
 import json
 import time
@@ -23,8 +23,8 @@ from normalbench.gbuffer.scenes.scene import Material
 from normalbench.gbuffer.scenes.setting import Setting
 
 
-def test_meshes_without_normals_get_smooth_ones_and_it_is_said(tmp_path, run):
-    """On a sphere: within 2 degrees of its own, also where a seam's vertices are doubled."""
+def test_meshes_without_normals_get_smooth_normals_and_a_note(tmp_path, run):
+    """On a sphere, generated normals are within 2° of the exact normals, also where a seam duplicates vertices."""
     ball = sphere(1.0, 40, 20)
     lines = [f"v {x} {y} {z}" for x, y, z in ball.positions] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in wound(ball)]
     (tmp_path / "ball.obj").write_text("\n".join(lines))
@@ -42,8 +42,8 @@ def test_meshes_without_normals_get_smooth_ones_and_it_is_said(tmp_path, run):
     assert row["normals"] == "ball.obj" and row["count"] + row["background"] == 64 * 48 and row["count"] > 1000
 
 
-def test_obj_takes_time_for_what_it_holds_and_no_more(tmp_path):
-    """Neither vertices for each of many materials nor the beginning of a line for each of its ends."""
+def test_obj_with_many_materials_and_a_long_line_is_read_quickly(tmp_path):
+    """The reader neither copies all vertices for each material nor rescans a line at each continuation."""
     square = [f"v {i % 200} {i // 200} 0" for i in range(40_000)]
     faces = [f"usemtl {i}\nf {i + 1} {i + 2} {i + 202}" for i in range(300)]
     long = "f " + " \\\n".join(map(str, range(1, 40_001)))
@@ -54,9 +54,9 @@ def test_obj_takes_time_for_what_it_holds_and_no_more(tmp_path):
     assert len(file.pieces) == 300 and sum(len(piece.mesh.triangles) for piece in file.pieces) > 39_000
 
 
-def test_a_procedural_scene_as_a_file_renders_like_it(tmp_path, gl):
-    """The room's meshes in their places, by its own camera, lights and materials, without shadows: more than 60 dB,
-    which is vertices rounded to float32 before they are moved."""
+def test_procedural_scene_written_to_a_file_renders_the_same(tmp_path, gl):
+    """The room's meshes are in place, with its camera, lights and materials and without shadows: more than 60 dB. The
+    difference comes from rounding vertices to float32 before they are moved."""
     room = scene_of("room")
     document = Document()
     document.json["materials"] = [{} for _ in room.materials]
@@ -65,20 +65,20 @@ def test_a_procedural_scene_as_a_file_renders_like_it(tmp_path, gl):
         for material in dict.fromkeys(part.materials.tolist()):
             # A file's bitangents go against v.
             arrays = {"TEXCOORD_0": mesh.uv, "TANGENT": tangents(mesh) * (1, 1, 1, -1)}
-            made = document.mesh(mesh.positions, mesh.normals, mesh.triangles, material=material, **arrays)
+            mesh_index = document.mesh(mesh.positions, mesh.normals, mesh.triangles, material=material, **arrays)
             for model in part.models[part.materials == material]:
-                document.node(mesh=made, matrix=model.T.ravel().tolist())
+                document.node(mesh=mesh_index, matrix=model.T.ravel().tolist())
     scene = file_scene(read_mesh_file(document.write(tmp_path / "room.glb")), Setting())
     scene = replace(scene, materials=(*room.materials, Material()), lights=room.lights, ambient=room.ambient)
     scene = replace(scene, view=room.view, previous=room.previous)
     for pipeline in ("deferred", "hybrid"):
-        images = [draw(gl, pipeline, one, FP32).image for one in (scene, room)]
+        images = [draw(gl, pipeline, source, FP32).image for source in (scene, room)]
         assert images[1].mean() > 0.05
         assert apart(*images) > 60, f"{pipeline}: {apart(*images):.1f} dB"
 
 
 @pytest.mark.usefixtures("gl")
-def test_render_takes_files_and_names_and_lights_them(tmp_path, run):
+def test_render_accepts_scene_names_and_files_and_lights_the_files(tmp_path, run):
     chained_file = tmp_path / "mine.glb"
     document = as_document([sphere(1.0, 24, 12)])
     document.write(chained_file)
@@ -94,15 +94,15 @@ def test_render_takes_files_and_names_and_lights_them(tmp_path, run):
     assert lit[36, 48] and not lit[0].any()
 
 
-def test_the_playground_as_a_file_is_measured_as_the_playground(tmp_path):
-    """By its own camera. Vertices are rounded to float32, which moves edges by a few pixels and figures by 0.01 dB."""
+def test_playground_as_a_file_gives_the_same_figures(tmp_path):
+    """The file has a camera. Rounding vertices to float32 moves edges by a few pixels and figures by 0.01 dB."""
     document = as_document(in_view_space())
     lens = {"yfov": np.radians(CAMERA.fov), "znear": CAMERA.near, "zfar": CAMERA.far}
     document.json["cameras"] = [{"type": "perspective", "perspective": lens}]
     document.node(camera=0)
-    made, _ = mesh_set(document.write(tmp_path / "playground.glb"), "640x480")
-    assert made.background == pytest.approx(playground().background, abs=20)
+    file_set, _ = mesh_set(document.write(tmp_path / "playground.glb"), "640x480")
+    assert file_set.background == pytest.approx(playground().background, abs=20)
     for name in ("xy", "octahedral"):
-        case = QualityCase(Codec(ENCODINGS[name], STORAGES["rgba8"]), made, "jax")
-        figures = [measure(replace(case, normal_set=s))["psnr_db"] for s in (made, playground())]
+        case = QualityCase(Codec(ENCODINGS[name], STORAGES["rgba8"]), file_set, "jax")
+        figures = [measure(replace(case, normal_set=s))["psnr_db"] for s in (file_set, playground())]
         assert figures[0] == pytest.approx(figures[1], abs=0.01), name

@@ -16,7 +16,7 @@ NAME = "KHR_lights_punctual"
 
 
 def lit(*lights: dict, **node) -> Document:
-    """A triangle and a node for each light."""
+    """Return a document with a triangle and a node for each light."""
     document = Document()
     document.node(mesh=document.mesh(TRIANGLE, [(0, 0, 1)] * 3))
     document.json["extensions"] = {NAME: {"lights": list(lights)}}
@@ -29,7 +29,7 @@ def read(document: Document, tmp_path):
     return read_mesh_file(document.write(tmp_path / "a.glb"))
 
 
-def test_lights_stand_and_shine_as_their_nodes_do(tmp_path):
+def test_lights_take_position_and_direction_from_their_nodes(tmp_path):
     """Irradiance is pi x colour x cosine at a distance of 0: a sun of E lux gives E, so its colour is E / pi. A quarter
     turn about x takes the light's -z to -y; a scale changes neither its intensity nor its range."""
     turned = [-(0.5**0.5), 0, 0, 0.5**0.5]
@@ -52,35 +52,35 @@ def test_lights_stand_and_shine_as_their_nodes_do(tmp_path):
 
 
 def test_a_light_without_a_range_reaches_four_times_as_far_as_the_scene(tmp_path):
-    """There the window of the fall-off, (1 - (d / r)^4)^2, takes less than 1 %."""
+    """Within the scene, the fall-off window (1 - (d / r)^4)^2 removes less than 1% of the light."""
     (light,) = read(lit({"type": "point"}, translation=[0, 0, 10]), tmp_path).lights
     assert light.radius == pytest.approx(4 * 102**0.5) and (1 - 1 / 4**4) ** 2 > 0.99
 
 
-def test_a_spot_without_cones_has_those_of_the_extension_and_a_rim(tmp_path):
-    """0 and pi / 4; cones that are one are a tenth of a degree apart, since the edge between them is smooth."""
+def test_spot_without_cones_gets_default_cones_and_a_smooth_edge(tmp_path):
+    """The defaults are 0 and pi / 4; equal cones are moved 0.1° apart, because the edge between them is smooth."""
     same = {"innerConeAngle": 0.5, "outerConeAngle": 0.5}
     lights = read(lit({"type": "spot"}, {"type": "spot", "spot": same}), tmp_path).lights
     assert (lights[0].inner, lights[0].outer) == (0, pytest.approx(45))
     assert (lights[1].inner, lights[1].outer) == pytest.approx((np.degrees(0.5) - 0.1, np.degrees(0.5)))
 
 
-def test_files_without_lights_get_a_sun_and_surroundings_or_lamps(tmp_path):
-    """What is metal/rough has surroundings, which light it; other surfaces have lamps in their place."""
+def test_files_without_lights_get_a_sun_and_an_environment_or_lamps(tmp_path):
+    """Metallic-roughness scenes get an environment, which lights them; other scenes get lamps instead."""
     file = read(lit({"type": "point", "intensity": 0}), tmp_path)
     dull = replace(file, materials=(Material(),) * len(file.materials))
-    scenes = [file_scene(one, Setting(lights=2)) for one in (file, dull)]
+    scenes = [file_scene(mesh_file, Setting(lights=2)) for mesh_file in (file, dull)]
     assert file.lights == () and [scene.environment is None for scene in scenes] == [False, True]
     assert [[light.kind for light in scene.lights] for scene in scenes] == [["sun"], ["sun", "point", "point"]]
 
 
-def test_of_several_suns_the_brightest_is_drawn_and_it_is_said(tmp_path):
+def test_brightest_of_several_suns_is_drawn_with_a_note(tmp_path):
     file = read(lit({"type": "directional"}, {"type": "directional", "intensity": 2}), tmp_path)
     assert len(file.lights) == 1 and file.lights[0].colour == pytest.approx((2 / np.pi,) * 3)
     assert file.notes == ("only the brightest of 2 directional lights is drawn",)
 
 
-def test_a_light_of_another_kind_is_left_out_and_it_is_said(tmp_path):
+def test_unknown_kind_of_light_is_left_out_with_a_note(tmp_path):
     file = read(lit({"type": "area"}), tmp_path)
     assert file.notes == (f"{NAME}.lights[0] is neither directional nor point nor spot: not used",)
 
@@ -98,10 +98,10 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_a_bad_light_is_one_line(tmp_path, what):
-    change, said = BAD[what]
+def test_bad_light_is_a_one_line_error(tmp_path, what):
+    change, parts = BAD[what]
     document = lit({"type": "spot"})
     change(document.json)
     with pytest.raises(SceneFileError) as refusal:
         read(document, tmp_path)
-    assert all(part in str(refusal.value) for part in ("a.glb", *said)) and "\n" not in str(refusal.value)
+    assert all(part in str(refusal.value) for part in ("a.glb", *parts)) and "\n" not in str(refusal.value)

@@ -1,4 +1,4 @@
-"""Pictures of glTF files: texels, where they lie, and the tangents that normal maps need."""
+"""Images of glTF files: texels, their placement and the tangents that normal maps need."""
 
 import base64
 import io
@@ -39,7 +39,7 @@ def saved(pixels: np.ndarray, format: str) -> bytes:
 
 
 def with_texture(document: Document, key: str = "normalTexture", info=None, mesh=None, **more) -> Document:
-    """A triangle in a material with one texture; `more` are the material's."""
+    """Add a triangle whose material has one texture; `more` are the material's other properties."""
     holder = {key: {"index": 0} | (info or {})}
     is_pbr = key in ("baseColorTexture", "metallicRoughnessTexture")
     document.material(**({"pbrMetallicRoughness": holder} if is_pbr else holder), **more)
@@ -53,32 +53,32 @@ def read(document: Document, tmp_path):
 
 @pytest.mark.parametrize("kind", [np.uint8, np.uint16])
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
-def test_a_png_is_its_numbers_in_four_channels(kind, channels):
-    """Grey is in all three colours, alpha that is not there is full, and row 0 is the top: v = 0."""
+def test_png_is_read_as_four_channels(kind, channels):
+    """Grey fills all three colours, missing alpha is full, and row 0 is the top: v = 0."""
     pixels = noise(channels, kind)
-    found = texels.texels(png_bytes(pixels))
-    assert found.dtype == kind and found.shape == (3, 5, 4)
-    assert np.array_equal(found[..., :3], np.broadcast_to(pixels[..., : 3 if channels > 2 else 1], (3, 5, 3)))
-    assert np.array_equal(found[..., 3], pixels[..., -1] if channels in (2, 4) else np.full((3, 5), np.iinfo(kind).max))
+    image = texels.texels(png_bytes(pixels))
+    assert image.dtype == kind and image.shape == (3, 5, 4)
+    assert np.array_equal(image[..., :3], np.broadcast_to(pixels[..., : 3 if channels > 2 else 1], (3, 5, 3)))
+    assert np.array_equal(image[..., 3], pixels[..., -1] if channels in (2, 4) else np.full((3, 5), np.iinfo(kind).max))
 
 
-def test_jpeg_and_webp_are_read_by_what_they_hold():
+def test_jpeg_and_webp_pixels_are_read_correctly():
     ramp = np.stack([np.tile(np.arange(0, 256, 4, dtype=np.uint8), (64, 1))] * 3, axis=-1)
     assert np.array_equal(texels.texels(saved(ramp, "WEBP"))[..., :3], ramp)
     # What JPEG's transform leaves of a ramp in grey.
     assert abs(texels.texels(saved(ramp, "JPEG")).astype(int)[..., :3] - ramp).max() <= 4
 
 
-def test_a_picture_of_16_bits_with_a_damaged_profile_is_read_without_a_word(capfd):
-    """Profiles do not matter, and libpng would warn of them on standard error."""
+def test_16_bit_image_with_a_damaged_profile_is_read_silently(capfd):
+    """Colour profiles are ignored, but libpng would print a warning about this one on standard error."""
     data = png_bytes(noise(3, np.uint16))
     profile = chunk(b"iCCP", b"a profile\0\0that is none")
-    found = texels.texels(data[:33] + profile + data[33:])
-    assert np.array_equal(found[..., :3], noise(3, np.uint16)) and capfd.readouterr() == ("", "")
+    image = texels.texels(data[:33] + profile + data[33:])
+    assert np.array_equal(image[..., :3], noise(3, np.uint16)) and capfd.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("how", ["in the file", "beside it", "as data"])
-def test_the_five_maps_are_read_from_wherever_they_lie(tmp_path, how):
+def test_the_five_maps_are_read_from_any_location(tmp_path, how):
     document = Document()
     keys = ("baseColorTexture", "metallicRoughnessTexture", "normalTexture", "occlusionTexture", "emissiveTexture")
     pictures = [noise(4) + number for number in range(5)]
@@ -105,9 +105,9 @@ def uri(data: bytes) -> str:
     return "data:image/png;base64," + base64.b64encode(data).decode()
 
 
-def test_a_map_lies_by_its_sampler_its_set_and_its_transform(tmp_path):
-    """The corners of a picture that is turned by 90 degrees, twice as often along u, and moved: a positive rotation
-    takes (1, 0) to (0, -1), up in the picture."""
+def test_map_placement_uses_its_sampler_uv_set_and_transform(tmp_path):
+    """The corners of an image that is turned by 90°, repeated twice along u and moved: a positive rotation takes (1,
+    0) to (0, -1), up in the image."""
     transform = {"offset": [0.25, 0.5], "rotation": np.pi / 2, "scale": [2, 1], "texCoord": 1}
     document = Document()
     document.texture(png_bytes(noise(3)), wrapS=33071, wrapT=33648)
@@ -116,15 +116,15 @@ def test_a_map_lies_by_its_sampler_its_set_and_its_transform(tmp_path):
     file = read(document, tmp_path)
     lying = file.materials[0].occlusion_map
     assert (lying.wrap, lying.uv_set) == (("clamp", "mirror"), 1)
-    found = np.array([(0, 0, 1), (1, 0, 1), (0, 1, 1)]) @ lying.placed.T
-    assert np.allclose(found, [(0.25, 0.5), (0.25, 0.5 - 2), (0.25 + 1, 0.5)], atol=1e-15)
+    corners = np.array([(0, 0, 1), (1, 0, 1), (0, 1, 1)]) @ lying.placed.T
+    assert np.allclose(corners, [(0.25, 0.5), (0.25, 0.5 - 2), (0.25 + 1, 0.5)], atol=1e-15)
     assert np.array_equal(file.pieces[0].mesh.second_uv, UPRIGHT[:3])
 
 
-def test_alpha_is_of_what_blends_and_of_what_is_cut_out(tmp_path):
-    """An opaque material's picture has none; what blends is below 1 where its picture is clear anywhere."""
+def test_only_blended_and_masked_materials_keep_alpha(tmp_path):
+    """An opaque material's image loses its alpha; a blended material is below 1 if its image has transparency."""
     clear, full = noise(4), noise(3)
-    found = []
+    alphas = []
     for pixels, more in (
         (clear, {}),
         (clear, {"alphaMode": "MASK"}),
@@ -133,14 +133,14 @@ def test_alpha_is_of_what_blends_and_of_what_is_cut_out(tmp_path):
     ):
         document = Document()
         document.texture(png_bytes(pixels))
-        made = read(with_texture(document, "baseColorTexture", **more), tmp_path).materials[0]
-        found.append((made.alpha, made.cutoff, int(made.base_map.texels[..., 3].min())))
+        material = read(with_texture(document, "baseColorTexture", **more), tmp_path).materials[0]
+        alphas.append((material.alpha, material.cutoff, int(material.base_map.texels[..., 3].min())))
     least = int(clear[..., 3].min())
-    assert found == [(1, 0, 255), (1, 0.5, least), (1 - 2.0**-24, 0, least), (1, 0, 255)]
+    assert alphas == [(1, 0, 255), (1, 0.5, least), (1 - 2.0**-24, 0, least), (1, 0, 255)]
 
 
-def test_colours_of_16_bits_are_linear(tmp_path):
-    """IEC 61966-2-1: 0.5 on the curve is 0.21404 of light, 0.02 is 0.02 / 12.92."""
+def test_16_bit_colours_are_linear(tmp_path):
+    """By IEC 61966-2-1, an encoded 0.5 is 0.21404 in linear light, and 0.02 is 0.02 / 12.92."""
     document = Document()
     document.texture(png_bytes(np.round(np.array([[[0.5, 0.02, 1.0]]]) * 65535).astype(np.uint16)))
     lying = read(with_texture(document, "baseColorTexture"), tmp_path).materials[0].base_map
@@ -148,7 +148,7 @@ def test_colours_of_16_bits_are_linear(tmp_path):
     assert lying.texels[0, 0, :3] / 65535 == pytest.approx([0.21404, 0.02 / 12.92, 1.0], abs=1.5e-5)
 
 
-def test_what_is_not_read_is_said_once(tmp_path):
+def test_each_unsupported_feature_is_noted_once(tmp_path):
     document = Document()
     document.json["textures"] = [{"extensions": {"KHR_texture_basisu": {"source": 0}}}, {}]
     document.json |= {"extensionsUsed": ["KHR_materials_clearcoat", "KHR_materials_ior", "KHR_texture_basisu"]}
@@ -165,14 +165,14 @@ def test_what_is_not_read_is_said_once(tmp_path):
     )
 
 
-def test_a_set_of_uv_that_is_not_there_is_said(tmp_path):
-    said = []
+def test_missing_uv_set_is_noted(tmp_path):
+    notes = []
     for info, mesh in (({"texCoord": 2}, None), ({"texCoord": 1}, None), ({}, {})):
         document = Document()
         document.texture(png_bytes(noise(3)))
         file = read(with_texture(document, info=info, mesh=mesh), tmp_path)
-        said.append([*file.notes[-1:], file.materials[0].normal_map is None])
-    assert said == [
+        notes.append([*file.notes[-1:], file.materials[0].normal_map is None])
+    assert notes == [
         ["materials[0].normalTexture lies by TEXCOORD_2: 0 and 1 are read, and it is left out", True],
         ["there are meshes without TEXCOORD_1: TEXCOORD_0 is used", False],
         ["there are meshes without TEXCOORD_0: their textures are sampled at one point", False],
@@ -180,18 +180,18 @@ def test_a_set_of_uv_that_is_not_there_is_said(tmp_path):
 
 
 def frames_of(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """At each vertex, where a normal map's x and y go in space: x along u, y against v."""
-    made = tangents(mesh)
-    return made[:, :3], -made[:, 3:] * np.cross(mesh.normals, made[:, :3])
+    """Return the directions of a normal map's x and y axes at each vertex: x along u, y against v."""
+    signed = tangents(mesh)
+    return signed[:, :3], -signed[:, 3:] * np.cross(mesh.normals, signed[:, :3])
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.4])
 @pytest.mark.parametrize("uv_set", [0, 1])
 @pytest.mark.parametrize("authored", [True, False])
-def test_a_normal_map_goes_right_and_up_as_its_picture_lies(tmp_path, authored, uv_set, turned):
-    """Authored tangents have no set of uv; computed ones are of the set and the place that the normal map has.
+def test_normal_map_axes_follow_the_orientation_of_its_image(tmp_path, authored, uv_set, turned):
+    """Authored tangents have no uv set; computed tangents follow the uv set and the transform of the normal map.
 
-    Uv that turn counter-clockwise show the picture turned clockwise.
+    Uv coordinates that turn counter-clockwise show the image turned clockwise.
     """
     if authored and (uv_set or turned):
         return
@@ -207,8 +207,8 @@ def test_a_normal_map_goes_right_and_up_as_its_picture_lies(tmp_path, authored, 
     assert np.allclose(right, (c, -s, 0), atol=1e-6) and np.allclose(up, (s, c, 0), atol=1e-6)
 
 
-def test_mirrored_halves_share_no_vertex_and_have_bitangents_of_their_own(tmp_path):
-    """A picture that is mirrored about x = 1: to its right u runs backwards, and v as before."""
+def test_mirrored_halves_share_no_vertices_and_have_separate_bitangents(tmp_path):
+    """The image is mirrored about x = 1: to the right of it, u runs backwards and v as before."""
     positions = [(x, y, 0) for y in (0, 1) for x in (0, 1, 2)]
     uv = [(1 - abs(x - 1), 1 - y) for x, y, _ in positions]
     triangles = [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4)]
@@ -227,22 +227,22 @@ def test_mirrored_halves_share_no_vertex_and_have_bitangents_of_their_own(tmp_pa
 
 
 def test_tangents_do_not_depend_on_the_size_of_a_mesh():
-    """Of a millionth of a millimetre, by uv of a millionth."""
+    """Positions are scaled by 1e-9 and uv coordinates by 1e-6."""
     mesh = Mesh(np.array(SQUARE) * 1e-9, np.tile([0.0, 0, 1], (4, 1)), np.array(QUAD), np.array(UPRIGHT) * 1e-6)
     assert np.allclose(tangents(mesh), (1, 0, 0, -1))
 
 
-def test_uv_without_an_area_have_some_tangent(tmp_path):
+def test_uv_coordinates_without_area_still_get_a_tangent(tmp_path):
     document = Document()
     document.texture(png_bytes(noise(3)))
     mesh = read(with_texture(document, mesh={"TEXCOORD_0": [(0.5, 0.5)] * 3}), tmp_path).pieces[0].mesh
-    made = tangents(mesh)
-    assert np.allclose(np.linalg.norm(made[:, :3], axis=1), 1) and np.allclose(made[:, 2], 0)
+    signed = tangents(mesh)
+    assert np.allclose(np.linalg.norm(signed[:, :3], axis=1), 1) and np.allclose(signed[:, 2], 0)
     assert np.array_equal(laid_by(mesh, mesh.uv).positions, mesh.positions)
 
 
 def png_head(width: int, height: int) -> bytes:
-    """A PNG file of a header alone."""
+    """Return a PNG file that has only a header."""
     head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IEND", b"")
 
@@ -268,18 +268,18 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_a_bad_picture_is_one_line(tmp_path, capfd, what):
-    data, said = BAD[what]
+def test_bad_image_is_a_one_line_error(tmp_path, capfd, what):
+    data, parts = BAD[what]
     document = Document()
     document.texture("missing.png" if data is None else data)
     with pytest.raises(SceneFileError) as refusal:
         read(with_texture(document), tmp_path)
     line = str(refusal.value)
-    assert all(part in line for part in (str(tmp_path / "a.glb"), *said)) and "\n" not in line, line
+    assert all(part in line for part in (str(tmp_path / "a.glb"), *parts)) and "\n" not in line, line
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_picture_is_named_by_its_address(tmp_path):
+def test_error_names_an_image_by_its_uri(tmp_path):
     (tmp_path / "skin.png").write_bytes(b"?")
     document = Document()
     document.texture("skin.png")
@@ -287,7 +287,7 @@ def test_a_picture_is_named_by_its_address(tmp_path):
         read(with_texture(document), tmp_path)
 
 
-def test_a_jpeg_called_png_and_a_picture_of_one_pixel_are_read(tmp_path):
+def test_jpeg_named_png_and_one_pixel_image_are_read(tmp_path):
     (tmp_path / "a.png").write_bytes(saved(np.full((8, 8, 3), 128, np.uint8), "JPEG"))
     for picture, shape in (("a.png", (8, 8, 4)), (png_bytes(noise(1, height=1, width=1)), (1, 1, 4))):
         document = Document()
@@ -295,7 +295,7 @@ def test_a_jpeg_called_png_and_a_picture_of_one_pixel_are_read(tmp_path):
         assert read(with_texture(document), tmp_path).materials[0].normal_map.texels.shape == shape
 
 
-def test_all_pictures_of_a_file_have_a_bound_together(tmp_path, monkeypatch):
+def test_images_of_a_file_share_one_pixel_limit(tmp_path, monkeypatch):
     monkeypatch.setattr(gltf_materials, "MAX_TEXELS", 29)
     document = Document()
     for _ in range(2):
@@ -316,17 +316,17 @@ WRONG = {
 
 
 @pytest.mark.parametrize("what", WRONG)
-def test_a_bad_material_is_one_line(tmp_path, what):
-    info, said = WRONG[what]
+def test_bad_material_is_a_one_line_error(tmp_path, what):
+    info, parts = WRONG[what]
     document = Document()
     document.texture(png_bytes(noise(3)), **({"wrapS": 7} if what == "a wrap" else {}))
     with pytest.raises(SceneFileError) as refusal:
         read(with_texture(document, info=info), tmp_path)
-    assert all(part in str(refusal.value) for part in ("a.glb", *said)) and "\n" not in str(refusal.value)
+    assert all(part in str(refusal.value) for part in ("a.glb", *parts)) and "\n" not in str(refusal.value)
 
 
-def test_positions_of_the_file_are_not_touched(tmp_path):
-    """Where a picture is not mirrored vertices are as many as the file has."""
+def test_positions_of_the_file_are_unchanged(tmp_path):
+    """If the image is not mirrored, the mesh has as many vertices as the file."""
     document = Document()
     document.texture(png_bytes(noise(3)))
     document.material(normalTexture={"index": 0})
@@ -334,8 +334,8 @@ def test_positions_of_the_file_are_not_touched(tmp_path):
     assert np.array_equal(read(document, tmp_path).pieces[0].mesh.positions, POSITIONS)
 
 
-def test_a_picture_beside_a_file_belongs_to_what_is_measured(tmp_path):
-    """Another picture makes another input: its file is looked at with the one that names it."""
+def test_external_image_is_part_of_the_input(tmp_path):
+    """A changed image makes a different input, so an image file is a companion of the file that names it."""
     (tmp_path / "skin one.png").write_bytes(png_bytes(noise(3)))
     document = Document()
     document.texture("skin%20one.png")

@@ -1,4 +1,4 @@
-"""Pictures of glTF files: texels, where they lie, and the tangents that normal maps need."""
+"""Images of glTF files that many materials share."""
 
 from test_scene_textures import UV, noise, read
 from written import TRIANGLE, Document, png_bytes
@@ -6,8 +6,8 @@ from written import TRIANGLE, Document, png_bytes
 from normalbench.gbuffer.scenes.files import gltf_materials, texels
 
 
-def test_a_picture_that_many_materials_have_is_unpacked_once(tmp_path, monkeypatch):
-    """Two textures of one image, in 10 000 materials."""
+def test_image_shared_by_many_materials_is_decoded_once(tmp_path, monkeypatch):
+    """Two textures use one image, in 10,000 materials."""
     document = Document()
     document.texture(png_bytes(noise(4)))
     document.json["textures"].append({"source": 0})
@@ -18,4 +18,4 @@ def test_a_picture_that_many_materials_have_is_unpacked_once(tmp_path, monkeypat
     monkeypatch.setattr(gltf_materials, "texels", lambda data: unpacked.append(0) or texels.texels(data))
     file = read(document, tmp_path)
     assert len(unpacked) == 1 and len(file.materials) == 10_001
-    assert len({id(m.texels) for made in file.materials[:-1] for m in (made.normal_map, made.emission_map)}) == 1
+    assert len({id(m.texels) for owner in file.materials[:-1] for m in (owner.normal_map, owner.emission_map)}) == 1

@@ -34,8 +34,8 @@ def test_the_teapots_normals_point_out():
     assert np.all(np.sum(pot.normals[belly, :2] * pot.positions[belly, :2], axis=1) > 0)
 
 
-def test_what_a_device_is_given_of_a_mesh_is_made_once(monkeypatch):
-    """Position, normal, tangent and uv of each vertex, the latter twice; the next frame gives it the same."""
+def test_mesh_upload_is_built_once(monkeypatch):
+    """Each vertex has position, normal, tangent and uv, the last twice; the next frame uploads the same array."""
     ball = shapes.sphere(2.0, 8, 4)
     vertices, triangles = ball.uploaded
     expected = np.concatenate([ball.positions, ball.normals, shapes.tangents(ball), ball.uv, ball.uv], axis=1)
@@ -47,7 +47,7 @@ def test_what_a_device_is_given_of_a_mesh_is_made_once(monkeypatch):
 
 
 def test_patches_meet():
-    """Where patches meet they share all four control points of the edge: along the profile and around it."""
+    """Adjacent patches share all four control points of their common edge, along the profile and around it."""
     turned = control_points()[:24].reshape(6, 4, 4, 4, 3)
     rim, upper, lower, knob, lid, bottom = turned
     for above, below in ((rim, upper), (upper, lower), (knob, lid)):
@@ -120,7 +120,7 @@ def test_the_background_has_no_normal():
     assert np.all(seen.positions[~seen.covered] == (0, 0, -100))
 
 
-def test_squares_that_no_triangle_meets_are_left_out_and_no_pixel_with_them(monkeypatch):
+def test_skipping_squares_that_no_triangle_meets_loses_no_pixels(monkeypatch):
     """Large triangles at random, many of which reach behind the eye."""
     rng = np.random.default_rng(5)
     corners = rng.uniform((-9, -9, -12), (9, 9, 2), (40, 3, 3)).reshape(-1, 3)
@@ -132,9 +132,9 @@ def test_squares_that_no_triangle_meets_are_left_out_and_no_pixel_with_them(monk
         tried.append(is_met(inverse, boxes, camera))
         return np.ones(len(boxes), bool)
 
-    found, is_met = rasterise(mesh, CAMERA), rasteriser._is_met
+    raster, is_met = rasterise(mesh, CAMERA), rasteriser._is_met
     monkeypatch.setattr(rasteriser, "_is_met", all_squares)
     expected = rasterise(mesh, CAMERA)
     for name in ("normals", "positions", "covered"):
-        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+        np.testing.assert_array_equal(getattr(raster, name), getattr(expected, name))
     assert 0.2 < tried[0].mean() < 0.6, "what is drawn anyway says nothing"

@@ -1,4 +1,4 @@
-"""The shader loader: includes once, and errors that name the file and the line."""
+"""The shader loader: single inclusion, and errors that name the file and the line."""
 
 from dataclasses import replace
 
@@ -22,8 +22,8 @@ def test_an_include_is_pasted_once(tmp_path):
 
 
 @pytest.mark.parametrize("broken", ["return nonsense;", "return no_such_function(n.xy);", "return n;", "retrun n.xy;"])
-def test_an_encodings_own_error_names_its_file_and_line(gl, tmp_path, broken):
-    """Whatever the mistake: Mesa forgets the source string in some messages, the loader does not."""
+def test_error_in_an_encoding_names_its_file_and_line(gl, tmp_path, broken):
+    """This holds for every mistake: Mesa omits the source string in some messages, but the loader does not."""
     original = ENCODINGS["octahedral"]
     mine = tmp_path / "octahedral.glsl"
     decode = "vec3 octahedral_decode(vec2 e, vec3 view) { return vec3(e, 0.0); }"
@@ -36,7 +36,7 @@ def test_an_encodings_own_error_names_its_file_and_line(gl, tmp_path, broken):
 
 
 @pytest.mark.parametrize("wrong", ["vec3 octahedral_encode(vec3 n, vec3 view)", "vec2 mine_encode(vec3 n, vec3 view)"])
-def test_a_missing_function_is_said_before_anything_is_compiled(gl, tmp_path, wrong):
+def test_missing_function_is_reported_before_compilation(gl, tmp_path, wrong):
     original = ENCODINGS["octahedral"]
     mine = tmp_path / "octahedral.glsl"
     mine.write_text(original.glsl.read_text().replace("vec2 octahedral_encode(vec3 n, vec3 view)", wrong))
@@ -44,7 +44,7 @@ def test_a_missing_function_is_said_before_anything_is_compiled(gl, tmp_path, wr
         CodecPasses(gl, Codec(replace(original, glsl=mine), STORAGES["rg8"]))
 
 
-def test_values_are_written_as_glsl_writes_them():
+def test_values_are_written_in_glsl_syntax():
     assert glsl_value(2.0**-120) == "7.52316384526264e-37"
     assert glsl_value((1.0, 0.5)) == "float[2](1.0, 0.5)"
     assert glsl_value(3) == "3"
@@ -63,7 +63,7 @@ def test_a_compile_error_names_the_included_file_and_its_line(gl, tmp_path):
         gl.fragment_pass(tmp_path / "main.frag")
 
 
-def test_a_missing_include_is_one_line(tmp_path):
+def test_missing_include_is_a_one_line_error(tmp_path):
     (tmp_path / "main.frag").write_text('#version 430\n#include "nowhere.glsl"\n')
     with pytest.raises(ShaderError, match=r"nowhere\.glsl: there is no such file"):
         Source(tmp_path / "main.frag")
@@ -72,8 +72,8 @@ def test_a_missing_include_is_one_line(tmp_path):
         Source(tmp_path / "main.frag")
 
 
-def test_every_shader_has_a_name_of_its_own(tmp_path, monkeypatch):
-    """An include is found by its name alone; two files of one name are named in one line."""
+def test_every_shader_has_a_unique_name(tmp_path, monkeypatch):
+    """An include is found by name alone; two files with the same name are a one-line error."""
     assert shader.shaders()["gbuffer.glsl"].parent.name == "glsl"
     for folder in ("a", "b"):
         (tmp_path / folder).mkdir()

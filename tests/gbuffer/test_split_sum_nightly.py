@@ -1,4 +1,4 @@
-"""What the split sum leaves out: measured against the integral of light, view and Fresnel, and said in the manual."""
+"""The error of the split sum against the integral of light, view and Fresnel, as printed in the manual."""
 
 import re
 from pathlib import Path
@@ -21,12 +21,12 @@ def unit(v: np.ndarray) -> np.ndarray:
 
 
 def errors(light: np.ndarray, towards: np.ndarray, area: np.ndarray, n_v: float, roughness: float) -> np.ndarray:
-    """Relative errors of the split sum for random normals and viewers: a metal that reflects all, in float64.
+    """Return relative errors of the split sum for random normals and viewers on a perfect reflector, in float64.
 
     Args:
-        light, towards, area: of the texels of an environment: radiance (texels,), directions (texels, 3), solid angles.
+        light, towards, area: radiance (texels,), directions (texels, 3) and solid angles of an environment's texels.
     """
-    rng, a2, found = np.random.default_rng(0), roughness**4, []
+    rng, a2, relative = np.random.default_rng(0), roughness**4, []
     scale, bias = dfg(np.array(n_v), np.array(roughness))
     for _ in range(COUNT):
         n = unit(rng.normal(size=3))
@@ -40,23 +40,24 @@ def errors(light: np.ndarray, towards: np.ndarray, area: np.ndarray, n_v: float,
         smith = n_l * np.sqrt(n_v**2 * (1 - a2) + a2) + n_v * np.sqrt(n_l**2 * (1 - a2) + a2)
         right = np.sum(light * area * lobe(v, n) * n_l * 0.5 / np.maximum(smith, 1e-300))
         weights = lobe(mirrored, mirrored) * np.maximum(towards @ mirrored, 0) * area
-        found.append((light @ weights) / weights.sum() * (scale + bias) / right - 1)
-    return np.abs(found)
+        relative.append((light @ weights) / weights.sum() * (scale + bias) / right - 1)
+    return np.abs(relative)
 
 
 def test_the_manual_says_how_far_the_split_sum_is_off():
-    """The median in `studio`, by roughness and n.v; its texels 4 x 4 as one, which the narrowest lobe here covers."""
+    """The figures are medians in `studio`, by roughness and n.v. Blocks of 4 x 4 texels, which even the narrowest
+    lobe here covers, are averaged."""
     radiance = ENVIRONMENTS["studio"].make().radiance.astype(np.float64).mean(axis=-1)
     height = radiance.shape[0]
     light = radiance.reshape(ROWS, height // ROWS, 2 * ROWS, height // ROWS).mean(axis=(1, 3)).ravel()
     area = np.broadcast_to(solid_angles(ROWS), (ROWS, 2 * ROWS)).ravel()
     towards = directions(ROWS).reshape(-1, 3)
-    said = re.findall(r"^\| (0\.\d|1\.0) \|((?: +\d+ % \|)+)$", PAGE.read_text(), re.M)
-    found = {
+    table = re.findall(r"^\| (0\.\d|1\.0) \|((?: +\d+ % \|)+)$", PAGE.read_text(), re.M)
+    measured = {
         str(roughness): [100 * np.median(errors(light, towards, area, n_v, roughness)) for n_v in COSINES]
         for roughness in ROUGHNESSES
     }
-    kept = {roughness: [float(number) for number in re.findall(r"\d+", row)] for roughness, row in said}
-    assert list(kept) == list(found)
-    for roughness, row in found.items():
+    kept = {roughness: [float(number) for number in re.findall(r"\d+", row)] for roughness, row in table}
+    assert list(kept) == list(measured)
+    for roughness, row in measured.items():
         assert row == pytest.approx(kept[roughness], abs=1), f"{roughness}: {np.round(row, 1)}"

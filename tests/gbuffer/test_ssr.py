@@ -1,4 +1,4 @@
-"""Screen-space reflections against rays by Embree, their cost, and what they do with codes of the G-buffer."""
+"""Screen-space reflections compared with Embree rays, their cost, and their use of encoded G-buffers."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ UPRIGHT = np.array([(1.0, 0, 0), (0, 0, 1.0), (0, 1.0, 0)])
 
 @cache
 def hall(roughness: float) -> Scene:
-    """Balls and boxes on a flat mirror, before a wall."""
+    """Return a scene of balls and boxes on a flat mirror in front of a wall."""
     balls = placed([(-1.3, 0.4, 0.6), (0.1, 0.5, -0.4), (1.2, 0.3, 1.1)], [0.4, 0.5, 0.3])
     boxes = placed([(-0.5, 0.25, 1.6), (1.0, 0.5, -0.6)], [0.5, 1.0], [0.5, 0.2])
     here = placed((0.0, 0.0, 0.0))
@@ -54,13 +54,13 @@ def hall(roughness: float) -> Scene:
 
 @dataclass(frozen=True)
 class Traced:
-    """A frame with the effect: its two images, the image that rays took colours of, and the surfaces in world space.
+    """A frame with the effect: the effect's two images, the image that rays sample, and the surfaces in world space.
 
     Attributes:
-        reflected: (height, width, 4), row 0 on top as in all of them.
-        places: of the hits, (height, width, 2), in pixels from the upper left.
+        reflected: (height, width, 4); row 0 is the top, as in all arrays here.
+        places: the hits, (height, width, 2), in pixels from the upper left.
         hits: bool of shape (height, width).
-        looks: how often the pixel's rays looked at the screen.
+        looks: how often the pixel's rays sample the screen.
         image: (height, width, 3).
         positions, normals: (height, width, 3); NaN where nothing is covered.
         mirror: which pixels show the mirror.
@@ -77,14 +77,14 @@ class Traced:
 
 
 def traced(gl, scene: Scene, settings: str = "", size=SIZE, layout=FP32, pipeline="deferred") -> Traced:
-    one = effect("ssr" + settings)
-    with rendering(gl, PIPELINES[pipeline].with_effect(one.passes()), scene, plan_of(size, layout)) as made:
-        made.draw()
-        position, direction, _, specular = made.gbuffer()
-        reflected, hits = made.read(REFLECTED)[0], made.read(HITS)[0]
-    with rendering(gl, PIPELINES[pipeline], scene, plan_of(size, layout)) as made:
-        made.draw()
-        image = made.read(FINAL)[0][..., :3]
+    ssr = effect("ssr" + settings)
+    with rendering(gl, PIPELINES[pipeline].with_effect(ssr.passes()), scene, plan_of(size, layout)) as drawing:
+        drawing.draw()
+        position, direction, _, specular = drawing.gbuffer()
+        reflected, hits = drawing.read(REFLECTED)[0], drawing.read(HITS)[0]
+    with rendering(gl, PIPELINES[pipeline], scene, plan_of(size, layout)) as drawing:
+        drawing.draw()
+        image = drawing.read(FINAL)[0][..., :3]
     to_world = np.linalg.inv(scene.view.matrix())
     covered = (position[..., 2] != 0)[..., None]
     positions = np.where(covered, position[..., :3] @ to_world[:3, :3].T + to_world[:3, 3], np.nan)
@@ -95,15 +95,15 @@ def traced(gl, scene: Scene, settings: str = "", size=SIZE, layout=FP32, pipelin
 
 
 def final(gl, scene: Scene, settings: str, pipeline="deferred", size=SMALL) -> np.ndarray:
-    """The image with the effect, (height, width, 3)."""
-    one = effect("ssr" + settings)
-    with rendering(gl, PIPELINES[pipeline].with_effect(one.passes()), scene, plan_of(size)) as made:
-        made.draw()
-        return made.image()
+    """Return the image with the effect, (height, width, 3)."""
+    ssr = effect("ssr" + settings)
+    with rendering(gl, PIPELINES[pipeline].with_effect(ssr.passes()), scene, plan_of(size)) as drawing:
+        drawing.draw()
+        return drawing.image()
 
 
 def reflected(ways: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """Ways to the eye, mirrored."""
+    """Return directions to the eye, mirrored about the normals."""
     return 2 * np.sum(ways * normals, axis=-1, keepdims=True) * normals - ways
 
 
@@ -127,36 +127,36 @@ void main() {
 """
 
 
-def test_rays_of_the_lobe_carry_what_it_reflects(gl, tmp_path):
-    """The mean of G2 / G1 over visible facets is the albedo of a white metal by quadrature, scale + bias: 1e-3."""
+def test_rays_of_the_lobe_add_up_to_its_albedo(gl, tmp_path):
+    """The mean of G2 / G1 over visible facets is a white metal's albedo by quadrature, scale + bias, to 1e-3."""
     shader = tmp_path / "lobe.frag"
     shader.write_text(LOBE)
     with ExitStack() as stack:
         macros = {**CONSTANTS, **vec.CONSTANTS, "PI": np.pi, "RAYS": 4096}
         target = gl.owned(stack, gl.target((8, 8), FORMATS["rgba32f"]))
         gl.render(gl.owned(stack, gl.fragment_pass(shader, macros)), [target])
-        found = read_pixels(target)
+        pixels = read_pixels(target)
     centres = (np.arange(8) + 0.5) / 8
-    off = np.abs(found[..., 3] - sum(dfg(centres, centres[:, None])))
+    off = np.abs(pixels[..., 3] - sum(dfg(centres, centres[:, None])))
     assert off.max() < 1e-3, f"{off.max():.2g} at roughness, n.v {np.unravel_index(off.argmax(), off.shape)}"
-    assert np.abs(found[..., 1]).max() < 2e-3, "facets lean to neither side"
+    assert np.abs(pixels[..., 1]).max() < 2e-3, "facets lean to neither side"
 
 
-def test_what_misses_sees_the_environment(gl):
-    """As the surface mirrors it without the effect, and the image stays as it is, to the bit."""
+def test_rays_that_miss_see_the_environment(gl):
+    """The surface mirrors the environment as without the effect, and the image there is unchanged, bit for bit."""
     light = np.random.default_rng(3).uniform(0, 1, (16, 32, 3)).astype(np.float32)
     scene = replace(hall(0.0), environment=Environment("random", light))
-    found, image = traced(gl, scene, ":rays=1", SMALL), final(gl, scene, ":rays=1")
-    missed = found.mirror & (found.reflected[..., 3] == 0)
-    assert np.ptp(found.reflected[missed][:, 0]) > 0.1 and np.array_equal(image[missed], found.image[missed])
+    trace, image = traced(gl, scene, ":rays=1", SMALL), final(gl, scene, ":rays=1")
+    missed = trace.mirror & (trace.reflected[..., 3] == 0)
+    assert np.ptp(trace.reflected[missed][:, 0]) > 0.1 and np.array_equal(image[missed], trace.image[missed])
     # A metal of base 1 mirrors all of it.
-    assert np.abs(found.reflected[missed][:, :3] - found.image[missed]).max() < 1e-4
+    assert np.abs(trace.reflected[missed][:, :3] - trace.image[missed]).max() < 1e-4
 
 
 @pytest.mark.parametrize("roughness", [0.0, 1e-3, 0.05, 1.0])
-def test_no_roughness_gives_what_is_no_number(gl, roughness):
-    """Nor more light than the image has."""
-    found = traced(gl, hall(roughness), ":rays=2", SMALL)
-    assert np.isfinite(found.reflected).all() and np.isfinite(found.places).all()
-    assert found.reflected.min() >= 0 and found.reflected[..., :3].max() <= max(found.image.max(), 0.5) + 1e-6
-    assert (found.places >= 0).all() and (found.places[found.hits] <= SMALL).all()
+def test_every_roughness_gives_finite_values(gl, roughness):
+    """No reflection is brighter than the image or the ambient light."""
+    trace = traced(gl, hall(roughness), ":rays=2", SMALL)
+    assert np.isfinite(trace.reflected).all() and np.isfinite(trace.places).all()
+    assert trace.reflected.min() >= 0 and trace.reflected[..., :3].max() <= max(trace.image.max(), 0.5) + 1e-6
+    assert (trace.places >= 0).all() and (trace.places[trace.hits] <= SMALL).all()

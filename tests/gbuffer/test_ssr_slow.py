@@ -1,4 +1,4 @@
-"""Screen-space reflections against rays by Embree, their cost, and what they do with codes of the G-buffer."""
+"""Screen-space reflections compared with Embree rays, their cost, and their use of encoded G-buffers."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ NONE = 1e30
 
 
 def places_of(scene: Scene, points: np.ndarray, size=SIZE) -> np.ndarray:
-    """World points, (..., 3), in pixels from the upper left, (..., 2)."""
+    """Return world points, (..., 3), in pixels from the upper left, (..., 2)."""
     clip = (
         np.concatenate([points, np.ones_like(points[..., :1])], -1)
         @ (scene.view.projection(size[0] / size[1]) @ scene.view.matrix()).T
@@ -47,9 +47,9 @@ def places_of(scene: Scene, points: np.ndarray, size=SIZE) -> np.ndarray:
 
 
 def seen_hits(scene: Scene, found: Traced, caster: RayCaster, origins: np.ndarray, ways: np.ndarray):
-    """Where rays, (rays, 3), meet what the screen shows: places, (rays, 2), and whether they do.
+    """Return where rays, (rays, 3), hit surfaces on the screen: places, (rays, 2), and whether they do.
 
-    What they meet is on the screen if the pixel there shows that surface: it lies in the tangent plane of the pixel's.
+    A hit is on the screen if the pixel there shows the same surface: the hit is in the pixel's tangent plane.
     """
     size = found.hits.shape[::-1]
     far = caster.distances(origins, ways)
@@ -69,7 +69,7 @@ def unit(v: np.ndarray) -> np.ndarray:
 
 
 def starts_of(scene: Scene, found: Traced) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of the mirror's pixels: points a little over the surface, normals, and the ways to the eye; (pixels, 3)."""
+    """Return points just above the mirror's pixels, their normals and the directions to the eye; (pixels, 3)."""
     positions, normals = found.positions[found.mirror], found.normals[found.mirror]
     to_eye = np.array(scene.view.eye) - positions
     return positions + OVER * np.linalg.norm(to_eye, axis=1)[:, None] * normals, normals, unit(to_eye)
@@ -82,16 +82,16 @@ def caster() -> RayCaster:
 
 
 def near_share(scene: Scene, found: Traced, caster: RayCaster) -> tuple[float, int]:
-    """Of the mirror's rays that meet what is on the screen, by Embree: the share that lands within a pixel, and their
-    number."""
+    """Return the share of the mirror's rays that land within a pixel of Embree's hit, and the number of rays. Only
+    rays that hit a surface on the screen count."""
     origins, normals, to_eye = starts_of(scene, found)
     places, there = seen_hits(scene, found, caster, origins, reflected(to_eye, normals))
     away = np.linalg.norm(found.places[found.mirror] - places, axis=1)
     return float(np.mean((found.hits[found.mirror] & (away <= 1))[there])), int(np.sum(there))
 
 
-def test_a_mirrors_rays_land_where_embrees_do(gl, caster):
-    """98 % within a pixel of what Embree meets and the screen shows. With three steps a ray it is less than 95 %."""
+def test_mirror_rays_land_where_embree_rays_do(gl, caster):
+    """At least 98% land within a pixel of Embree's hits on the screen; with three steps per ray, less than 95% do."""
     scene = hall(0.0)
     share, count = near_share(scene, traced(gl, scene, size=(320, 240)), caster)
     assert count > 10_000 and share >= 0.98, f"{share:.4f} of {count}"
@@ -100,8 +100,8 @@ def test_a_mirrors_rays_land_where_embrees_do(gl, caster):
 
 
 def visible_facets(ways: np.ndarray, a: float, rng: np.random.Generator, side: int) -> np.ndarray:
-    """Normals of GGX's facets that ways to the eye see, (pixels, 3) in tangent space, side * side to each: by a disc
-    that is bent to the facets' shape (Heitz, Sampling the GGX Distribution of Visible Normals, 2018)."""
+    """Return side * side normals of visible GGX facets for each direction to the eye, (pixels, 3) in tangent space,
+    by warping a disc (Heitz, Sampling the GGX Distribution of Visible Normals, 2018)."""
     stretched = unit(ways * (a, a, 1))
     first = unit(np.stack([-stretched[:, 1], stretched[:, 0], 0 * stretched[:, 0]], axis=1))
     second = np.cross(stretched, first)
@@ -116,14 +116,14 @@ def visible_facets(ways: np.ndarray, a: float, rng: np.random.Generator, side: i
 
 
 def lambda_of(cosine: np.ndarray, a: float) -> np.ndarray:
-    """Smith's, of GGX: G1 = 1 / (1 + lambda), G2 = 1 / (1 + both)."""
+    """Return Smith's lambda for GGX: G1 = 1 / (1 + lambda), and G2 = 1 / (1 + the sum of both lambdas)."""
     return (np.sqrt(1 + a * a * (1 - cosine**2) / cosine**2) - 1) / 2
 
 
 @dataclass(frozen=True)
 class Glossy:
-    """What Embree says of the mirror's pixels: their light, (pixels, 3), and the share of it that another surface hides
-    from the eye, or the edge of a pixel."""
+    """Embree's result for the mirror's pixels: their light, (pixels, 3), and the share of rays that hit a surface in
+    the image which another surface, or the edge of a pixel, hides from the eye."""
 
     light: np.ndarray
     hidden: np.ndarray
@@ -150,34 +150,34 @@ def glossy(scene: Scene, found: Traced, caster: RayCaster, roughness: float, sid
     return Glossy(np.sum(weights[..., None] * light, axis=1), np.sum(weights * hidden, axis=1))
 
 
-def test_a_glossy_floor_is_what_many_rays_by_embree_make_of_it(gl, caster):
-    """Roughness 0.3: 35 dB from 256 rays that are drawn in another way and take their colours from the same image.
+def test_glossy_floor_matches_many_embree_rays(gl, caster):
+    """At roughness 0.3: 35 dB against 256 rays that are drawn differently and take their colours from the same image.
 
-    Left out are pixels that get a quarter of their light from what is hidden, such as the undersides of balls: the
-    effect takes their rims for these. They are less than 2 % of what is covered.
+    Pixels that get a quarter of their light from hidden surfaces, such as the undersides of balls, are left out: the
+    effect sees the rims of the balls there. They are less than 2% of the covered pixels.
     """
     scene, roughness = hall(0.3), 0.3
-    found = traced(gl, scene, ":rays=48:misses=nothing", (128, 96))
-    exact = glossy(scene, found, caster, roughness, 16)
-    apart, is_open = found.reflected[found.mirror][:, :3] - exact.light, exact.hidden < 0.25
-    left_out = np.sum(~is_open) / np.sum(np.isfinite(found.positions[..., 0]))
+    trace = traced(gl, scene, ":rays=48:misses=nothing", (128, 96))
+    exact = glossy(scene, trace, caster, roughness, 16)
+    apart, is_open = trace.reflected[trace.mirror][:, :3] - exact.light, exact.hidden < 0.25
+    left_out = np.sum(~is_open) / np.sum(np.isfinite(trace.positions[..., 0]))
     assert left_out < 0.02, left_out
     assert psnr(apart[is_open]) > 35 > psnr(exact.light[is_open]) + 15, psnr(apart[is_open])
 
 
 def looks_and_samples(gl, settings: str, size=SMALL) -> tuple[float, int]:
-    """How often rays look at the screen, and the samples that the pass draws, which the device counts."""
-    one = effect("ssr" + settings)
-    with rendering(gl, PIPELINES["deferred"].with_effect(one.passes()), hall(0.0), plan_of(size)) as made:
-        made.draw()
+    """Return how often rays sample the screen, and how many samples the pass draws by the device's count."""
+    ssr = effect("ssr" + settings)
+    with rendering(gl, PIPELINES["deferred"].with_effect(ssr.passes()), hall(0.0), plan_of(size)) as drawing:
+        drawing.draw()
         query = gl.context.query(samples=True)
         with query:
-            made.passes["ssr"]()
-        return float(made.read(HITS)[0][..., 2].sum()), query.samples
+            drawing.passes["ssr"]()
+        return float(drawing.read(HITS)[0][..., 2].sum()), query.samples
 
 
 def test_cost_grows_with_steps_rays_and_pixels(gl):
-    """A ray takes no more steps than its way has pixels; the halvings of hits come on top."""
+    """A ray takes at most one step per pixel of its path; the bisection of hits comes on top."""
     looks, samples = looks_and_samples(gl, ":steps=8:rays=1")
     assert samples == SMALL[0] * SMALL[1]
     twice, _ = looks_and_samples(gl, ":steps=16:rays=1")
@@ -190,8 +190,8 @@ def test_cost_grows_with_steps_rays_and_pixels(gl):
 
 
 def test_a_mirror_has_no_noise(gl):
-    """Any seed and any number of rays give one image, and the same frame again. On a GPU two programs may be a unit in
-    the last place apart."""
+    """Any seed and any number of rays give the same image, and a repeated frame is identical. On a GPU, two programs
+    may differ by a unit in the last place."""
     first, other = (traced(gl, hall(0.0), f":{chosen}", SMALL) for chosen in ("rays=1", "rays=4:seed=7"))
     apart = np.abs(first.reflected - other.reflected)[first.mirror].max()
     assert apart <= (0 if gl.is_software else 2.0**-22), apart
@@ -200,8 +200,8 @@ def test_a_mirror_has_no_noise(gl):
     assert not np.array_equal(first.reflected, other.reflected), "what is rough has noise"
 
 
-def test_roughness_is_what_the_layout_keeps_of_it(gl):
-    """In two bits 0.16 becomes 0: what rays of a mirror meet, to a hundredth of a pixel."""
+def test_roughness_is_read_as_the_layout_stores_it(gl):
+    """In two bits, 0.16 becomes 0: the hits are those of a mirror, to 0.01 of a pixel."""
     targets = (Target("rgba32f", "normal.x normal.y normal.z depth"), *MATERIAL)
     coarse = replace(FP32, targets=targets)
     exact, kept, mirror = (
@@ -215,27 +215,27 @@ def test_roughness_is_what_the_layout_keeps_of_it(gl):
 
 
 @pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
-def test_it_takes_the_place_of_what_lies_around(gl, pipeline):
-    """Of a mirror with a base of 1: the image there is the effect's, and all else is as it was but for hits."""
+def test_reflections_replace_the_ambient_light(gl, pipeline):
+    """On a mirror with a base of 1, the image is the effect's result; pixels without hits are unchanged."""
     scene = hall(0.0)
-    found, image = traced(gl, scene, ":rays=1", SMALL, pipeline=pipeline), final(gl, scene, ":rays=1", pipeline)
-    shown = found.reflected[found.mirror]
-    assert np.abs(image[found.mirror] - shown[:, :3]).max() < 1e-4
-    missed = found.reflected[..., 3] == 0
-    assert np.array_equal(image[missed], found.image[missed])
+    trace, image = traced(gl, scene, ":rays=1", SMALL, pipeline=pipeline), final(gl, scene, ":rays=1", pipeline)
+    shown = trace.reflected[trace.mirror]
+    assert np.abs(image[trace.mirror] - shown[:, :3]).max() < 1e-4
+    missed = trace.reflected[..., 3] == 0
+    assert np.array_equal(image[missed], trace.image[missed])
     assert np.abs(shown[shown[:, 3] == 0][:, :3] - scene.ambient).max() < 1e-6
-    black = traced(gl, scene, ":rays=1:misses=nothing", SMALL, pipeline=pipeline).reflected[found.mirror]
+    black = traced(gl, scene, ":rays=1:misses=nothing", SMALL, pipeline=pipeline).reflected[trace.mirror]
     assert not black[shown[:, 3] == 0].any() and np.array_equal(black[shown[:, 3] == 1], shown[shown[:, 3] == 1])
 
 
-def test_samples_of_a_pixel_are_drawn_by_its_first(gl):
-    """With four samples a pixel: a mirror's image is that of one sample, but at edges."""
-    scene, one = hall(0.0), effect("ssr:rays=1")
+def test_reflections_use_the_first_sample_of_a_pixel(gl):
+    """With four samples per pixel, a mirror's image matches that with one sample, except at edges."""
+    scene, ssr = hall(0.0), effect("ssr:rays=1")
     with rendering(
-        gl, PIPELINES["deferred"].with_effect(one.passes()), scene, replace(plan_of(SMALL), samples=4)
-    ) as made:
-        made.draw()
-        image = made.image()
-    found = traced(gl, scene, ":rays=1", SMALL)
-    apart = np.abs(image - final(gl, scene, ":rays=1"))[found.mirror].max(axis=-1)
+        gl, PIPELINES["deferred"].with_effect(ssr.passes()), scene, replace(plan_of(SMALL), samples=4)
+    ) as drawing:
+        drawing.draw()
+        image = drawing.image()
+    trace = traced(gl, scene, ":rays=1", SMALL)
+    apart = np.abs(image - final(gl, scene, ":rays=1"))[trace.mirror].max(axis=-1)
     assert np.median(apart) < 0.02 and np.isfinite(image).all(), np.median(apart)

@@ -1,4 +1,4 @@
-"""Subsurface scattering over scenes: further samples, pipelines and codes of light."""
+"""Subsurface scattering over scenes: more sample counts, pipelines and light buffers."""
 
 from itertools import product
 
@@ -13,7 +13,7 @@ LINES = [(11, "columns"), (17, "rows"), (17, "columns"), (25, "rows")]
 
 
 @pytest.mark.parametrize("samples, along", LINES)
-def test_a_line_of_light_spreads_to_further_kernels(gl, samples, along):
+def test_a_line_of_light_spreads_to_more_kernels(gl, samples, along):
     test_subsurface_slow.test_a_line_of_light_spreads_to_the_kernel(gl, samples, along)
 
 
@@ -22,10 +22,10 @@ OTHERS = sorted({*product(("hybrid", "prepass", "inferred"), test_subsurface_slo
 
 
 @pytest.mark.parametrize("pipeline, method", OTHERS)
-def test_only_skin_changes_in_further_pipelines(gl, pipeline, method):
+def test_only_skin_changes_in_more_pipelines(gl, pipeline, method):
     test_subsurface_slow.test_only_skin_changes(gl, pipeline, method)
 
 
 @pytest.mark.parametrize("light", sorted({*LIGHT_BUFFERS} - {"rgba32f", *test_subsurface_slow.LIGHTS}))
-def test_light_is_read_in_further_codes(gl, light, exact_light):
+def test_light_is_read_in_more_encodings(gl, light, exact_light):
     test_subsurface_slow.test_light_is_read_in_every_code(gl, light, exact_light)

@@ -1,4 +1,4 @@
-"""How far light goes through skin: the kernels and sums that the methods blur by, without a device."""
+"""Light in skin: the kernels and sums that the blurs use, without a device."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ PRESETS = {
 
 
 @pytest.mark.parametrize("samples", PRESETS)
-def test_the_kernel_is_the_published_one(samples):
-    """Every weight and offset to the five digits and more that are printed: a relative 1e-5; and it is even."""
+def test_the_kernel_matches_the_published_kernel(samples):
+    """Every weight and offset agrees with the printed digits to a relative 1e-5, and the kernel is symmetric."""
     kernel = separable_kernel(samples)
     printed = np.array(PRESETS[samples].split(), float).reshape(-1, 4)
     half = len(printed)
@@ -62,13 +62,13 @@ def test_the_kernel_is_the_published_one(samples):
 
 
 @pytest.mark.parametrize("samples", [11, 17, 25, 33, 65, 97])
-def test_a_kernel_keeps_the_light(samples):
+def test_a_kernel_conserves_light(samples):
     """Its weights sum to 1 in each channel, to 1e-12."""
     for kernel in (separable_kernel(samples), gaussian_kernel(2.0, samples)):
         assert np.abs(kernel[:, :3].sum(axis=0) - 1).max() < 1e-12, kernel[:, :3].sum(axis=0)
 
 
-def test_nothing_is_lost_in_no_thickness():
+def test_zero_thickness_loses_no_light():
     """T(0), the sum of the profile's weights, is 1 in each channel."""
     assert np.abs(WEIGHTS.sum(axis=0) - 1).max() < 1e-12, WEIGHTS.sum(axis=0)
 
@@ -77,13 +77,13 @@ def test_nothing_is_lost_in_no_thickness():
 
 
 def overlap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Integrals over the plane of products of Gaussians of integral 1: 1 / (2 pi (v_a + v_b))"""
+    """Return integrals over the plane of products of normalised Gaussians: 1 / (2 pi (v_a + v_b))."""
     return 1 / (2 * np.pi * (a[:, None] + b))
 
 
 def best(variances: np.ndarray, channel: int) -> tuple[np.ndarray, float]:
-    """The weights, 0 or more and with a sum of 1, that come closest to the six Gaussians; and the integral of the
-    squared difference. The narrowest stays what it is."""
+    """Return the weights, non-negative and with a sum of 1, that come closest to the six Gaussians, and the integral
+    of the squared difference. The narrowest Gaussian is kept."""
     v = np.concatenate([VARIANCES[:1], variances])
     gram, target = overlap(v, v), overlap(v, VARIANCES) @ WEIGHTS[:, channel]
     root, heavy = np.linalg.cholesky(gram), 1e4
@@ -99,9 +99,9 @@ def difference(v: np.ndarray, weights: np.ndarray, channel: int) -> float:
 
 
 @pytest.mark.parametrize("pairs", [3, 4])
-def test_fewer_gaussians_fit_the_six_as_well_as_can_be(pairs):
-    """The weights are the best for their variances, to 5e-4, no variance 3 % off gives less than 0.97 of the squared
-    difference. What is left is 0.23 % and 0.05 % of the profile's norm."""
+def test_fewer_gaussians_fit_the_six_optimally(pairs):
+    """The weights are optimal for their variances, to 5e-4, and no variance 3% off gives less than 0.97 of the
+    squared difference. The remaining error is 0.23% and 0.05% of the profile's norm for three and four pairs."""
     chosen, left = GAUSSIANS[pairs], {3: 0.0023, 4: 0.00052}[pairs]
     variances = np.array(chosen.variances)
     fits = [best(variances, channel) for channel in range(3)]
@@ -129,12 +129,12 @@ def test_five_pairs_are_the_six_gaussians():
 
 
 def share_within(r: np.ndarray, d: float) -> np.ndarray:
-    """CDF(r) = 1 - e^(-r/d) / 4 - 3 e^(-r/3d) / 4"""
+    """Return CDF(r) = 1 - e^(-r/d) / 4 - 3 e^(-r/3d) / 4."""
     return 1 - np.exp(-r / d) / 4 - 3 * np.exp(-r / (3 * d)) / 4
 
 
 def test_the_radius_is_the_inverse_of_the_share():
-    """To 1e-9 up to a share of 0.9999; 0.5, 0.9 and 0.99 lie at 1.552, 6.06 and 12.95 d."""
+    """Accurate to 1e-9 up to a share of 0.9999; shares 0.5, 0.9 and 0.99 are at 1.552, 6.06 and 12.95 d."""
     u = np.linspace(0, 0.9999, 10001)
     apart = np.abs(share_within(burley_radius(u, 0.7), 0.7) - u).max()
     assert apart < 1e-9, f"{apart:.2g}"
@@ -142,7 +142,7 @@ def test_the_radius_is_the_inverse_of_the_share():
 
 
 @pytest.mark.parametrize("d", [0.05, 0.5, 2.0])
-def test_normalised_diffusion_keeps_the_light(d):
+def test_normalised_diffusion_conserves_light(d):
     """R(r) = (e^(-r/d) + e^(-r/3d)) / (8 pi d r) integrates to 1 over the plane, to 1e-6, and up to r to the CDF."""
     edges = np.linspace(0, 80 * d, 400001)
     r, step = (edges[1:] + edges[:-1]) / 2, edges[1]
@@ -164,7 +164,7 @@ def test_normalised_diffusion_reaches_as_far_as_the_gaussians():
         assert burley == pytest.approx(gaussians, rel=1e-4), f"channel {channel}"
 
 
-def test_taps_stand_for_equal_shares():
-    """Of red, the widest: between two taps lies a share of 1 / samples."""
+def test_taps_cover_equal_shares():
+    """In red, the widest channel, adjacent taps enclose a share of 1 / samples."""
     shares = share_within(burley_radii(33), burley_distances().max())
     assert np.allclose(np.diff(shares), 1 / 33, atol=1e-9)

@@ -1,4 +1,4 @@
-"""Water: what still water mirrors and lets through, waves against their formula, the grid, caustics, leaks."""
+"""Water: reflection and transmission of still water, waves against their formula, the grid, caustics and leaks."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ OPAQUE = (1e6, 1e6, 1e6)
 
 @dataclass(frozen=True)
 class Drawn:
-    """A frame, row 0 on top: the image, and colour and alpha of the water."""
+    """A frame, row 0 at the top: the image, and the colour and alpha of the water."""
 
     image: np.ndarray
     water: np.ndarray
@@ -70,9 +70,9 @@ def passes_of(**given) -> tuple[Pass, ...]:
 
 
 def draw(gl, scene: Scene, pipeline="forward", **given) -> Drawn:
-    with rendering(gl, PIPELINES[pipeline].with_effect(passes_of(**given)), scene, plan_of(pipeline)) as made:
-        made.draw()
-        return Drawn(made.image(), made.read(WATER)[0])
+    with rendering(gl, PIPELINES[pipeline].with_effect(passes_of(**given)), scene, plan_of(pipeline)) as drawing:
+        drawing.draw()
+        return Drawn(drawing.image(), drawing.read(WATER)[0])
 
 
 @cache
@@ -81,7 +81,7 @@ def lake(time: float = 0.0) -> Scene:
 
 
 def optics(gl, tmp_path, call: str, numbers: np.ndarray) -> np.ndarray:
-    """A function of `water_optics.glsl` of each number."""
+    """Return a function of `water_optics.glsl` evaluated at each number."""
     path = tmp_path / "mine.frag"
     path.write_text(
         '#version 430\n#include "water_optics.glsl"\nuniform sampler2D numbers;\nout vec4 o;\n'
@@ -96,17 +96,17 @@ def optics(gl, tmp_path, call: str, numbers: np.ndarray) -> np.ndarray:
 ANGLES = np.radians(np.linspace(0, 89.99, 9000))
 
 
-def test_fresnel_is_exact(gl, tmp_path):
-    """To 1e-4 over all angles; 0.0204, 0.0214 and 0.0597 at 0, 30 and 60 degrees."""
-    found = optics(gl, tmp_path, "exact_fresnel(x)", np.cos(ANGLES))[:, 0]
-    error = np.abs(found - twin.fresnel(ANGLES))
+def test_fresnel_reflectance_is_accurate(gl, tmp_path):
+    """The error is below 1e-4 at all angles; at 0°, 30° and 60° the values are 0.0204, 0.0214 and 0.0597."""
+    fresnel = optics(gl, tmp_path, "exact_fresnel(x)", np.cos(ANGLES))[:, 0]
+    error = np.abs(fresnel - twin.fresnel(ANGLES))
     assert error.max() < 1e-4, f"{error.max():.2g} at {np.degrees(ANGLES[error.argmax()]):.2f} degrees"
     known = optics(gl, tmp_path, "exact_fresnel(x)", np.cos(np.radians([0.0, 30.0, 60.0])))[:, 0]
     assert np.round(known, 4).tolist() == [0.0204, 0.0214, 0.0597], known
 
 
-def test_schlicks_form_is_as_far_off_as_it_is_known_to_be(gl, tmp_path):
-    """At worst 0.059 too high, near 84 degrees."""
+def test_schlick_approximation_has_its_known_error(gl, tmp_path):
+    """The largest error is 0.059 too high, near 84°."""
     over = optics(gl, tmp_path, "schlick_fresnel(x)", np.cos(ANGLES))[:, 0] - twin.fresnel(ANGLES)
     worst, angle = np.abs(over).max(), np.degrees(ANGLES[np.abs(over).argmax()])
     assert round(over.max(), 3) == 0.059 and worst == over.max() and abs(angle - 84) < 0.5, (
@@ -114,19 +114,19 @@ def test_schlicks_form_is_as_far_off_as_it_is_known_to_be(gl, tmp_path):
     )
 
 
-def test_two_layers_let_through_what_one_twice_as_deep_does(gl, tmp_path):
-    """Their product, to 2e-6 of it; each is exp(-k d)."""
+def test_two_layers_transmit_as_much_as_one_of_twice_the_depth(gl, tmp_path):
+    """The product of the two transmittances agrees to a relative 2e-6; each is exp(-k d)."""
     metres = np.linspace(0, 8, 400)
-    one = optics(gl, tmp_path, "transmittance(vec3(0.6, 0.22, 0.17), x), 1.0", metres)[:, :3]
+    single = optics(gl, tmp_path, "transmittance(vec3(0.6, 0.22, 0.17), x), 1.0", metres)[:, :3]
     two = optics(gl, tmp_path, "transmittance(vec3(0.6, 0.22, 0.17), 2.0 * x), 1.0", metres)[:, :3]
-    error = np.abs(one * one / two - 1).max()
+    error = np.abs(single * single / two - 1).max()
     assert error < 2e-6, f"{error:.2g}"
-    error = np.abs(one / np.exp(-np.outer(metres.astype(np.float32), (0.6, 0.22, 0.17))) - 1).max()
+    error = np.abs(single / np.exp(-np.outer(metres.astype(np.float32), (0.6, 0.22, 0.17))) - 1).max()
     assert error < 2e-6, f"{error:.2g} from exp(-k d)"
 
 
 def above_water() -> Scene:
-    """The lake's sky and trees and a box over the water, under ambient light alone."""
+    """Return the lake's sky and trees and a box over the water, under ambient light alone."""
     scene = lake()
     kept = [part for part in scene.parts if _shines(scene, part) or len(part.materials) == TREES]
     hovering = ScenePart(box(2.0, 1.0, 1.0), placed((0.5, 1.2, 6.0)), np.array([1]))
@@ -138,22 +138,23 @@ def _shines(scene: Scene, part: ScenePart) -> bool:
 
 
 def test_still_water_mirrors_what_the_mirrored_camera_sees(gl):
-    """Pixel by pixel, times Fresnel's share in float64, to 1.5e-4 of the brightest: nothing is seen through it."""
+    """Pixels match the mirrored camera's times the Fresnel share in float64, to 1.5e-4 of the brightest; the water is
+    opaque."""
     scene = above_water()
     scene = replace(scene, water=Water(deep=BLACK, extinction=OPAQUE))
-    found = draw(gl, scene, waves=0)
+    drawn = draw(gl, scene, waves=0)
     turned = replace(scene, view=mirrored_view(scene.view, 0.0), water=None)
-    with rendering(gl, PIPELINES["forward"], turned, plan_of("forward")) as made:
-        made.draw()
-        mirrored = made.image()[:, ::-1]
+    with rendering(gl, PIPELINES["forward"], turned, plan_of("forward")) as drawing:
+        drawing.draw()
+        mirrored = drawing.image()[:, ::-1]
     share = twin.fresnel(np.arccos(np.clip(-twin.still_rays(scene.view, SIZE)[..., 1], 0, 1)))[..., None]
-    error = np.abs(found.water[..., :3] - share * mirrored).max(axis=-1)[found.wet] / mirrored.max()
-    assert found.wet.mean() > 0.3, f"{found.wet.mean():.0%} of the image is water"
+    error = np.abs(drawn.water[..., :3] - share * mirrored).max(axis=-1)[drawn.wet] / mirrored.max()
+    assert drawn.wet.mean() > 0.3, f"{drawn.wet.mean():.0%} of the image is water"
     assert error.max() < 1.5e-4, f"{error.max():.2g}, {np.mean(error > 1e-4):.2%} of the pixels"
 
 
-def test_what_is_seen_through_still_water_stays_where_it_is(gl):
-    """The image without water in the same pixel, faded to the deep colour by exp(-k d), with nothing mirrored: to 1e-4
+def test_still_water_does_not_displace_what_is_below(gl):
+    """A pixel is that of the image without water, faded to the deep colour by exp(-k d), with no reflection: to 1e-4
     of the brightest."""
     water = Water(deep=(0.2, 0.4, 0.6))
     view = View((0.0, 3.0, 4.0), (0.0, -1.0, 0.0), 50.0, 0.5, 40.0)
@@ -161,23 +162,23 @@ def test_what_is_seen_through_still_water_stays_where_it_is(gl):
     stones = ScenePart(box(1.0, 0.6, 1.0), placed([(0, -1.2, 0), (1.2, -0.9, 1.0)]), np.array([1, 1]))
     materials = (Material(albedo=(0.5, 0.4, 0.3)), Material(albedo=(0.8, 0.1, 0.1)))
     scene = Scene((floor, stones), materials, (), (1.0, 1.0, 1.0), view, view, water)
-    found = draw(gl, scene, "deferred", waves=0)
-    with rendering(gl, PIPELINES["deferred"], replace(scene, water=None), plan_of("deferred")) as made:
-        made.draw()
-        ground, position = made.image(), made.gbuffer()[0][..., :3].astype(float)
+    drawn = draw(gl, scene, "deferred", waves=0)
+    with rendering(gl, PIPELINES["deferred"], replace(scene, water=None), plan_of("deferred")) as drawing:
+        drawing.draw()
+        ground, position = drawing.image(), drawing.gbuffer()[0][..., :3].astype(float)
     ways = twin.still_rays(view, SIZE)
     column = np.linalg.norm(position, axis=-1) - 3.0 / -ways[..., 1]
     left = np.exp(-column[..., None] * np.array(water.extinction))
     share = twin.fresnel(np.arccos(-ways[..., 1]))[..., None]
     expected = (1 - share) * (left * ground + (1 - left) * np.array(water.deep))
-    error = np.abs(found.water[..., :3] - expected).max(axis=-1)
-    assert found.wet.all() and error.max() < 1e-4, (
+    error = np.abs(drawn.water[..., :3] - expected).max(axis=-1)
+    assert drawn.wet.all() and error.max() < 1e-4, (
         f"{error.max():.2g} at {np.unravel_index(error.argmax(), error.shape)}"
     )
 
 
 def probed(gl, tmp_path, **given) -> tuple[np.ndarray, np.ndarray]:
-    """Points and normals that `water_map.glsl` gives at every texel's centre, [z, x, 3]."""
+    """Return the points and normals that `water_map.glsl` gives at every texel's centre, [z, x, 3]."""
     texels = int(LIGHT["texels"])
     maps = Maps(given["octaves"], texels)
     points, normals = (Resource(name, "rgba32f", (texels, texels)) for name in ("probe_points", "probe_normals"))
@@ -207,14 +208,14 @@ def probed(gl, tmp_path, **given) -> tuple[np.ndarray, np.ndarray]:
     waves, *_ = passes_of(**given)
     probe = Pass("probe", waves.writes, (points, normals), build, after=("forward",))
     scene = replace(lake(), water=Water())
-    with rendering(gl, PIPELINES["forward"].with_effect((waves, probe)), scene, plan_of("forward")) as made:
-        made.draw()
-        return tuple(made.read(one)[0][::-1, :, :3].astype(np.float64) for one in (points, normals))
+    with rendering(gl, PIPELINES["forward"].with_effect((waves, probe)), scene, plan_of("forward")) as drawing:
+        drawing.draw()
+        return tuple(drawing.read(resource)[0][::-1, :, :3].astype(np.float64) for resource in (points, normals))
 
 
 @pytest.mark.parametrize("chop", [0.0, 0.3])
 def test_waves_are_the_sum_of_cosines(gl, tmp_path, chop):
-    """Points to 1e-5 m and normals to 1e-5, at every texel."""
+    """Points agree to 1e-5 m and normals to 1e-5 at every texel."""
     points, normals = probed(gl, tmp_path, octaves=5, chop=chop)
     expected, turned = _analytic(5, chop)
     error = np.abs(points - expected).max()
@@ -228,9 +229,9 @@ def _analytic(octaves: int, chop: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("chop", [0.0, 0.3])
-def test_the_grids_normals_approach_the_gradients_with_the_square_of_its_step(gl, tmp_path, chop):
-    """Normals of central differences over 1, 2 and 4 texels: each doubling makes the error 3.8 to 4.1 times as large.
-    The shortest wave has 21 texels."""
+def test_grid_normals_converge_quadratically_to_the_gradients(gl, tmp_path, chop):
+    """Normals are central differences over 1, 2 and 4 texels: each doubling multiplies the error by 3.8 to 4.1. The
+    shortest wave is 21 texels long."""
     points, _ = probed(gl, tmp_path, octaves=2, chop=chop)
     exact, errors = _analytic(2, chop)[1], []
     for step in (1, 2, 4):
@@ -243,7 +244,7 @@ def test_the_grids_normals_approach_the_gradients_with_the_square_of_its_step(gl
 
 
 def test_waves_are_as_steep_as_asked_and_repeat():
-    """The root mean square slope, to 1e-9; a period later every wave is where it was, half a period later it is not."""
+    """The RMS slope is right to 1e-9. After a period every wave is where it was; after half a period it is not."""
     waves = waves_of(Water(slope=0.15), 5, 3, 2.0)
     assert np.sqrt(waves.slopes[0]) == pytest.approx(0.3, rel=1e-9)
     again, half = (waves_of(Water(slope=0.15, time=t), 5, 3, 2.0) for t in (20.0, 10.0))
@@ -254,12 +255,12 @@ def test_waves_are_as_steep_as_asked_and_repeat():
 
 
 def test_waves_move_with_the_scene(gl):
-    """Two moments differ, and drawn one after the other they are as each alone."""
+    """Two moments differ, and drawing them one after the other gives the same as drawing each alone."""
     alone = [draw(gl, lake(time)).water for time in (0.0, 0.2)]
-    with rendering(gl, PIPELINES["forward"].with_effect(passes_of()), lake(0.0), plan_of("forward")) as made:
+    with rendering(gl, PIPELINES["forward"].with_effect(passes_of()), lake(0.0), plan_of("forward")) as drawing:
         for time, expected in zip((0.0, 0.2), alone, strict=True):
-            made.draw(lake(time))
-            assert np.array_equal(made.read(WATER)[0], expected), f"the moment {time} differs"
+            drawing.draw(lake(time))
+            assert np.array_equal(drawing.read(WATER)[0], expected), f"the moment {time} differs"
     assert np.mean(np.abs(alone[0] - alone[1]).max(axis=-1) > 0.01) > 0.1
 
 
@@ -267,7 +268,7 @@ GRID = Grid(256, 256)
 
 
 def test_the_grid_has_no_crack():
-    """Every edge belongs to two triangles, once each way; only those of the last ring belong to one."""
+    """Every edge belongs to two triangles, once in each direction; only edges of the last ring belong to one."""
     triangles = GRID.triangles
     edges = Counter((int(t[i]), int(t[(i + 1) % 3])) for t in triangles for i in range(3))
     assert max(edges.values()) == 1, "an edge is passed twice the same way"
@@ -278,7 +279,7 @@ def test_the_grid_has_no_crack():
 
 
 def test_the_first_rings_are_apart_in_float32():
-    """By 10 cm, also a kilometre off the origin and with a reach of 40 km; r = a0 + a1 i^4 has 9 um there."""
+    """The gap is 10 cm, even 1 km from the origin and with a reach of 40 km; r = a0 + a1 i^4 gives 9 um there."""
     radii = GRID.radii(40000.0)
     assert radii[0] == pytest.approx(FIRST_GAP, rel=1e-3) and radii[-1] == pytest.approx(40000.0)
     assert np.diff(np.float32(1000.0) + radii.astype(np.float32)).min() > 0.099
@@ -287,49 +288,50 @@ def test_the_first_rings_are_apart_in_float32():
 
 
 def test_the_grid_does_not_swim():
-    """A turn of the camera moves no vertex, nor does a move by less than half a step; a whole step moves all by it."""
+    """Turning the camera moves no vertex, nor does a move of less than half a step; a whole step moves all vertices
+    by a step."""
     view = View((3.5, 2.0, -7.0), (0.0, 1.0, 0.0), 60.0, 0.5, 100.0)
-    at = centre_under(view)
-    assert at == (3.5, -7.0)
+    centre = centre_under(view)
+    assert centre == (3.5, -7.0)
     for moved in (replace(view, target=(9.0, 0.0, 3.0)), replace(view, eye=(3.5 + 0.49 * STEP, 5.0, -7.0))):
-        assert centre_under(moved) == at and reach(moved, 4 / 3) == reach(view, 4 / 3)
+        assert centre_under(moved) == centre and reach(moved, 4 / 3) == reach(view, 4 / 3)
     assert centre_under(replace(view, eye=(3.5 + STEP, 2.0, -7.0 - 3 * STEP))) == (3.5 + STEP, -7.0 - 3 * STEP)
 
 
 def open_water(view: View, **water) -> Scene:
-    """Deep water with nothing in it."""
+    """Return a scene of deep water with nothing in it."""
     floor = ScenePart(plane(4000.0, 4000.0), placed((0, -50.0, 0)), np.array([0]), casts=False)
     sun = Light("sun", (1.0, 1.0, 1.0), direction=(0.48, -0.6, 0.64))
     return Scene((floor,), (Material(),), (sun,), (0.3, 0.3, 0.3), view, view, Water(**water))
 
 
 @pytest.mark.parametrize("eye", [(0.0, 1.0, 0.0), (123.4, 6.0, -77.7), (3000.3, 40.0, 2000.1)])
-def test_no_pixel_of_open_water_is_left_out(gl, eye):
-    """Seen from straight above, waves and all: every pixel is water, and finite."""
+def test_open_water_covers_every_pixel(gl, eye):
+    """Seen from straight above, with waves, every pixel is water and finite."""
     view = View(eye, (eye[0] + 0.01, 0.0, eye[2]), 80.0, 0.1, 200.0)
-    found = draw(gl, open_water(view))
-    assert found.wet.all(), f"{np.sum(~found.wet)} pixels are not"
-    assert np.isfinite(found.water).all()
+    drawn = draw(gl, open_water(view))
+    assert drawn.wet.all(), f"{np.sum(~drawn.wet)} pixels are not"
+    assert np.isfinite(drawn.water).all()
 
 
-def test_water_costs_the_pixels_that_it_covers(gl):
-    """Still: a sample for each pixel of water; behind a wall: none."""
+def test_water_shades_only_its_visible_pixels(gl):
+    """Still water takes one sample per visible pixel, and none behind a wall."""
     view = View((0.0, 2.0, 6.0), (0.0, 1.9, 0.0), 60.0, 0.5, 100.0)
     scene = open_water(view)
     wall = ScenePart(box(40.0, 40.0, 0.2), placed((0, 0, 3.0)), np.array([0]))
     for parts in (scene.parts, (*scene.parts, wall)):
         pipeline = PIPELINES["forward"].with_effect(passes_of(waves=0))
-        with rendering(gl, pipeline, replace(scene, parts=parts), plan_of("forward")) as made:
-            made.draw()
-            wet = int(np.sum(made.read(WATER)[0][..., 3] == 1))
-            made.draw()
-            counted = samples_of(gl, made)
+        with rendering(gl, pipeline, replace(scene, parts=parts), plan_of("forward")) as drawing:
+            drawing.draw()
+            wet = int(np.sum(drawing.read(WATER)[0][..., 3] == 1))
+            drawing.draw()
+            counted = samples_of(gl, drawing)
         assert counted == wet, f"{counted} samples, {wet} pixels of water"
         assert wet == 0 if len(parts) > 1 else wet > 2000
 
 
 def samples_of(gl, made) -> int:
-    """What the surface shades in one more frame."""
+    """Return how many samples the water's surface shades in one more frame."""
     query = gl.context.query(samples=True)
     for name, run in made.passes.items():
         if name == "water_surface":
@@ -341,28 +343,28 @@ def samples_of(gl, made) -> int:
 
 
 def caustics(gl, scene: Scene, **given) -> np.ndarray:
-    """The caustic maps, (slices, z, x)."""
+    """Return the caustic maps, (slices, z, x)."""
     own = {**LIGHT, **given}
     resource = Maps(5, int(own["texels"])).caustics
-    with rendering(gl, PIPELINES["forward"].with_effect(passes_of(**given)), scene, plan_of("forward")) as made:
-        made.draw()
-        found = np.frombuffer(made.frame.textures(resource)[0].read(), np.float32)
-    return found.reshape(CONSTANTS["CAUSTIC_SLICES"], *(int(own["texels"]),) * 2)
+    with rendering(gl, PIPELINES["forward"].with_effect(passes_of(**given)), scene, plan_of("forward")) as drawing:
+        drawing.draw()
+        texels = np.frombuffer(drawing.frame.textures(resource)[0].read(), np.float32)
+    return texels.reshape(CONSTANTS["CAUSTIC_SLICES"], *(int(own["texels"]),) * 2)
 
 
-def test_caustics_move_light_and_make_none(gl):
-    """The mean of each slice is 1 to 2 %; the deeper, the more is moved, at first."""
-    found = caustics(gl, lake(), texels=256)
-    means, spread = found.mean(axis=(1, 2)), found.std(axis=(1, 2))
+def test_caustics_move_light_without_adding_any(gl):
+    """The mean of each slice is 1, to 2%; at first, deeper slices vary more."""
+    maps = caustics(gl, lake(), texels=256)
+    means, spread = maps.mean(axis=(1, 2)), maps.std(axis=(1, 2))
     assert np.all(abs(means - 1) < 0.02), means
     assert spread[1] > 0.1 and spread[2] > spread[1], spread
 
 
 def test_still_water_has_no_caustics(gl):
-    """1 everywhere, to 1e-4; to 1/256 where a rasteriser moves corners to so many parts of a texel."""
-    found = caustics(gl, lake(), waves=0)
+    """The maps are 1 everywhere, to 1e-4, or to 1/256 where a rasteriser snaps corners to 1/256 of a texel."""
+    maps = caustics(gl, lake(), waves=0)
     most = 1e-4 if gl.is_software else 1 / 256
-    assert np.abs(found - 1).max() < most, f"{found.min()} to {found.max()}"
+    assert np.abs(maps - 1).max() < most, f"{maps.min()} to {maps.max()}"
 
 
 POSES = {
@@ -373,7 +375,7 @@ POSES = {
 
 
 def leak(gl, view: View, refraction: str) -> float:
-    """The most light of things above the water that is seen through it: with clear water, less what is mirrored."""
+    """Return the most light from things above the water that is visible in it: clear water minus the reflection."""
     bars = placed([(-1.5, 1.2, 0.0), (0.0, 1.0, 1.0), (1.6, 0.9, -1.0)])
     parts = (
         ScenePart(plane(60.0, 60.0), placed((0, -3.0, 0)), np.array([0]), casts=False),
@@ -382,16 +384,16 @@ def leak(gl, view: View, refraction: str) -> float:
     materials = (Material(albedo=BLACK, specular=BLACK), Material(albedo=BLACK, specular=BLACK, emissive=(1.0, 0, 0)))
     scene = Scene(parts, materials, (), BLACK, view, view, Water(deep=BLACK, slope=0.15))
     clear, opaque = (replace(scene, water=replace(scene.water, extinction=k)) for k in (BLACK, OPAQUE))
-    seen, mirrored = (draw(gl, one, refraction=refraction, blur=0).water for one in (clear, opaque))
+    seen, mirrored = (draw(gl, wet_scene, refraction=refraction, blur=0).water for wet_scene in (clear, opaque))
     return float((seen - mirrored)[..., 0].max())
 
 
 @pytest.mark.parametrize("pose", POSES)
 @pytest.mark.parametrize("refraction", ["two_depth", "alpha"])
-def test_nothing_above_the_water_is_seen_in_it(gl, pose, refraction):
-    """Bars that glow over a black ground: none of their light, where without the guard there is more than a tenth."""
-    found = leak(gl, POSES[pose], refraction)
-    assert found == 0, f"{found:.2g} leaks"
+def test_things_above_the_water_do_not_leak_into_it(gl, pose, refraction):
+    """Glowing bars over a black ground leak no light; without the guard, more than a tenth leaks."""
+    leaked = leak(gl, POSES[pose], refraction)
+    assert leaked == 0, f"{leaked:.2g} leaks"
     assert unguarded(gl, pose) > 0.1, f"unguarded, {unguarded(gl, pose):.2g} leaks"
 
 
@@ -406,25 +408,25 @@ def in_pipelines(gl) -> dict[str, Drawn]:
 
 
 def test_water_is_the_same_in_every_pipeline(in_pipelines):
-    """From a G-buffer in 32-bit floats: 55 dB, as shadows may go either way; the same pixels are water."""
+    """With a G-buffer in 32-bit floats, 55 dB, because shadow tests may differ; the same pixels are water."""
     first, *others = in_pipelines
     for other in others:
-        one, two = in_pipelines[first], in_pipelines[other]
-        assert np.array_equal(one.wet, two.wet), f"{other}: {np.sum(one.wet != two.wet)} pixels"
-        found = apart(one.water[..., :3], two.water[..., :3])
-        assert found >= 55, f"{first} and {other}: {found:.1f} dB"
+        expected, two = in_pipelines[first], in_pipelines[other]
+        assert np.array_equal(expected.wet, two.wet), f"{other}: {np.sum(expected.wet != two.wet)} pixels"
+        decibels = apart(expected.water[..., :3], two.water[..., :3])
+        assert decibels >= 55, f"{first} and {other}: {decibels:.1f} dB"
 
 
-def test_the_image_is_the_water_where_there_is_some(gl):
-    """And what it was where there is none, without the glass that is laid over both."""
+def test_water_replaces_only_the_pixels_that_it_covers(gl):
+    """All other pixels are unchanged. The scene has no glass, which would cover both."""
     scene = replace(lake(), parts=tuple(part for part in lake().parts if _is_opaque(part)))
-    found = draw(gl, scene, "deferred")
-    with rendering(gl, PIPELINES["deferred"], scene, plan_of("deferred")) as made:
-        made.draw()
-        plain = made.image()
-    assert 0.2 < found.wet.mean() < 0.8
-    assert np.array_equal(found.image[found.wet], found.water[found.wet][:, :3])
-    assert np.array_equal(found.image[~found.wet], plain[~found.wet])
+    drawn = draw(gl, scene, "deferred")
+    with rendering(gl, PIPELINES["deferred"], scene, plan_of("deferred")) as drawing:
+        drawing.draw()
+        plain = drawing.image()
+    assert 0.2 < drawn.wet.mean() < 0.8
+    assert np.array_equal(drawn.image[drawn.wet], drawn.water[drawn.wet][:, :3])
+    assert np.array_equal(drawn.image[~drawn.wet], plain[~drawn.wet])
 
 
 def _is_opaque(part: ScenePart) -> bool:
@@ -432,16 +434,16 @@ def _is_opaque(part: ScenePart) -> bool:
 
 
 def test_water_has_as_many_samples_as_the_image(gl):
-    """With 4 samples a pixel the image is near that with one: 20 dB, edges apart."""
+    """With 4 samples per pixel, the image scores more than 20 dB against 1 sample; edges differ."""
     pipeline = PIPELINES["deferred"].with_effect(passes_of())
-    with rendering(gl, pipeline, lake(), plan_of("deferred", 4)) as made:
-        made.draw()
-        found = apart(made.image(), draw(gl, lake(), "deferred").image)
-    assert found > 20, f"{found:.1f} dB"
+    with rendering(gl, pipeline, lake(), plan_of("deferred", 4)) as drawing:
+        drawing.draw()
+        decibels = apart(drawing.image(), draw(gl, lake(), "deferred").image)
+    assert decibels > 20, f"{decibels:.1f} dB"
 
 
-def test_a_scene_without_water_is_refused_in_one_line():
-    """As is an eye under water."""
+def test_scene_without_water_is_a_one_line_error():
+    """A camera under water is rejected too."""
     water = chosen(EFFECT, {})
     room = SCENES["room"].make(Setting(lights=1))
     assert lacking([water], "room", room) == "water on room: it has no water"
@@ -464,8 +466,8 @@ def test_a_setting_out_of_range_is_refused(given, said):
     assert str(refused.value) == said
 
 
-def test_inferred_lighting_is_refused_in_one_line():
-    """Its depth is another resource after the G-buffer."""
+def test_inferred_lighting_is_a_one_line_error():
+    """The depth of inferred lighting is another resource after the G-buffer."""
     with pytest.raises(PipelineError) as refused:
         PIPELINES["inferred"].with_effect(passes_of())
     assert str(refused.value).startswith("pipeline inferred: pass water_behind reads native_depth, which")

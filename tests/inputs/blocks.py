@@ -6,23 +6,23 @@ import numpy as np
 
 
 def random_blocks(count: int, seed: int) -> np.ndarray:
-    """uint8 of shape (count, 16); every bit is as likely 0 as 1."""
+    """Return uint8 of shape (count, 16); every bit is equally likely to be 0 or 1."""
     return np.random.default_rng(seed).integers(0, 256, (count, 16), np.uint8)
 
 
 def bc7_blocks(count: int, seed: int) -> np.ndarray:
-    """Random blocks of BC7, as many of each of the eight modes."""
+    """Return random blocks of BC7, equally many of each of the eight modes."""
     blocks, mode = random_blocks(count, seed), np.arange(count) % 8
     blocks[:, 0] = (blocks[:, 0].astype(int) >> (mode + 1) << (mode + 1) | 1 << mode) & 255
     return blocks
 
 
 def by_block(image: np.ndarray) -> np.ndarray:
-    """An image of one row of blocks, (4, 4 count, channels), as (count, 16, channels)."""
+    """Return an image of one row of blocks, (4, 4 count, channels), as (count, 16, channels)."""
     count = image.shape[1] // 4
     return image.reshape(4, count, 4, -1).transpose(1, 0, 2, 3).reshape(count, 16, -1)
 
 
 def from_bgra(data: bytes, count: int) -> np.ndarray:
-    """What texture2ddecoder gives for a row of blocks: red, green, blue and alpha, uint8 of shape (count, 16, 4)."""
+    """Return texture2ddecoder's output for a row of blocks as RGBA, uint8 of shape (count, 16, 4)."""
     return by_block(np.frombuffer(data, np.uint8).reshape(4, 4 * count, 4))[..., [2, 1, 0, 3]]

@@ -23,7 +23,7 @@ WIDTH = 900
 
 @dataclass
 class Shown:
-    """A panel: how many marks of each kind, where its axes end, their titles, what is at their ticks, and labels."""
+    """A panel: its marks by kind, the ends and titles of its axes, its labels and the texts at its ticks."""
 
     marks: dict[str, int] = field(default_factory=dict)
     extents: dict[str, tuple[float, ...]] = field(default_factory=dict)
@@ -33,7 +33,7 @@ class Shown:
 
 
 def in_files(chart: Chart) -> list[Shown]:
-    """What each panel shows, drawn by matplotlib."""
+    """Return what each panel shows if matplotlib draws it."""
     figure = draw.figure([chart])
     try:
         return [_in_axes(axes, part) for axes, (_, part) in zip(figure.axes, chart.still(), strict=False)]
@@ -45,24 +45,24 @@ def _in_axes(axes, part: Chart) -> Shown:
     from matplotlib.collections import FillBetweenPolyCollection, LineCollection, PathCollection
     from matplotlib.patches import Rectangle
 
-    points = [one for one in axes.collections if isinstance(one, PathCollection)]
-    rules = [one for one in axes.collections if isinstance(one, LineCollection)]
-    areas = [one for one in axes.collections if isinstance(one, FillBetweenPolyCollection)]
+    points = [collection for collection in axes.collections if isinstance(collection, PathCollection)]
+    rules = [collection for collection in axes.collections if isinstance(collection, LineCollection)]
+    areas = [collection for collection in axes.collections if isinstance(collection, FillBetweenPolyCollection)]
     is_cell = part.x.scale == Scale.NAMES
-    found = Shown(texts=sorted(text.get_text().replace(r"\$", "$") for text in axes.texts))
-    found.marks = {
-        Kind.POINTS: sum(len(one.get_offsets()) for one in points),
+    shown = Shown(texts=sorted(text.get_text().replace(r"\$", "$") for text in axes.texts))
+    shown.marks = {
+        Kind.POINTS: sum(len(collection.get_offsets()) for collection in points),
         Kind.LINES: len(axes.lines),
-        Kind.RULES: sum(len(one.get_segments()) for one in rules),
+        Kind.RULES: sum(len(collection.get_segments()) for collection in rules),
         Kind.AREAS: len(areas),
-        Kind.CELLS if is_cell else Kind.BARS: sum(isinstance(one, Rectangle) for one in axes.patches),
+        Kind.CELLS if is_cell else Kind.BARS: sum(isinstance(patch, Rectangle) for patch in axes.patches),
     }
-    found.marks = {kind: count for kind, count in found.marks.items() if count}
-    for name, said, ends in (("x", part.x, axes.get_xlim()), ("y", part.y, axes.get_ylim())):
-        found.extents[name] = (len(said.names),) if said.scale == Scale.NAMES else ends
-    found.titles = {"x": axes.get_xlabel(), "y": axes.get_ylabel()}
-    found.ticks = {label.get_text() for label in (*axes.get_xticklabels(), *axes.get_yticklabels())}
-    return found
+    shown.marks = {kind: count for kind, count in shown.marks.items() if count}
+    for name, axis, ends in (("x", part.x, axes.get_xlim()), ("y", part.y, axes.get_ylim())):
+        shown.extents[name] = (len(axis.names),) if axis.scale == Scale.NAMES else ends
+    shown.titles = {"x": axes.get_xlabel(), "y": axes.get_ylabel()}
+    shown.ticks = {label.get_text() for label in (*axes.get_xticklabels(), *axes.get_yticklabels())}
+    return shown
 
 
 # Puts a figure into the page, and draws it.
@@ -115,8 +115,8 @@ class Page:
     """A page of a browser with the scripts of a report, which draws one chart after the other.
 
     Args:
-        page: an empty one.
-        path: a file that it becomes; a page without an address cannot keep a state.
+        page: an empty page.
+        path: the file to write for it; a page without an address cannot keep a state.
     """
 
     def __init__(self, page, path: Path):
@@ -130,7 +130,7 @@ class Page:
         page.goto(path.as_uri())
 
     def put(self, chart: Chart) -> list[float]:
-        """Draw a chart. Gives the height of what holds its panels before and after it."""
+        """Draw a chart. Return the height of the element that holds its panels, before and after drawing."""
         spec = wire.spec(chart)
         json.dumps(spec, allow_nan=False)
         figure = template("parts.html.j2").module.chart(report.Chart(drawings.of(chart), spec))
@@ -139,13 +139,13 @@ class Page:
         return heights
 
     def panels(self, chart: Chart) -> list[dict]:
-        """What READ finds in each panel, with what a switch has chosen at first, or with each choice."""
+        """Return what READ finds in each panel, with the first choice of a switch, or with every choice."""
         self.put(chart)
         switch = chart.switch
         return self.page.evaluate(READ, list(switch.values) if switch and switch.has_panels else [""])
 
     def agree(self, chart: Chart) -> list[Shown]:
-        """Panels of a chart that a file and the page show alike, and as the chart's value has them."""
+        """Check that a file and the page show a chart's panels alike, as its values place them; return the panels."""
         files, pages = in_files(chart), self.panels(chart)
         assert len(files) == len(pages)
         named = {name for axis in (chart.x, chart.y) for name in (*axis.names, *(name for _, name in axis.ticks))}
@@ -158,9 +158,9 @@ class Page:
 
 
 def rows_of_tables() -> dict[str, list[dict]]:
-    """Rows of a run of every table that has charts, by table; kept in a file, less what charts do not read.
+    """Return rows of a run of every table that has charts, by table; a file keeps the columns that charts read.
 
-    The sweep's were measured at one number of objects, and multiplied for others.
+    The sweep's rows were measured at one number of objects, and multiplied for other numbers.
     """
     kept = json.loads((Path(__file__).parent / "charted_rows.json").read_text())
     return {
@@ -170,17 +170,17 @@ def rows_of_tables() -> dict[str, list[dict]]:
 
 
 def same(file: Shown, page: dict) -> None:
-    """A file and the page agree; the page leaves names of the rest out where there is no room for them."""
+    """Check that a file and the page agree; the page leaves out labels that do not fit."""
     assert file.marks == page["marks"]
     assert Counter(page["texts"]) <= Counter(file.texts)
     assert [file.titles["x"], file.titles["y"]] == page["titles"]
 
 
 def stands(part: Chart, page: dict) -> None:
-    """Axes and points of the page are where the chart's value has them, to within a tenth of a pixel; d3 moves what
-    has a line by half a pixel, so that it is sharp."""
+    """Check that ticks of the page are within 0.1 pixels of the chart's values, and points within 0.2. d3 moves
+    anything with a line by half a pixel to keep it sharp."""
     left, top, right, bottom = page["box"]
-    for axis, ticks, at, (start, end) in zip(
+    for axis, ticks, index, (start, end) in zip(
         (part.x, part.y), page["axes"], (1, 2), ((left, right), (bottom, top)), strict=True
     ):
         assert len(ticks) > 1 or not part.rows, axis.title
@@ -188,7 +188,7 @@ def stands(part: Chart, page: dict) -> None:
             assert [tick[0] for tick in ticks] == list(axis.names)
         moved = 0 if axis.names else 0.5
         for tick in ticks:
-            assert tick[at] - moved == pytest.approx(_at(axis, tick[0], start, end), abs=0.1), (axis.title, tick)
+            assert tick[index] - moved == pytest.approx(_at(axis, tick[0], start, end), abs=0.1), (axis.title, tick)
     marks = [mark for mark in part.marks if mark.kind == Kind.POINTS]
     places = [
         (_at(part.x, row[mark.x], left, right), _at(part.y, row[mark.y], bottom, top))
@@ -197,13 +197,13 @@ def stands(part: Chart, page: dict) -> None:
     ]
     assert len(places) == len(page["points"])
     for some, others in ((places, page["points"]), (page["points"], places)):
-        assert all(min(map(partial(dist, one), others)) < 0.2 for one in some)
+        assert all(min(map(partial(dist, point), others)) < 0.2 for point in some)
 
 
 def _at(axis: Axis, value: Any, start: float, end: float) -> float:
-    """The pixel of a value, or of the text of a mark, on an axis between two pixels; names begin on top or left."""
+    """Return the pixel of a value, or of a tick's text, on an axis between two pixels; names begin top or left."""
     if axis.scale == Scale.NAMES:
         low, high = min(start, end), max(start, end)
         return low + (axis.names.index(value) + 0.5) / len(axis.names) * (high - low)
-    values = {text: at for at, text in axis.ticks}
+    values = {text: number for number, text in axis.ticks}
     return start + axis.share(float(values.get(value, value))) * (end - start)

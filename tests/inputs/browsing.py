@@ -25,19 +25,19 @@ VIEWED = "[data-pixel=right]:not(:empty)"
 
 
 def within(browser, theme="light", motion="reduce") -> dict:
-    """What a window is opened with: Firefox has it from its preferences."""
+    """Return the options that a window is opened with; Firefox has them in its preferences."""
     is_firefox = browser.browser_type.name == "firefox"
     return {} if is_firefox else {"color_scheme": theme, "reduced_motion": motion, "offline": True}
 
 
 def scale_of(browser) -> float:
-    """Pixels of a laboratory to one of its layout: SwiftShader takes a second for what half of them a side show as
-    well. Firefox, which is asked at night, draws them all."""
+    """Return the pixels of a laboratory per layout pixel. SwiftShader takes a second per frame at full scale, and
+    half as many pixels per side show the same. Firefox, which is tested at night, draws all pixels."""
     return 0.5 if browser.browser_type.name == "chromium" else 1
 
 
 class Opened:
-    """A page, and everything that it asked for or complained of."""
+    """A page, with its requests, console messages and errors."""
 
     def __init__(self, browser, path, size=DESKTOP, theme="light", motion="reduce", fragment="", scale=1, before=""):
         self.asked, self.said, self.theme = [], [], theme
@@ -63,11 +63,11 @@ class Opened:
         self.unfold()
 
     def unfold(self) -> None:
-        """Opens the sections of Codecs, which are folded below the card."""
+        """Open the sections of Codecs, which are folded below the card."""
         self.page.eval_on_selector_all("details.subject", "all => all.forEach((one) => (one.open = true))")
 
     def load_anew(self) -> None:
-        """As a new window has it: nothing that was typed, chosen, remembered or allowed is left."""
+        """Load the page as in a new window: all input, choices, storage and permissions are cleared."""
         if not self.is_new:
             self.page.evaluate("localStorage.clear()")
             self.context.clear_permissions()
@@ -80,7 +80,7 @@ class Opened:
         self.is_new = False
 
     def come_to(self, selector: str, until: str = "") -> None:
-        """Show its view, scroll there, and wait for what is drawn when it comes into view."""
+        """Show the view of an element, scroll to the element, and wait for what is drawn when it comes into view."""
         place = self.page.locator(selector).first
         place.evaluate("place => change({ view: place.closest('.view')?.dataset.view ?? state.view })")
         place.scroll_into_view_if_needed()
@@ -88,7 +88,7 @@ class Opened:
             self.page.wait_for_selector(until)
 
     def says(self, selector: str, text) -> None:
-        """Wait until it says that, a text or a pattern; without `eval`, which the page's policy forbids."""
+        """Wait until an element contains a text or a pattern; without `eval`, which the page's policy forbids."""
         expect(self.page.locator(selector)).to_contain_text(text)
 
     def texts(self, selector: str) -> list[str]:
@@ -202,7 +202,7 @@ class Laboratory(Opened):
         return self.page.evaluate(STATE)
 
     def reset(self) -> None:
-        """Back to what a fresh load is; loaded anew where a test did what the page's own means do not undo."""
+        """Return to the state of a fresh load, and reload if a test changed what the page cannot reset itself."""
         width, height = self.size
         self.page.mouse.move(0, 0)
         if self.page.viewport_size != {"width": width, "height": height}:
@@ -217,11 +217,11 @@ class Laboratory(Opened):
         self.said.clear()
 
     def settle(self) -> None:
-        """Until what was changed is drawn in every pixel."""
+        """Wait until every pixel shows the changes."""
         self.page.evaluate(DRAWN)
 
     def choose(self, **chosen: str) -> None:
-        """Options of See it by the names of their controls."""
+        """Choose options of See it by the names of their controls."""
         for name, value in chosen.items():
             self.page.locator(f"[data-see={name}]").select_option(value)
         self.settle()
@@ -233,7 +233,7 @@ class Laboratory(Opened):
         self.settle()
 
     def picture(self) -> np.ndarray:
-        """What is drawn, uint8 of shape (height, width, 3), the upper row first."""
+        """Return what is drawn, int of shape (height, width, 3), top row first."""
         uri = self.page.locator("[data-live=canvas]").evaluate("canvas => canvas.toDataURL()")
         with Image.open(io.BytesIO(base64.b64decode(uri.partition(",")[2]))) as image:
             return np.asarray(image.convert("RGB")).astype(int)

@@ -1,6 +1,6 @@
-"""A small OpenGL program that RenderDoc captures: a sphere into a G-buffer of three targets and a depth buffer.
+"""A small OpenGL program that RenderDoc captures: a sphere in a G-buffer of three targets and a depth buffer.
 
-As a program, with RenderDoc's library loaded: `python captured_program.py PATH`. The capture's name begins with PATH.
+Run it with RenderDoc's library loaded: `python captured_program.py PATH`. The capture's name begins with PATH.
 """
 
 import ctypes
@@ -38,36 +38,36 @@ VERSION = 10400
 
 
 def functions():
-    """RenderDoc's functions in this program."""
+    """Return RenderDoc's functions in this program."""
     table = ctypes.c_void_p()
     library = ctypes.CDLL("librenderdoc.so")
     assert library.RENDERDOC_GetAPI(VERSION, ctypes.byref(table)) == 1
-    found = ctypes.cast(table, ctypes.POINTER(ctypes.c_void_p))
-    set_path = ctypes.CFUNCTYPE(None, ctypes.c_char_p)(found[SET_PATH])
-    begin = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(found[BEGIN])
-    end = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_void_p, ctypes.c_void_p)(found[END])
+    entries = ctypes.cast(table, ctypes.POINTER(ctypes.c_void_p))
+    set_path = ctypes.CFUNCTYPE(None, ctypes.c_char_p)(entries[SET_PATH])
+    begin = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(entries[BEGIN])
+    end = ctypes.CFUNCTYPE(ctypes.c_uint32, ctypes.c_void_p, ctypes.c_void_p)(entries[END])
     return set_path, begin, end
 
 
 def projection():
-    """OpenGL's, for column vectors."""
+    """Return OpenGL's projection matrix, for column vectors."""
     focal = 1 / np.tan(np.radians(FOV) / 2)
-    made = np.zeros((4, 4), np.float32)
-    made[0, 0], made[1, 1] = focal * SIZE[1] / SIZE[0], focal
-    made[2, 2], made[2, 3] = (FAR + NEAR) / (NEAR - FAR), 2 * FAR * NEAR / (NEAR - FAR)
-    made[3, 2] = -1
-    return made
+    matrix = np.zeros((4, 4), np.float32)
+    matrix[0, 0], matrix[1, 1] = focal * SIZE[1] / SIZE[0], focal
+    matrix[2, 2], matrix[2, 3] = (FAR + NEAR) / (NEAR - FAR), 2 * FAR * NEAR / (NEAR - FAR)
+    matrix[3, 2] = -1
+    return matrix
 
 
 def view():
-    """A camera in front of the sphere, looking at it."""
-    made = np.eye(4, dtype=np.float32)
-    made[2, 3] = -DISTANCE
-    return made
+    """Return the view of a camera in front of the sphere, looking at it."""
+    matrix = np.eye(4, dtype=np.float32)
+    matrix[2, 3] = -DISTANCE
+    return matrix
 
 
 def sphere():
-    """Its triangles, 64 around and 32 from pole to pole."""
+    """Return the sphere's triangles, with 64 steps around and 32 from pole to pole."""
     around, down = np.meshgrid(np.linspace(0, 2 * np.pi, 65), np.linspace(0, np.pi, 33))
     points = np.stack([np.sin(down) * np.cos(around), np.cos(down), np.sin(down) * np.sin(around)], -1)
     corners = [points[i : i + 32, j : j + 64] for i, j in ((0, 0), (1, 0), (1, 1), (0, 0), (1, 1), (0, 1))]

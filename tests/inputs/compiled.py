@@ -1,4 +1,4 @@
-"""Where what compilers make is kept for all tests, their processes, the next run and other checkouts."""
+"""The folder of compiled programs that all tests, their processes, the next run and other checkouts share."""
 
 from normalbench.bench.ground.output.cache import folder
 

@@ -20,47 +20,47 @@ MOUNTED = 'mount -t proc proc "$1/proc"; mount --rbind /dev "$1/dev"; root=$1; s
 
 
 def instructions(text: str) -> list[tuple[str, str]]:
-    """Word and text of each instruction; a backslash goes on in the next line."""
+    """Return the word and the text of each instruction; a backslash continues it on the next line."""
     plain = re.sub(r"^\s*#.*\n", "", text, flags=re.M).replace("\\\n", " ")
     return [tuple(line.split(None, 1)) for line in plain.splitlines() if line.strip()]
 
 
 def suite(image: str) -> str:
-    """Debian's suite of an image such as debian:bookworm-slim."""
+    """Return Debian's suite of an image such as debian:bookworm-slim."""
     return re.fullmatch(r"debian:([a-z]+)-slim", image)[1]
 
 
 def missing() -> str:
-    """Why no chroot can be made here; empty where it can."""
+    """Return the reason why no chroot can be made here, or an empty text."""
     lacks = [name for name in ("debootstrap", "unshare", "chroot") if not shutil.which(name)]
     return "a chroot needs root" if os.geteuid() else f"no {lacks[0]}; install it with apt-get" if lacks else ""
 
 
 def mirror() -> str:
-    """Where this machine has Debian's packages from."""
+    """Return the address from which this machine gets Debian's packages."""
     told = subprocess.run(["apt-get", "indextargets", "--format", "$(REPO_URI)"], capture_output=True, text=True)
     mirrors = [line for line in told.stdout.splitlines() if line.rstrip("/").endswith("/debian")]
     return mirrors[0] if mirrors else "http://deb.debian.org/debian"
 
 
 def context() -> list[str]:
-    """The files that Docker would get: all that .dockerignore does not name."""
-    found: list[str] = []
+    """Return the files that Docker would receive: all except those that .dockerignore names."""
+    paths: list[str] = []
     for folder, folders, files in os.walk(ROOT):
         own = Path(folder).relative_to(ROOT)
         folders[:] = [name for name in folders if not _is_ignored(own / name)]
-        found += [str(own / name) for name in files if not _is_ignored(own / name)]
-    return found
+        paths += [str(own / name) for name in files if not _is_ignored(own / name)]
+    return paths
 
 
 def _is_ignored(path: Path) -> bool:
     patterns = (ROOT / ".dockerignore").read_text().split()
-    return any(path.match(one.removeprefix("**/")) if one.startswith("**/") else str(path) == one for one in patterns)
+    return any(path.match(p.removeprefix("**/")) if p.startswith("**/") else str(path) == p for p in patterns)
 
 
 @dataclass
 class Container:
-    """A chroot, and what the Dockerfile has set for the lines to come."""
+    """A chroot, with the settings of the Dockerfile for the lines to come."""
 
     root: Path
     variables: dict[str, str] = field(default_factory=dict)
@@ -70,7 +70,7 @@ class Container:
     command: tuple[str, ...] = ()
 
     def make(self) -> subprocess.CompletedProcess[str]:
-        """The image that FROM names, and how this machine reaches its registries."""
+        """Make the image that FROM names, and let it reach this machine's registries."""
         (image,) = [text for word, text in instructions(DOCKERFILE.read_text()) if word == "FROM"]
         words = [
             "debootstrap",
@@ -99,13 +99,13 @@ class Container:
         shutil.copyfile(source, target)
 
     def build(self) -> None:
-        """All lines but FROM. Raises CalledProcessError."""
+        """Run all lines except FROM. Raises CalledProcessError."""
         for word, text in instructions(DOCKERFILE.read_text()):
             if word != "FROM":
                 getattr(self, f"_{word.lower()}")(text)
 
     def run(self, *words: str, user: str = "") -> subprocess.CompletedProcess[str]:
-        """As `docker run`, with these words for the entry."""
+        """Run these words as `docker run` does, by the entry point."""
         return self._within([*self.entry, *(words or self.command)], user or self.user)
 
     def _within(self, words: list[str], user: str) -> subprocess.CompletedProcess[str]:
@@ -117,7 +117,7 @@ class Container:
         return subprocess.run(command, capture_output=True, text=True)
 
     def _certificates(self) -> dict[str, str]:
-        """What says to pip which certificates to trust, where this machine has its own."""
+        """Return the variable that tells pip which certificates to trust, if this machine has its own."""
         return {name: os.environ[name] for name in ("PIP_CERT",) if name in os.environ}
 
     def _env(self, text: str) -> None:

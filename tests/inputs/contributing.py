@@ -18,7 +18,7 @@ LINE = re.compile(r"<!-- line (\S+), below (.*?) -->\n```\w+\n(.*?\n)```$", re.S
 
 @dataclass(frozen=True)
 class Example:
-    """What is added to the code.
+    """An addition to the code.
 
     Attributes:
         files: texts of new files by their paths.
@@ -29,7 +29,7 @@ class Example:
     lines: list[tuple[str, str, str]]
 
     def add_to(self, package: Path) -> None:
-        """Add it to a copy of the code."""
+        """Add the example to a copy of the code."""
         for name, text in self.files.items():
             path = package / name
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -37,8 +37,8 @@ class Example:
         for name, above, line in self.lines:
             path = package / name
             lines = path.read_text().splitlines(keepends=True)
-            (at,) = [number for number, one in enumerate(lines, 1) if one.strip() == above]
-            path.write_text("".join([*lines[:at], line, *lines[at:]]))
+            (position,) = [number for number, source_line in enumerate(lines, 1) if source_line.strip() == above]
+            path.write_text("".join([*lines[:position], line, *lines[position:]]))
 
 
 EXAMPLES = {
@@ -48,7 +48,7 @@ EXAMPLES = {
 
 
 def a_copy_of_the_rooms(folder: Path) -> Path:
-    """The package as a plain folder that Python finds from `folder` before the installed one."""
+    """Copy the package to a plain folder that Python finds from `folder` before the installed package."""
     package = folder / "normalbench"
     for room in ("encodings", "gbuffer", "bench", "reports"):
         # With what Python compiled, which is as old as its source: of a copy it compiles what a test changes alone.
@@ -58,6 +58,6 @@ def a_copy_of_the_rooms(folder: Path) -> Path:
 
 
 def normalbench_in(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
-    """The command of a copy."""
+    """Run the command of a copy."""
     command = [sys.executable, "-m", "normalbench", *arguments]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""Encodings of GLSL that a test makes up."""
+"""Made-up GLSL encodings for tests."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -7,7 +7,8 @@ from normalbench.encodings.catalogue import ENCODINGS
 
 
 def glsl(tmp_path: Path, name: str, encode: str, decode: str, size: int, before: str = ""):
-    """An encoding of the GLSL given, after functions of its own; its Python is another's, which nothing here runs."""
+    """Return an encoding with this GLSL, after functions of its own. Its Python belongs to another encoding, because
+    nothing here runs it."""
     path = tmp_path / f"{name}.glsl"
     path.write_text(
         f"{before}vec{size} {name}_encode(vec3 n, vec3 view) {{ return {encode}; }}\n"

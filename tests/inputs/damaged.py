@@ -1,4 +1,4 @@
-"""Files damaged in seeded ways, and what is said of them."""
+"""Files damaged in seeded ways, and the errors about them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from normalbench.bench.subjects.normals import pixel_files, pixel_process
 
 
 def refusal(run, path: Path, *arguments: str) -> str:
-    """What `quality` says of a file, which must be one line with its name, status 2, and nothing left behind."""
+    """Return the error of `quality` about a file: one line with its name, status 2, and no files left behind."""
     before = set(path.parent.rglob("*"))
     status, out, err = run("quality", "--normals", str(path), "--backend", "jax", *arguments)
     assert (status, out) == (2, ""), (status, out[:200], err)
@@ -22,7 +22,7 @@ def refusal(run, path: Path, *arguments: str) -> str:
 
 
 def in_this_process(path: Path, kind: str, out: Path, mode: str, *names: str) -> None:
-    """As `pixel_files` has it done by a process of its own, which takes half a second."""
+    """Do what `pixel_files` does in a process of its own, which takes half a second."""
     try:
         pixel_process.answer(mode, kind, str(path), out, list(names))
     except Exception as error:
@@ -48,27 +48,27 @@ WORDS = [
 
 
 def mutated(data: bytes, rng: np.random.Generator) -> bytes:
-    """A few bytes changed, a run cut out or doubled, a word put in, or the end lost."""
-    found = bytearray(data)
+    """Return the data with a few bytes changed, a run cut out or doubled, a word inserted, or the end lost."""
+    mutant = bytearray(data)
     for _ in range(rng.integers(1, 4)):
-        at, length = int(rng.integers(max(len(found), 1))), int(rng.integers(1, 9))
+        start, length = int(rng.integers(max(len(mutant), 1))), int(rng.integers(1, 9))
         match rng.integers(6):
             case 0 | 1:
-                found[at : at + 1] = bytes([rng.integers(256)])
+                mutant[start : start + 1] = bytes([rng.integers(256)])
             case 2:
-                del found[at : at + length]
+                del mutant[start : start + length]
             case 3:
-                found[at:at] = found[at : at + 8 * length]
+                mutant[start:start] = mutant[start : start + 8 * length]
             case 4:
-                found[at : at + length] = WORDS[rng.integers(len(WORDS))]
+                mutant[start : start + length] = WORDS[rng.integers(len(WORDS))]
             case _:
                 if rng.random() < 0.3:
-                    del found[at:]
-    return bytes(found)
+                    del mutant[start:]
+    return bytes(mutant)
 
 
 def revalued(text: bytes, rng: np.random.Generator) -> bytes:
-    """JSON with a few of its values replaced by others, so that what reads it goes deep."""
+    """Return JSON with a few of its values replaced by others, so that readers get deep into it."""
     document = json.loads(text)
     for _ in range(rng.integers(1, 4)):
         holder = document

@@ -35,7 +35,7 @@ TEN = (
 
 
 def codec_rows(truncated=(), half=False, ms_per_bit=0.05) -> list[dict]:
-    """Real rows; those of some targets truncated, or all of them in half precision."""
+    """Return real rows; those of some targets are truncated, or all are in half precision."""
     return [
         _row(row, "mediump" if half else "truncates" if row["target"] in truncated else "run", ms_per_bit)
         for row in RECORDED["rows"]
@@ -56,7 +56,7 @@ def _row(row: dict, how: str, ms_per_bit: float) -> dict:
 
 
 def content(renderer=SWIFTSHADER, browser=CHROMIUM, truncated=(), half=False, ms_per_bit=0.05, **more) -> dict:
-    """What a device file holds."""
+    """Return the content of a device file."""
     about = {"normalbench_device": 1, "renderer": renderer, "vendor": "a vendor", "browser": browser}
     about |= {"made": "2026-11-23T15:00:00Z", "program": "0.1.0", "sources": "0123456789abcdef"}
     facts = {"rounds RGB10_A2": "down" if "RGB10_A2" in truncated else "nearest", "filters RG16F": "yes"}
@@ -65,13 +65,13 @@ def content(renderer=SWIFTSHADER, browser=CHROMIUM, truncated=(), half=False, ms
 
 
 def write(path: Path, **more) -> Path:
-    """A device file; see `content`."""
+    """Write a device file; see `content`."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(content(**more)), encoding="utf-8")
     return path
 
 
 def write_ten(folder: Path) -> list[Path]:
-    """The ten altered devices."""
+    """Write the ten altered devices."""
     names = ("renderer", "browser", "truncated", "half", "ms_per_bit")
-    return [write(folder / f"{at}.json", **dict(zip(names, one, strict=True))) for at, one in enumerate(TEN)]
+    return [write(folder / f"{i}.json", **dict(zip(names, device, strict=True))) for i, device in enumerate(TEN)]

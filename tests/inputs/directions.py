@@ -1,4 +1,4 @@
-"""The inputs of the parity harness: a test names an encoding and a tolerance, the directions are chosen here."""
+"""The inputs of the parity harness: a test names an encoding and a tolerance, and the directions are chosen here."""
 
 import itertools
 from functools import cache
@@ -7,14 +7,14 @@ import numpy as np
 
 
 def _kept(array: np.ndarray) -> np.ndarray:
-    """Every test has the same array, and none may write to it."""
+    """Return the array as read-only, because all tests share it."""
     array.flags.writeable = False
     return array
 
 
 @cache
 def hard_directions() -> np.ndarray:
-    """Axes and diagonals with both zeros, and poles and fold seams with a few ulps around; float32 (count, 3)."""
+    """Return axes, diagonals with both zeros, poles and fold seams with a few ulps around; float32 (count, 3)."""
     steps = [0.0, -0.0, *(s * k for k in (2.0**-24, 2.0**-23, 3e-7, 1e-5, 3e-4) for s in (1, -1))]
     near_axes = [np.insert([a, b], i, s) for i, s, a, b in itertools.product(range(3), (1.0, -1.0), steps, steps)]
     diagonals = [d for d in itertools.product((-1.0, 0.0, -0.0, 1.0), repeat=3) if any(d)]
@@ -28,14 +28,14 @@ def hard_directions() -> np.ndarray:
 
 @cache
 def random_directions(count: int, seed: int = 0) -> np.ndarray:
-    """Uniform on the sphere, float32 (count, 3)."""
+    """Return directions uniform on the sphere, float32 (count, 3)."""
     v = np.random.default_rng(seed).normal(size=(count, 3))
     return _kept((v / np.linalg.norm(v, axis=1, keepdims=True)).astype(np.float32))
 
 
 @cache
 def view_positions(count: int, seed: int = 1) -> np.ndarray:
-    """Positions in front of the eye, the first ones straight up, down and ahead; float32 (count, 3)."""
+    """Return positions in front of the eye, the first straight up, down and ahead; float32 (count, 3)."""
     v = np.random.default_rng(seed).uniform((-2, -2, -3), (2, 2, -0.1), (count, 3))
     special = [(0, 1, 0), (0, -1, 0), (0, 0, -1), (0, 2, -1e-20), (1, 0, 0)]
     v[: len(special)] = special

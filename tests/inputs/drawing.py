@@ -76,12 +76,12 @@ def towards(*way: float) -> tuple[float, ...]:
 
 
 def apart(a: np.ndarray, b: np.ndarray) -> float:
-    """PSNR in dB between two linear images as they are displayed."""
+    """Return the PSNR in dB between two linear images as they are displayed."""
     return psnr(displayed(a) - displayed(b))
 
 
 def covered_by_glass(gl, name: str) -> np.ndarray:
-    """Which pixels transparent surfaces cover, found by making them glow."""
+    """Return which pixels transparent surfaces cover, found by making these surfaces glow."""
     scene = scene_of(name)
     glowing = tuple(replace(m, emissive=(1e4,) * 3) if m.alpha < 1 else m for m in scene.materials)
     if glowing == scene.materials:

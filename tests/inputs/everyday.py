@@ -1,6 +1,6 @@
-"""Small shaders in the forms that people write: each has a pair of functions, `mine_encode` and `mine_decode`.
+"""Small shaders as people write them: each has a pair of functions, `mine_encode` and `mine_decode`.
 
-Each one holds what a translator has once got wrong, or could not read.
+Each shader contains something that a translator once got wrong or could not read.
 """
 
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ DECODE = "vec3 mine_decode(vec2 e, vec3 view) { return normalize(vec3(e, 1.0 - a
 
 
 def _encode(body: str, before: str = "") -> str:
-    """A shader whose encoder ends in these statements: `a` is the code."""
+    """Return a shader whose encoder ends in these statements; `a` is the code."""
     return f"{before}\nvec2 mine_encode(vec3 n, vec3 view) {{ {FOLD} {body} return a; }}\n{DECODE}"
 
 

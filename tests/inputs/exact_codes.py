@@ -1,4 +1,4 @@
-"""Codes made for tests: storages of any size, and a lattice of points that are looked up."""
+"""Encodings made for tests: storages of any size, and a lattice of points in a lookup table."""
 
 from pathlib import Path
 
@@ -12,12 +12,12 @@ from normalbench.encodings.vec import Vec2, Vec3
 
 
 def storage(kind: str, *bits: int) -> Storage:
-    """Fixed point of so many bits for each number."""
+    """Return a fixed-point storage with these bits for each number."""
     return Storage(f"{kind}{'_'.join(map(str, bits))}", "", kind, bits, 0)
 
 
 def nearest_of(points: np.ndarray, side: int) -> Encoding:
-    """A code that is the nearest of side x side points, by their number."""
+    """Return an encoding to the number of the nearest of side x side points."""
 
     def encode(n: Vec3, _: Vec3) -> Vec2:
         table = jnp.asarray(points, n.z.dtype)
@@ -46,7 +46,7 @@ def nearest_of(points: np.ndarray, side: int) -> Encoding:
 
 
 def fibonacci(count: int) -> np.ndarray:
-    """Points of equal area along a spiral, shape (count, 3)."""
+    """Return points of equal area along a spiral, shape (count, 3)."""
     index = np.arange(count) + 0.5
     z, angle = 1 - 2 * index / count, np.pi * (1 + np.sqrt(5)) * index
     r = np.sqrt(1 - z * z)

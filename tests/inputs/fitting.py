@@ -1,4 +1,4 @@
-"""Which codes fit a target together, counted apart from the program that packs them."""
+"""A check of which encodings fit a target together, independent of the program that packs them."""
 
 import math
 
@@ -6,7 +6,7 @@ from normalbench.bench.tables.budget.bins import SHARED, Bin
 
 
 def _holds(one: Bin, codes) -> bool:
-    """Whether codes fit a target together: in its bits, or in its channels and bytes that they share bit by bit."""
+    """Whether encodings fit a target together: in its bits, or in its channels and bytes, shared bit by bit."""
     needs = [one.need(code) for code in codes]
     if None in needs:
         return False
@@ -21,6 +21,6 @@ def _holds(one: Bin, codes) -> bool:
 
 
 def fit(codes, homes) -> bool:
-    """Whether codes fit the targets in which they lie, one for each."""
+    """Whether encodings fit their targets, one target for each."""
     placed = list(zip(codes, homes, strict=True))
-    return all(_holds(home, [code for code, at in placed if at is home]) for home in set(homes))
+    return all(_holds(home, [code for code, place in placed if place is home]) for home in set(homes))

@@ -17,41 +17,41 @@ RIM = 0.6
 
 
 def picture(slopes, kind: type[np.unsignedinteger] = np.uint16) -> bytes:
-    """A normal map of 16 or 8 bits; `slopes` gives x and y of its normals at (right, up), each in [-1, 1]."""
-    at = (np.arange(128) + 0.5) / 64 - 1
-    right, up = np.meshgrid(at, -at)
+    """Return a normal map of 16 or 8 bits; `slopes` gives x and y of its normals at (right, up), each in [-1, 1]."""
+    middles = (np.arange(128) + 0.5) / 64 - 1
+    right, up = np.meshgrid(middles, -middles)
     x, y = slopes(right, up)
     n = np.stack([x, y, np.sqrt(1 - x * x - y * y)], axis=-1)
     return png_bytes(np.round((n * 0.5 + 0.5) * np.iinfo(kind).max).astype(kind))
 
 
 def dome(right, up):
-    """x and y of a dome's normals: its left faces left."""
+    """Return x and y of a dome's normals: its left side faces left."""
     return RIM * right, RIM * up
 
 
 def uv_of(way: np.ndarray, corners: np.ndarray = CORNERS) -> np.ndarray:
-    """Uv of a square's corners that lay a picture on it by `way`: v grows downwards."""
+    """Return the uv coordinates that place an image on a square's corners by `way`; v grows downwards."""
     return (corners @ way.T) * (0.5, -0.5) + 0.5
 
 
 def halves(
     way: np.ndarray, authored: bool = False, kind: type[np.unsignedinteger] = np.uint16, **material: Any
 ) -> Document:
-    """Two squares of 2 x 2 that face a camera, in one material but for the map: at the left, vertices have the dome's
-    normals; at the right, a normal map has them, laid by `way`, one of WAYS.
+    """Return two 2 x 2 squares that face a camera, in the same material except for the map: on the left, vertices
+    have the dome's normals; on the right, a normal map has them, placed by `way`, one of WAYS.
 
     Args:
-        way: (2, 2), orthogonal; what a determinant of -1 mirrors.
+        way: (2, 2), orthogonal; a determinant of -1 mirrors the image.
         authored: whether the file has tangents.
-        kind: of the map's texels.
-        material: further fields of both materials.
+        kind: type of the map's texels.
+        material: other fields of both materials.
     """
     document = Document()
     picture_of_dome = {"index": document.texture(picture(dome, kind), wrapS=33071, wrapT=33071)}
     mapped, modelled = document.material(normalTexture=picture_of_dome, **material), document.material(**material)
-    at = np.linspace(-1, 1, 33)
-    x, y = (a.ravel() for a in np.meshgrid(at, at))
+    steps = np.linspace(-1, 1, 33)
+    x, y = (a.ravel() for a in np.meshgrid(steps, steps))
     n = np.stack([RIM * x, RIM * y, np.sqrt(1 - RIM**2 * (x * x + y * y))], axis=1)
     grid = np.stack([x, y, 0 * x], axis=1)
     document.node(mesh=document.mesh(grid, n, grid_triangles(32, 32), material=modelled), translation=[-1.1, 0, 0])
@@ -65,6 +65,6 @@ def halves(
 
 
 def file_tangents(way: np.ndarray) -> list[tuple[float, ...]]:
-    """Where a picture's right lies on the square, and on which side its up is, as glTF has them."""
+    """Return glTF tangents: where the image's right is on the square, and on which side its up is."""
     right, up = way
     return [(*right, 0, np.sign(right[0] * up[1] - right[1] * up[0]))] * 4

@@ -1,6 +1,6 @@
-"""Loaded by Python at its start: hides from the program what a system lacks, and gives it what only that system has.
+"""A start-up module of Python that hides what a system lacks from the program, and adds what only the system has.
 
-Other packages keep all of it: they are made for that system, and here they are made for Linux.
+Other packages still see all of Linux, because they are installed for Linux here.
 """
 
 import builtins
@@ -17,7 +17,7 @@ GONE = set(TOLD["gone"])
 
 
 def _of_windows():
-    """What only Windows has, as far as the program uses it, by module."""
+    """Return what only Windows has, as far as the program uses it, by module."""
     import ctypes
     import fcntl
     import os
@@ -104,10 +104,10 @@ def _imported(name, globals=None, locals=None, fromlist=(), level=0):
         return _import(name, globals, locals, fromlist, level)
     if level == 0 and name in GONE:
         raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-    found = _import(name, globals, locals, fromlist, level)
+    module = _import(name, globals, locals, fromlist, level)
     if level == 0 and name == "sys" and importer.startswith(ROOM):
         return _sys
-    return _seen.get(name, found) if level == 0 else found
+    return _seen.get(name, module) if level == 0 else module
 
 
 def _hide():

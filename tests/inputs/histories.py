@@ -1,4 +1,4 @@
-"""Made-up runs of the commits of a repository: as `run` writes them, with figures that are given."""
+"""Made-up runs of a repository's commits, in the form that `run` writes, with given figures."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ Steps = Iterable[Mapping[str, Any]]
 
 
 def name_of(at: int) -> str:
-    """A commit's name, as Git's are."""
+    """Return a made-up commit name in Git's form."""
     return f"{(at + 1) * 0x9E3779B97F4A7C15 % 2**64:016x}".ljust(40, "0")
 
 
 def write_run(folder: Path, at: int, steps: Steps, **facts: Any) -> Path:
-    """A run of the commit of a number."""
+    """Write a run of the commit with this number."""
     about = {"name": name_of(at), "time": FIRST + DAY * at, "rank": 1, "changed": False}
     about |= {"subject": SUBJECTS.get(at, f"Change {at}")}
-    made = {
+    record = {
         "schema": SCHEMA,
         "request": {"tables": ["all"]},
         "machine": {"GL": "one"},
@@ -42,28 +42,28 @@ def write_run(folder: Path, at: int, steps: Steps, **facts: Any) -> Path:
     data = b"".join(json.dumps(step).encode() + b"\n" for step in steps)
     folder.mkdir(parents=True)
     (folder / "rows.jsonl").write_bytes(data)
-    (folder / "run.json").write_text(json.dumps(made | seal(data) | facts))
+    (folder / "run.json").write_text(json.dumps(record | seal(data) | facts))
     return folder
 
 
 def seal(data: bytes) -> dict[str, Any]:
-    """What a finished run remembers of its rows."""
+    """Return what a finished run records about its rows."""
     from normalbench.bench.keep.runs import _seal_columns
 
     return _seal_columns(data)
 
 
 def steps(at: int, noise: np.random.Generator, more: int = 0) -> list[dict[str, Any]]:
-    """The rows of a commit: errors of two codes, their instructions, and times that are noise.
+    """Return the rows of a commit: errors of two encodings, their instructions, and times that are noise.
 
     Args:
-        more: further encodings, whose figures never change.
+        more: number of other encodings, whose figures never change.
     """
-    found = []
+    rows = []
     for encoding in ("mine", "octahedral", *(f"code{number}" for number in range(more))):
-        found += [_quality(encoding, storage, at) for storage in ("rg8", "rgba8")]
-        found += [_cost(encoding, at)]
-    return found + [_times(pipeline, noise) for pipeline in PIPELINES]
+        rows += [_quality(encoding, storage, at) for storage in ("rg8", "rgba8")]
+        rows += [_cost(encoding, at)]
+    return rows + [_times(pipeline, noise) for pipeline in PIPELINES]
 
 
 def _quality(encoding: str, storage: str, at: int) -> dict[str, Any]:
@@ -91,7 +91,7 @@ def _cost(encoding: str, at: int) -> dict[str, Any]:
 
 
 def _times(pipeline: str, noise: np.random.Generator) -> dict[str, Any]:
-    """A frame's milliseconds, which waver from run to run, and now and then are twice as many."""
+    """Return a frame's milliseconds, which vary from run to run and occasionally double."""
     middle = 10 * float(np.exp(noise.normal(0, NOISE))) * (2 if noise.random() < 0.05 else 1)
     each = [round(middle * float(np.exp(noise.normal(0, 0.002))), 4) for _ in range(9)]
     row = {"pipeline": pipeline, "ms_frame": float(np.median(each)), "ms_frame_each": " ".join(map(str, each))}
@@ -99,8 +99,8 @@ def _times(pipeline: str, noise: np.random.Generator) -> dict[str, Any]:
 
 
 def write_history(folder: Path, commits: int = COMMITS, more: int = 0, seed: int = 0) -> Path:
-    """A folder with a run of each commit, whose names are in no order of theirs."""
+    """Write a folder with a run of each commit, whose names are in no particular order."""
     noise = np.random.default_rng(seed)
-    for at in range(commits):
-        write_run(folder / name_of(at)[:8], at, steps(at, noise, more))
+    for number in range(commits):
+        write_run(folder / name_of(number)[:8], number, steps(number, noise, more))
     return folder

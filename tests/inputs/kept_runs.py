@@ -1,7 +1,7 @@
-"""What tools said of what they were given, kept for all tests, their processes and the next run.
+"""Outputs of tools, kept for all tests, their processes and the next run.
 
-glslang takes 50 ms to begin with, and tests of an empty cache give it the same few shaders again and again. What it
-says follows from the program's file, its options and its input: these are the key.
+glslang takes 50 ms to start, and tests of an empty cache give it the same few shaders again and again. Its output
+follows from the program's file, its options and its input: these are the key.
 """
 
 import base64
@@ -22,7 +22,7 @@ Run = Callable[..., subprocess.CompletedProcess[bytes]]
 
 
 def kept(run: Run, folder: Path) -> Run:
-    """`tools._piped`, which takes a command, its input and a file that the command may write by its descriptor."""
+    """Return a `tools._piped` that keeps results; it takes a command, its input and a descriptor of an output."""
 
     def kept_run(command: list[str], given: bytes, *files: int) -> subprocess.CompletedProcess[bytes]:
         tool = shutil.which(command[0])
@@ -30,7 +30,7 @@ def kept(run: Run, folder: Path) -> Run:
             return run(command, given, *files)
         path = folder / _key(tool, command[1:], given, files)
         try:
-            said = {name: base64.b64decode(text) for name, text in json.loads(path.read_text()).items()}
+            outputs = {name: base64.b64decode(text) for name, text in json.loads(path.read_text()).items()}
         except (OSError, ValueError):
             done = run(command, given, *files)
             written = os.pread(files[0], os.fstat(files[0]).st_size, 0) if files else b""
@@ -39,8 +39,8 @@ def kept(run: Run, folder: Path) -> Run:
                 write_json(path, {name: base64.b64encode(data).decode() for name, data in parts.items()})
             return done
         if files:
-            os.pwrite(files[0], said["written"], 0)
-        return subprocess.CompletedProcess(command, 0, said["out"], said["err"])
+            os.pwrite(files[0], outputs["written"], 0)
+        return subprocess.CompletedProcess(command, 0, outputs["out"], outputs["err"])
 
     return kept_run
 
@@ -52,12 +52,12 @@ def _key(tool: str, words: list[str], given: bytes, files: tuple[int, ...]) -> s
 
 @cache
 def _fingerprint(tool: str) -> str:
-    """A program's name and what its file holds. One that is replaced meanwhile is seen by the next process."""
+    """Return a program's name and its file's digest. If the file is replaced, only the next process notices."""
     return f"{Path(tool).name} {file_digest(Path(tool)).hex()}"
 
 
 def write_json(path: Path, value: Any) -> None:
-    """Write a value as JSON, whole or not at all: threads and processes may write the same at once."""
+    """Write a value as JSON, whole or not at all: threads and processes may write the same file at once."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.NamedTemporaryFile("w", dir=path.parent, encoding="utf-8", delete=False) as file:
         json.dump(value, file)

@@ -2,9 +2,9 @@
 
     python tests/inputs/killing.py WRITER FOLDER
 
-Prints how often the writer was killed. Raises AssertionError where a file is neither the old one nor the new one, or
-where the same writer does not end with the files of one that nobody disturbed. A process that runs no thread forks for
-each kill, so that what takes seconds is imported once.
+Prints how often the writer was killed. Raises AssertionError if a file is neither the old version nor the new, or if
+the writer does not end with the files of an undisturbed writer. A process that runs no thread forks for each kill, so
+that slow imports happen once.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ ROWS = [Step({"number": number}, None, "") for number in range(4)]
 
 
 def keep_rows(folder: Path, count: int = len(ROWS)) -> None:
-    """As `run` does: rows that are not there yet, and then that they are all."""
+    """Keep rows as `run` does: those that are missing, and then the mark that the run is finished."""
     rows = both_ways.rows_of_tables()["depth"]
     with opened(folder / "run", FACTS) as run:
         for step, row in zip(ROWS[:count], rows, strict=False):
@@ -57,7 +57,7 @@ def keep_rows(folder: Path, count: int = len(ROWS)) -> None:
 
 
 def rows_are_whole(folder: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -> None:
-    """Rows in their order, and nothing that was there is gone."""
+    """Check that rows are in order and that no earlier row is lost."""
     now = (folder / "run/rows.jsonl").read_bytes()
     lines = len(read_run(folder / "run").steps)
     assert before["run/rows.jsonl"].count(b"\n") <= lines
@@ -65,7 +65,7 @@ def rows_are_whole(folder: Path, before: Mapping[str, bytes], after: Mapping[str
 
 
 def a_run(folder: Path) -> None:
-    """A finished run, and the file of a device."""
+    """Write a finished run and the file of a device."""
     keep_rows(folder)
     devices.write(folder / "device.json")
 
@@ -75,7 +75,7 @@ def import_a_device(folder: Path) -> None:
 
 
 def import_is_whole(folder: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -> None:
-    """All of the device's rows or none."""
+    """Check that the run has all of the device's rows or none."""
     assert (folder / "run/rows.jsonl").read_bytes() in (before["run/rows.jsonl"], after["run/rows.jsonl"])
     done = read_run(folder / "run")
     assert done.finished and not done.damage
@@ -92,7 +92,7 @@ def site(folder: Path) -> None:
 
 
 def another_site(folder: Path) -> None:
-    """The site of a device, and the files of that one and another."""
+    """Write the site of a device, and the files of this device and another."""
     devices.write(folder / "devices/a.json")
     site(folder)
     devices.write(folder / "devices/a.json", made="2026-11-24T15:00:00Z", truncated=("RG8",))
@@ -124,7 +124,7 @@ Check = Callable[[Path, Mapping[str, bytes], Mapping[str, bytes]], None]
 
 
 def files_are_whole(folder: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -> None:
-    """Each is the old one or the new one."""
+    """Check that each file is the old version or the new version."""
     for name, content in files(folder).items():
         assert content in (before.get(name), after.get(name)), name
 
@@ -144,10 +144,10 @@ WRITERS: dict[str, tuple[Callable[[Path], None], Callable[[Path], None] | None, 
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    """What readers see, less where the folder is: no file that is being written."""
-    found = {str(path.relative_to(folder)): path for path in folder.rglob("*") if path.is_file()}
+    """Return the files that readers see, without the folder's path in them; files being written are left out."""
+    paths = {str(path.relative_to(folder)): path for path in folder.rglob("*") if path.is_file()}
     here = str(folder).encode()
-    return {name: path.read_bytes().replace(here, b"") for name, path in found.items() if not is_partial(name)}
+    return {name: path.read_bytes().replace(here, b"") for name, path in paths.items() if not is_partial(name)}
 
 
 def is_partial(name: str) -> bool:
@@ -155,7 +155,7 @@ def is_partial(name: str) -> bool:
 
 
 def die(written: str | int) -> None:
-    """As where a file is being written, by its name or descriptor: a part of it is there."""
+    """Kill this process as if a file, given by name or descriptor, were partly written."""
     if isinstance(written, int):
         os.truncate(written, os.fstat(written).st_size - 3)
     elif Path(written).is_file():
@@ -189,7 +189,7 @@ def end_before(number: int, folder: Path) -> None:
 
 
 def is_killed(write: Callable[[Path], None], folder: Path, number: int = 0) -> bool:
-    """Run a writer in a process of its own; whether it was killed, which it is before a change where there is one."""
+    """Run a writer in its own process, killed before change `number` if it exists; return whether it was killed."""
     process = os.fork()
     if not process:
         if number:
@@ -209,8 +209,8 @@ def fresh(folder: Path) -> Path:
 
 
 def import_what_it_takes(write: Callable[[Path], None], prepare: Callable[[Path], None] | None, folder: Path) -> None:
-    """Run a writer once in this process: what it imports and reads for the first time takes most of its time, which
-    each fork would take anew. Raises AssertionError where a thread comes of it, which no fork would have."""
+    """Run a writer once in this process, because its imports and first reads take most of its time and every fork
+    would repeat them. Raises AssertionError if a thread results, which no fork would have."""
     fresh(folder)
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere), redirect_stderr(nowhere):
         if prepare:

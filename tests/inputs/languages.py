@@ -1,4 +1,4 @@
-"""The languages that files are run in; where CI is set, a machine that lacks what runs one fails its tests."""
+"""The languages that files are run in; with CI set, tests fail on a machine that cannot run one."""
 
 import os
 
@@ -15,7 +15,7 @@ RUN = [name for name in LANGUAGES if name not in NEVER_RUN]
 
 
 def require_runner(language: str) -> None:
-    """Skips the test where something is missing."""
+    """Skip the test if something is missing, unless CI is set."""
     try:
         runner(language).how()
     except (MissingError, NoDeviceError) as error:

@@ -1,7 +1,7 @@
-"""Light propagation volumes once more, in NumPy and float64, from the papers: what the shaders are held against.
+"""Light propagation volumes in NumPy and float64, written from the papers: a reference for the shaders.
 
-A field has the shape (x, y, z, 4, channels): four coefficients of spherical harmonics in each cell. A point is in cells
-from the low corner of the volume.
+A field has the shape (x, y, z, 4, channels): four coefficients of spherical harmonics in each cell. A point is in
+cells from the low corner of the volume.
 """
 
 from __future__ import annotations
@@ -19,19 +19,20 @@ SHIFT = 0.5 - 2.0**-10
 
 
 def harmonics(w) -> np.ndarray:
-    """(..., 3) directions to (..., 4)."""
+    """Return the harmonics, (..., 4), of directions, (..., 3)."""
     w = np.asarray(w, float)
-    one = np.full(w.shape[:-1], BAND0)
-    return np.stack([one, -BAND1 * w[..., 1], BAND1 * w[..., 2], -BAND1 * w[..., 0]], axis=-1)
+    constant = np.full(w.shape[:-1], BAND0)
+    return np.stack([constant, -BAND1 * w[..., 1], BAND1 * w[..., 2], -BAND1 * w[..., 0]], axis=-1)
 
 
 def lobe(n) -> np.ndarray:
-    """max(n.w, 0) in two bands, (..., 3) to (..., 4)."""
+    """Return max(n.w, 0) in two bands, (..., 3) to (..., 4)."""
     return LOBE * harmonics(n)
 
 
 def square_angle(distance: float, half: float = 0.5) -> float:
-    """Of a square seen along its axis: four quarters, each asin(sin a sin b) for the angles to its edges."""
+    """Return the solid angle of a square seen along its axis: four quarters, each asin(sin a sin b) for the angles to
+    its edges."""
     sine = half / np.hypot(half, distance)
     return 4 * float(np.arcsin(sine * sine))
 
@@ -41,12 +42,12 @@ SIDE = (square_angle(0.5) - FRONT) / 4
 
 
 def flux(field: np.ndarray) -> np.ndarray:
-    """All light of a field, for each channel: intensity over the sphere."""
+    """Return all light of a field, for each channel: intensity over the sphere."""
     return field[..., 0, :].sum(axis=(0, 1, 2)) * 2 * np.sqrt(np.pi)
 
 
 def added(shape: tuple[int, int, int], points: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values of points added up in the cells of index floor(point); those outside are left out."""
+    """Return values of points added up in the cells of index floor(point); points outside are left out."""
     cell = np.floor(points).astype(int)
     inside = np.all((cell >= 0) & (cell < shape), axis=-1)
     field = np.zeros((*shape, *values.shape[1:]))
@@ -55,42 +56,42 @@ def added(shape: tuple[int, int, int], points: np.ndarray, values: np.ndarray) -
 
 
 def injected(cells: int, points: np.ndarray, normals: np.ndarray, fluxes: np.ndarray) -> np.ndarray:
-    """VPLs to a field. Points and normals are (count, 3), fluxes (count, channels)."""
+    """Return the field of VPLs. Points and normals are (count, 3), fluxes (count, channels)."""
     values = lobe(normals)[:, :, None] * fluxes[:, None, :] / np.pi
     return added((cells,) * 3, points + SHIFT * normals, values)
 
 
 def blocked(cells: int, points: np.ndarray, normals: np.ndarray, areas: np.ndarray) -> np.ndarray:
-    """Surfels to potentials at the cells' corners, (x, y, z, 4); areas are in faces of a cell."""
+    """Return the potentials of surfels at the cells' corners, (x, y, z, 4); areas are in faces of a cell."""
     values = lobe(normals) * np.minimum(areas, 1)[:, None]
     return added((cells + 1,) * 3, points + 0.5 + (SHIFT - 0.5) * normals, values)
 
 
 def shifted(field: np.ndarray, by: np.ndarray) -> np.ndarray:
-    """What is in the cell `by` before, and nothing from outside."""
-    found = np.zeros_like(field)
+    """Return the field moved by `by` cells, with zeros from outside."""
+    moved = np.zeros_like(field)
     there = tuple(slice(max(-b, 0), field.shape[i] - max(b, 0)) for i, b in enumerate(by))
     here = tuple(slice(max(b, 0), field.shape[i] + min(b, 0)) for i, b in enumerate(by))
-    found[here] = field[there]
-    return found
+    moved[here] = field[there]
+    return moved
 
 
 def at_faces(potentials: np.ndarray, side: np.ndarray) -> np.ndarray:
-    """Potentials in the middle of each cell's face on one side: the mean of its four corners."""
+    """Return potentials in the middle of each cell's face on one side: the mean of its four corners."""
     count = np.array(potentials.shape[:3]) - 1
     corners = [c for c in product((0, 1), repeat=3) if np.dot(2 * np.array(c) - 1, side) > 0]
     return sum(potentials[tuple(slice(a, a + n) for a, n in zip(c, count, strict=True))] for c in corners) / 4
 
 
 def step(field: np.ndarray, potentials=None, amplifier=0.0, normaliser=1 / np.pi, clamps=False) -> np.ndarray:
-    """One step of propagation."""
-    found = np.zeros_like(field)
+    """Return a field after one step of propagation."""
+    after = np.zeros_like(field)
     if potentials is not None:
         most = np.minimum(LOBE[0] * BAND0 / np.maximum(potentials[..., :1], 1e-300), 1)
         potentials = potentials * most
     for way in AXES:
         there = shifted(field, way)
-        at = at_faces(potentials, -way) if potentials is not None else None
+        blockers = at_faces(potentials, -way) if potentials is not None else None
         for face in AXES:
             if np.array_equal(face, -way):
                 continue
@@ -98,14 +99,14 @@ def step(field: np.ndarray, potentials=None, amplifier=0.0, normaliser=1 / np.pi
             w = way if ahead else (way + face / 2) / np.linalg.norm(way + face / 2)
             intensity = np.einsum("k,xyzkc->xyzc", harmonics(w), there)
             passes = (FRONT if ahead else SIDE) * (np.maximum(intensity, 0) if clamps else intensity)
-            if at is not None:
-                passes = passes * (1 - np.clip(amplifier * at @ harmonics(-w), 0, 1))[..., None]
-            found += normaliser * lobe(face)[:, None] * passes[..., None, :]
-    return found
+            if blockers is not None:
+                passes = passes * (1 - np.clip(amplifier * blockers @ harmonics(-w), 0, 1))[..., None]
+            after += normaliser * lobe(face)[:, None] * passes[..., None, :]
+    return after
 
 
 def propagated(field: np.ndarray, steps: int, potentials=None, amplifier=0.0) -> np.ndarray:
-    """The sum of a field and so many steps of it; the first is not blocked."""
+    """Return the sum of a field and its first `steps` steps of propagation; the first step is not blocked."""
     total = field
     for number in range(steps):
         field = step(field, potentials if number else None, amplifier)
@@ -114,14 +115,15 @@ def propagated(field: np.ndarray, steps: int, potentials=None, amplifier=0.0) ->
 
 
 def looked_up(total: np.ndarray, points: np.ndarray, normals: np.ndarray, cell: float) -> np.ndarray:
-    """Light times 1 / pi at points, (count, channels), of VPLs whose colours are E / pi; normals of 0 read band 0."""
+    """Return light times 1 / pi at points, (count, channels), from VPLs whose colours are E / pi; normals of 0 read
+    band 0."""
     place = points + 0.5 * normals - 0.5
     corner = np.floor(place).astype(int)
     share, most = place - corner, total.shape[0] - 1
     basis = harmonics(-normals)
-    found = np.zeros((len(points), total.shape[-1]))
+    light = np.zeros((len(points), total.shape[-1]))
     for right in product((0, 1), repeat=3):
-        at = np.clip(corner + right, 0, most)
+        neighbours = np.clip(corner + right, 0, most)
         weight = np.prod(np.where(right, share, 1 - share), axis=1)
-        found += weight[:, None] * np.einsum("nk,nkc->nc", basis, total[tuple(at.T)])
-    return np.maximum(found, 0) / (cell / 2) ** 2
+        light += weight[:, None] * np.einsum("nk,nkc->nc", basis, total[tuple(neighbours.T)])
+    return np.maximum(light, 0) / (cell / 2) ** 2

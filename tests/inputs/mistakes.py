@@ -1,4 +1,4 @@
-"""Mistakes that people make in an encoder or a decoder, as edits of right texts in GLSL."""
+"""Mistakes that people make in an encoder or a decoder, as edits of correct GLSL."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -93,14 +93,14 @@ OCTAHEDRAL = tuple(TEXTS)[:5]
 
 
 class Mistake(NamedTuple):
-    """A mistake: what its finding says, and the edits of a text that make it; each edit must change the text.
+    """A mistake: the text of its finding, and the edits that make it; each edit must change the text.
 
     Attributes:
-        said: a regular expression; empty where the mistake changes no result. STEPS stands for the largest integer of
-            so many bits, BITS for their number.
-        edits: what is replaced, by what; of several spellings the first that a text has.
-        code: what becomes of the code; {} stands for it, in [0, 1] where the text is, else in [-1, 1].
-        unit: whether that is a code in [0, 1], into which others are brought.
+        said: a regular expression; empty if the mistake changes no result. STEPS stands for the largest integer of
+            the given bits, BITS for their number.
+        edits: replaced texts with their replacements; of several spellings, the first in the text applies.
+        code: what becomes of the code; {} stands for it, in [0, 1] if the text uses that range, else in [-1, 1].
+        unit: whether the code is in [0, 1], into which other codes are brought.
     """
 
     said: str
@@ -169,30 +169,30 @@ MISTAKES: Mapping[str, Mistake] = MappingProxyType(
 
 
 def program(text: str, mistake: str, bits: int) -> str | None:
-    """A text with a mistake; None where the text has nothing that the mistake is made in."""
+    """Return a text with a mistake, or None if the mistake does not apply to the text."""
     body, code, before = TEXTS[text]
-    found = MISTAKES[mistake] if mistake else Mistake("")
-    for spellings in found.edits:
-        fitting = next((one for one in spellings if one[0] in body), None)
+    fault = MISTAKES[mistake] if mistake else Mistake("")
+    for spellings in fault.edits:
+        fitting = next((spelling for spelling in spellings if spelling[0] in body), None)
         if fitting is None:
             return None
         body = body.replace(*fitting)
-    if found.code and "0.5 + 0.5" in code:
-        code = found.code.format(f"({code})") if mistake != "wrong range" else "c"
-    elif found.code and found.unit:
-        code = f"({found.code.format(f'({code} * 0.5 + 0.5)')}) * 2.0 - 1.0"
-    elif found.code:
-        code = found.code.format(code)
+    if fault.code and "0.5 + 0.5" in code:
+        code = fault.code.format(f"({code})") if mistake != "wrong range" else "c"
+    elif fault.code and fault.unit:
+        code = f"({fault.code.format(f'({code} * 0.5 + 0.5)')}) * 2.0 - 1.0"
+    elif fault.code:
+        code = fault.code.format(code)
     swapped = "yxz" if "vec3 mine_encode" in body else "yx"
     return in_bits(body.replace("CODE", code).replace("BEFORE", before).replace("SWAPPED", swapped), bits)
 
 
 def said(mistake: str, bits: int) -> str:
-    """What the finding of a mistake says, a regular expression."""
+    """Return the regular expression for the finding of a mistake."""
     return in_bits(MISTAKES[mistake].said, bits)
 
 
 def in_bits(text: str, bits: int) -> str:
-    """A text with the integers of so many bits."""
+    """Return a text with the integers of these bits."""
     steps = 2**bits - 1
     return text.replace("STEPS", str(steps)).replace("LESS", str(steps - 1)).replace("BITS", str(bits))

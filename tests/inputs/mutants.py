@@ -1,4 +1,4 @@
-"""GLSL with two arguments of a call exchanged: what a parity test must notice."""
+"""GLSL with two arguments of a call exchanged, which a parity test must notice."""
 
 import itertools
 import re
@@ -10,7 +10,7 @@ CALL = re.compile(r"\b([A-Za-z_]\w*)\(")
 
 
 def split_arguments(text: str, start: int) -> tuple[list[str], int]:
-    """The arguments of a call whose parenthesis opens just before `start`, and where it closes."""
+    """Return the arguments of a call whose parenthesis opens just before `start`, and where it closes."""
     depth, begin, arguments = 0, start, []
     for i in range(start, len(text)):
         if text[i] in "([":
@@ -26,7 +26,7 @@ def split_arguments(text: str, start: int) -> tuple[list[str], int]:
 
 
 def exchanged(arguments: list[str], i: int, j: int) -> list[str]:
-    """Two change places; in a definition their names do, and the types stay."""
+    """Exchange two arguments; in a definition, exchange only their names and keep the types."""
     swapped = list(arguments)
     first, second = arguments[i].split(" "), arguments[j].split(" ")
     if len(first) == len(second) == 2 and first[0] in ("float", "vec2", "vec3"):
@@ -37,8 +37,8 @@ def exchanged(arguments: list[str], i: int, j: int) -> list[str]:
 
 
 def swapped_calls(text: str) -> list[tuple[str, str]]:
-    """(what, text) for each call or definition in a GLSL text, and each two of its arguments exchanged."""
-    found = []
+    """Return (what, text) for each call or definition in a GLSL text and each pair of its arguments exchanged."""
+    changes = []
     text = re.sub(r"//[^\n]*", lambda comment: " " * len(comment[0]), text)
     for match in CALL.finditer(text):
         arguments, end = split_arguments(text, match.end())
@@ -47,12 +47,12 @@ def swapped_calls(text: str) -> list[tuple[str, str]]:
         for i, j in itertools.combinations(range(len(arguments)), 2):
             if arguments[i] != arguments[j]:
                 swapped = ", ".join(exchanged(arguments, i, j))
-                found.append((f"{match[1]}({swapped})", text[: match.end()] + swapped + text[end:]))
-    return found
+                changes.append((f"{match[1]}({swapped})", text[: match.end()] + swapped + text[end:]))
+    return changes
 
 
 def part_of(text: str, function: str) -> tuple[int, int]:
-    """Where the definition that holds `function` starts and ends; the whole text for none."""
+    """Return where the definition of `function` starts and ends, or the whole text if it is empty."""
     if not function:
         return 0, len(text)
     start = text.index(function)
@@ -60,14 +60,14 @@ def part_of(text: str, function: str) -> tuple[int, int]:
 
 
 def mutants(glsl: Path, shared: Iterable[str] = ()) -> list[tuple[str, Path, str]]:
-    """(what, file, its text) for each two arguments exchanged in an encoding's file, and in those it shares: FILE or
-    FILE:FUNCTION in the folder above."""
-    found = []
+    """Return (what, file, its text) for each pair of arguments exchanged in an encoding's file, and in those that it
+    shares: FILE or FILE:FUNCTION in the folder above."""
+    changes = []
     for spec in ("", *shared):
         name, _, function = spec.partition(":")
         file = glsl.parents[1] / name if name else glsl
         text = file.read_text()
         start, end = part_of(text, function)
         swapped = swapped_calls(text[start:end])
-        found += [(what, file, text[:start] + changed + text[end:]) for what, changed in swapped]
-    return found
+        changes += [(what, file, text[:start] + changed + text[end:]) for what, changed in swapped]
+    return changes

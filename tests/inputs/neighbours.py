@@ -1,14 +1,14 @@
-"""Numbers beside numbers: where rounding goes the one way or the other."""
+"""Values next to given values, where rounding may go either way."""
 
 import numpy as np
 
 
 def around(values: np.ndarray, ulps: int = 3) -> np.ndarray:
-    """float32 values and their neighbours, `ulps` to each side."""
-    found = [values.astype(np.float32)]
+    """Return float32 values and their neighbours, `ulps` to each side."""
+    arrays = [values.astype(np.float32)]
     for towards in (np.float32(-np.inf), np.float32(np.inf)):
-        step = found[0]
+        step = arrays[0]
         for _ in range(ulps):
             step = np.nextafter(step, towards)
-            found.append(step)
-    return np.concatenate(found)
+            arrays.append(step)
+    return np.concatenate(arrays)

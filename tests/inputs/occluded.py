@@ -24,9 +24,9 @@ def plan_of(size: tuple[int, int], layout=FP32) -> Plan:
 
 
 def effect(text: str) -> ChosenEffect:
-    """An effect by its name and settings, such as `gtao:slices=4`."""
+    """Return an effect by its name and settings, such as `gtao:slices=4`."""
     name, *settings = text.split(":")
-    return chosen(EFFECTS[name], dict(one.split("=") for one in settings))
+    return chosen(EFFECTS[name], dict(setting.split("=") for setting in settings))
 
 
 def scene_of_meshes(*meshes: Mesh, view: View = FROM_ABOVE) -> Scene:
@@ -35,7 +35,7 @@ def scene_of_meshes(*meshes: Mesh, view: View = FROM_ABOVE) -> Scene:
 
 
 def turned(scene: Scene, rotation: np.ndarray) -> Scene:
-    """Scene and camera under one rotation, (3, 3), of column vectors."""
+    """Return scene and camera under one rotation, (3, 3), of column vectors."""
     whole = np.eye(4)
     whole[:3, :3] = rotation
     view = scene.view
@@ -47,13 +47,13 @@ def turned(scene: Scene, rotation: np.ndarray) -> Scene:
 
 
 def drawn_effect(gl, scene: Scene, text: str, size: tuple[int, int], resource=None, pipeline="deferred", layout=FP32):
-    """An effect's result or another of its resources, (height, width) or (height, width, channels), and the G-buffer's
-    positions and directions."""
-    one = effect(text)
-    with rendering(gl, PIPELINES[pipeline].with_effect(one.passes()), scene, plan_of(size, layout)) as made:
-        made.draw()
-        position, direction, *_ = made.gbuffer()
-        return np.squeeze(made.read(resource or one.effect.result)[0]), position, direction
+    """Return an effect's result or another of its resources, (height, width) or (height, width, channels), and the
+    G-buffer's positions and directions."""
+    method = effect(text)
+    with rendering(gl, PIPELINES[pipeline].with_effect(method.passes()), scene, plan_of(size, layout)) as drawing:
+        drawing.draw()
+        position, direction, *_ = drawing.gbuffer()
+        return np.squeeze(drawing.read(resource or method.effect.result)[0]), position, direction
 
 
 # Of a point in the middle of a level floor, the radius of a ball or a hole, and how far or deep it is.
@@ -68,7 +68,7 @@ def ball(radius: float, x: float, y: float) -> Mesh:
 
 
 def _sweep(radii, heights, outwards, up) -> Mesh:
-    """What a line from one radius and height to another leaves behind, going around."""
+    """Return the surface that a line from one radius and height to another sweeps as it turns about the axis."""
     cos, sin = np.cos(AROUND), np.sin(AROUND)
     rows = [np.stack([r * cos, 0 * cos + h, r * sin], axis=1) for r, h in zip(radii, heights, strict=True)]
     normals = np.tile(np.stack([outwards * cos, 0 * cos + up, outwards * sin], axis=1), (2, 1))
@@ -76,7 +76,7 @@ def _sweep(radii, heights, outwards, up) -> Mesh:
 
 
 def pit(radius: float, height: float) -> tuple[Mesh, Mesh, Mesh]:
-    """A floor under a round hole in a slab, with the hole's wall."""
+    """Return a floor under a round hole in a slab, with the hole's wall."""
     return (
         floor(),
         _sweep((radius, radius), (0.0, height), -1.0, 0.0),
@@ -85,29 +85,29 @@ def pit(radius: float, height: float) -> tuple[Mesh, Mesh, Mesh]:
 
 
 def disc(radius: float, height: float) -> Mesh:
-    """A level disc over the middle of the floor."""
+    """Return a level disc over the middle of the floor."""
     return _sweep((0.0, radius), (height, height), 0.0, -1.0)
 
 
 def pillar(radius: float, x: float, height: float) -> Mesh:
-    """What stands from the floor to the widest part of a ball."""
+    """Return a pillar from the floor to the widest part of a ball."""
     return _sweep((radius, radius), (0.0, height), 1.0, 0.0).placed(np.eye(3), (x, 0, 0))
 
 
 def by_ball(radius: float, x: float, y: float) -> float:
-    """V of the middle of the floor, a ball wholly above it: 1 - cos t (R / D)^2"""
+    """Return V at the middle of the floor for a ball entirely above it: 1 - cos t (R / D)^2."""
     distance = np.hypot(x, y)
     return 1 - y / distance * (radius / distance) ** 2
 
 
 def by_dome(radius: float, x: float) -> float:
-    """And half a ball on the floor: with sin a = R / D, 1 - (a - sin a cos a) / pi"""
+    """Return V for half a ball on the floor: with sin a = R / D, 1 - (a - sin a cos a) / pi."""
     a = np.arcsin(radius / x)
     return 1 - (a - np.sin(a) * np.cos(a)) / np.pi
 
 
 def by_pit(radius: float, height: float) -> float:
-    """And at the bottom of a pit: R^2 / (R^2 + h^2), what a disc in its mouth would take away."""
+    """Return V at the bottom of a pit: R^2 / (R^2 + h^2), which a disc in its mouth would take away."""
     return radius**2 / (radius**2 + height**2)
 
 

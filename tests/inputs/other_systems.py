@@ -1,4 +1,4 @@
-"""What Windows and macOS lack of Linux's Python, by the type checker's own list, and a Python that lacks it."""
+"""Names that Windows and macOS lack in Python, by the type checker's own list, and a Python without them."""
 
 import ast
 import importlib.util
@@ -42,13 +42,13 @@ start.program()
 
 @cache
 def _stubs():
-    """typeshed's folder of the standard library, as the type checker carries it."""
+    """Return typeshed's folder of the standard library, as the type checker ships it."""
     return Path(importlib.util.find_spec("basedpyright").origin).parent / "dist" / "typeshed-fallback" / "stdlib"
 
 
 @cache
 def lacking(module, system):
-    """The names of a module of the standard library that Linux has and another system lacks."""
+    """Return the names of a module of the standard library that Linux has and another system lacks."""
     body = _body(module)
     return frozenset(_names(body, "linux")) - frozenset(_names(body, system))
 
@@ -57,7 +57,7 @@ def lacking(module, system):
 def is_gone(module, system):
     """Whether a system lacks all that a module defines."""
     body = _body(module)
-    own = [{*_names(body, one)} - {*_names(body, one, ast.Import, ast.ImportFrom)} for one in ("linux", system)]
+    own = [{*_names(body, host)} - {*_names(body, host, ast.Import, ast.ImportFrom)} for host in ("linux", system)]
     return bool(own[0]) and not own[1]
 
 
@@ -69,7 +69,7 @@ def _body(module):
 
 
 def _names(body, system, *kinds):
-    """What statements define where `sys.platform` is a system; those of some kinds alone, where kinds are given."""
+    """Yield the names that statements define if `sys.platform` is a system, only of these kinds if any are given."""
     for node in body:
         match node:
             case ast.If(test=test):
@@ -87,7 +87,7 @@ def _names(body, system, *kinds):
 
 
 def _holds(test, system):
-    """Whether a condition on `sys.platform` and `sys.version_info` holds; any other one does."""
+    """Whether a condition on `sys.platform` and `sys.version_info` holds; any other condition holds."""
     if isinstance(test, ast.BoolOp):
         return (all if isinstance(test.op, ast.And) else any)(_holds(value, system) for value in test.values)
     text = ast.unparse(test)
@@ -97,16 +97,16 @@ def _holds(test, system):
 
 
 def on(system, folder, *commands, before=""):
-    """What the command line, and every process that it starts, does on a system that lacks what another one lacks.
+    """Run the command line on an emulated system; every process that it starts lacks what the system lacks.
 
     Args:
-        folder: an empty one, for what Python loads at its start.
-        commands: the words of one; of several one process does one after the other, and says how each ended.
+        folder: an empty folder, for the module that Python loads at its start.
+        commands: the words of one command, or several: one process runs these in turn and says how each ended.
         before: what the process does before anything else.
     """
     names = [name for name in sys.stdlib_module_names if not name.startswith("_")]
     gone = [name for name in names if is_gone(name, system)]
-    hidden = {name: sorted(found) for name in names if name not in gone and (found := lacking(name, system))}
+    hidden = {name: sorted(absent) for name in names if name not in gone and (absent := lacking(name, system))}
     told = {"system": system, "gone": gone, "lacking": hidden}
     folder.mkdir(exist_ok=True)
     (folder / "lacking.json").write_text(json.dumps(told))
@@ -124,6 +124,6 @@ def on(system, folder, *commands, before=""):
 
 
 def write_examples(folder):
-    """An encoder with its twin, and a gate, as files."""
+    """Write an encoder with its twin, and a gate, as files."""
     for name, text in {"mine.glsl": ENCODER, "mine.py": TWIN, "gates.toml": GATE}.items():
         (folder / name).write_text(text)

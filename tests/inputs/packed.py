@@ -1,4 +1,4 @@
-"""What a page holds packed."""
+"""Packed texts in a page."""
 
 import base64
 import re
@@ -6,7 +6,7 @@ import zlib
 
 
 def packed_text(page: str, key: str) -> str:
-    """The text of an element of a page, by its id."""
-    found = re.search(rf'id="{key}">([^<]*)</script>', page)
-    assert found, key
-    return zlib.decompress(base64.b64decode(found[1]), wbits=-zlib.MAX_WBITS).decode()
+    """Return the text of an element of a page, by its id."""
+    match = re.search(rf'id="{key}">([^<]*)</script>', page)
+    assert match, key
+    return zlib.decompress(base64.b64decode(match[1]), wbits=-zlib.MAX_WBITS).decode()

@@ -1,4 +1,4 @@
-"""Files of pixels as other programs write them, for the laboratory to read."""
+"""Image files as other programs write them, for the laboratory to read."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ EXR_ROWS = {"none": (0, 1), "RLE": (1, 1), "ZIPS": (2, 1), "ZIP": (3, 16)}
 
 
 def png(pixels: np.ndarray) -> bytes:
-    """RGB of 8 bits."""
-    made = io.BytesIO()
-    Image.fromarray(pixels).save(made, "png")
-    return made.getvalue()
+    """Return a PNG file with 8-bit RGB."""
+    buffer = io.BytesIO()
+    Image.fromarray(pixels).save(buffer, "png")
+    return buffer.getvalue()
 
 
 def png16(pixels: np.ndarray, interlaced: bool = False) -> bytes:
-    """RGB of 16 bits, the rows filtered in each of the five ways in turn."""
+    """Return a PNG file with 16-bit RGB, its rows filtered in each of the five ways in turn."""
     height, width, _ = pixels.shape
     rows = pixels.astype(">u2").view(np.uint8).reshape(height, -1).astype(np.int64)
     padded = np.pad(rows, ((1, 0), (6, 0)))
     left, above, corner = padded[1:, :-6], padded[:-1, 6:], padded[:-1, :-6]
-    apart = [abs(left + above - corner - one) for one in (left, above, corner)]
+    apart = [abs(left + above - corner - neighbour) for neighbour in (left, above, corner)]
     nearest = np.choose(np.argmin(apart, axis=0), [left, above, corner])
     guesses = [np.zeros_like(rows), left, above, (left + above) // 2, nearest]
     packed = b"".join(
@@ -43,7 +43,7 @@ def _chunk(one: tuple[bytes, bytes]) -> bytes:
 
 
 def hdr(pixels: np.ndarray, runs: bool = True) -> bytes:
-    """Radiance's RGBE, with runs of each channel or pixel by pixel."""
+    """Return a Radiance RGBE file, with runs of each channel or pixel by pixel."""
     height, width, _ = pixels.shape
     exponent = np.frexp(pixels.max(axis=-1))[1]
     scale = np.where(pixels.max(axis=-1) > 0, np.ldexp(1.0, 8 - exponent), 0.0)
@@ -53,33 +53,33 @@ def hdr(pixels: np.ndarray, runs: bool = True) -> bytes:
 
 
 def _runs(row: np.ndarray) -> bytes:
-    made = bytes([2, 2, len(row) >> 8, len(row) & 255])
+    packed = bytes([2, 2, len(row) >> 8, len(row) & 255])
     for channel in row.T:
         # One run of what is the same at the row's begin, then numbers as they are.
         same = int(np.argmax(channel != channel[0])) or len(channel)
         same = min(same, 127)
-        made += bytes([128 + same, channel[0]])
-        for at in range(same, len(channel), 128):
-            part = channel[at : at + 128]
-            made += bytes([len(part)]) + part.tobytes()
-    return made
+        packed += bytes([128 + same, channel[0]])
+        for start in range(same, len(channel), 128):
+            part = channel[start : start + 128]
+            packed += bytes([len(part)]) + part.tobytes()
+    return packed
 
 
 def exr(pixels: np.ndarray, packing: str = "ZIP", kind: type = np.float16, names: str = "RGB", flags: int = 0) -> bytes:
-    """Scanlines of one part."""
+    """Return an OpenEXR file with the scanlines of one part."""
     height, width, _ = pixels.shape
     code, rows = EXR_ROWS[packing]
     order = sorted(range(3), key=lambda at: names[at])
     word = 1 if kind is np.float16 else 2
-    channels = b"".join(f"{names[at]}\0".encode() + struct.pack("<IIii", word, 0, 1, 1) for at in order) + b"\0"
+    channels = b"".join(f"{names[index]}\0".encode() + struct.pack("<IIii", word, 0, 1, 1) for index in order) + b"\0"
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     attributes = [("channels", "chlist", channels), ("compression", "compression", bytes([code]))]
     attributes += [("dataWindow", "box2i", window), ("lineOrder", "lineOrder", b"\0")]
     head = struct.pack("<II", 20000630, 2 | flags)
     head += b"".join(f"{name}\0{of}\0".encode() + struct.pack("<I", len(data)) + data for name, of, data in attributes)
     blocks = [_block(pixels[y : y + rows, :, order].astype(kind), y, packing) for y in range(0, height, rows)]
-    at = len(head) + 1 + 8 * len(blocks)
-    places = [at + sum(map(len, blocks[:i])) for i in range(len(blocks))]
+    start = len(head) + 1 + 8 * len(blocks)
+    places = [start + sum(map(len, blocks[:i])) for i in range(len(blocks))]
     return head + b"\0" + struct.pack(f"<{len(places)}Q", *places) + b"".join(blocks)
 
 

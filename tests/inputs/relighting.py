@@ -1,7 +1,7 @@
-"""A G-buffer lit in NumPy, float64, from the published formulas: what the light passes are held to.
+"""A G-buffer lit in NumPy and float64 by the published formulas: the reference for the light passes.
 
-World space, not view space: positions and directions are taken back through the camera first, so that a light, an axis
-or a matrix that the renderer gets wrong does not cancel out.
+It works in world space, not view space: positions and directions are first taken back through the camera, so that a
+light, an axis or a matrix that the renderer gets wrong does not cancel out.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ TEXEL_ERROR, DEPTH_ERROR = 1e-3, 1e-6
 
 @dataclass(frozen=True)
 class Surfaces:
-    """What is seen through the covered pixels, world space, one row each.
+    """The surfaces in the covered pixels, in world space, one row each.
 
     Attributes:
-        covered: (height, width), which pixels the rows are.
+        covered: (height, width), the pixels of the rows.
         position, direction, to_eye, albedo, specular: (n, 3).
         power, kind, instance: (n,).
     """
@@ -39,14 +39,14 @@ class Surfaces:
     instance: np.ndarray
 
     def image(self, rows: np.ndarray) -> np.ndarray:
-        """Rows of the covered pixels as an image, 0 elsewhere."""
+        """Return rows of the covered pixels as an image, 0 elsewhere."""
         image = np.zeros((*self.covered.shape, *rows.shape[1:]))
         image[self.covered] = rows
         return image
 
 
 def surfaces(scene: Scene, gbuffer: list[np.ndarray]) -> Surfaces:
-    """The covered pixels of what `Rendering.gbuffer` returns, in world space."""
+    """Return the covered pixels of the result of `Rendering.gbuffer`, in world space."""
     position, direction, albedo, specular = (np.asarray(texels, np.float64) for texels in gbuffer)
     covered = position[..., 3] > 0
     to_world = np.linalg.inv(scene.view.matrix())
@@ -66,8 +66,8 @@ def surfaces(scene: Scene, gbuffer: list[np.ndarray]) -> Surfaces:
 
 @dataclass(frozen=True)
 class Lit:
-    """Light on surfaces: the sums D and S, (n, 3), and how far each may be off because float32 cannot tell whether a
-    texel of the shadow map is in front."""
+    """Light on surfaces: the sums D and S, (n, 3), and the possible error of each, because float32 cannot tell
+    whether a texel of the shadow map is in front."""
 
     diffuse: np.ndarray
     specular: np.ndarray
@@ -76,7 +76,7 @@ class Lit:
 
 
 def relight(scene: Scene, seen: Surfaces, shadow_map: np.ndarray | None) -> Lit:
-    """All the scene's lights on surfaces.
+    """Return the light of all lamps of the scene on surfaces.
 
     Args:
         shadow_map: depths, its first row at 0; None leaves the sun without shadows.
@@ -99,7 +99,7 @@ def relight(scene: Scene, seen: Surfaces, shadow_map: np.ndarray | None) -> Lit:
 
 
 def arrives(light: Light, distance: np.ndarray, to_light: np.ndarray) -> np.ndarray:
-    """The share of a point or spot light's colour that arrives.
+    """Return the share of a point or spot light's colour that arrives.
 
     Karis 2013, Real Shading in Unreal Engine 4: saturate(1 - (d / r)^4)^2 / (d^2 + 1). A spot's cone is a smooth step
     in the cosine, from the outer half angle to the inner.
@@ -114,9 +114,9 @@ def arrives(light: Light, distance: np.ndarray, to_light: np.ndarray) -> np.ndar
 
 
 def sunlit(scene: Scene, position: np.ndarray, shadow_map: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The least and the most of the sun that arrives, as float32 may have it: 3 x 3 percentage closer filtering.
+    """Return the lowest and highest share of sunlight that float32 allows, by 3 x 3 percentage-closer filtering.
 
-    A point outside the map is lit, and so is one no farther from the sun than the texel says.
+    A point outside the map is lit, and so is a point that is no farther from the sun than the texel's depth.
     """
     size = shadow_map.shape[0]
     matrix = sun_matrix(scene)
@@ -131,27 +131,27 @@ def sunlit(scene: Scene, position: np.ndarray, shadow_map: np.ndarray) -> tuple[
         least, most = np.zeros(len(position)), np.zeros(len(position))
         for up in (-1, 0, 1):
             for right in (-1, 0, 1):
-                at = np.clip(row + up, -2, size + 1) + 2, np.clip(column + right, -2, size + 1) + 2
-                least += depth + DEPTH_ERROR <= open_map[at]
-                most += depth - DEPTH_ERROR <= open_map[at]
+                tap = np.clip(row + up, -2, size + 1) + 2, np.clip(column + right, -2, size + 1) + 2
+                least += depth + DEPTH_ERROR <= open_map[tap]
+                most += depth - DEPTH_ERROR <= open_map[tap]
         low, high = np.minimum(low, least / 9), np.maximum(high, most / 9)
     return low, high
 
 
 def answers(seen: Surfaces, to_light: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """D and S of each surface for white light of brightness 1."""
+    """Return D and S of each surface for white light of brightness 1."""
     halfway = _unit(to_light + seen.to_eye)
     with_light, with_half = (np.sum(seen.direction * d, axis=1) for d in (to_light, halfway))
     eye_half = np.sum(seen.to_eye * halfway, axis=1)
-    found = np.zeros((2, len(to_light)))
+    terms = np.zeros((2, len(to_light)))
     for number, kind in enumerate(KINDS):
         here = seen.kind == number
-        found[:, here] = _KINDS[kind](with_light[here], with_half[here], eye_half[here], seen.power[here])
-    return found[0], found[1]
+        terms[:, here] = _KINDS[kind](with_light[here], with_half[here], eye_half[here], seen.power[here])
+    return terms[0], terms[1]
 
 
 def blinn_phong(cosine: np.ndarray, power: np.ndarray | float) -> np.ndarray:
-    """(n + 8) / 8 (N.H)^n: the lobe that keeps its energy under N.L (Hoffman, Real-Time Rendering, 3rd ed., 7.6)."""
+    """Return (n + 8) / 8 (N.H)^n, which conserves energy under N.L (Hoffman, Real-Time Rendering, 3rd ed., 7.6)."""
     return (power + 8) / 8 * np.clip(cosine, 0, 1) ** power
 
 
@@ -161,20 +161,21 @@ def _general(with_light, with_half, _eye_half, power):
 
 
 def _skin(with_light, with_half, eye_half, power):
-    """Wrapped diffuse light that keeps its energy (McAuley 2011): max(N.L + w, 0) / (1 + w)^2."""
+    """Return energy-conserving wrapped diffuse light (McAuley 2011): max(N.L + w, 0) / (1 + w)^2."""
     wrap = float(CONSTANTS["SKIN_WRAP"])
     highlight = _general(with_light, with_half, eye_half, power)[1]
     return np.clip(with_light + wrap, 0, None) / (1 + wrap) ** 2, highlight
 
 
 def _hair(with_light, with_half, _eye_half, power):
-    """Kajiya and Kay 1989 along the strand T: D = sin(T, L); Scheuermann 2004: its highlight D sin(T, H)^n."""
+    """Return hair shading by Kajiya and Kay 1989, D = sin(T, L) for the strand T, with Scheuermann's highlight of
+    2004, D sin(T, H)^n."""
     sine = np.sin(np.arccos(np.clip(with_light, -1, 1)))
     return sine, sine * np.sin(np.arccos(np.clip(with_half, -1, 1))) ** power
 
 
 def _glossy(with_light, with_half, eye_half, power):
-    """A clear coat that reflects F (Schlick 1994); the rest lights the base, which has a broad lobe of its own."""
+    """Return a clear coat that reflects F (Schlick 1994); the rest lights the base, which has a broad lobe."""
     normal = float(CONSTANTS["COAT_F0"])
     reflected = normal + (1 - normal) * (1 - eye_half) ** 5
     broad = float(CONSTANTS["BASE_SHARE"]) * blinn_phong(with_half, float(CONSTANTS["BASE_POWER"]))
@@ -186,7 +187,7 @@ _KINDS = {"general": _general, "skin": _skin, "hair": _hair, "glossy": _glossy}
 
 
 def emissive(scene: Scene, seen: Surfaces) -> np.ndarray:
-    """What surfaces give off themselves, (n, 3): their instance's material says it, which the G-buffer does not."""
+    """Return the light that surfaces emit, (n, 3), by their instances' materials; the G-buffer lacks this light."""
     materials = np.concatenate([part.materials for part in scene.parts])
     own = np.array([material.emissive for material in scene.materials])[materials]
     if not own.any():
@@ -196,7 +197,7 @@ def emissive(scene: Scene, seen: Surfaces) -> np.ndarray:
 
 
 def image(scene: Scene, seen: Surfaces, lit: Lit) -> np.ndarray:
-    """The final image without transparent surfaces: ambient light, own light, albedo x D + specular x S."""
+    """Return the image without transparent surfaces: ambient light, emitted light, albedo x D + specular x S."""
     colour = seen.albedo * (np.array(scene.ambient) + lit.diffuse) + seen.specular * lit.specular
     return seen.image(colour + emissive(scene, seen))
 

@@ -1,9 +1,9 @@
-"""Seconds of each test file, as `pytest --seconds FILE` adds them up and, where all pass, writes them. Those of files
-that did not run stay.
+"""Seconds of each test file. `pytest --seconds FILE` adds them up and, if all tests pass, writes them; those of files
+that did not run are kept.
 
-A file's seconds are those between the end of the test before its own and the end of each of its own, in the process
-that ran it: of processor, with all processes that it started, and by the clock. Four processes on two cores wait for
-one another, so only the seconds of processor add up to a machine's.
+A file's seconds run from the end of the test before its own to the end of each of its own, in the process that ran
+it: processor time, including all processes that it started, and wall time. Four processes on two cores wait for one
+another, so only processor seconds add up to a machine's.
 """
 
 import json
@@ -23,7 +23,7 @@ COLLECTING = "collecting"
 
 
 def processor_seconds() -> float:
-    """Seconds of processor that this process has taken, with all that it started, whether they have ended or not."""
+    """Return the processor seconds of this process and of all that it started, whether they have ended or not."""
     return sum(os.times()[:4]) + sum(map(_seconds, psutil.Process().children(recursive=True)))
 
 
@@ -35,7 +35,7 @@ def _seconds(process: psutil.Process) -> float:
 
 
 class Seconds:
-    """Adds up seconds in the process that runs tests; where several do, the one that started them writes the sum."""
+    """Seconds added up in the process that runs tests; of several processes, the parent writes the sum."""
 
     def __init__(self, path: Path):
         self._path = path
@@ -50,7 +50,7 @@ class Seconds:
         self._before = now
 
     def pytest_collection_finish(self):
-        """All that a process did before its first test."""
+        """Add all that a process did before its first test."""
         self._add(COLLECTING)
 
     @pytest.hookimpl(wrapper=True)

@@ -1,4 +1,4 @@
-"""How a metal/rough surface answers a light, in float64 and from the formulas: what GLSL is compared with."""
+"""The response of a metallic-roughness surface to a light, in float64 by the formulas: a reference for GLSL."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ def unit(v: np.ndarray) -> np.ndarray:
 
 
 def answer(n, v, l, roughness, albedo, f0) -> np.ndarray:  # noqa: E741
-    """Outgoing light for an irradiance of pi seen head on: pi n.l (D V F gain + albedo / pi (1 - what is reflected)).
+    """Return outgoing light for a head-on irradiance of pi: pi n.l (D V F gain + albedo / pi (1 - reflected share)).
 
     Args:
         n, v, l: unit normals and directions to the eye and to the light, (count, 3).
         roughness: (count, 1), 0.045 or more.
-        albedo, f0: diffuse albedo and reflectance head on, (count, 3).
+        albedo, f0: diffuse albedo and reflectance at normal incidence, (count, 3).
     """
     a, h = roughness**2, unit(l + v)
     n_l, n_v, n_h, v_h = np.maximum(dot(n, l), 0), np.clip(dot(n, v), 1e-4, 1), dot(n, h), dot(v, h)
@@ -35,7 +35,7 @@ def answer(n, v, l, roughness, albedo, f0) -> np.ndarray:  # noqa: E741
 
 
 def from_lamp(light, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The colour that arrives from a point light in view space, and the way to it, (count, 3) each."""
+    """Return the colour that arrives from a point light in view space, and the direction to it, (count, 3) each."""
     way = np.array(light.position) - position
     away2 = dot(way, way)
     window = np.maximum(1 - (away2 / light.radius**2) ** 2, 0)

@@ -1,4 +1,4 @@
-"""Tests run where every call checks the shapes that annotations say, in a process of its own.
+"""Tests run in a process of its own, in which every call checks the shapes in annotations.
 
 Modules import the names of these annotations for type checkers alone; here they are builtins.
 """
@@ -21,7 +21,7 @@ CALLED: set[str] = set()
 
 
 def checked(function: Callable) -> Callable:
-    """A function whose calls beartype checks, shapes alone: doubles of tests stand for other types."""
+    """Return a function whose calls beartype checks, but only for shapes: test doubles replace other types."""
     hints, name = function.__annotations__, f"{function.__module__}.{function.__qualname__}"
     shapes = {word: hint for word, hint in hints.items() if "jaxtyping." in repr(hint)}
     if not shapes:
@@ -37,25 +37,25 @@ def checked(function: Callable) -> Callable:
 
 
 def with_shapes() -> Iterator[str]:
-    """The functions whose annotations say shapes, by the sources."""
+    """Yield the functions with shapes in their annotations, by the sources."""
     for path in (path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py")):
         module = ".".join(("normalbench", *path.relative_to(ROOT).with_suffix("").parts))
         tree = ast.parse(path.read_text())
-        owners = {module: tree} | {f"{module}.{one.name}": one for one in tree.body if isinstance(one, ast.ClassDef)}
+        owners = {module: tree} | {f"{module}.{cls.name}": cls for cls in tree.body if isinstance(cls, ast.ClassDef)}
         for owner, where in owners.items():
             functions = (node for node in where.body if isinstance(node, ast.FunctionDef))
             yield from (f"{owner}.{function.name}" for function in functions if says_shapes(function))
 
 
 def says_shapes(function: ast.FunctionDef) -> bool:
-    """Whether an annotation of a function says a shape."""
+    """Whether an annotation of a function contains a shape."""
     hints = [argument.annotation for argument in function.args.args] + [function.returns]
     names = (node.value for hint in hints if hint for node in ast.walk(hint) if isinstance(node, ast.Subscript))
     return any(isinstance(name, ast.Name) and name.id in KINDS for name in names)
 
 
 def main(*arguments: str) -> int:
-    """Pytest's status; where all is well 1 if the shapes of functions were never checked, which it prints."""
+    """Return pytest's status, or 1 if it is 0 and some functions with shapes were never checked; print these."""
     vars(builtins).update(NAMES)
     modules = [f"normalbench.{folder.replace('/', '.')}" for folder in FOLDERS]
     with jaxtyping.install_import_hook(modules, "shape_checks.checked"):

@@ -1,6 +1,6 @@
-"""Rows that one test measured, for all that ask for the same in one run of pytest, whichever of its processes has them.
+"""Rows that one test measured, shared by all processes of one pytest run that ask for the same rows.
 
-A step's rows follow from its key, as long as nobody changes the program, which tests do that measure by themselves.
+A step's rows follow from its key unless somebody changes the program, and tests that do so measure by themselves.
 Steps that read a clock, and tables that leave more behind than rows, are measured each time.
 """
 
@@ -19,7 +19,7 @@ Measure = Callable[..., Iterator[tuple[Step, list[Row]]]]
 
 
 def shared(measure: Measure, folder: Path) -> Measure:
-    """`Here.measure`, which takes what is asked, the steps and a function that is called for each part that is done."""
+    """Return a `Here.measure` with shared rows: it takes a request, steps and a function for each finished part."""
 
     def shared_measure(
         place: object, ask: Asked, steps: Sequence[Step], tick: Tick

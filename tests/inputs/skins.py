@@ -1,4 +1,4 @@
-"""Skin under light that is written by hand, and what subsurface scattering makes of it."""
+"""Skin under light that is written by hand, and the result of subsurface scattering."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ DARK = Light("point", (1.0, 1.0, 1.0), (0.0, 0.0, 50.0), 1.0)
 
 
 def facing(*planes: tuple[float, float, float, float, int], distance: float = 1.0, lights=(DARK,)) -> Scene:
-    """Planes that face an eye at this distance from z = 0: width, height, the middle's x, z, and the material."""
+    """Return planes that face an eye, `distance` from z = 0: width, height, x and z of the middle, material."""
     parts = tuple(
         ScenePart(
             plane(width, height).placed(FACING, (0, 0, 0)), placed((x, 0.0, z)), np.array([material]), casts=False
@@ -44,7 +44,7 @@ WALL = (9.0, 9.0, 0.0, 0.0, 0)
 
 
 def lit_by_hand(light: np.ndarray) -> Pass:
-    """Diffuse light, (height, width, 3) with row 0 on top, in place of what the lights gave."""
+    """Return a pass that writes diffuse light, (height, width, 3), top row first, in place of the lights' result."""
 
     def build(canvas):
         texels = np.zeros((*light.shape[:2], 4), np.float32)
@@ -63,9 +63,9 @@ def passes(given: Mapping[str, object]) -> tuple[Pass, ...]:
 
 
 def scattered(gl, scene: Scene, light: np.ndarray | None = None, pipeline="hybrid", plan=None, **given) -> np.ndarray:
-    """The skin's light and its depth, (height, width, 4)."""
+    """Return the skin's light and its depth, (height, width, 4)."""
     hand = () if light is None else (lit_by_hand(light),)
-    made = PIPELINES[pipeline].with_effect((*hand, *passes(given)))
-    with rendering(gl, made, scene, plan or plan_of()) as r:
+    scattering = PIPELINES[pipeline].with_effect((*hand, *passes(given)))
+    with rendering(gl, scattering, scene, plan or plan_of()) as r:
         r.draw()
         return r.read(SUBSURFACE.result)[0]

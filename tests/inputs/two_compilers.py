@@ -1,7 +1,7 @@
-"""Whether compiled C and XLA make the same of a codec, asked of a process of its own.
+"""A comparison of a codec's results in compiled C and in XLA, in a process of its own.
 
-XLA contracts products into sums, and its simplifier has a reciprocal root of its own. Without both, which flags of a
-whole process say, it does the arithmetic that is written, as the C does.
+XLA contracts products into sums, and its simplifier has a reciprocal root of its own. Flags for a whole process turn
+both off; XLA then does the arithmetic as written, like the C.
 """
 
 import json
@@ -36,8 +36,8 @@ def main(names: Sequence[str]) -> None:
 
     pairs = [name.split() for name in names]
     codecs = [Codec(ENCODINGS[encoding], STORAGES[storage]) for encoding, storage in pairs]
-    found = zip(names, on_all_cores(difference, codecs), strict=True)
-    print(json.dumps({name: text for name, text in found if text}))
+    named_texts = zip(names, on_all_cores(difference, codecs), strict=True)
+    print(json.dumps({name: text for name, text in named_texts if text}))
 
 
 def difference(codec) -> str:
@@ -75,7 +75,7 @@ def difference(codec) -> str:
 
 
 def chunk_of_normals():
-    """Return a set of 2^18 normals, the hard directions among them, each with a view position of its own."""
+    """Return a set of 2^18 normals, including the hard directions, each with a view position of its own."""
     import numpy as np
     from directions import hard_directions, random_directions, view_positions
 

@@ -1,4 +1,4 @@
-"""The readers of names and of users' files, given texts as people type them."""
+"""The readers of names and of users' files, applied to texts as people type them."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -23,7 +23,7 @@ from normalbench.bench.tables.roofline import rates
 
 
 def _typed(reader: Callable[..., Any], at: int = 0, several: int = 1) -> Callable[..., Any]:
-    """A reader whose arguments from one on are texts of names."""
+    """Return a reader whose arguments from `at` on are texts of names."""
 
     @wraps(reader)
     def read(*given: Any, **more: Any) -> Any:
@@ -35,7 +35,7 @@ def _typed(reader: Callable[..., Any], at: int = 0, several: int = 1) -> Callabl
 
 
 def _of_file(reader: Callable[..., Any], at: int = 0) -> Callable[..., Any]:
-    """A reader of a user's file, which is given a text or a path."""
+    """Return a reader of a user's file that takes a text or a path."""
 
     def read(*given: Any, **more: Any) -> Any:
         return reader(*given[:at], UserFile(str(given[at])), *given[at + 1 :], **more)
@@ -76,5 +76,5 @@ with_arithmetics = _typed(names.with_arithmetics, 1)
 
 
 def word_with(word: str, **settings: str) -> str:
-    """A user's file with how it is read, by one of SETTINGS, as one word."""
+    """Return a user's file and one of SETTINGS, which says how to read it, as one word."""
     return with_settings((word,), **{name: file_names(text) for name, text in settings.items()})[0]

@@ -1,4 +1,4 @@
-"""Vendors' compilers as tests of what they share take them; Radeons' own are tested apart, as their figures are."""
+"""Vendors' compilers for the tests that they share; Radeon compilers and their figures are tested separately."""
 
 import sys
 from collections.abc import Callable
@@ -31,18 +31,18 @@ sys.exit(child.main())
 
 @dataclass(frozen=True)
 class Vendor:
-    """A vendor's GPUs and what compiles for them.
+    """A vendor's GPUs and their compilers.
 
     Attributes:
-        name: what --family calls its GPUs together; the fixture that asks for its compilers, too.
+        name: name of the vendor's GPUs together in --family, and of the fixture that requests its compilers.
         quick: one family for each compiler.
-        stages: the kinds of shaders that it is counted for.
-        lanes: how many each of its kernels works on.
-        reader: what reads its listings.
-        zero: the columns that are 0 where nothing is done, besides the kinds of instructions.
-        encodings, packings: what is compiled where not every one is.
-        runs: makes this vendor's child processes, and no other's, run Python code.
-        changes: makes the compiler another one, or the GPU of `quick[-1]`.
+        stages: kinds of shaders that are counted for the vendor.
+        lanes: number of lanes that each kernel works on.
+        reader: reader of the listings.
+        zero: columns that are 0 if nothing is done, besides the kinds of instructions.
+        encodings, packings: what is compiled if not all are.
+        runs: makes only this vendor's child processes run Python code.
+        changes: changes the compiler, or the GPU of `quick[-1]`.
     """
 
     name: str
@@ -60,11 +60,11 @@ class Vendor:
         return CHOICES[self.name] if is_every else self.quick
 
     def shaders(self, is_every: bool) -> tuple[tuple[str, ...], tuple]:
-        """Encodings and packings."""
+        """Return encodings and packings."""
         return (tuple(ENCODINGS), EVERY_PACKING) if is_every else (self.encodings, self.packings)
 
     def rows(self, is_every: bool) -> list[dict]:
-        """Compiled, or from the cache."""
+        """Return rows that are compiled, or taken from the cache."""
         encodings, packings = self.shaders(is_every)
         chosen = cost.cases([ENCODINGS[name] for name in encodings], packings, cost.OPERATIONS)
         families = list(self.families(is_every))

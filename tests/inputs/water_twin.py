@@ -1,4 +1,4 @@
-"""Water in float64, written from the formulas and not from the shaders."""
+"""Water in float64, written from the formulas rather than the shaders."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ INDEX = 1.333
 
 
 def fresnel(angle: np.ndarray) -> np.ndarray:
-    """Of unpolarised light from air, by Snell's law and Fresnel's two equations; angles in radians."""
+    """Return the share of unpolarised light that water reflects, by Snell and Fresnel; angles in radians."""
     inside = np.arcsin(np.sin(angle) / INDEX)
     across = (np.cos(angle) - INDEX * np.cos(inside)) / (np.cos(angle) + INDEX * np.cos(inside))
     along = (INDEX * np.cos(angle) - np.cos(inside)) / (INDEX * np.cos(angle) + np.cos(inside))
@@ -16,7 +16,7 @@ def fresnel(angle: np.ndarray) -> np.ndarray:
 
 
 def surface(waves, x: np.ndarray, z: np.ndarray, chop: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points of the moved surface, from where they are in still water, and its unit normals; (..., 3) each."""
+    """Return points of the moved surface, from their places in still water, and its unit normals; (..., 3) each."""
     k, a = waves.wave_numbers, waves.heights
     turn = x[..., None] * k[:, 0] + z[..., None] * k[:, 1] - 2 * np.pi * waves.phases
     height, wave = (a * np.cos(turn)).sum(axis=-1), a * np.sin(turn)
@@ -33,7 +33,7 @@ def unit(v: np.ndarray) -> np.ndarray:
 
 
 def still_rays(view, size: tuple[int, int]) -> np.ndarray:
-    """The way from the eye through each pixel, unit, in the world, (height, width, 3); row 0 on top."""
+    """Return unit directions from the eye through the pixels, world space, (height, width, 3); row 0 is the top."""
     right, up, *_ = view.rays(size)
     x = ((np.arange(size[0]) + 0.5) / size[0] * 2 - 1) * right
     y = (1 - (np.arange(size[1]) + 0.5) / size[1] * 2) * up

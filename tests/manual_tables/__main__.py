@@ -1,8 +1,8 @@
-"""Measures tables of the manual and writes them into their pages, and what they were made of into `kept`.
+"""A command that measures tables of the manual and writes them into their pages, and their data into `kept`.
 
     python -m tests.manual_tables --write [MARKER ...]
 
-Without a marker all tables are measured, which takes most of an hour. What the page concludes is checked first.
+Without a marker all tables are measured, which takes most of an hour. The page's conclusions are checked first.
 """
 
 import argparse

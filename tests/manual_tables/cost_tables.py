@@ -1,4 +1,4 @@
-"""The tables of instruction counts, which hold for one version of a compiler: docs/cost.md and docs/vendors.md."""
+"""The tables of instruction counts, valid for one version of a compiler: docs/cost.md and docs/vendors.md."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -15,7 +15,7 @@ def counted(title: str, operation: str, family: str, name: str = "instructions",
 
 
 def both_ways(first: tuple[str, str], *others: tuple[str, str]) -> tuple[Column, ...]:
-    """A column for each title and family, to encode and to decode."""
+    """Return a column for each title and family, to encode and to decode."""
     return tuple(
         counted(f"{way}: {title}" if (title, family) == first else title, way, family)
         for way in WAYS
@@ -29,7 +29,7 @@ def count_table(marker: str, encodings: str, words: str, title: str, columns: Se
 
 
 def the_loop_is_as_told(lines: list[Line]) -> None:
-    """57 instructions, 38 of them in one loop: docs/cost.md computes how many run."""
+    """Check for 57 instructions, 38 of them in one loop: docs/cost.md computes how many run."""
     (loop,) = [line for line in lines if line[0] == "best_fit_searched"]
     assert (loop[1], *loop[-2:]) == (57, 38, 1)
 

@@ -1,5 +1,5 @@
-"""How the tables of the manual are measured, by the command line in this process; and rows of lines made of the rows
-that it prints, where they are others."""
+"""Measurements of the manual's tables by the command line in this process, and conversions of the printed rows to the
+tables' lines."""
 
 import json
 import os
@@ -17,18 +17,18 @@ ROOT = Path(__file__).parents[2]
 
 
 def measure(table: Table, is_again: bool = False) -> Measured:
-    """A table, measured now. With `is_again` what takes less time and is compared alone."""
+    """Measure a table. With `is_again`, measure only what takes less time and is compared."""
     rows = (is_again and table.again) or table.rows
     return table.measured(rows() if callable(rows) else [row for command in rows for row in rows_of(command)])
 
 
 def rows_of(command: str) -> list[Row]:
-    """The rows that a command of normalbench prints."""
+    """Return the rows that a command of normalbench prints."""
     return json.loads(printed(f"{command} --format json"))
 
 
 def printed(command: str) -> str:
-    """What a command of normalbench prints."""
+    """Return the output of a command of normalbench."""
     from normalbench.bench.door.cli import app
 
     out, err, words = StringIO(), StringIO(), ["normalbench", *command.split()]
@@ -40,20 +40,20 @@ def printed(command: str) -> str:
 
 
 def answers() -> list[Row]:
-    """Each line that `pick` prints, by the storage that it is of."""
+    """Return each line that `pick` prints, with its storage."""
     _, *parts = re.split(r"^(?=(\w+), on \w+: take )", printed("pick"), flags=re.M)
     answered = zip(parts[::2], parts[1::2], strict=True)
     return [{"storage": storage, "said": line} for storage, part in answered for line in part.rstrip().split("\n")]
 
 
 def simulated() -> list[Row]:
-    """Runs on many workers, by the step times of a record."""
+    """Return runs on many workers, by the step times of a record."""
     command = [sys.executable, "-m", "tests.speed", "simulate"]
     return json.loads(subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout)
 
 
 def published() -> list[Row]:
-    """Figures of articles and engines. Fails where one differs without a reason."""
+    """Return figures of articles and engines. Fails if one differs without a reason."""
     from published.rows import rows, unexplained
 
     measured = rows()
@@ -62,7 +62,7 @@ def published() -> list[Row]:
 
 
 def for_every_storage(rows: list[Row]) -> list[Row]:
-    """Rows without a storage stand for every storage that their encoding was measured in."""
+    """Return rows in which each row without a storage is repeated for every storage of its encoding."""
     of = [(row["encoding"], row["storage"]) for row in rows if row["encoding"] and row["storage"]]
     return [
         row | {"storage": storage}
@@ -73,14 +73,14 @@ def for_every_storage(rows: list[Row]) -> list[Row]:
 
 
 def of_the_article(rows: list[Row]) -> list[Row]:
-    """With the article's figure."""
+    """Return rows with the article's figure."""
     from normalbench.bench.measures.metrics.published import PSNR_DB
 
     return [row | {"article_db": PSNR_DB.get(row["encoding"])} for row in rows]
 
 
 def with_limits(rows: list[Row]) -> list[Row]:
-    """With the bound of two bytes for each domain, which `quality` prints for people alone."""
+    """Return rows with the bound of two bytes for each domain, which `quality` prints only for people."""
     from normalbench.bench.measures.metrics.code_limits import HEMISPHERE, SPHERE, code_limit
 
     names = {"angle_mean_deg": "mean_deg", "angle_rms_deg": "rms_deg", "angle_sup_deg": "max_deg"}
@@ -92,37 +92,37 @@ def with_limits(rows: list[Row]) -> list[Row]:
 
 
 def parameters_named(rows: list[Row]) -> list[Row]:
-    """With what tuning found: parameters or a table."""
+    """Return rows with the result of tuning: parameters or a table."""
     for row in rows:
         row["parameters"] = f"`{row['tuned_encoding'].removeprefix(row['encoding'])[1:].removesuffix('=FILE')}`"
     return rows
 
 
 def arithmetic_apart(rows: list[Row]) -> list[Row]:
-    """The encoding's name, and next to it the arithmetic that the name may end with."""
+    """Return rows with the encoding's name, and separately the arithmetic that the name may end with."""
     parts = ((row, (row["encoding"] or "").partition(":arithmetic=")) for row in rows)
     return [row | {"encoding": name, "arithmetic": arithmetic or "float"} for row, (name, _, arithmetic) in parts]
 
 
 def verdicts_of_mixes(rows: list[Row]) -> list[Row]:
-    """A row for each encoding: its verdicts and the worst figures behind them."""
+    """Return a row for each encoding: its verdicts and the worst figures behind them."""
     from normalbench.bench.tables.mix.verdict import lines
 
     return list(lines(rows))
 
 
 def in_thousandths(rows: list[Row]) -> list[Row]:
-    """The errors of effects, in 1/1000."""
+    """Return the errors of effects, in 1/1000."""
     return [row | {name: row[name] and 1e3 * row[name] for name in ("effect_rms", "method_rms")} for row in rows]
 
 
 def exact_named(rows: list[Row]) -> list[Row]:
-    """Rows of effects that say of what is exact that it is."""
+    """Return rows of effects in which an exact storage or depth is named "exact"."""
     return [row | {name: row[name] or "exact" for name in ("storage", "depth")} for row in rows]
 
 
 def most_differing(rows: list[Row]) -> list[Row]:
-    """A row for each encoding: by storage the most texels that differ in a language."""
+    """Return a row for each encoding: by storage, the most texels that differ in any language."""
     ran = sorted((row for row in rows if "differing" in row), key=lambda row: row["differing"])
     return [
         {"encoding": encoding} | {row["storage"]: row["differing"] for row in ran if row["encoding"] == encoding}

@@ -1,5 +1,5 @@
-"""The measured tables of the manual, each a value: what measures it, its columns, and how near a figure must be when it
-is measured anew. Imports nothing heavy."""
+"""The measured tables of the manual as values: the measurement of each, its columns, and how near a figure must be
+when it is measured again. Imports nothing heavy."""
 
 from collections.abc import Mapping
 
@@ -32,56 +32,57 @@ FOUR_THAT_COUNT = "{:#.4g}".format
 
 
 def of_storages(names: Mapping[str, str]) -> str:
-    """Lines that begin with a storage and an encoding."""
+    """Return lines that begin with a storage and an encoding."""
     return ",".join(f"{storage} {name}" for storage, encodings in names.items() for name in encodings.split(","))
 
 
 def best_first(lines: list[Line]) -> None:
-    """By the mean error that is shown."""
+    """Check that lines are in the order of the mean error as shown, those of rg8 first."""
     shown = [(storage != "rg8", round(mean, 3)) for storage, _, _, mean, *_ in lines]
     assert shown == sorted(shown)
 
 
 def glsl_agrees(lines: list[Line]) -> None:
-    """By GLSL a division may be another one: an eighth."""
+    """Check that GLSL gives the same figures to an eighth, because its division may differ."""
     for line in lines:
         shown = [float(writing.two_digits(figure)) for figure in line[3:7]]
         assert shown == [pytest.approx(figure, rel=0.125) for figure in line[7:]], line
 
 
 def fifteen_times(lines: list[Line]) -> None:
-    """The error of octahedral 8:8 is a fifteenth of the method's own, or less."""
+    """Check that the error of octahedral 8:8 is less than a fifteenth of the method's own."""
     assert all(line[5] is None or line[5] > 15 * line[1] for line in lines)
 
 
 def noise_helps(lines: list[Line]) -> None:
-    """By a quarter at least, and in the mean of frames by nearly two bits; without it more frames move nothing."""
+    """Check that noise lowers the error by at least a quarter, and in the mean of frames by nearly two bits; without
+    noise, more frames change nothing."""
     eight, ten = lines[3], lines[4]
     assert (eight[:3], ten[:3]) == (["rg8", "moving", 8], ["rgb10a2", "none", 1])
     assert eight[3:] == pytest.approx(ten[3:], abs=0.04)
     for storage in ("rg8", "rgb10a2"):
-        found = {(dither, frames): figures for name, dither, frames, *figures in lines if name == storage}
-        assert found["none", 8] == pytest.approx(found["none", 1], abs=0.011)
-        for none, one, mean in zip(found["none", 1], found["moving", 1], found["moving", 8], strict=True):
-            assert mean <= one <= 0.75 * none
+        errors = {(dither, frames): figures for name, dither, frames, *figures in lines if name == storage}
+        assert errors["none", 8] == pytest.approx(errors["none", 1], abs=0.011)
+        for none, single, mean in zip(errors["none", 1], errors["moving", 1], errors["moving", 8], strict=True):
+            assert mean <= single <= 0.75 * none
 
 
 def a_sixth_moves(lines: list[Line]) -> None:
-    """Of the hits with octahedral 8:8, with 10:10 a fiftieth, and by depths of 16 bits hardly any."""
+    """Check that a sixth of the hits move with octahedral 8:8, a fiftieth with 10:10, and few with 16-bit depth."""
     moved = {(normals, depths): share for normals, depths, share, *_ in lines}
     assert 14 < moved["rg8", "exact"] < 20 and 1.5 < moved["rgb10a2", "exact"] < 2.5
     assert moved["exact", "linear/packed16"] < 0.2
 
 
 def tangent_space_means(lines: list[Line]) -> None:
-    """The means on bumps in BC5, which docs/maps.md names."""
+    """Check the means on bumps in BC5, which docs/maps.md names."""
     (line,) = [line for line in lines if line[0] == "bc5"]
     assert [line[2], *line[-2:]] == pytest.approx([0.463, 0.504, 0.574], abs=6e-4)
 
 
 class Texels(Column):
-    """How many texels differ. Ties depend on the device and the processor a little, and not all languages are run
-    again."""
+    """A column of differing texels. Ties depend slightly on the device and the processor, and not all languages are
+    run again."""
 
     def is_near(self, shown: float, measured: float) -> bool:
         return measured <= 2 + 1.2 * shown

@@ -1,4 +1,4 @@
-"""How figures of the manual are written, and texts that are no plain table."""
+"""Formats of figures in the manual, and texts that are not plain tables."""
 
 from .table import Measured, Table
 
@@ -6,28 +6,28 @@ WIDTH = 120
 
 
 def two_digits(value: float) -> str:
-    """Two digits that count, without an exponent above 1."""
+    """Return two significant digits, without an exponent above 1."""
     return f"{float(f'{value:.2g}'):g}"
 
 
 def or_zero(value: float) -> str:
-    """Three decimals, and 0 where it is exactly 0."""
+    """Return three decimals, or 0 for exactly 0."""
     return f"{value:.3f}" if value else "0"
 
 
 def percent(value: float) -> str:
-    """Two decimals; where they would be 0, the first digit, which of exactly 0 is 0."""
+    """Return two decimals; if they are 0, return the first significant digit, or 0 for exactly 0."""
     return f"{value:.2f}" if value >= 0.005 else f"{value:.1g}"
 
 
 def answer(_: Table, kept: Measured) -> str:
-    """The lines of the first storage as they are printed."""
+    """Return the lines of the first storage as they are printed."""
     first, _ = kept.lines[0]
     return "\n".join(["```text", *(line for storage, line in kept.lines if storage == first), "```"])
 
 
 def published(table: Table, kept: Measured) -> str:
-    """A table for each source."""
+    """Return a table for each source."""
     from published.rows import text
 
     names = [column.name for column in table.columns]
@@ -35,7 +35,7 @@ def published(table: Table, kept: Measured) -> str:
 
 
 def simulation(table: Table, kept: Measured) -> str:
-    """As the simulation writes it."""
+    """Return the table in the form that the simulation writes."""
     from normalbench.reports.tables import to_markdown
 
     titles = [column.title for column in table.columns]

@@ -1,1 +1,1 @@
-"""Figures of articles, books and engines, measured anew."""
+"""Figures of articles, books and engines, measured again."""

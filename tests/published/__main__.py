@@ -1,8 +1,8 @@
-"""Measures figures of articles, books and engines, and prints what becomes of each.
+"""A command that measures figures of articles, books and engines, and prints a verdict on each.
 
     python -m tests.published [WORDS]
 
-WORDS are words of sources' names, comma-separated, such as `cigolle,tyler`. Exit status: 1 where a figure differs
+WORDS are words of sources' names, comma-separated, such as `cigolle,tyler`. Exit status: 1 if a figure differs
 without a reason. `python -m tests.manual_tables --write "published figures"` writes the manual's page.
 """
 

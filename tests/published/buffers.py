@@ -1,4 +1,4 @@
-"""What slides and articles print of layouts, light buffers and depth buffers."""
+"""Figures of slides and articles for layouts, light buffers and depth buffers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What articles, engines and libraries print of codes: how many, how large, how far apart."""
+"""Figures of articles, engines and libraries for codes: how many, how large, how far apart."""
 
 from __future__ import annotations
 
@@ -170,11 +170,11 @@ NORMAL_PACK = (
             value,
             digits,
             "",
-            Counted(partial(counts.truncated, at), "normal_pack"),
+            Counted(partial(counts.truncated, index), "normal_pack"),
             # Two units in the last place of float32.
             within=1.2e-7,
         )
-        for at, (axis, value, digits) in enumerate((("x", -0.52032965, 8), ("y", 0.5473598, 7), ("z", 0.6554802, 7)))
+        for index, (axis, value, digits) in enumerate((("x", -0.52032965, 8), ("y", 0.5473598, 7), ("z", 0.6554802, 7)))
     ),
     Figure(
         "mean error of two bytes",

@@ -26,7 +26,7 @@ DIRECTIONS = 6 * SIDE**2
 
 @cache
 def cells_crossed() -> int:
-    """How many of the 2^24 cells around three numbers of 8 bits, in [-1, 1], the unit sphere crosses."""
+    """Return how many of the 2^24 cells around three 8-bit numbers in [-1, 1] the unit sphere crosses."""
     # By symmetry the cells with all numbers positive stand for eight.
     low = np.arange(128) * 2 / 255
     near = low[:, None, None] ** 2 + low[:, None] ** 2 + low**2
@@ -35,12 +35,12 @@ def cells_crossed() -> int:
 
 
 def share_of_cells() -> float:
-    """The same in percent."""
+    """Return the percentage of cells that the unit sphere crosses."""
     return 100 * cells_crossed() / 2**24
 
 
 def _cube_map() -> np.ndarray:
-    """The directions to the middles of the texels of a cube map, float32 of shape (DIRECTIONS, 3)."""
+    """Return the directions to the texel centres of a cube map, float32 of shape (DIRECTIONS, 3)."""
     u, v = np.meshgrid(*[(np.arange(SIDE) + 0.5) / SIDE * 2 - 1] * 2)
     faces = [
         np.roll(np.stack([np.full_like(u, side), u, v], -1), axis, axis=-1) for axis in range(3) for side in (1.0, -1.0)
@@ -58,17 +58,17 @@ def _told_apart_count(codec: Codec) -> int:
 
 
 def told_apart(encoding: str) -> float:
-    """How many directions of a cube map of 256 x 256 x 6 have a code of their own in RGB8."""
+    """Return how many directions of a 256 x 256 x 6 cube map have a code of their own in RGB8."""
     return float(_told_apart_count(codec_of(encoding, "rgba8")))
 
 
 def share_told_apart(encoding: str) -> float:
-    """The same in percent."""
+    """Return the percentage of directions that have a code of their own."""
     return 100 * told_apart(encoding) / DIRECTIONS
 
 
 def share_of_texels(encoding: str) -> float:
-    """The codes that they have, in percent of all texels of RGB8."""
+    """Return the number of the directions' codes as a percentage of all texels of RGB8."""
     return 100 * told_apart(encoding) / 2**24
 
 
@@ -76,19 +76,19 @@ def share_of_texels(encoding: str) -> float:
 
 
 def optimised_points(degrees: float) -> float:
-    """The fewest points of optimised rings that leave no direction farther from one of them."""
+    """Return the minimum number of points on optimised rings that have every direction within this angle."""
     return min(float(points_needed(math.radians(degrees), rings).sum()) for rings in range(8, 200))
 
 
 def uniform_points(degrees: float) -> float:
-    """The points of as many rings, each with as many points as the longest needs."""
+    """Return the number of points on as many rings, if each ring has as many points as the longest ring needs."""
     counts = {rings: points_needed(math.radians(degrees), rings) for rings in range(8, 200)}
     rings = min(counts, key=lambda count: counts[count].sum())
     return rings * float(counts[rings].max())
 
 
 def bits_above_the_optimum() -> float:
-    """2 log2 of the supremum of octahedral 8:8 over the least maximum of as many codes."""
+    """Return 2 log2 of the supremum of octahedral 8:8 over the smallest possible maximum of as many codes."""
     values = [Quality("octahedral", "rg8_snorm", column).figure() for column in ("angle_sup_deg", "limit_max_deg")]
     worst, least = (value or math.nan for value in values)
     return 2 * math.log2(worst / least)
@@ -102,40 +102,40 @@ def _mean_error(encoding: str, storage: str) -> float:
 
 
 def tetrahedral_over_octahedral() -> float:
-    """The mean of tetrahedral 10:10:2 over that of octahedral 11:11."""
+    """Return the mean error of tetrahedral 10:10:2 over that of octahedral 11:11."""
     return _mean_error("tetrahedral", "rgb8_10_10_2") / _mean_error("octahedral", "rgb8_11_11")
 
 
 def mean_in_a_cube_over_uniform() -> float:
-    """By how many percent octahedral 8:8 has a larger mean on points of a cube than on uniform directions."""
+    """Return by how many percent the mean error of octahedral 8:8 is larger in a cube than on uniform directions."""
     return 100 * ((InACube("octahedral", "rg8").figure() or math.nan) / _mean_error("octahedral", "rg8") - 1)
 
 
 def mean_saved_by_precision() -> float:
-    """By how many percent precise rounding lowers the mean of octahedral 8:8, on points of a cube."""
+    """Return by how many percent precise rounding lowers the mean error of octahedral 8:8, on points of a cube."""
     precise, plain = (InACube(name, "rg8").figure() or math.nan for name in ("octahedral_precise", "octahedral"))
     return 100 * (1 - precise / plain)
 
 
 def maximum_saved_by_precision() -> float:
-    """By how many percent precise rounding lowers the supremum of octahedral 8:8."""
+    """Return by how many percent precise rounding lowers the supremum of octahedral 8:8."""
     names = ("octahedral_precise", "octahedral")
     precise, plain = (Quality(name, "rg8", "angle_sup_deg").figure() or math.nan for name in names)
     return 100 * (1 - precise / plain)
 
 
 def supremum_in_radians() -> float:
-    """The supremum of octahedral 16:16."""
+    """Return the supremum of octahedral 16:16, in radians."""
     return math.radians(Quality("octahedral", "rg16", "angle_sup_deg").figure() or math.nan)
 
 
 def bits(encoding: str, storage: str) -> float:
-    """The bits of a code."""
+    """Return the bits of a codec."""
     return float(codec_of(encoding, storage).bits)
 
 
 def truncated(axis: int) -> float:
-    """A component of one normal through octahedral 8:8 that is cut off instead of rounded."""
+    """Return a component of one normal through octahedral 8:8, truncated instead of rounded."""
     n = Vec3(*(jnp.asarray([value], jnp.float32) for value in (-0.5082557, 0.54751796, 0.6647558)))
     return float(codec_of("octahedral", "rg8", "truncate").round_trip(n, n)[axis][0])
 
@@ -144,12 +144,12 @@ def truncated(axis: int) -> float:
 
 
 def bytes_of_targets(layout: str) -> float:
-    """The bytes a pixel of a layout's own targets."""
+    """Return the bytes per pixel of a layout's own targets."""
     return float(LAYOUTS[layout].bytes_per_pixel)
 
 
 def most_light(light_buffer: str) -> float:
-    """The most white light that a light buffer holds."""
+    """Return the maximum white light that a light buffer can store."""
     return LIGHT_BUFFERS[light_buffer].limit
 
 
@@ -157,9 +157,9 @@ def most_light(light_buffer: str) -> float:
 
 
 def depth_step(encoding: str, near: float, far: float, codes: int, at: float) -> float:
-    """How far apart the depths of neighbouring codes are at a depth, in its unit, in exact arithmetic.
+    """Return how far apart the depths of neighbouring codes are at a depth, in its unit, in float64.
 
-    What is nearer than the near plane has one code: there it is the whole of that distance.
+    All depths nearer than the near plane have one code: for these, the result is the distance to that plane.
     """
     if at < near:
         return near
@@ -171,7 +171,7 @@ def depth_step(encoding: str, near: float, far: float, codes: int, at: float) ->
 
 
 def share_of_codes(encoding: str, near: float, far: float, at: float) -> float:
-    """The percentage of a fixed-point depth's codes between the near plane and a depth."""
+    """Return the percentage of a fixed-point depth's codes between the near plane and a depth."""
     with jax.enable_x64(True):
         ends = DEPTH_ENCODINGS[encoding].encode(jnp.asarray([near, at, far], jnp.float64), near, far)
         first, middle, last = np.asarray(ends)
@@ -179,7 +179,7 @@ def share_of_codes(encoding: str, near: float, far: float, at: float) -> float:
 
 
 def depth_of_step(encoding: str, near: float, far: float, codes: int, step: float) -> float:
-    """The depth from which the step is larger than `step`."""
+    """Return the depth beyond which the step is larger than `step`."""
     low, high = near, far
     for _ in range(60):
         middle = math.sqrt(low * high)
@@ -188,12 +188,12 @@ def depth_of_step(encoding: str, near: float, far: float, codes: int, step: floa
 
 
 def largest_float_step(near: float, far: float) -> float:
-    """The largest step of reversed z/w in 32-bit floats between the planes."""
+    """Return the largest step of reversed z/w in 32-bit floats between the planes."""
     depths = np.geomspace(near, far, 10_001)
     with jax.enable_x64(True):
         chosen = DEPTH_ENCODINGS["reversed_window"]
         # Half a step either way is what rounding leaves.
         numbers = np.asarray(chosen.encode(jnp.asarray(depths), near, far)).astype(np.float32)
         near_by = np.nextafter(numbers, np.float32(1))
-        found = [np.asarray(chosen.decode(jnp.asarray(n, jnp.float64), near, far)) for n in (numbers, near_by)]
-    return float(np.abs(found[0] - found[1]).max())
+        decoded = [np.asarray(chosen.decode(jnp.asarray(n, jnp.float64), near, far)) for n in (numbers, near_by)]
+    return float(np.abs(decoded[0] - decoded[1]).max())

@@ -1,4 +1,4 @@
-"""What articles print of the error and the cost of encodings."""
+"""Figures of articles for the error and the cost of encodings."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _figures_of_2009() -> tuple[Figure, ...]:
 
 
 def _slots(unit: str, place: str, printed: Mapping[tuple[str, str], int], why: str) -> Iterator[Figure]:
-    """Figures of instructions by encoding and operation; what counts as one is another thing here."""
+    """Yield figures of instructions by encoding and operation; instructions are counted differently here."""
     for (name, operation), value in printed.items():
         ours = Instructions(name, operation)
         yield Figure(f"{unit} to {operation} {name}", place, value, 0, unit, ours, why, is_comparable=False)
@@ -92,7 +92,7 @@ CIGOLLE = {
 def _mean_and_maximum(
     code: str, place: str, digits: int, printed: tuple[float, float], ours: tuple[Measure, Measure], why: str = ""
 ) -> tuple[Figure, Figure]:
-    """The mean and the maximum of a code, as printed and as measured here; `why` is of the mean."""
+    """Return the mean and the maximum of an encoding, as printed and as measured here; `why` applies to the mean."""
     return (
         Figure(f"mean of {code}", place, printed[0], digits, DEGREES, ours[0], why),
         Figure(f"maximum of {code}", place, printed[1], digits, DEGREES, ours[1], is_maximum=True),
@@ -101,12 +101,12 @@ def _mean_and_maximum(
 
 def _figures_of_cigolle() -> tuple[Figure, ...]:
     table = "table of mean and maximum error"
-    found = []
+    figures = []
     for code, (encoding, storage, mean, most) in CIGOLLE.items():
         ours = Quality(encoding, storage, "angle_mean_deg"), Quality(encoding, storage, "angle_sup_deg")
-        found += _mean_and_maximum(code, table, 5, (mean, most), ours)
+        figures += _mean_and_maximum(code, table, 5, (mean, most), ours)
     return (
-        *found,
+        *figures,
         Figure(
             "mean of oct32, 16:16", table, 0.00131, 5, DEGREES, Quality("octahedral", "rg16_snorm", "angle_mean_deg")
         ),
@@ -150,14 +150,14 @@ CUBE = "on directions of points in a cube, normalize(2 rand - 1), which are dens
 
 
 def _figures_of_tyler() -> tuple[Figure, ...]:
-    found = []
+    figures = []
     for code, (encoding, storage, mean, most) in TYLER.items():
         is_half = ENCODINGS[encoding].domain == "hemisphere"
         supremum = Quality(encoding, storage, "angle_sup_deg", "hemisphere" if is_half else "sphere")
         ours = InACube(encoding, storage, is_half), supremum
-        found += _mean_and_maximum(code, "tables of errors", 6, (mean, most), ours, CUBE)
+        figures += _mean_and_maximum(code, "tables of errors", 6, (mean, most), ours, CUBE)
     return (
-        *found,
+        *figures,
         Figure(
             "his means above those of Cigolle et al.",
             "the slight sticking point",

@@ -1,4 +1,4 @@
-"""A published figure, and what becomes of it."""
+"""A published figure and the verdict on it."""
 
 from __future__ import annotations
 
@@ -13,36 +13,36 @@ DEGREES, DECIBELS = "degrees", "dB"
 
 
 class Measure(Protocol):
-    """How our figure is got."""
+    """A way to obtain our figure."""
 
     @property
     def command(self) -> str:
-        """What shows it."""
+        """The command that shows the figure."""
         ...
 
     @property
     def scatter(self) -> float:
-        """By which share of itself a figure of samples may differ from another set's."""
+        """The share by which a figure of samples may differ from that of another set."""
         ...
 
     def figure(self) -> float | None:
-        """Ours; None where this machine cannot measure it."""
+        """Return our figure, or None if this machine cannot measure it."""
         ...
 
 
 @dataclass(frozen=True)
 class Figure:
-    """What a source prints.
+    """A figure that a source prints.
 
     Attributes:
-        what, place: what the figure is, and where in the source it stands.
-        value: as printed, with so many `digits` after the point, in `unit`.
+        what, place: what the figure is, and its place in the source.
+        value: the printed value, with `digits` digits after the point, in `unit`.
         ours: how it is measured here.
-        why: why ours is another figure; or, of one that is reproduced, what the source leaves unsaid.
+        why: why ours differs; or, if it is reproduced, what the source leaves out.
         is_maximum: whether it is the largest of samples, and ours the supremum.
-        bound: "below" or "above" where the source says only that.
-        within: how far ours may be off besides, in `unit`.
-        is_comparable: whether ours is the same thing at all; if not, equal numbers are a coincidence.
+        bound: "below" or "above" if the source gives only a bound.
+        within: additional difference allowed for ours, in `unit`.
+        is_comparable: whether ours is the same quantity at all; if not, equal numbers are a coincidence.
     """
 
     what: str
@@ -59,11 +59,11 @@ class Figure:
 
     @property
     def printed(self) -> str:
-        """The figure as it stands there."""
+        """The figure as the source prints it."""
         return f"{self.value:.{self.digits}f}"
 
     def verdict(self, ours: float | None) -> str:
-        """What is to be said of our figure."""
+        """Return the verdict on our figure."""
         if ours is None:
             return NOT_MEASURED
         if not self.is_comparable:
@@ -85,7 +85,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Source:
-    """Somebody's figures."""
+    """The figures of one source."""
 
     name: str
     figures: tuple[Figure, ...]

@@ -1,4 +1,4 @@
-"""How figures are measured as their sources describe them."""
+"""Measurements of figures as their sources describe them."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ FIGURES = ("angle_mean_deg", SUPREMUM, "limit_max_deg", "psnr_article_db")
 
 
 def codec_of(encoding: str, storage: str, rounding: str = "nearest") -> Codec:
-    """A codec of the catalogue."""
-    (found,) = codecs_named((encoding,), (storage,), (rounding,))
-    return found
+    """Return a codec of the catalogue."""
+    (codec,) = codecs_named((encoding,), (storage,), (rounding,))
+    return codec
 
 
 @cache
 def _row(codec: Codec, normals: NormalSet, worst_case: bool) -> quality.Row:
-    """A row of the quality table, measured once for good."""
+    """Return a row of the quality table, which is measured only once."""
     case = quality.QualityCase(codec, normals, "jax", worst_case=worst_case)
     words = (codec.name, codec.rounding, normals.name, str(normals.count), str(worst_case))
     key = kept.key_of("published", sources(), jax.__version__, *words)
@@ -69,7 +69,7 @@ class Quality:
 
     @property
     def command(self) -> str:
-        """What shows it."""
+        """The command that shows the figure."""
         more = f" --rounding {self.rounding}" if self.rounding != "nearest" else ""
         more += " --worst-case" if self.column == SUPREMUM else ""
         words = f"--encoding {self.encoding} --storage {self.storage} --normals {self.normals}"
@@ -77,35 +77,35 @@ class Quality:
 
     @property
     def scatter(self) -> float:
-        """Of a mean; suprema and pictures have none."""
+        """The scatter of a mean; suprema and image figures have none."""
         return SCATTER_OF_MEANS if self.column == "angle_mean_deg" else 0.0
 
     def figure(self) -> float | None:
-        """The column's value."""
+        """Return the column's value."""
         codec = codec_of(self.encoding, self.storage, self.rounding)
         return _row(codec, _normal_set(self.normals), self.column == SUPREMUM)[self.column]
 
 
 @dataclass(frozen=True)
 class ArticleMse(Exact):
-    """The squared error that the article's PSNR stands for."""
+    """The squared error that corresponds to the article's PSNR."""
 
     encoding: str
 
     @property
     def command(self) -> str:
-        """What shows it."""
+        """The command that shows the figure."""
         return f"{Quality(self.encoding, published.STORAGE, '', published.NORMALS).command}; 10^(-psnr_article_db / 10)"
 
     def figure(self) -> float | None:
-        """10^(-PSNR / 10)"""
-        found = Quality(self.encoding, published.STORAGE, "psnr_article_db", published.NORMALS).figure()
-        return None if found is None else 10 ** (-found / 10)
+        """Return 10^(-PSNR / 10)."""
+        decibels = Quality(self.encoding, published.STORAGE, "psnr_article_db", published.NORMALS).figure()
+        return None if decibels is None else 10 ** (-decibels / 10)
 
 
 @cache
 def in_a_cube(is_half: bool) -> NormalSet:
-    """Directions of points spread evenly in a cube, and so denser towards its corners; or those of them with z >= 0."""
+    """Return directions of points spread evenly in a cube, denser towards its corners; half of a sphere if asked."""
     points = np.random.default_rng(0).random((COUNT, 3)) * 2 - 1
     n = points / np.linalg.norm(points, axis=1, keepdims=True)
     n[:, 2] = np.abs(n[:, 2]) if is_half else n[:, 2]
@@ -123,16 +123,16 @@ class InACube:
 
     @property
     def command(self) -> str:
-        """What shows it."""
+        """The command that shows the figure."""
         return f"normalbench quality --encoding {self.encoding} --storage {self.storage} --normals cube.npy"
 
     @property
     def scatter(self) -> float:
-        """Of a mean."""
+        """The scatter of a mean."""
         return SCATTER_OF_MEANS
 
     def figure(self) -> float | None:
-        """The mean angle in degrees."""
+        """Return the mean angle in degrees."""
         return _row(codec_of(self.encoding, self.storage), in_a_cube(self.is_half), False)["angle_mean_deg"]
 
 
@@ -152,27 +152,27 @@ class Instructions(Exact):
 
     @property
     def command(self) -> str:
-        """What shows it."""
+        """The command that shows the figure."""
         words = f"--encoding {self.encoding} --operation {self.operation}"
         return f"normalbench cost --isa --family {FAMILY} --stage {STAGE} {words}"
 
     def figure(self) -> float | None:
-        """How many; None where there is no compiler."""
+        """Return the number of instructions, or None without a compiler."""
         return _instructions().get((self.encoding, self.operation))
 
 
 @dataclass(frozen=True)
 class Counted(Exact):
-    """What a few lines compute."""
+    """The result of a short computation."""
 
     compute: Callable[[], float]
     source: str
 
     @property
     def command(self) -> str:
-        """What shows it."""
+        """The command that shows the figure."""
         return f"python -m tests.published {self.source}"
 
     def figure(self) -> float | None:
-        """Its value."""
+        """Return the computed value."""
         return self.compute()

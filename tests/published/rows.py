@@ -1,4 +1,4 @@
-"""Rows of published figures, as they are measured and as the manual has them."""
+"""Rows of published figures, as measured and as in the manual."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SHOWN = ("figure", "published", "ours", "unit", "verdict")
 
 
 def chosen(words: str) -> list[Source]:
-    """Return the sources whose names hold one of the comma-separated words, or all of them."""
+    """Return the sources whose names contain one of the comma-separated words, or all of them."""
     asked = [word.strip().lower() for word in words.split(",")]
     return [source for source in sources.SOURCES if any(word == "all" or word in source.name.lower() for word in asked)]
 
@@ -65,7 +65,7 @@ def _of_source(name: str, measured: Sequence[Row], width: int) -> str:
 
 
 def _as_printed(ours: float | None, published: str) -> str | None:
-    """Ours with a digit more than the published figure, and at least three."""
+    """Return our figure with one digit more than the published figure, and at least three significant digits."""
     if ours is None or ours == round(ours):
         return None if ours is None else f"{ours:.0f}"
     first = math.floor(math.log10(abs(ours)))
@@ -73,7 +73,7 @@ def _as_printed(ours: float | None, published: str) -> str | None:
 
 
 def _reasons(measured: Sequence[Row]) -> Iterator[str]:
-    """Why figures differ, each reason once with the figures that it is of, and one command that shows it."""
+    """Yield each reason why figures differ, with its figures and a command that shows the difference."""
     by_reason: dict[str, list[Row]] = {}
     for row in measured:
         if row["verdict"] == DIFFERENT:

@@ -19,7 +19,7 @@ def play():
 
 @contextmanager
 def _launched(play, path, arguments):
-    """Chromium, or with --firefox Firefox: one that is there, by its own protocol, on a screen."""
+    """Launch Chromium, or Firefox with --firefox: an installed browser, by its own protocol, on a screen."""
     with ExitStack() as stack:
         if path.endswith("chromium"):
             opened = play.chromium.launch(executable_path=path, args=arguments)
@@ -46,7 +46,7 @@ def gl_browser(play, browser_path):
 
 @pytest.fixture(scope="session")
 def reader_browser(play, gl_browser):
-    """The browser of somebody who is sent a link: another one, where pages are opened in Firefox."""
+    """The browser of somebody who receives a link: another browser if pages are opened in Firefox."""
     if gl_browser.browser_type.name == "chromium":
         yield gl_browser
         return
@@ -56,7 +56,7 @@ def reader_browser(play, gl_browser):
 
 @pytest.fixture(scope="session")
 def chart_page(browser, tmp_path_factory):
-    """Draws charts in a browser, one after the other."""
+    """A page in a browser that draws charts, one after the other."""
     page = browser.new_page()
     yield both_ways.Page(page, tmp_path_factory.mktemp("charts") / "page.html")
     page.close()
@@ -64,7 +64,7 @@ def chart_page(browser, tmp_path_factory):
 
 @pytest.fixture
 def agree(chart_page):
-    """Gives the panels of a chart that a file and the page show alike."""
+    """A function that returns the panels of a chart that a file and the page show alike."""
     return chart_page.agree
 
 
@@ -82,7 +82,7 @@ def opened_once(browser, report):
 
 @pytest.fixture
 def opened(opened_once):
-    """The report as it has just been opened: a module's tests use one window, which a page is loaded into anew."""
+    """The report as if just opened: a module's tests share one window, in which the page is loaded again."""
     opened_once.load_anew()
     # Firefox gives keys to the window in front alone.
     opened_once.page.bring_to_front()
@@ -91,7 +91,7 @@ def opened(opened_once):
 
 @pytest.fixture(scope="module")
 def open_laboratory(gl_browser, report):
-    """The one that a module's tests use in turn."""
+    """The laboratory that a module's tests use in turn."""
     page = Laboratory(gl_browser, report)
     yield page
     page.context.close()
@@ -99,7 +99,7 @@ def open_laboratory(gl_browser, report):
 
 @pytest.fixture
 def laboratory(open_laboratory, report):
-    """A laboratory as it is when it has just been opened."""
+    """A laboratory in the state in which it opens."""
     open_laboratory.reset()
     yield open_laboratory
     assert not open_laboratory.said, open_laboratory.said

@@ -1,4 +1,4 @@
-"""A and B in every figure of the page, and in its pictures: by rows read from the run."""
+"""A and B in every figure and image of the page, compared with rows read from the run."""
 
 import math
 
@@ -20,7 +20,7 @@ LINES = """Array.from(document.querySelectorAll("[data-compare] tbody tr"), (row
 
 
 def compared(opened: Opened, a: str, b: str) -> list[dict]:
-    """The lines of the comparison, all of them."""
+    """Return all lines of the comparison."""
     opened.page.evaluate("([a, b]) => change({ view: 'compare', at: '', a, b })", [a, b])
     opened.page.wait_for_selector("[data-compare] tbody")
     for button in opened.page.locator("[data-compare] .tools button").all():
@@ -28,7 +28,7 @@ def compared(opened: Opened, a: str, b: str) -> list[dict]:
     return opened.page.evaluate(LINES)
 
 
-def test_a_and_b_stand_in_every_figure_that_both_have(opened, results):
+def test_a_and_b_appear_in_every_figure_that_both_have(opened, results):
     lines = {(line["cells"][0], line["cells"][1]): line for line in compared(opened, A, B)}
     means = {
         (row["encoding"], row["normals"], row["backend"]): row["angle_mean_deg"]
@@ -36,11 +36,11 @@ def test_a_and_b_stand_in_every_figure_that_both_have(opened, results):
         if row["storage"] == "rgba8" and row["angle_mean_deg"]
     }
     pairs = [(value, means["spheremap", *key]) for (name, *key), value in means.items() if name == "octahedral"]
-    one, other = max(pairs, key=lambda pair: abs(math.log(pair[1] / pair[0])))
+    mean_a, other = max(pairs, key=lambda pair: abs(math.log(pair[1] / pair[0])))
     mean = lines["angle mean degrees", TITLE]
-    assert [f"{float(text):.4g}" for text in mean["cells"][2:4]] == [f"{one:.4g}", f"{other:.4g}"]
+    assert [f"{float(text):.4g}" for text in mean["cells"][2:4]] == [f"{mean_a:.4g}", f"{other:.4g}"]
     assert mean["best"] == 2, "octahedral is the better one, and A"
-    assert mean["cells"][4] == f"{float(f'{other / one:.2g}'):g} \N{MULTIPLICATION SIGN}"
+    assert mean["cells"][4] == f"{float(f'{other / mean_a:.2g}'):g} \N{MULTIPLICATION SIGN}"
     turned = {(line["cells"][0], line["cells"][1]): line for line in compared(opened, B, A)}
     assert turned.keys() == lines.keys()
     assert turned["angle mean degrees", TITLE]["cells"][2:4] == mean["cells"][3:1:-1]
@@ -63,7 +63,7 @@ def test_the_largest_difference_comes_first_and_other_conditions_unfold(opened):
     assert opened.page.locator("[data-compare] tbody tr").count() == before
 
 
-def test_a_picture_zooms_to_the_numbers_in_its_pixels_and_blinks(opened):
+def test_image_zooms_to_its_pixel_values_and_blinks(opened):
     compared(opened, A, B)
     viewed(opened, left=A, right=B, view="decoded")
     stage = opened.page.locator("#viewer .stage")
@@ -73,13 +73,13 @@ def test_a_picture_zooms_to_the_numbers_in_its_pixels_and_blinks(opened):
     box = stage.bounding_box()
     place = "(({ clientX, clientY }) => viewer.zoom.at({ clientX, clientY }))"
     # A wheel's events have whole pixels.
-    at = {"clientX": int(box["x"] + box["width"] / 4), "clientY": int(box["y"] + box["height"] / 4)}
-    opened.page.mouse.move(at["clientX"], at["clientY"])
-    before = opened.page.evaluate(f"(at) => {place}(at)", at)
+    pointer = {"clientX": int(box["x"] + box["width"] / 4), "clientY": int(box["y"] + box["height"] / 4)}
+    opened.page.mouse.move(pointer["clientX"], pointer["clientY"])
+    before = opened.page.evaluate(f"(at) => {place}(at)", pointer)
     for _ in range(40):
         opened.page.mouse.wheel(0, -100)
     numbers.wait_for()
-    after = opened.page.evaluate(f"(at) => {place}(at)", at)
+    after = opened.page.evaluate(f"(at) => {place}(at)", pointer)
     assert abs(before["x"] - after["x"]) < 0.01 and abs(before["y"] - after["y"]) < 0.01, (
         "what is under the pointer stays"
     )

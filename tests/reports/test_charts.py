@@ -1,4 +1,4 @@
-"""Charts as values: a file and the page show the same marks, axes and labels of one."""
+"""Charts as values: a file and the page show the same marks, axes and labels of a chart."""
 
 import json
 
@@ -22,7 +22,7 @@ HOSTILE = "$a\\b\"'</script>"
 
 
 def a_chart(**more) -> Chart:
-    """Lines of two codecs over a logarithmic axis, with names at their ends."""
+    """Return a chart with lines of two codecs over a logarithmic axis, with names at their ends."""
     rows = [
         {"codec": codec, "bits": bits, "x": x, "y": x * bits}
         for codec, bits in (("xy rg8", 16), (HOSTILE, 24))
@@ -36,8 +36,8 @@ def a_chart(**more) -> Chart:
     return Chart(**about | {"marks": (line, end)} | more)
 
 
-def test_an_axis_of_angles_says_degrees():
-    """Both ways show one value, so that a wrong unit would be the same in both."""
+def test_title_of_an_angle_axis_gives_degrees():
+    """A wrong unit would be the same in the file and on the page, because both show one value."""
     titles = {chart.x.title for chart in TABLES["quality"].work.charts(ROWS["quality"])}
     assert titles == {"angle between normal and decode (degrees)"}
 

@@ -1,4 +1,4 @@
-"""Charts as values: a file and the page show the same marks, axes and labels of one."""
+"""Charts as values: a file and the page show the same marks, axes and labels of a chart."""
 
 import itertools
 import re
@@ -26,7 +26,7 @@ from normalbench.reports.charts.chart import (
 
 
 def test_a_matplotlibrc_changes_no_chart(tmp_path, monkeypatch):
-    """One in the current folder may be a stranger's: LaTeX is a program, and reads other files."""
+    """The file in the current folder may be a stranger's: LaTeX is a program, and reads other files."""
     draw.write([a_chart()], (tmp_path / "before.png", "png"))
     monkeypatch.setitem(pyplot.rcParams, "text.usetex", True)
     monkeypatch.setitem(pyplot.rcParams, "figure.facecolor", "red")
@@ -35,21 +35,21 @@ def test_a_matplotlibrc_changes_no_chart(tmp_path, monkeypatch):
     assert pyplot.rcParams["text.usetex"], "the settings of whoever calls stay"
 
 
-def test_a_file_says_finding_units_and_names_and_is_the_same_each_time(tmp_path):
+def test_file_contains_finding_units_and_names_and_is_reproducible(tmp_path):
     texts = []
     for name in ("a.svg", "b.svg"):
         draw.write([a_chart()], (tmp_path / name, "svg"))
         texts.append(re.sub(r"<dc:date>.*</dc:date>", "", (tmp_path / name).read_text()))
     assert texts[0] == texts[1] and "<script" not in texts[0]
-    for said in ("A finding", "what it is", "pixels", "error, degrees", "xy rg8"):
-        assert f">{said}</text>" in texts[0], said
+    for text in ("A finding", "what it is", "pixels", "error, degrees", "xy rg8"):
+        assert f">{text}</text>" in texts[0], text
 
 
 def test_several_charts_are_one_file(tmp_path):
     for count in (1, 2):
         draw.write([a_chart()] * count, (tmp_path / f"{count}.png", "png"))
-    with Image.open(tmp_path / "1.png") as one, Image.open(tmp_path / "2.png") as two:
-        assert one.width == two.width and two.height == pytest.approx(2 * one.height, abs=2)
+    with Image.open(tmp_path / "1.png") as single, Image.open(tmp_path / "2.png") as two:
+        assert single.width == two.width and two.height == pytest.approx(2 * single.height, abs=2)
 
 
 def test_names_at_ends_keep_apart_and_in_order():
@@ -108,14 +108,14 @@ def test_every_chart_of_a_run_is_the_same_both_ways(agree, name):
 
 def test_panels_share_an_axis_or_have_their_own(agree):
     chart = a_chart(panels=Names("bits", (16, 24)), x=Axis(title="pixels", scale=Scale.LOG, is_shared=False))
-    one, other = agree(chart)
-    assert one.extents["y"] == other.extents["y"] and one.texts != other.texts
+    first, other = agree(chart)
+    assert first.extents["y"] == other.extents["y"] and first.texts != other.texts
 
 
-def test_a_switch_is_a_control_of_the_page_and_panels_or_one_choice_in_a_file(agree):
+def test_switch_is_a_control_on_the_page_and_panels_or_a_choice_in_a_file(agree):
     switch = Switch("bits", "Bits shown", (ALL, "16", "24"), ALL)
-    said = {"field": "bits", "label": "Bits shown", "all": ALL, "values": [ALL, "16", "24"], "usual": ALL}
-    assert wire.spec(a_chart(switch=switch))["switch"] == said
+    expected = {"field": "bits", "label": "Bits shown", "all": ALL, "values": [ALL, "16", "24"], "usual": ALL}
+    assert wire.spec(a_chart(switch=switch))["switch"] == expected
     (whole,) = agree(a_chart(switch=switch))
     assert whole.marks[Kind.LINES] == 2
     rows = tuple({**row, "gpu": f"gpu {row['bits']}"} for row in a_chart().rows)
@@ -126,13 +126,13 @@ def test_a_switch_is_a_control_of_the_page_and_panels_or_one_choice_in_a_file(ag
     assert len(wire.spec(a_chart(rows=rows, switch=switch))["panels"]) == 1
 
 
-def test_what_has_no_place_is_left_out_and_a_browser_reads_the_rest(agree):
+def test_values_that_cannot_be_plotted_are_left_out(agree):
     rows = [{"x": x, "y": y} for x, y in ((1.0, 2.0), (0.0, 2.0), (2.0, float("inf")), (3.0, None), (4.0, 1.0))]
     (shown,) = agree(a_chart(rows=tuple(rows), colour=None, marks=(Mark(kind=Kind.POINTS),)))
     assert shown.marks == {Kind.POINTS: 2}
 
 
-def test_a_chart_without_rows_is_an_empty_one(agree, tmp_path):
+def test_chart_without_rows_is_empty(agree, tmp_path):
     (shown,) = agree(a_chart(rows=()))
     assert shown.marks == {} and shown.titles == {"x": "pixels", "y": "error, degrees"}
     draw.write([], (tmp_path / "none.png", "png"))

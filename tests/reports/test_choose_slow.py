@@ -1,4 +1,4 @@
-"""The page's answer for a reader's constraints is pick's, to the letter."""
+"""The page's answer for a reader's constraints, which is that of `pick` to the letter."""
 
 import json
 
@@ -28,8 +28,8 @@ ASK = """([questions, constants]) => questions.map(([question, asked]) => {
 
 
 def made_up_rows(rng: np.random.Generator, needs: str | None, aim: str = "angle") -> list[dict]:
-    """Rows of a question as a run keeps them: prices and errors of a few sizes, so that many are equal, and codes of
-    every kind that is left out."""
+    """Return rows of a question as a run keeps them: costs and errors of a few sizes, so that many are equal, and
+    encodings of every kind that is left out."""
     usual = {
         "asked": "rgb10a2",
         "needs": needs,
@@ -90,7 +90,7 @@ def made_up_rows(rng: np.random.Generator, needs: str | None, aim: str = "angle"
 
 
 def images_at_random(rng: np.random.Generator) -> dict:
-    """Errors of two images over some yaws, about levels of 3 dB, so that many tie; of every fourth code none."""
+    """Return errors of two images over some yaws, around levels of 3 dB, so that many tie; every fourth time none."""
     if rng.random() < 0.25:
         return {"image_db_studio": None, "image_db_room": None}
     level, spread, count = 10 ** (-0.3 * rng.integers(6, 26)), rng.choice([0.02, 0.5]), rng.choice([4, 6])
@@ -114,7 +114,7 @@ def asked_at_random(rng: np.random.Generator) -> dict:
 
 
 def surveyed(rng: np.random.Generator, mean: float, encode: float, decode: float) -> dict:
-    """What a survey adds to a row."""
+    """Return the columns that a survey adds to a row."""
     uses = {
         use: {
             "cannot": f"cannot be {use}ed" if rng.random() < 0.3 else "",
@@ -128,44 +128,44 @@ def surveyed(rng: np.random.Generator, mean: float, encode: float, decode: float
 
 
 def as_asked(row: dict, asked: dict) -> dict:
-    """A row as `pick` would have measured it for what is asked."""
-    made = row | asked
+    """Return a row as `pick` would have measured it for these constraints."""
+    asked_row = row | asked
     if asked["family"] != row["family"] and row["slots"] is not None:
         encode, decode = json.loads(row["by_family"])[asked["family"]]
-        made |= {"encode_slots": encode, "decode_slots": decode, "slots_once": encode + decode}
-        made |= {"slots": encode + 4 * decode}
+        asked_row |= {"encode_slots": encode, "decode_slots": decode, "slots_once": encode + decode}
+        asked_row |= {"slots": encode + 4 * decode}
     if asked["mixing"] and row["by_use"]:
         uses = [json.loads(row["by_use"])[use] for use in asked["mixing"].split(",")]
-        said = [f"{use['cannot']}: why" for use in uses if use["cannot"]]
-        made |= {"cannot_mix": "; ".join(said) or None, "mixed_max_deg": max(use["max"] for use in uses)}
-        made |= {"mixed_mean_deg": sum(use["sum"] for use in uses) / sum(use["count"] for use in uses)}
-    return made | {"slots": _slots(made, asked["readers"])}
+        reasons = [f"{use['cannot']}: why" for use in uses if use["cannot"]]
+        asked_row |= {"cannot_mix": "; ".join(reasons) or None, "mixed_max_deg": max(use["max"] for use in uses)}
+        asked_row |= {"mixed_mean_deg": sum(use["sum"] for use in uses) / sum(use["count"] for use in uses)}
+    return asked_row | {"slots": _slots(asked_row, asked["readers"])}
 
 
-def test_the_pages_answer_is_picks_for_any_constraints(opened, tmp_path):
+def test_the_page_gives_the_answer_of_pick_for_any_constraints(opened, tmp_path):
     rng = np.random.default_rng(11)
     pairs, expected = [], []
-    for at in range(SETS):
-        if at % 25 == 0:
-            rows = made_up_rows(rng, needs=(None, "hemisphere")[at // 25 % 2], aim=("angle", "image")[at // 50 % 2])
+    for i in range(SETS):
+        if i % 25 == 0:
+            rows = made_up_rows(rng, needs=(None, "hemisphere")[i // 25 % 2], aim=("angle", "image")[i // 50 % 2])
             (question,) = extras(tmp_path, {"pick": rows}, [])["choices"]["questions"]
         asked = asked_at_random(rng)
         # A price in the rows is that of their own readers.
         own = [as_asked(row, asked) for row in rows]
-        found = answered(own)
+        ranked = answered(own)
         pairs.append([question, asked])
-        fit = [f"{row['encoding']} {row['storage']}" for row in found if not row["left_out"] and not row["beside"]]
-        expected.append([told(found)[0], fit])
-    said = opened.page.evaluate(ASK, [pairs, CONSTANTS])
-    wrong = [(one, other) for one, other in zip(said, expected, strict=True) if one != other]
+        fit = [f"{row['encoding']} {row['storage']}" for row in ranked if not row["left_out"] and not row["beside"]]
+        expected.append([told(ranked)[0], fit])
+    replies = opened.page.evaluate(ASK, [pairs, CONSTANTS])
+    wrong = [(reply, other) for reply, other in zip(replies, expected, strict=True) if reply != other]
     assert not wrong, f"{len(wrong)} of {SETS}: {wrong[0]}"
     answers = {sentence for sentence, _ in expected}
     assert (
         len(answers) > 50
-        and any("no encoding qualifies" in one for one in answers)
-        and any("In rg16" in one for one in answers)
-        and any("on hemisphere: take" in one for one in answers)
-        and any("on hemisphere: no encoding qualifies" in one and "for hemisphere" in one for one in answers)
+        and any("no encoding qualifies" in answer for answer in answers)
+        and any("In rg16" in answer for answer in answers)
+        and any("on hemisphere: take" in answer for answer in answers)
+        and any("on hemisphere: no encoding qualifies" in answer and "for hemisphere" in answer for answer in answers)
     )
 
 
@@ -181,7 +181,7 @@ def answered_page(tmp_path_factory):
 
 
 def test_constraints_change_the_answer_the_count_and_the_address(browser, answered_page):
-    """By the keyboard; what the run asked for itself is in no address, and a button brings it back."""
+    """The keyboard changes the constraints. The run's own are not in the address, and a button restores them."""
     page = Opened(browser, answered_page)
     page.says("[data-left]", "encodings are left")
     left, codes = page.page.locator("[data-left]"), page.page.locator("[data-codes] tbody tr")
@@ -201,9 +201,9 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, answer
     assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rgb10a2, on sphere: take xy."]
     # A copied address shows the same.
     other = Opened(browser, answered_page, fragment=page.page.evaluate("location.hash"))
-    for one in (page, other):
-        one.says("[data-left]", "1 of 2 encodings are left")
-        assert one.page.locator("[data-limit=most]").input_value() == "6"
+    for opened_page in (page, other):
+        opened_page.says("[data-left]", "1 of 2 encodings are left")
+        assert opened_page.page.locator("[data-limit=most]").input_value() == "6"
     other.context.close()
     page.page.locator("[data-again]").click()
     assert page.page.evaluate("state.most") == "" and left.text_content() == "2 of 2 encodings are left"
@@ -223,7 +223,7 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, answer
 
 
 def test_a_follows_the_answer_until_a_reader_chooses_it(browser, answered_page):
-    """So that the card, and the code to copy in it, are the answer's. What a reader chose stands in the address."""
+    """The card and its code to copy are therefore those of the answer. A reader's choice is kept in the address."""
     page = Opened(browser, answered_page)
     page.says("[data-left]", "encodings are left")
     most, sides = page.page.locator("[data-limit=most]"), "[state.a, state.b]"
@@ -245,11 +245,12 @@ def test_a_follows_the_answer_until_a_reader_chooses_it(browser, answered_page):
     copied.context.close()
 
 
-def test_half_of_the_sphere_is_a_question_of_its_own(browser, run, tmp_path):
-    """The storage stays, and A and B where they are codes of it; where a storage has no such question, one that has."""
+def test_hemisphere_is_a_separate_question(browser, run, tmp_path):
+    """The storage stays, and so do A and B if they are codecs of it; if the storage lacks this question, the page
+    chooses a storage that has it."""
     half = {"needs": "hemisphere", "normals": "hemisphere"}
     rows = [pick_row("octahedral", 0.2, 90), pick_row("spheremap", 0.3, 10)]
-    rows += [one | {"asked": "rgb10a2", "storage": "rgb10a2"} for one in rows]
+    rows += [row | {"asked": "rgb10a2", "storage": "rgb10a2"} for row in rows]
     rows += [rows[0] | half, pick_row("hemi_octahedral", 0.1, 90) | {"domain": "hemisphere"} | half]
     assert run("report", str(a_run(tmp_path / "run", {"pick": rows}, request={"tables": ["pick"]})))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")

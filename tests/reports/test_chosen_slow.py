@@ -1,4 +1,4 @@
-"""The pictures of A and B in Choose, drawn by the reader's GPU in the scene of their stills."""
+"""The images of A and B in Choose, drawn by the reader's GPU in the scene of their stills."""
 
 import numpy as np
 import pytest
@@ -66,11 +66,11 @@ ALL_AROUND = f"""([width, height]) => {{
 
 
 def studio_run(folder):
-    """An answer in the scene `studio`, whose stills are of one colour."""
+    """Write a run with an answer in the scene `studio`, whose stills are of one colour."""
     (folder / "images").mkdir(parents=True)
     about = {"scene": "studio", "image_db_studio": 40.0, "against": True}
-    rows = [pick_row(name, 0.2 + at / 10, 9 + at) | about for at, name in enumerate(CODES)]
-    for name in (*(f"{one}-rg8-final" for one in CODES), "reference"):
+    rows = [pick_row(name, 0.2 + index / 10, 9 + index) | about for index, name in enumerate(CODES)]
+    for name in (*(f"{code}-rg8-final" for code in CODES), "reference"):
         Image.new("RGB", SIZE, (50, 60, 70)).save(folder / f"images/pick-studio-{name}.png")
     write_live(codecs_named(",".join(CODES), "rg8", "nearest"), folder / "live")
     return a_run(folder, {"pick": rows}, request={"tables": ["pick"]})
@@ -99,13 +99,13 @@ def chosen(gl_browser, page_path):
 
 
 def images(chosen) -> list[np.ndarray]:
-    """What the canvases of A and B show, and those of their differences."""
+    """Return the images on the canvases of A and B, and of their differences."""
     chosen.page.evaluate(SETTLED)
-    found = chosen.page.eval_on_selector_all(".proof canvas", READ)
-    return [np.array(data).reshape(height, width, 4)[..., :3] for width, height, data in found]
+    canvases = chosen.page.eval_on_selector_all(".proof canvas", READ)
+    return [np.array(data).reshape(height, width, 4)[..., :3] for width, height, data in canvases]
 
 
-def test_a_touch_makes_the_stills_live_and_hands_turn_both(chosen):
+def test_focus_makes_the_stills_live_and_keys_and_dragging_turn_both(chosen):
     page = chosen.page
     chosen.says(".proof [role=status]", "Live: drag")
     first, second, *differences = images(chosen)
@@ -115,7 +115,7 @@ def test_a_touch_makes_the_stills_live_and_hands_turn_both(chosen):
     turned, other, *same = images(chosen)
     for before, after in ((first, turned), (second, other)):
         assert (abs(before - after).max(axis=-1) > 8).mean() > 0.05
-    assert all((one == two).all() for one, two in zip(differences, same, strict=True)), "the run's own"
+    assert all((image == two).all() for image, two in zip(differences, same, strict=True)), "the run's own"
     camera = f"{LIVE}.camera"
     page.locator(".proof").scroll_into_view_if_needed()
     box = page.locator(".proof canvas").nth(1).bounding_box()
@@ -148,7 +148,7 @@ def test_a_and_b_of_the_state_are_drawn(chosen):
 
 
 def in_view_space(scene):
-    """The scene's meshes, each with its material."""
+    """Yield the scene's meshes in view space, each with its material."""
     view = scene.view.matrix()
     for part in scene.parts:
         for model, material in zip(part.models, part.materials, strict=True):
@@ -161,14 +161,14 @@ def in_view_space(scene):
             )
 
 
-def test_the_live_scene_has_the_normals_of_the_runs(chosen):
-    """Its tiles are smoothed in another way, and its spheres are no polygons."""
+def test_the_live_scene_has_the_normals_of_the_run(chosen):
+    """The tiles of the live scene are smoothed differently, and its spheres are not polygons."""
     chosen.page.evaluate(f"size => {{ {LIVE}.size = size; {LIVE}.change(); }}", SIZE)
     chosen.page.evaluate(SETTLED)
-    found = chosen.page.evaluate(NORMALS, SIZE)
-    width, height = found["size"]
+    reply = chosen.page.evaluate(NORMALS, SIZE)
+    width, height = reply["size"]
     assert (width, height) == SIZE
-    seen = np.array(found["numbers"]).reshape(height, width, 4)[::-1]
+    seen = np.array(reply["numbers"]).reshape(height, width, 4)[::-1]
     scene = studio(Setting())
     drawn = list(in_view_space(scene))
     camera = Camera(width, height, scene.view.fov, scene.view.near, scene.view.far)
@@ -184,10 +184,10 @@ def test_the_live_scene_has_the_normals_of_the_runs(chosen):
     assert np.percentile(angles[tiles], 50) < 3
 
 
-def test_what_the_live_scene_mirrors_is_the_runs_studio(chosen):
+def test_the_live_scene_mirrors_the_studio_of_the_run(chosen):
     width, height = 256, 128
-    found = np.array(chosen.page.evaluate(ALL_AROUND, [width, height])).reshape(height, width, 4)[..., :3]
-    coarse = found.reshape(32, 4, 64, 4, 3).mean(axis=(1, 3))
+    panorama = np.array(chosen.page.evaluate(ALL_AROUND, [width, height])).reshape(height, width, 4)[..., :3]
+    coarse = panorama.reshape(32, 4, 64, 4, 3).mean(axis=(1, 3))
     wanted = surroundings().reshape(32, 8, 64, 8, 3).mean(axis=(1, 3))
     print(np.corrcoef(coarse.ravel(), wanted.ravel())[0, 1], coarse.sum() / wanted.sum())
     assert np.corrcoef(coarse.ravel(), wanted.ravel())[0, 1] > 0.97

@@ -1,4 +1,4 @@
-"""The view Codecs: a list of all, and everything about one codec in a card, as the run's rows have it."""
+"""The view Codecs: a list of all codecs, and everything about one codec in a card, from the run's rows."""
 
 import pytest
 
@@ -17,6 +17,6 @@ from normalbench.encodings.storages.storage import STORAGES
         ("rgb10a2", "rgb8_10_10_2", 2, False),
     ],
 )
-def test_storages_of_the_same_first_numbers(one, other, count, same):
-    """Numbers that lie across channels are not filtered as others are."""
+def test_storages_share_a_rule_if_their_first_numbers_are_alike(one, other, count, same):
+    """Numbers that span several channels are filtered differently."""
     assert (rule_of_first(STORAGES[one], count) == rule_of_first(STORAGES[other], count)) is same

@@ -1,4 +1,4 @@
-"""The view Codecs: a list of all, and everything about one codec in a card, as the run's rows have it."""
+"""The view Codecs: a list of all codecs, and everything about one codec in a card, from the run's rows."""
 
 import test_codecs_slow
 
@@ -6,5 +6,5 @@ codecs_page = test_codecs_slow.codecs_page
 shown = test_codecs_slow.shown
 
 
-def test_a_further_card_has_the_figures_of_the_runs_rows_and_their_places(shown):
-    test_codecs_slow.test_a_card_has_the_figures_of_the_runs_rows_and_their_places(shown, "stereographic rgba8", 3)
+def test_another_card_has_the_figures_and_ranks_of_the_run(shown):
+    test_codecs_slow.test_card_has_the_figures_and_ranks_of_the_run(shown, "stereographic rgba8", 3)

@@ -1,4 +1,4 @@
-"""The view Codecs: a list of all, and everything about one codec in a card, as the run's rows have it."""
+"""The view Codecs: a list of all codecs, and everything about one codec in a card, from the run's rows."""
 
 import json
 import time
@@ -47,7 +47,7 @@ def codecs_page(tmp_path_factory):
 
 
 @pytest.mark.parametrize("damage", ["{", '{"languages": {}, "pieces": [], "codecs": 1}', "one place too far"])
-def test_kept_code_that_is_damaged_is_left_out(codecs_page, tmp_path, damage):
+def test_damaged_stored_code_is_left_out(codecs_page, tmp_path, damage):
     kept = json.loads((codecs_page.parent / FILE).read_text())
     assert read_code(codecs_page.parent)["codecs"]["octahedral rg8"]["proven"]
     if damage.startswith("one"):
@@ -66,7 +66,7 @@ def shown(browser, codecs_page):
 
 
 def card_of(shown: Opened, a: str, b: str = ""):
-    """The card, when it is A's and B's."""
+    """Return the card once it shows A and B."""
     shown.page.evaluate("sides => change({ view: 'codecs', at: '', ...sides })", {"a": a, "b": b})
     card = shown.page.locator("[data-card]")
     shown.page.wait_for_selector(f'[data-card][data-ready="{a}"]')
@@ -85,25 +85,25 @@ CARDS = [("octahedral rgba8", 0), ("spheremap rgb10a2", 6)]
 
 
 @pytest.mark.parametrize(("name", "at"), CARDS)
-def test_a_card_has_the_figures_of_the_runs_rows_and_their_places(shown, name, at):
-    """Of the first back end, among codecs of as many bits, the user's own among them."""
+def test_card_has_the_figures_and_ranks_of_the_run(shown, name, at):
+    """The figures are those of the first backend, ranked among codecs of as many bits, including the user's own."""
     card, row = card_of(shown, name), QUALITY[at]
-    alike = [one for one in QUALITY if one["bits"] == row["bits"] and one["backend"] == "jax"]
-    alike = [one for one in alike if domain_of(one["encoding"]) == domain_of(name.split()[0])]
+    alike = [other for other in QUALITY if other["bits"] == row["bits"] and other["backend"] == "jax"]
+    alike = [other for other in alike if domain_of(other["encoding"]) == domain_of(name.split()[0])]
     for figure, sign in (("psnr_db", -1), ("angle_mean_deg", 1), ("angle_max_deg", 1)):
-        rank = 1 + sum(sign * one[figure] < sign * row[figure] for one in alike)
+        rank = 1 + sum(sign * other[figure] < sign * row[figure] for other in alike)
         cell = card.locator(f'[data-table=quality] [data-figure="{figure}"]')
         place = f"\n{ordinal(rank)} of {len(alike)}" if len(alike) > 1 else ""
         assert cell.text_content() == f"{text_of(row[figure])}{place}", figure
         alone = "no codec to compare with"
-        said = f"{ordinal(rank)} of {len(alike)} at {row['bits']} bits" if len(alike) > 1 else alone
-        assert cell.get_attribute("title") == said
-        best = (min if sign > 0 else max)(one[figure] for one in alike)
+        title = f"{ordinal(rank)} of {len(alike)} at {row['bits']} bits" if len(alike) > 1 else alone
+        assert cell.get_attribute("title") == title
+        best = (min if sign > 0 else max)(other[figure] for other in alike)
         share = float(cell.evaluate("cell => cell.style.getPropertyValue('--share')"))
         assert share == pytest.approx(best / row[figure] if sign > 0 else row[figure] / best), figure
 
 
-def test_b_stands_in_the_same_table(shown):
+def test_b_is_in_the_same_table(shown):
     card = card_of(shown, "octahedral rgba8", "spheremap rgba8")
     rows = card.locator("[data-table=quality] tbody tr")
     assert rows.locator("th").all_text_contents() == ["A", "B"]
@@ -111,8 +111,8 @@ def test_b_stands_in_the_same_table(shown):
     assert [float(text.split("\n")[0]) for text in cells] == [49.85, 48.73]
 
 
-def test_the_answers_card_shows_what_holds_of_the_same_numbers_and_says_so(shown):
-    """RG8 has the first two channels of RGBA8. RGB10 A2 has others, and rows of its own."""
+def test_card_shows_figures_of_identical_values_with_a_note(shown):
+    """RG8 has the first two channels of RGBA8. RGB10A2 has other channels, and rows of its own."""
     card = card_of(shown, "octahedral rg8")
     text = card.inner_text()
     assert "Not measured: octahedral rg8. The figures are for octahedral rgba8, which stores identical values" in text
@@ -125,11 +125,11 @@ def test_the_answers_card_shows_what_holds_of_the_same_numbers_and_says_so(shown
     assert "Not measured:" not in card_of(shown, "octahedral rgb10a2").inner_text()
 
 
-def test_the_code_that_is_copied_is_what_code_writes(shown, run):
-    """The answer's was run; of others the head says that it was not, and the functions are the same."""
+def test_copied_code_matches_the_output_of_the_code_command(shown, run):
+    """The answer's code was run; for other codecs the header says that it was not, and the functions are the same."""
     shown.context.grant_permissions(["clipboard-read", "clipboard-write"])
     card = card_of(shown, "octahedral rg8")
-    assert card.locator("[data-language] option").all_text_contents() == [one.title for one in SHORT.values()]
+    assert card.locator("[data-language] option").all_text_contents() == [language.title for language in SHORT.values()]
     card.locator("[data-language]").select_option("c")
     card.locator("[data-copy=code]").click()
     card.locator("[role=status]:text-is('Copied')").wait_for()
@@ -138,13 +138,13 @@ def test_the_code_that_is_copied_is_what_code_writes(shown, run):
     assert shown.page.evaluate("navigator.clipboard.readText()") == written
     card = card_of(shown, "spheremap rgb10a2")
     card.locator("[data-language]").select_option("c")
-    found = card.locator("[data-code]").text_content()
-    assert "Verified: not in this run" in found and "It was not run." in card.inner_text()
+    code = card.locator("[data-code]").text_content()
+    assert "Verified: not in this run" in code and "It was not run." in card.inner_text()
     _, written, _ = run("code", "spheremap", "--storage", "rgb10a2", "--to", "c")
-    assert found.partition("#ifndef")[2] == written.partition("#ifndef")[2]
+    assert code.partition("#ifndef")[2] == written.partition("#ifndef")[2]
 
 
-def test_the_code_of_a_lies_below_the_answer_too(browser, codecs_page):
+def test_the_code_of_a_is_also_below_the_answer(browser, codecs_page):
     page = Opened(browser, codecs_page, fragment="#v1/choose?a=octahedral%20rg8")
     below = page.page.locator("[data-of-cards=code]")
     assert below.locator("[data-code]").count() == 0, "nothing is built before it is opened"
@@ -152,20 +152,20 @@ def test_the_code_of_a_lies_below_the_answer_too(browser, codecs_page):
     kept = read_code(codecs_page.parent)
     first, *_ = kept["codecs"]["octahedral rg8"]["texts"].values()
     page.says("[data-of-cards=code] h3", "octahedral rg8")
-    assert below.locator("[data-code]").text_content() == "".join(kept["pieces"][at] for at in first)
+    assert below.locator("[data-code]").text_content() == "".join(kept["pieces"][index] for index in first)
     page.page.evaluate("change({ a: 'spheremap rgb10a2' })")
     page.says("[data-of-cards=code] h3", "spheremap rgb10a2")
     assert page.said == []
     page.context.close()
 
 
-def test_an_encoding_of_the_users_own_and_no_codec_at_all(shown):
+def test_card_names_a_users_own_encoding_and_asks_for_a_codec(shown):
     assert "Your own encoding, mine" in card_of(shown, "mine rgba8").inner_text()
     shown.page.evaluate("change({ a: '', b: '' })")
     shown.says("[data-card]", "Choose a codec in the list")
 
 
-def test_an_unknown_codec_is_said_and_the_card_of_ones_own_is_shown(browser, codecs_page):
+def test_unknown_codec_is_reported_and_the_users_own_card_is_shown(browser, codecs_page):
     page = Opened(browser, codecs_page, fragment="#v1/codecs?a=nothing%20rg8")
     page.says("#unknown", "The address names the codec nothing rg8, which this page does not have.")
     page.page.wait_for_selector('[data-card][data-ready="mine rgba8"]')
@@ -174,8 +174,8 @@ def test_an_unknown_codec_is_said_and_the_card_of_ones_own_is_shown(browser, cod
     page.context.close()
 
 
-def test_an_address_is_kept_where_the_last_script_comes_late(browser, codecs_page):
-    """A page that comes slowly unpacks its choices before it reads its address."""
+def test_address_is_kept_if_the_last_script_arrives_late(browser, codecs_page):
+    """A page that loads slowly unpacks its choices before it reads its address."""
     beginning, script, end = codecs_page.read_bytes().rpartition(b"<script>")
 
     class Slowly(BaseHTTPRequestHandler):
@@ -203,12 +203,12 @@ def test_the_list_is_filtered_and_sorted(shown):
     shown.page.get_by_label("Filter").first.fill("")
     shown.page.locator("[data-card-list] thead button", has_text="mean").click()
     means = rows.locator("td:nth-child(4)").all_text_contents()
-    found = [float(text.split("°")[0]) for text in means]
-    assert found == sorted(found) and found[0] == 0.0756, found
+    degrees = [float(text.split("°")[0]) for text in means]
+    assert degrees == sorted(degrees) and degrees[0] == 0.0756, degrees
 
 
 @no_fingers
-def test_a_finger_chooses_a_and_b(browser, codecs_page):
+def test_touch_chooses_a_and_b(browser, codecs_page):
     context = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True, offline=True)
     page = context.new_page()
     page.goto(f"{codecs_page.as_uri()}#v1/codecs")
@@ -217,7 +217,7 @@ def test_a_finger_chooses_a_and_b(browser, codecs_page):
     assert page.evaluate("[state.a, state.b]") == ["spheremap rgba8", "stereographic rgba8"]
     page.wait_for_selector('[data-card][data-ready="spheremap rgba8"]')
     pressed = page.locator("[data-card-list] [data-take][aria-pressed=true]")
-    assert sorted(one.get_attribute("value") for one in pressed.all()) == ["spheremap rgba8", "stereographic rgba8"]
+    assert sorted(take.get_attribute("value") for take in pressed.all()) == ["spheremap rgba8", "stereographic rgba8"]
     assert page.evaluate("document.documentElement.scrollWidth") == 390
     context.close()
 
@@ -238,8 +238,8 @@ def test_one_action_leads_from_the_answer_to_the_card(browser, codecs_page):
 
 
 @no_paper
-def test_a_folded_section_is_opened_and_landed_on(browser, codecs_page):
-    """Before the card is there and after it."""
+def test_a_folded_section_is_opened_and_scrolled_to(browser, codecs_page):
+    """Opening works before the card is shown and after."""
     context = browser.new_context(viewport={"width": 1280, "height": 900}, offline=True, reduced_motion="reduce")
     page = context.new_page()
     place = "id => document.getElementById(id).getBoundingClientRect().top - navigation.getBoundingClientRect().bottom"

@@ -1,4 +1,4 @@
-"""Colours of charts: told apart on either paper, also by those who do not see red, green or blue."""
+"""Chart colours: distinct on either paper, also for people who do not see red, green or blue."""
 
 import itertools
 import re
@@ -28,49 +28,49 @@ PALETTES = {"white": COLOURS, "dark": DARK}
 
 
 def linear(colours) -> np.ndarray:
-    """Linear RGB of #RRGGBB, of shape (count, 3)."""
-    bytes_ = np.array([[int(colour[at : at + 2], 16) for at in (1, 3, 5)] for colour in colours]) / 255
+    """Return linear RGB of #RRGGBB, of shape (count, 3)."""
+    bytes_ = np.array([[int(colour[start : start + 2], 16) for start in (1, 3, 5)] for colour in colours]) / 255
     return np.where(bytes_ <= 0.04045, bytes_ / 12.92, ((bytes_ + 0.055) / 1.055) ** 2.4)
 
 
 def seen(colours, sight: str) -> np.ndarray:
-    """OKLab, of shape (count, 3)."""
+    """Return colours in OKLab as this kind of sight shows them, of shape (count, 3)."""
     return np.cbrt(np.clip(linear(colours) @ np.array(SIGHTS[sight]).T, 0, 1) @ CONES.T) @ OKLAB.T
 
 
 def least(colours, sight: str) -> tuple[float, str, str]:
-    """The two colours that are nearest to each other, and how far apart they are."""
+    """Return the smallest distance between two colours, and these two colours."""
     pairs = itertools.combinations(zip(seen(colours, sight), colours, strict=True), 2)
-    return min((float(np.linalg.norm(a - b)), one, other) for (a, one), (b, other) in pairs)
+    return min((float(np.linalg.norm(a - b)), colour, other) for (a, colour), (b, other) in pairs)
 
 
 def papers() -> dict[str, str]:
-    """The page's paper in either theme."""
-    found = re.search(r"--paper: light-dark\((#\w+), (#\w+)\)", (WEB / "page.css").read_text())
-    assert found
-    return {"white": found[1], "dark": found[2]}
+    """Return the page's paper in either theme."""
+    match = re.search(r"--paper: light-dark\((#\w+), (#\w+)\)", (WEB / "page.css").read_text())
+    assert match
+    return {"white": match[1], "dark": match[2]}
 
 
 def contrasts(colours, paper: str) -> np.ndarray:
-    """Of each colour with the paper, WCAG 2.1."""
+    """Return the contrast of each colour with the paper, by WCAG 2.1."""
     light = linear([*colours, paper]) @ (0.2126, 0.7152, 0.0722) + 0.05
     return np.maximum(light[:-1], light[-1]) / np.minimum(light[:-1], light[-1])
 
 
-def test_white_is_one_and_black_none():
-    """The matrices are typed right: rows of cones and of sights sum to one, so that grey stays grey."""
+def test_white_is_one_and_black_is_zero():
+    """The matrices have no typing errors: rows of cones and of sights sum to one, so that grey stays grey."""
     for sight in SIGHTS:
         assert seen(["#FFFFFF", "#000000"], sight) == pytest.approx(np.array([[1, 0, 0], [0, 0, 0]]), abs=2e-3)
 
 
-def test_okabe_and_itos_grey_and_pink_were_one_colour_to_who_sees_no_green():
-    """What the measure is for: two of the nine colours that charts had before."""
+def test_former_grey_and_pink_look_alike_without_green_vision():
+    """Okabe and Ito's grey and pink were two of the nine colours that charts had before."""
     assert least(("#CC79A7", "#999999"), "no green")[0] < 0.02
 
 
 @pytest.mark.parametrize("sight", SIGHTS)
 @pytest.mark.parametrize("paper", PALETTES)
-def test_each_two_colours_are_told_apart(paper, sight):
+def test_any_two_colours_are_distinct(paper, sight):
     assert least(PALETTES[paper], sight)[0] >= APART, least(PALETTES[paper], sight)
 
 
@@ -85,7 +85,7 @@ def test_colours_stand_out_from_the_paper(paper):
 
 @pytest.mark.parametrize("sight", SIGHTS)
 @pytest.mark.parametrize("count", [2, 5, 7])
-def test_what_is_ordered_goes_from_what_is_near_the_paper_to_what_is_far(count, sight):
+def test_ordered_colours_go_from_near_the_paper_to_far_from_it(count, sight):
     names = Names("bits", tuple(range(count)), is_ordered=True)
     for is_dark, way in ((False, -1), (True, 1)):
         shown = seen(names.colours(is_dark), sight)
@@ -93,6 +93,6 @@ def test_what_is_ordered_goes_from_what_is_near_the_paper_to_what_is_far(count, 
         assert np.linalg.norm(np.diff(shown, axis=0), axis=1).min() >= NEIGHBOURS
 
 
-def test_one_ordered_value_has_a_colour_and_names_beyond_the_palette_begin_again():
+def test_one_ordered_value_has_a_colour_and_the_palette_repeats():
     assert len(Names("bits", (16,), is_ordered=True).colours()) == 1
     assert Names("codec", tuple(range(len(COLOURS) + 1))).colours()[-1] == COLOURS[0]

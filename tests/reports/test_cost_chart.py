@@ -1,5 +1,4 @@
-"""The interactive chart of cost against error: a switch between GPUs, names that can be read, no corner of crowded
-points."""
+"""The interactive chart of cost against error: a switch between GPUs, readable names and no crowded corner."""
 
 import math
 
@@ -31,41 +30,41 @@ def points(family: int = 0, operation: int = 0) -> list[Point]:
     return [Point(name, counts[family][operation], counts[2], 16) for name, counts in CODECS.items()]
 
 
-def test_names_far_apart_stand_beside_their_points():
+def test_names_far_apart_stay_next_to_their_points():
     for scale in (Scale.LINEAR, Scale.LOG):
         axis = Axis(title="error", scale=scale, domain=(0.05, 6.0))
         places = lines_apart(axis, [0.1, 5.0], HEIGHT, 1.0)
         assert [axis.at(share) for share in places] == pytest.approx([0.1, 5.0])
 
 
-def test_the_dearest_codec_leaves_the_others_room():
-    """octahedral_precise takes 120 instructions where the others take up to 15: they have over a third of the axis."""
+def test_the_most_expensive_codec_leaves_room_for_the_others():
+    """octahedral_precise takes 120 instructions; the others take up to 15 and have over a third of the axis."""
     chart = front_chart("cost-0", "PSNR", [Panel("encode", points())])
     ((_, part),) = chart.parts()
     assert part.x.share(15) - part.x.share(0) > 0.35
     (panel,) = wire.spec(chart)["panels"]
-    assert [at for at, _ in panel["x"]["ticks"]] == [0, 2, 5, 10, 20, 50, 100]
+    assert [number for number, _ in panel["x"]["ticks"]] == [0, 2, 5, 10, 20, 50, 100]
 
 
-def test_one_chart_has_a_switch_between_gpus_and_one_alone_has_none():
-    panels = [Panel("encode", points(at), name, is_usual=name == "dg2") for at, name in enumerate(FAMILIES)]
-    made = wire.spec(front_chart("cost-0", "PSNR", panels))
-    assert made["switch"]["values"] == list(FAMILIES) and made["switch"]["usual"] == "dg2"
-    (panel,) = made["panels"]
+def test_only_a_chart_of_several_gpus_has_a_switch():
+    panels = [Panel("encode", points(index), name, is_usual=name == "dg2") for index, name in enumerate(FAMILIES)]
+    spec = wire.spec(front_chart("cost-0", "PSNR", panels))
+    assert spec["switch"]["values"] == list(FAMILIES) and spec["switch"]["usual"] == "dg2"
+    (panel,) = spec["panels"]
     assert set(panel["tables"][-1]["machine"]["names"]) == set(FAMILIES)
     alone = wire.spec(front_chart("cost-0", "PSNR", panels[:1]))
     assert not alone["switch"] and alone["panels"][0]["name"] == "encode"
 
 
 def costs_of(codecs, family: str, at: int = 0) -> list[dict]:
-    """Rows of cost of a GPU family, and of the storage of two numbers."""
+    """Return rows of cost of a GPU family, and of the storage of two numbers."""
     about = TABLES["cost"].empty() | {"measure": "isa", "stage": "fragment", "family": family, "driver": "Mesa"}
-    made = []
+    rows = []
     for side, (operation, packed) in enumerate((("encode", "pack"), ("decode", "unpack"))):
         counts = {name: codecs[name][at][side] for name in codecs}
-        made += [about | {"operation": operation, "encoding": n, "instructions": c} for n, c in counts.items()]
-        made.append(about | {"operation": packed, "storage": "rgba8 8:8", "instructions": 2})
-    return made
+        rows += [about | {"operation": operation, "encoding": n, "instructions": c} for n, c in counts.items()]
+        rows.append(about | {"operation": packed, "storage": "rgba8 8:8", "instructions": 2})
+    return rows
 
 
 def without_figures(name: str, why: str) -> dict:
@@ -73,22 +72,22 @@ def without_figures(name: str, why: str) -> dict:
 
 
 def charted(folder, quality: list[dict], codecs) -> tuple[list[dict], list[str]]:
-    """What the page's chart of one GPU shows of encoding, and what the page says of the codecs that are not in it."""
-    found = gathered(folder, read_run(a_run(folder, {"quality": quality, "cost": costs_of(codecs, "navi31")})))
-    (chart,) = TABLES["cost"].work.joined(found)
+    """Return the points in the page's chart of encoding on one GPU, and its remarks on codecs that are missing."""
+    contents = gathered(folder, read_run(a_run(folder, {"quality": quality, "cost": costs_of(codecs, "navi31")})))
+    (chart,) = TABLES["cost"].work.joined(contents)
     (_, encode), _ = chart.parts()
-    return list(encode.rows), [said for said in found.remarks if "cost against error" in said]
+    return list(encode.rows), [remark for remark in contents.remarks if "cost against error" in remark]
 
 
-def test_a_users_encoding_has_its_place_by_glsl_where_it_has_no_twin(tmp_path):
-    """It beats one of the catalogue like any other; who has both back ends stands where JAX says."""
+def test_users_encoding_without_a_twin_is_placed_by_glsl(tmp_path):
+    """The user's encoding can beat those of the catalogue; an encoding with both backends is placed by JAX."""
     counts = {"xy": ((0, 4),), "octahedral": ((15, 17),), "mine": ((7, 11),), "mine:arithmetic=half": ((9, 11),)}
     rows = [without_figures("mine", "no twin"), quality_row("mine", backend="glsl", psnr_db=52.0)]
     rows += [quality_row("octahedral", backend="glsl", psnr_db=53.0), quality_row("octahedral", psnr_db=51.0)]
     rows += [quality_row("mine:arithmetic=half", psnr_db=40.0), quality_row("xy", psnr_db=20.0)]
-    points, said = charted(tmp_path / "run", rows, counts)
+    points, remarks = charted(tmp_path / "run", rows, counts)
     shown = {point["codec"]: (point["x"], point["y"], not point["rest"]) for point in points}
-    assert said == [] and shown == {
+    assert remarks == [] and shown == {
         "xy rgba8": (2, 20.0, True),
         "mine rgba8": (9, 52.0, True),
         "octahedral rgba8": (17, 51.0, False),
@@ -96,13 +95,13 @@ def test_a_users_encoding_has_its_place_by_glsl_where_it_has_no_twin(tmp_path):
     }
 
 
-def test_the_page_says_why_a_codec_has_no_place_in_its_chart(tmp_path):
+def test_the_page_explains_why_a_codec_is_not_in_its_chart(tmp_path):
     rows = [quality_row("xy"), quality_row("costless"), quality_row("odd", bits=17), quality_row("three", bits=24)]
     rows += [quality_row("same", psnr_db=math.inf), without_figures("lost", "no twin")]
     names = ("xy", "odd", "same", "lost", "three")
-    points, said = charted(tmp_path / "run", rows, dict.fromkeys(names, ((1, 1),)))
+    points, remarks = charted(tmp_path / "run", rows, dict.fromkeys(names, ((1, 1),)))
     assert [point["codec"] for point in points] == ["xy rgba8"]
-    assert said == [
+    assert remarks == [
         f"Not in cost against error, because {why}."
         for why in (
             "its storage is not known: odd rgba8",

@@ -1,5 +1,4 @@
-"""The interactive chart of cost against error: a switch between GPUs, names that can be read, no corner of crowded
-points."""
+"""The interactive chart of cost against error: a switch between GPUs, readable names and no crowded corner."""
 
 import test_cost_chart_slow
 from browsing import DESKTOP

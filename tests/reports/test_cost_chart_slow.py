@@ -1,5 +1,4 @@
-"""The interactive chart of cost against error: a switch between GPUs, names that can be read, no corner of crowded
-points."""
+"""The interactive chart of cost against error: a switch between GPUs, readable names and no crowded corner."""
 
 from itertools import combinations, pairwise
 
@@ -17,17 +16,17 @@ from normalbench.reports.charts.pareto import Panel
 
 
 @given(st.lists(st.floats(10, 110), min_size=1, max_size=24, unique=True))
-def test_no_two_names_stand_on_one_line_and_they_keep_the_order_of_their_points(errors):
+def test_names_do_not_overlap_and_keep_the_order_of_their_points(errors):
     axis = Axis(title="PSNR, dB", domain=(0, 120))
     places = dict(zip(errors, lines_apart(axis, errors, HEIGHT, wire.LABEL_LINE), strict=True))
     pixels = [places[error] * HEIGHT for error in sorted(errors)]
     assert all(b - a >= wire.LABEL_LINE - 1e-6 for a, b in pairwise(pixels))
 
 
-def test_a_file_and_the_page_show_the_same_of_the_usual_gpu(agree):
+def test_a_file_and_the_page_show_the_same_for_the_default_gpu(agree):
     panels = [
-        Panel(kind, points(at, side), name, is_usual=name == "dg2")
-        for at, name in enumerate(FAMILIES)
+        Panel(kind, points(index, side), name, is_usual=name == "dg2")
+        for index, name in enumerate(FAMILIES)
         for side, kind in enumerate(("encode", "decode"))
     ]
     shown = agree(front_chart("cost-0", "PSNR", panels))
@@ -36,8 +35,8 @@ def test_a_file_and_the_page_show_the_same_of_the_usual_gpu(agree):
 
 @pytest.fixture(scope="module")
 def run_folder(tmp_path_factory):
-    """A run whose costs are of two vendors' GPUs."""
-    costs = [row for at, family in enumerate(FAMILIES) for row in costs_of(CODECS, family, at)]
+    """A run with costs of two vendors' GPUs."""
+    costs = [row for index, family in enumerate(FAMILIES) for row in costs_of(CODECS, family, index)]
     quality = [quality_row(name, psnr_db=CODECS[name][2]) for name in CODECS]
     return a_run(tmp_path_factory.mktemp("costs") / "run", {"quality": quality, "cost": costs})
 
@@ -64,12 +63,12 @@ def test_the_pages_switch_shows_another_gpu_and_no_names_overlap(run, run_folder
 def assert_no_names_overlap(figure) -> None:
     for plot in figure.locator(".plot").all():
         texts = plot.locator("svg text.labels:not(.unplaced)").all()
-        boxes = {(at, text.text_content()): text.bounding_box() for at, text in enumerate(texts)}
+        boxes = {(index, text.text_content()): text.bounding_box() for index, text in enumerate(texts)}
         assert len(boxes) >= 3
-        for (a, one), (b, other) in combinations(boxes.items(), 2):
+        for (a, first), (b, other) in combinations(boxes.items(), 2):
             # Browsers do not agree on how high a line of 11 pixels is.
-            apart = abs(one["y"] + one["height"] / 2 - other["y"] - other["height"] / 2) >= 12
-            beside = one["x"] + one["width"] <= other["x"] or other["x"] + other["width"] <= one["x"]
+            apart = abs(first["y"] + first["height"] / 2 - other["y"] - other["height"] / 2) >= 12
+            beside = first["x"] + first["width"] <= other["x"] or other["x"] + other["width"] <= first["x"]
             assert apart or beside, (a, b)
         frame = plot.bounding_box()
         for name, box in boxes.items():

@@ -27,7 +27,7 @@ def index_once(browser, site):
 
 @pytest.fixture
 def index(index_once):
-    """The index of the site as it has just been opened: the tests use one window, which it is loaded into anew."""
+    """The index of the site as if just opened: the tests share one window, in which the index is loaded again."""
     index_once.load_anew()
     # Firefox gives keys to the window in front alone.
     index_once.page.bring_to_front()
@@ -36,7 +36,7 @@ def index(index_once):
 
 @pytest.fixture
 def opener(browser):
-    """Opens pages, and closes them in the end."""
+    """A function that opens pages, which are closed at the end."""
     opened = []
 
     def opener(*arguments, **more):
@@ -97,8 +97,8 @@ def test_a_runs_page_shows_devices_side_by_side(run, opener, tmp_path):
 
 @pytest.fixture(scope="module")
 def small_site(tmp_path_factory):
-    """Of a device that agrees and one that differs, of the ten: axe takes its time for each row of a table, and all of
-    them are of the same template."""
+    """The site of two of the ten devices, one that agrees and one that differs: axe takes time for each row of a
+    table, and all rows have the same template."""
     folder = tmp_path_factory.mktemp("small_site")
     made.write(folder / "files/a.json")
     made.write(folder / "files/b.json", renderer=made.MALI, truncated=("RGBA8", "RG8", "RGB10_A2"))
@@ -108,8 +108,8 @@ def small_site(tmp_path_factory):
 
 @pytest.mark.drawn(2)
 @pytest.mark.parametrize("size, theme", [(DESKTOP, "light"), (PHONE, "dark")])
-def test_the_site_opens_from_the_disk_and_keeps_nobody_out(small_site, opener, size, theme):
-    """No request but for the file, nothing complained of, no sideways scrolling of the page."""
+def test_the_site_opens_from_disk_and_is_accessible(small_site, opener, size, theme):
+    """The page requests only its file, reports no error and does not scroll sideways."""
     page = opener(small_site / "index.html", size, theme)
     assert violations(page) == [] == page.said
     assert "differs" in page.page.locator("body").inner_text()
@@ -132,7 +132,7 @@ def test_the_index_is_searched_by_device_codec_and_storage(index):
 
 
 def test_the_index_is_used_by_keyboard(index):
-    """From the search to a device's section."""
+    """The keys lead from the search to a device's section."""
     for _ in range(20):
         index.page.keyboard.press("Tab")
         if index.page.evaluate("document.activeElement.id") == "search":

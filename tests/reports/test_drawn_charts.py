@@ -1,4 +1,4 @@
-"""Figures under a reader's hands: pointing, picking, keys, zoom, files and paper."""
+"""Interactive figures: pointing, picking, keys, zoom, files and print."""
 
 import json
 
@@ -16,10 +16,10 @@ MOST_BYTES = 20_000
 
 
 def a_front(count: int = 40) -> Chart:
-    """Codecs in a cloud of points, two of them of one encoding, in a storage each."""
+    """Return a chart of codecs in a cloud of points; two codecs are one encoding in two storages."""
     points = [
-        Point(f"encoding_{at}", 5 + at % 7 * 4 + at / 10, 40.0 + at * 17 % 23, 16 + at % 2 * 8, codec=f"e{at} rgba8")
-        for at in range(count)
+        Point(f"encoding_{n}", 5 + n % 7 * 4 + n / 10, 40.0 + n * 17 % 23, 16 + n % 2 * 8, codec=f"e{n} rgba8")
+        for n in range(count)
     ]
     others = [Point("e1", 3, 70.0, 24, codec="e1 rgb10a2"), Point("name", 90, 38.0, 16, codec=HOSTILE)]
     return front_chart("cost-0", "PSNR", [Panel("encode", [*points, *others])])
@@ -32,14 +32,14 @@ def test_the_script_is_small():
     assert len((WEB / "charts.js").read_bytes()) <= MOST_BYTES
 
 
-def test_rows_of_several_marks_are_there_once():
+def test_rows_of_several_marks_are_stored_once():
     (part,) = wire.spec(a_front())["panels"]
     tables = {mark["kind"]: mark["table"] for mark in part["marks"]}
     assert tables[Kind.POINTS] == tables[Kind.LABELS] != tables[Kind.LINES] and len(part["tables"]) == 2
     assert len(json.dumps(part)) < 6000
 
 
-def test_a_package_without_the_library_is_one_line(monkeypatch):
+def test_package_without_the_library_is_a_one_line_error(monkeypatch):
     monkeypatch.setattr(wire, "LIBRARY", "js/none.js")
     with pytest.raises(PlotError, match=r"^mpld3 \S+ has no js/none.js, .* install mpld3 0.5.12$"):
         wire.library()

@@ -1,4 +1,4 @@
-"""Figures under a reader's hands: pointing, picking, keys, zoom, files and paper."""
+"""Interactive figures: pointing, picking, keys, zoom, files and print."""
 
 import re
 from urllib.parse import unquote
@@ -21,14 +21,14 @@ def drawn(chart_page):
 
 
 def seen(page) -> set[str]:
-    """The codecs of points that are not faint."""
-    found = page.locator(".points").evaluate_all(
+    """Return the codecs of points that are not faint."""
+    codecs = page.locator(".points").evaluate_all(
         "all => all.filter((one) => getComputedStyle(one).opacity === '1').map((one) => one.dataset.codec)"
     )
-    return set(found)
+    return set(codecs)
 
 
-def test_a_click_makes_a_codec_a_or_with_shift_b_and_the_rest_is_faint(drawn):
+def test_click_chooses_a_and_shift_click_b_and_the_rest_is_faint(drawn):
     for codec, keys, side in (("e7 rgba8", [], "a"), ("e8 rgba8", ["Shift"], "b")):
         drawn.locator(f".points[data-codec='{codec}']").click(modifiers=keys)
         assert drawn.evaluate(f"state.{side}") == codec
@@ -44,19 +44,19 @@ def test_a_click_makes_a_codec_a_or_with_shift_b_and_the_rest_is_faint(drawn):
     assert drawn.evaluate("[state.a, state.b]") == ["", ""] and len(seen(drawn)) == 42
 
 
-def test_nothing_is_faint_where_a_chart_has_neither(drawn):
+def test_nothing_is_faint_in_a_chart_without_a_and_b(drawn):
     drawn.evaluate("known.codecs.push('other rg8'); change({ a: 'other rg8' })")
     assert len(seen(drawn)) == 42
 
 
-def test_a_line_through_several_codecs_is_of_none(drawn):
+def test_line_through_several_codecs_belongs_to_no_codec(drawn):
     codecs = drawn.locator(".lines").evaluate_all("all => all.map((one) => one.dataset.codec)")
     assert "" in codecs, codecs
     drawn.evaluate("change({ a: 'e1 rgba8' })")
     assert drawn.locator(".lines[data-codec='']").first.evaluate("one => getComputedStyle(one).opacity") < "1"
 
 
-def test_an_encodings_name_stands_for_each_of_its_codecs_and_any_name_for_itself(drawn):
+def test_encoding_name_selects_its_codecs_and_any_name_selects_itself(drawn):
     drawn.evaluate("change({ a: 'e1' })")
     assert seen(drawn) == {"e1 rgba8", "e1 rgb10a2"}
     drawn.evaluate("(name) => change({ a: name, b: 'e2 rgba8' })", HOSTILE)
@@ -64,26 +64,26 @@ def test_an_encodings_name_stands_for_each_of_its_codecs_and_any_name_for_itself
 
 
 def test_no_two_names_overlap_in_a_cloud(drawn):
-    found = drawn.locator("text.labels").evaluate_all(
+    boxes = drawn.locator("text.labels").evaluate_all(
         """all => all.filter((one) => getComputedStyle(one).display !== "none")
         .map((one) => one.getBBox()).map(({ x, y, width, height }) => [x, y, x + width, y + height])"""
     )
-    assert len(found) > 30
-    for at, (left, top, right, bottom) in enumerate(found):
-        for others in found[at + 1 :]:
+    assert len(boxes) > 30
+    for index, (left, top, right, bottom) in enumerate(boxes):
+        for others in boxes[index + 1 :]:
             apart = right <= others[0] or others[2] <= left or bottom <= others[1] + 2 or others[3] <= top + 2
-            assert apart, (found[at], others)
+            assert apart, (boxes[index], others)
 
 
-def test_a_pointer_is_told_the_figures_and_leaves_nothing_behind(drawn):
+def test_hovering_shows_the_figures_until_the_pointer_leaves(drawn):
     drawn.locator(".points[data-codec='e3 rgba8']").hover()
     assert drawn.locator(".tip dd").all_text_contents()[:2] == ["e3 rgba8", "24"]
     drawn.mouse.move(0, 0)
     drawn.locator(".tip").wait_for(state="detached")
 
 
-def test_keys_go_from_mark_to_mark_and_say_it(drawn):
-    plot, said = drawn.locator(".plot"), drawn.locator("[data-said]")
+def test_keys_move_between_marks_and_describe_them(drawn):
+    plot, status = drawn.locator(".plot"), drawn.locator("[data-said]")
     plot.focus()
     for key, ending in (
         ("ArrowRight", 1),
@@ -94,10 +94,10 @@ def test_keys_go_from_mark_to_mark_and_say_it(drawn):
         ("ArrowUp", 1),
     ):
         drawn.keyboard.press(key)
-        assert said.text_content().endswith(f"; {ending} of 42"), key
-    assert said.get_attribute("role") == "status" and said.text_content().startswith("codec e")
+        assert status.text_content().endswith(f"; {ending} of 42"), key
+    assert status.get_attribute("role") == "status" and status.text_content().startswith("codec e")
     drawn.keyboard.press("Enter")
-    assert drawn.evaluate("state.a") == said.text_content().split(",")[0].removeprefix("codec ")
+    assert drawn.evaluate("state.a") == status.text_content().split(",")[0].removeprefix("codec ")
     drawn.keyboard.press("Escape")
     assert drawn.locator(".tip").count() == 0
 
@@ -109,7 +109,7 @@ def test_a_chart_is_an_image_with_a_label(drawn):
     assert drawn.locator(".plot").get_attribute("tabindex") == "0"
 
 
-def test_the_wheel_zooms_where_the_focus_is_and_a_button_shows_all(drawn):
+def test_the_wheel_zooms_a_focused_chart_and_a_button_shows_all(drawn):
     plot, scale = drawn.locator(".plot"), "Array.from(charts.views.values())[0].zoom.k"
     box = plot.bounding_box()
     drawn.mouse.move(box["x"] + 300, box["y"] + 200)
@@ -132,24 +132,24 @@ def test_the_wheel_zooms_where_the_focus_is_and_a_button_shows_all(drawn):
 
 
 @no_files
-def test_a_file_is_what_is_seen_and_stands_alone(drawn):
+def test_saved_file_matches_the_screen_and_is_self_contained(drawn):
     drawn.locator(".points[data-codec='e7 rgba8']").click()
     with drawn.expect_download() as download:
         drawn.locator("[data-svg]").click()
     text = unquote(download.value.url.partition(",")[2])
     assert "var(" not in text and "light-dark" not in text and "<script" not in text
     root = ElementTree.fromstring(text)
-    points = [one for one in root.iter(f"{SVG}path") if one.get("class", "").startswith("points")]
-    assert len(points) == 42 and {one.get("opacity") for one in points} == {"1", "0.5"}
-    assert all(re.match(r"rgb|#|none", one.get("fill")) for one in points)
-    said = {"".join(one.itertext()) for one in root.iter(f"{SVG}text")}
-    assert {"bits", "16", "24", "instructions, including packing"} <= said and any(
-        text.startswith("Pareto-optimal:") for text in said
+    points = [path for path in root.iter(f"{SVG}path") if path.get("class", "").startswith("points")]
+    assert len(points) == 42 and {point.get("opacity") for point in points} == {"1", "0.5"}
+    assert all(re.match(r"rgb|#|none", point.get("fill")) for point in points)
+    texts = {"".join(element.itertext()) for element in root.iter(f"{SVG}text")}
+    assert {"bits", "16", "24", "instructions, including packing"} <= texts and any(
+        text.startswith("Pareto-optimal:") for text in texts
     )
 
 
 def test_a_figure_has_its_height_before_it_is_drawn(chart_page):
-    """Each of them, with two panels, a switch, slanted names and a legend of shades."""
+    """This holds for every figure, also with two panels, a switch, slanted names or a legend of shades."""
     rows = rows_of_tables()
     for name in ("mix", "lights", "cost", "sweep", "roofline"):
         for chart in TABLES[name].work.charts(rows[name]) if name in rows else [a_front()]:
@@ -157,8 +157,8 @@ def test_a_figure_has_its_height_before_it_is_drawn(chart_page):
             assert before == after > 100, chart.name
 
 
-def test_what_nobody_has_come_to_is_there_on_paper(browser, report):
-    """Idle time draws it; what is not drawn when printing begins is drawn then, but for what lies in a closed fold."""
+def test_charts_that_were_never_scrolled_to_are_printed(browser, report):
+    """Idle time draws most charts; the rest are drawn when printing begins, except in closed folds."""
     page = browser.new_page()
     page.add_init_script(
         "window.requestIdleCallback = () => 0; window.IntersectionObserver = class { observe() {} unobserve() {} };"

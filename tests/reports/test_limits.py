@@ -1,4 +1,4 @@
-"""How large a page grows: its elements after each view was opened once, scrolled to its end and left."""
+"""Limits on the size of a page: its elements after each view was opened once, scrolled to its end and left."""
 
 import base64
 import json
@@ -8,10 +8,10 @@ from normalbench.reports.page import data
 
 
 def test_a_table_of_very_many_rows_keeps_five_digits():
-    """All of them made 3.4 of the 6.5 MB of a page of everything."""
+    """With all digits, such tables made up 3.4 of the 6.5 MB of a page of everything."""
     for count, kept in ((data.MANY_ROWS, 1.2345678901234567), (data.MANY_ROWS + 1, 1.2346)):
         text = data.block([{"x": 1.2345678901234567, "n": 2**40 + 1}] * count, ())
-        found = json.loads(zlib.decompress(base64.b64decode(text), -zlib.MAX_WBITS))
-        numbers, whole = found["columns"]
+        unpacked = json.loads(zlib.decompress(base64.b64decode(text), -zlib.MAX_WBITS))
+        numbers, whole = unpacked["columns"]
         assert set(numbers["values"]) == {kept} and set(whole["values"]) == {2**40 + 1}, count
-        assert found.get("digits") == (None if count == data.MANY_ROWS else data.DIGITS)
+        assert unpacked.get("digits") == (None if count == data.MANY_ROWS else data.DIGITS)

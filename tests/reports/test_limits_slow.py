@@ -1,4 +1,4 @@
-"""How large a page grows: its elements after each view was opened once, scrolled to its end and left."""
+"""Limits on the size of a page: its elements after each view was opened once, scrolled to its end and left."""
 
 import pytest
 from browsing import Opened
@@ -14,10 +14,10 @@ from normalbench.encodings.storages.storage import STORAGES
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A run of every encoding in every storage, by hand."""
+    """A made-up run of every encoding in every storage."""
     names = [{"encoding": name, "storage": storage} for name in ENCODINGS for storage in STORAGES]
-    rows = [quality_row(psnr_db=40.0 + at / 7, **one) for at, one in enumerate(names)]
-    images = [TABLES["render"].empty() | LAID_OUT | one | {"psnr_db": 20.0 + at / 7} for at, one in enumerate(names)]
+    rows = [quality_row(psnr_db=40.0 + i / 7, **codec) for i, codec in enumerate(names)]
+    images = [TABLES["render"].empty() | LAID_OUT | codec | {"psnr_db": 20.0 + i / 7} for i, codec in enumerate(names)]
     return a_run(tmp_path_factory.mktemp("large") / "run", {"quality": rows, "render": images})
 
 
@@ -30,11 +30,11 @@ def large(browser, folder):
 
 
 def test_a_site_has_long_tables_as_text(folder, run, tmp_path):
-    """Without scripts there is nothing that builds them."""
+    """A page without scripts cannot build tables."""
     assert run("site", str(folder), "-o", str(tmp_path / "site"))[0] == 0
     read = Read((tmp_path / "site/layouts.html").read_text(encoding="utf-8"))
     assert len(read.all("tr")) > len(ENCODINGS) * len(STORAGES)
-    assert not [one for one in read.all("details") if "data-table" in one]
+    assert not [element for element in read.all("details") if "data-table" in element]
 
 
 MOST_ELEMENTS = 12_000
@@ -64,9 +64,9 @@ def test_a_long_table_is_packed_and_built_when_it_is_opened(large, folder):
     assert tables and len(text) < 1_000_000
     packed = "".join(packed_text(text, f"data-{name}") for name in tables)
     assert all(name in packed for name in ENCODINGS)
-    one = large.page.locator(f"#quality details[data-table={tables[0]}]")
+    table = large.page.locator(f"#quality details[data-table={tables[0]}]")
     large.come_to(f"details[data-table={tables[0]}]")
-    one.locator("summary").first.click()
-    one.locator("tbody tr").first.wait_for()
-    assert 0 < one.locator("tbody tr").count() <= 100
-    one.locator("summary").first.click()
+    table.locator("summary").first.click()
+    table.locator("tbody tr").first.wait_for()
+    assert 0 < table.locator("tbody tr").count() <= 100
+    table.locator("summary").first.click()

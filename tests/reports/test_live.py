@@ -1,12 +1,12 @@
-"""The laboratory of a page in a browser with WebGL2: controls, pixels, encoders, and what it survives."""
+"""The laboratory of a page in a browser with WebGL 2: controls, pixels, encoders and recovery from faults."""
 
 import json
 
 from normalbench.reports.page.live import Live, script
 
 
-def test_no_text_of_a_run_ends_its_script():
+def test_text_of_a_run_cannot_end_its_script():
     hostile = {"encoding": "</script><b>", "storage": "x", "rounding": "nearest", "source": "</script>"}
-    made = Live([hostile], []).data({"run": "</script>"})
-    assert json.loads(made)["codecs"][0]["label"] == "</script><b> x", "it is packed before it is put into a page"
+    text = Live([hostile], []).data({"run": "</script>"})
+    assert json.loads(text)["codecs"][0]["label"] == "</script><b> x", "it is packed before it is put into a page"
     assert "</script" not in script()

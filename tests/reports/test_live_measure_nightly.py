@@ -1,4 +1,4 @@
-"""Measuring in the page, by a browser's own renderer: codes against the run's, faults, interruptions, saved devices."""
+"""Measuring in the page with a browser's own renderer: codes of the run, faults, interruptions and saved devices."""
 
 import subprocess
 import sys
@@ -13,8 +13,8 @@ laboratory = test_live_measure_slow.laboratory
 
 
 def test_every_encoding_gives_the_runs_codes_in_every_format(gl_browser, tmp_path):
-    """At 8 and 10 bits at least 99.9 % of the codes are equal and none is further than a step; by SwiftShader, which
-    rounds every sum and root as IEEE 754 says, all of them are."""
+    """At 8 and 10 bits at least 99.9% of the codes are equal, and none is off by more than a step. With SwiftShader,
+    which rounds every sum and root as in IEEE 754, all codes are equal."""
     command = (sys.executable, "-m", "normalbench", "run", "--tables", "quality", "--encoding", "all")
     sets = (
         "--storage",
@@ -48,8 +48,8 @@ WITHOUT_FLOATS = """{
 
 
 @no_swiftshader
-def test_a_device_that_renders_to_no_floats_is_measured(gl_browser, report):
-    """Angles come back as bits of integers, which every device renders to."""
+def test_device_without_float_render_targets_is_measured(gl_browser, report):
+    """Angles are returned as bits of integers, which every device can render to."""
     opened = Measured(gl_browser, report, before=WITHOUT_FLOATS)
     opened.only("octahedral")
     opened.start()
@@ -68,7 +68,7 @@ CANCEL_AT_TWO = """() => new MutationObserver((_, observer) => {
 }).observe(document.body, { childList: true, subtree: true })"""
 
 
-def test_measuring_is_cancelled_and_keeps_what_it_has(laboratory):
+def test_cancelled_measurement_keeps_its_results(laboratory):
     laboratory.start()
     # By the page itself: the others may be measured before a click from outside arrives.
     laboratory.page.evaluate(CANCEL_AT_TWO)
@@ -94,7 +94,7 @@ def test_times_are_measured_without_timer_queries(laboratory):
     )
 
 
-def test_other_normals_than_the_runs_are_not_measured(laboratory):
+def test_normals_that_differ_from_the_run_are_not_measured(laboratory):
     laboratory.ask("() => { live.data.checks.sums.sphere[0] ^= 1; }")
     laboratory.start()
     assert not laboratory.finish()
@@ -102,11 +102,9 @@ def test_other_normals_than_the_runs_are_not_measured(laboratory):
 
 
 @pytest.mark.parametrize(("storage", "rounding"), [("rg16_snorm", "nearest"), ("rgb8_12_12", "nearest")])
-def test_more_codes_of_a_gpu_with_inexact_arithmetic_are_told_by_their_ties(laboratory, storage, rounding):
-    test_live_measure_slow.test_codes_of_a_gpu_with_inexact_arithmetic_are_told_by_their_ties(
-        laboratory, storage, rounding
-    )
+def test_more_codes_of_a_gpu_with_inexact_arithmetic_are_found_by_ties(laboratory, storage, rounding):
+    test_live_measure_slow.test_codes_of_a_gpu_with_inexact_arithmetic_are_found_by_ties(laboratory, storage, rounding)
 
 
-def test_what_was_measured_is_read_by_everybody_in_the_light(gl_browser, report):
-    test_live_measure_slow.test_what_was_measured_is_read_by_everybody(gl_browser, report, "light")
+def test_measurements_are_accessible_in_the_light_theme(gl_browser, report):
+    test_live_measure_slow.test_measurements_are_accessible(gl_browser, report, "light")

@@ -1,4 +1,4 @@
-"""Measuring in the page, by a browser's own renderer: codes against the run's, faults, interruptions, saved devices."""
+"""Measuring in the page with a browser's own renderer: codes of the run, faults, interruptions and saved devices."""
 
 import json
 import re
@@ -35,7 +35,7 @@ KEYS = {
 
 
 class Measured(Laboratory):
-    """A laboratory that measures no times unless it is asked to."""
+    """A laboratory that measures times only if asked."""
 
     def __init__(self, browser, path, **more):
         super().__init__(browser, path, **more)
@@ -49,7 +49,7 @@ class Measured(Laboratory):
         return self.page.evaluate(script, *given)
 
     def only(self, *encodings):
-        """Measure these encodings' codecs alone."""
+        """Measure only the codecs of these encodings."""
         self.ask(
             "names => { live.measuring.codecs = live.data.codecs.filter((c) => names.includes(c.encoding)); }",
             encodings,
@@ -83,8 +83,8 @@ def laboratory(open_laboratory, report):
 
 
 @no_files
-def test_every_code_of_a_run_is_this_devices_and_saved(laboratory, tmp_path):
-    """Of all codecs of the small run at least 99.9 % of the codes are equal, and the angles are the run's."""
+def test_codes_of_a_run_match_those_of_this_device_and_are_saved(laboratory, tmp_path):
+    """For every codec of the small run at least 99.9% of the codes are equal, and the angles are the run's."""
     laboratory.start()
     rows = laboratory.finish()
     assert len(rows) == laboratory.ask("live.data.codecs.length") >= 8, laboratory.status
@@ -113,8 +113,8 @@ STORED = """checks => live.measuring.codecs = live.data.storages
 
 
 @no_swiftshader
-def test_every_storage_is_read_back_as_the_run_has_it(laboratory):
-    """Fixed point, halves, numbers across bytes, packed integers; small floats by SwiftShader, which cuts them off."""
+def test_every_storage_is_read_back_as_in_the_run(laboratory):
+    """Fixed point, halves, numbers across bytes and packed integers match; SwiftShader truncates small floats."""
     given = {name: checks.checks(Codec(ENCODINGS["octahedral"], STORAGES[name])) for name in programs.USUAL}
     laboratory.ask(STORED, given)
     laboratory.start()
@@ -132,8 +132,8 @@ def test_every_storage_is_read_back_as_the_run_has_it(laboratory):
 
 
 @no_swiftshader
-def test_a_device_is_known_by_what_it_does(laboratory):
-    """SwiftShader rounds fixed point and halves to nearest even, cuts small floats off, and computes in 32 bits."""
+def test_facts_describe_the_behaviour_of_a_device(laboratory):
+    """SwiftShader rounds fixed point and halves to nearest even, truncates small floats and computes in 32 bits."""
     laboratory.only("xyz")
     laboratory.start()
     laboratory.finish()
@@ -172,7 +172,7 @@ def test_an_altered_constant_is_found_and_named(laboratory):
 
 
 @no_swiftshader
-def test_a_lost_context_is_said_and_measuring_goes_on(laboratory):
+def test_lost_context_is_reported_and_measuring_continues(laboratory):
     laboratory.start()
     laboratory.page.wait_for_selector("[data-results] tbody tr:nth-child(2)", timeout=1000 * SECONDS)
     laboratory.ask("() => { window.loss = live.device.gl.getExtension('WEBGL_lose_context'); loss.loseContext(); }")
@@ -184,7 +184,7 @@ def test_a_lost_context_is_said_and_measuring_goes_on(laboratory):
 
 
 @no_swiftshader
-def test_times_wait_for_a_page_that_is_seen(laboratory):
+def test_timing_waits_until_the_page_is_visible(laboratory):
     laboratory.only("xyz")
     laboratory.page.locator("#measure-times").check()
     hidden = "Object.defineProperty(document, 'visibilityState', { value: '%s', configurable: true })"
@@ -202,7 +202,7 @@ def test_times_wait_for_a_page_that_is_seen(laboratory):
 
 
 def stepped(*changes):
-    """The run's codes of octahedral rgba8 with (normal, number, steps) changed."""
+    """Return the run's codes of octahedral rgba8 with (normal, number, steps) changed."""
     n, view = normals.normals("sphere")
     codes = checks.ordered(OCTAHEDRAL, checks.reference_of(OCTAHEDRAL, n, view, compiled=False))
     for normal, number, steps in changes:
@@ -225,41 +225,41 @@ def compared(laboratory, *given, codec=OCTAHEDRAL, exact=None):
 
 @cache
 def record_of(codec):
-    """What a page has of a codec, with the sums of its codes."""
+    """Return a page's data for a codec, with the sums of its codes."""
     return {**programs.program(codec), "checks": checks.checks(codec)}
 
 
-def test_a_checksum_tells_one_step_or_two_and_no_more(laboratory):
-    found = compared(laboratory, stepped((5, 1, 1), (300, 0, -1), (310, 1, 1)))
-    assert (found["equal"], found["oneStep"], found["further"]) == (2**16 - 3, 3, 0)
-    assert [one["normal"] for one in found["differing"]] == [5, 300, 310]
+def test_checksum_locates_differences_of_one_or_two_steps(laboratory):
+    comparison = compared(laboratory, stepped((5, 1, 1), (300, 0, -1), (310, 1, 1)))
+    assert (comparison["equal"], comparison["oneStep"], comparison["further"]) == (2**16 - 3, 3, 0)
+    assert [entry["normal"] for entry in comparison["differing"]] == [5, 300, 310]
     # two numbers of one normal
-    found = compared(laboratory, stepped((70, 0, 1), (70, 1, -1)))
-    assert (found["equal"], found["oneStep"], found["further"]) == (2**16 - 1, 0, 1)
+    comparison = compared(laboratory, stepped((70, 0, 1), (70, 1, -1)))
+    assert (comparison["equal"], comparison["oneStep"], comparison["further"]) == (2**16 - 1, 0, 1)
     # three in a group, or a larger step: the whole group
     for changes in (((1, 0, 1), (2, 0, 1), (3, 1, -1)), ((0, 1, 5),)):
-        found = compared(laboratory, stepped(*changes))
-        assert (found["equal"], found["oneStep"], found["further"]) == (2**16 - 128, 0, 128)
-    assert found["checked"] == [1], "the number that differs is named"
-    assert found["differing"][0]["normal"] == 0, "normal 0 travels with the page"
+        comparison = compared(laboratory, stepped(*changes))
+        assert (comparison["equal"], comparison["oneStep"], comparison["further"]) == (2**16 - 128, 0, 128)
+    assert comparison["checked"] == [1], "the number that differs is named"
+    assert comparison["differing"][0]["normal"] == 0, "normal 0 travels with the page"
 
 
-def test_a_target_that_rounds_in_its_own_way_is_told_exactly(laboratory):
-    """The shader's own packing says what the run's codes are; then every code of the target is compared."""
+def test_rounding_of_a_target_is_identified_exactly(laboratory):
+    """The shader's own packing gives the run's codes; then every code of the target is compared."""
     packed = stepped((9, 0, 1), (200, 1, -1), (500, 0, 1))
     target = stepped()
     generator = np.random.default_rng(0)
     down = generator.random(target.shape) < 0.5
     target[down] -= 1
     twice, once = down.all(axis=1), down.any(axis=1) & ~down.all(axis=1)
-    found = compared(laboratory, packed, target)
-    assert (found["oneStep"], found["further"]) == (once.sum(), twice.sum())
-    assert [one["normals"] for one in found["numbers"]] == down.sum(axis=0).tolist()
-    assert [one["most"] for one in found["numbers"]] == [1, 1]
+    comparison = compared(laboratory, packed, target)
+    assert (comparison["oneStep"], comparison["further"]) == (once.sum(), twice.sum())
+    assert [number["normals"] for number in comparison["numbers"]] == down.sum(axis=0).tolist()
+    assert [number["most"] for number in comparison["numbers"]] == [1, 1]
 
 
 def rounded(x, storage, whole):
-    """Numbers (float32) as a shader stores them, in the order of codes."""
+    """Return numbers (float32) as a shader stores them, in the order of codes."""
     half = np.float32(0.5)
     if storage == "rg16f":
         words = x.astype(np.float16).view(np.int16).astype(np.int32)
@@ -274,30 +274,30 @@ FINE = [("rg16", "nearest"), ("rg16_snorm", "truncate"), ("rg16f", "nearest")]
 
 
 @pytest.mark.parametrize(("storage", "rounding"), FINE)
-def test_codes_of_a_gpu_with_inexact_arithmetic_are_told_by_their_ties(laboratory, storage, rounding):
+def test_codes_of_a_gpu_with_inexact_arithmetic_are_found_by_ties(laboratory, storage, rounding):
     """Numbers off by up to 3 units in the last place are rounded the other way near ties, several of them in a group.
 
-    Nothing is told of a group where many normals lie next to one tie: neighbours of diagonals, and where numbers are
-    cut off those of axes as well.
+    A group is skipped if many of its normals are next to one tie: neighbours of diagonals and, with truncation, also
+    of axes.
     """
     codec, generator = Codec(ENCODINGS["octahedral"], STORAGES[storage], rounding), np.random.default_rng(1)
     n, view = normals.normals("sphere")
     run = checks.ordered(codec, checks.reference_of(codec, n, view, compiled=False))
-    x = np.stack([np.asarray(one) for one in encode(*(Vec3(*part.T) for part in (n, view)))], axis=1)
+    x = np.stack([np.asarray(plane) for plane in encode(*(Vec3(*part.T) for part in (n, view)))], axis=1)
     x = (x * (1 + generator.integers(-3, 4, x.shape) * 2.0**-23)).astype(np.float32)
     here = rounded(x, storage, np.rint if rounding == "nearest" else np.trunc)
     differing = (here != run).any(axis=1)
     assert 10 < differing.sum() < 2000
-    found = compared(laboratory, here, codec=codec, exact=np.pad(x, ((0, 0), (0, 2))))
-    assert found["untold"] <= (2 if rounding == "nearest" else 6) * 128, found["numbers"]
-    known = 2**16 - found["untold"]
-    assert known - differing.sum() <= found["equal"] <= 2**16 - differing.sum()
-    assert all(one["most"] <= 1 for one in found["numbers"])
+    comparison = compared(laboratory, here, codec=codec, exact=np.pad(x, ((0, 0), (0, 2))))
+    assert comparison["untold"] <= (2 if rounding == "nearest" else 6) * 128, comparison["numbers"]
+    known = 2**16 - comparison["untold"]
+    assert known - differing.sum() <= comparison["equal"] <= 2**16 - differing.sum()
+    assert all(number["most"] <= 1 for number in comparison["numbers"])
 
 
 @pytest.mark.parametrize("theme", ["dark"])
-def test_what_was_measured_is_read_by_everybody(gl_browser, report, theme):
-    """WCAG 2.1 A and AA, of the table and the facts."""
+def test_measurements_are_accessible(gl_browser, report, theme):
+    """The table and the facts meet WCAG 2.1 A and AA."""
     from axe_playwright_python.base import AXE_FILE_PATH
 
     opened = Measured(gl_browser, report, theme=theme, size=PHONE)
@@ -305,6 +305,6 @@ def test_what_was_measured_is_read_by_everybody(gl_browser, report, theme):
     opened.start()
     opened.finish()
     opened.ask(AXE_FILE_PATH.read_text() + "; 0")
-    found = opened.ask(AXE)
+    violations = opened.ask(AXE)
     opened.context.close()
-    assert found == []
+    assert violations == []

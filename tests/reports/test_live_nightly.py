@@ -1,4 +1,4 @@
-"""The laboratory of a page in a browser with WebGL2: controls, pixels, encoders, and what it survives."""
+"""The laboratory of a page in a browser with WebGL 2: controls, pixels, encoders and recovery from faults."""
 
 import numpy as np
 import pytest
@@ -33,8 +33,8 @@ def test_two_windows_sizes_and_screens_are_drawn(gl_browser, report, laboratory)
     dense.context.close()
 
 
-def test_a_laboratory_that_was_reset_is_as_one_that_has_just_been_opened(gl_browser, report, laboratory):
-    """The tests here share a page: what one does to it, the next one does not see."""
+def test_a_reset_laboratory_matches_a_newly_opened_one(gl_browser, report, laboratory):
+    """The tests here share a page, but no test may see what another has done."""
     fresh = Laboratory(gl_browser, report)
     expected, picture = fresh.state(), fresh.picture()
     fresh.context.close()
@@ -64,5 +64,5 @@ def test_a_laboratory_that_was_reset_is_as_one_that_has_just_been_opened(gl_brow
 
 
 @pytest.mark.parametrize("encoding", ["spherical", "xy"])
-def test_a_pixels_bits_are_those_of_the_emulation_of_more_encodings(laboratory, encoding):
-    test_live_slow.test_a_pixels_bits_are_those_of_the_emulation(laboratory, encoding)
+def test_bits_of_a_pixel_match_the_emulation_for_more_encodings(laboratory, encoding):
+    test_live_slow.test_bits_of_a_pixel_match_the_emulation(laboratory, encoding)

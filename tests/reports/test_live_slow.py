@@ -1,4 +1,4 @@
-"""The laboratory of a page in a browser with WebGL2: controls, pixels, encoders, and what it survives."""
+"""The laboratory of a page in a browser with WebGL 2: controls, pixels, encoders and recovery from faults."""
 
 import re
 
@@ -29,7 +29,7 @@ SLIDERS = ("power", "side", "above", "around", "over", "away")
 
 
 def apart(a: np.ndarray, b: np.ndarray) -> float:
-    """The share of pixels that differ visibly."""
+    """Return the share of pixels that differ visibly."""
     return float((abs(a - b).max(axis=-1) > 3).mean())
 
 
@@ -45,7 +45,7 @@ def test_the_section_is_small_and_unpacked_only_when_it_is_opened(gl_browser, re
     page.context.close()
 
 
-def test_a_browser_without_webgl2_says_so(gl_browser, report):
+def test_a_browser_without_webgl2_gets_a_message(gl_browser, report):
     page = Opened(gl_browser, report, before="delete window.WebGL2RenderingContext", fragment="#v1/see")
     page.says("[data-live=said]", "not support WebGL 2")
     page.context.close()
@@ -57,25 +57,25 @@ def test_a_browser_without_webgl2_says_so(gl_browser, report):
     page.context.close()
 
 
-def test_every_slider_changes_the_picture_and_its_number_by_keyboard(laboratory):
+def test_every_slider_changes_the_image_and_its_number_by_keyboard(laboratory):
     laboratory.choose(subject="studio", shown="lit")
     before = laboratory.picture()
     for name in SLIDERS:
-        said = laboratory.texts(f"[data-see-out={name}]")
+        number = laboratory.texts(f"[data-see-out={name}]")
         laboratory.press(f"[data-see={name}]", *["PageDown"] * 3)
-        assert laboratory.texts(f"[data-see-out={name}]") != said, name
+        assert laboratory.texts(f"[data-see-out={name}]") != number, name
         after = laboratory.picture()
         assert apart(after, before) > 1e-3, f"{name}: {apart(after, before)} of the pixels"
         before = after
     # Bits are lost where light hardly shows it.
     laboratory.choose(shown="error")
-    before, said = laboratory.picture(), laboratory.texts("[data-see-out=bits]")
+    before, number = laboratory.picture(), laboratory.texts("[data-see-out=bits]")
     laboratory.press("[data-see=bits]", *["PageDown"] * 3)
-    assert laboratory.texts("[data-see-out=bits]") != said
+    assert laboratory.texts("[data-see-out=bits]") != number
     assert apart(laboratory.picture(), before) > 1e-3, f"{apart(laboratory.picture(), before)} of the pixels"
 
 
-def test_each_view_shows_what_its_name_says(laboratory):
+def test_each_view_shows_what_its_name_promises(laboratory):
     laboratory.choose(subject="studio", left="exact normals", right="xy rgba8", shown="error")
     picture = laboratory.picture()
     middle = picture.shape[1] // 2
@@ -107,34 +107,34 @@ def test_the_divider_is_dragged_by_its_line_and_moved_by_keyboard(laboratory):
     laboratory.settle()
     assert laboratory.texts("[data-see-out=divider]") == ["20 %"]
     picture = laboratory.picture()
-    at = round(0.2 * picture.shape[1])
+    edge = round(0.2 * picture.shape[1])
     nothing = picture[0, 0]
-    assert (picture[:, : at - 2] == nothing).all() and (picture[:, at + 2 :] != nothing).any(axis=2).mean() > 0.8
+    assert (picture[:, : edge - 2] == nothing).all() and (picture[:, edge + 2 :] != nothing).any(axis=2).mean() > 0.8
     laboratory.press("[data-see=divider]", "End")
     picture = laboratory.picture()
     assert ((picture == nothing) | (picture == 0)).all(), "black where no surface is"
 
 
 @pytest.mark.parametrize("encoding", ["octahedral", "xyz"])
-def test_a_pixels_bits_are_those_of_the_emulation(laboratory, encoding):
+def test_bits_of_a_pixel_match_the_emulation(laboratory, encoding):
     codec = Codec(ENCODINGS[encoding], STORAGES["rgba8"], "nearest")
     laboratory.choose(right=f"{encoding} rgba8")
-    found = []
-    for at in range(12):
-        laboratory.page.evaluate("([x, y]) => live.inspect.go([x, y])", [20 + 26 * at, 30 + 15 * at])
-        found.append(laboratory.page.evaluate(READ, "right"))
-    n = np.array([one["normal"] for one in found], np.float32)
-    view = np.array([one["view"] for one in found], np.float32)
+    pixels = []
+    for step in range(12):
+        laboratory.page.evaluate("([x, y]) => live.inspect.go([x, y])", [20 + 26 * step, 30 + 15 * step])
+        pixels.append(laboratory.page.evaluate(READ, "right"))
+    n = np.array([pixel["normal"] for pixel in pixels], np.float32)
+    view = np.array([pixel["view"] for pixel in pixels], np.float32)
     planes = [Vec3(*(jnp.asarray(array[:, i]) for i in range(3))) for array in (n, view)]
     stored = codec.stored(*planes)
     expected = np.stack([np.rint((np.asarray(number) * 0.5 + 0.5) * 255) for number in stored], axis=1).astype(int)
-    words = np.array([one["texel"][0] for one in found], np.int64)
+    words = np.array([pixel["texel"][0] for pixel in pixels], np.int64)
     numbers = np.stack([words >> 8 * i & 255 for i in range(expected.shape[1])], axis=1)
     assert (abs(numbers - expected) <= 1).all() and (numbers == expected).mean() > 0.95, (numbers, expected)
     decoded = codec.encoding.decode(
         type(stored)(*(jnp.asarray(x / 127.5 - 1, jnp.float32) for x in numbers.T)), planes[1]
     )
-    assert abs(np.stack(decoded, axis=1) - [one["decoded"] for one in found]).max() < 1e-5
+    assert abs(np.stack(decoded, axis=1) - [pixel["decoded"] for pixel in pixels]).max() < 1e-5
 
 
 def test_the_pixel_at_the_pointer_is_described_and_moved_by_keyboard(laboratory):
@@ -143,11 +143,11 @@ def test_the_pixel_at_the_pointer_is_described_and_moved_by_keyboard(laboratory)
     box = laboratory.page.locator("[data-live=canvas]").bounding_box()
     laboratory.page.mouse.move(box["x"] + box["width"] * 0.25, box["y"] + box["height"] * 0.6)
     laboratory.settle()
-    said = [laboratory.texts(f"[data-inspect={name}]")[0] for name in ("normal", "left", "right", "around")]
-    assert re.fullmatch(r"Exact normal \((-?\d\.\d{5}, ){2}-?\d\.\d{5}\), view space\.", said[0])
-    assert said[1] == "Left, exact normals."
-    assert re.fullmatch(r"Right, octahedral rgba8: bits [01]{8} [01]{8}; decodes to .*, off by [\d.]+°\.", said[2])
-    assert said[3].startswith("Codes of octahedral rgba8 around the exact normal")
+    texts = [laboratory.texts(f"[data-inspect={name}]")[0] for name in ("normal", "left", "right", "around")]
+    assert re.fullmatch(r"Exact normal \((-?\d\.\d{5}, ){2}-?\d\.\d{5}\), view space\.", texts[0])
+    assert texts[1] == "Left, exact normals."
+    assert re.fullmatch(r"Right, octahedral rgba8: bits [01]{8} [01]{8}; decodes to .*, off by [\d.]+°\.", texts[2])
+    assert texts[3].startswith("Codes of octahedral rgba8 around the exact normal")
     drawn = (
         "canvas => canvas.getContext('2d').getImageData(0, 0, 300, 300).data.filter((x, i) => i % 4 === 3 && x).length"
     )
@@ -161,7 +161,7 @@ def test_the_pixel_at_the_pointer_is_described_and_moved_by_keyboard(laboratory)
     assert laboratory.page.evaluate("live.inspect.pixel[0]") == width - 1, "the last pixel, and no error"
 
 
-def test_the_scene_of_the_run_is_seen_through_codecs(laboratory):
+def test_the_scene_of_the_run_is_shown_through_codecs(laboratory):
     laboratory.choose(subject="0", shown="error", left="octahedral rgba8", right="octahedral rgba8")
     picture = laboratory.picture()
     assert (picture == 0).all(axis=2).mean() > 0.01, "there is a background"
@@ -188,7 +188,7 @@ def test_an_encoder_is_compiled_as_it_is_typed(laboratory):
     assert laboratory.texts("[data-own=command]") == [command]
 
 
-def test_what_is_typed_is_seen_in_the_scene(laboratory):
+def test_a_typed_encoder_changes_the_scene(laboratory):
     laboratory.choose(left="exact normals", right="your encoder", shown="error")
     before = laboratory.picture()
     text = laboratory.page.locator("[data-own=text]")
@@ -198,7 +198,7 @@ def test_what_is_typed_is_seen_in_the_scene(laboratory):
     assert apart(laboratory.picture(), before) > 0.2
 
 
-def test_a_name_of_the_pages_own_is_said_and_the_picture_goes_on(laboratory):
+def test_reserved_name_is_reported_and_the_image_is_still_drawn(laboratory):
     text = laboratory.page.locator("[data-own=text]")
     good = text.input_value()
     laboratory.choose(right="your encoder")
@@ -216,7 +216,7 @@ def test_a_name_of_the_pages_own_is_said_and_the_picture_goes_on(laboratory):
     assert not own.evaluate("option => option.disabled")
 
 
-def test_helpers_named_like_encoders_are_no_encoders(laboratory):
+def test_helpers_named_like_encoders_are_ignored(laboratory):
     text = laboratory.page.locator("[data-own=text]")
     text.fill("vec2 fold_encode(vec2 p) { return p; }\n" + text.input_value())
     laboratory.says("[data-own=said]", re.compile(r"mean 0\.33"))
@@ -239,10 +239,10 @@ WRONG = {
 }
 
 
-def test_what_is_wrong_with_an_encoder_is_said_in_words(laboratory):
-    for text, said in WRONG.items():
+def test_mistakes_in_an_encoder_are_explained(laboratory):
+    for text, message in WRONG.items():
         laboratory.page.locator("[data-own=text]").fill(text)
-        laboratory.says("[data-own=said]", said)
+        laboratory.says("[data-own=said]", message)
     laboratory.page.locator("[data-own=storage]").select_option("rg8")
     three = "vec3 a_encode(vec3 n) { return n; } vec3 a_decode(vec3 e) { return e; }"
     laboratory.page.locator("[data-own=text]").fill(three)
@@ -250,7 +250,7 @@ def test_what_is_wrong_with_an_encoder_is_said_in_words(laboratory):
     laboratory.said.clear()  # of the division by zero
 
 
-def test_a_lost_context_comes_back_with_the_same_picture(laboratory):
+def test_a_restored_context_shows_the_same_image(laboratory):
     laboratory.choose(right="spherical rgba8")
     laboratory.press("[data-see=around]", "PageUp")
     before = laboratory.picture()

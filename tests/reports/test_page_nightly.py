@@ -1,4 +1,4 @@
-"""The report in a browser: no errors, nothing fetched, tables sort and filter, the divider moves, both themes read."""
+"""The report in a browser: no errors or requests, sortable and filtered tables, a movable divider and two themes."""
 
 import re
 
@@ -26,28 +26,28 @@ def seen_at_more_widths(request, browser, report):
     page.context.close()
 
 
-def test_nothing_is_fetched_and_nothing_complains_in_the_other_theme(seen, report):
-    test_page_slow.test_nothing_is_fetched_and_nothing_complains(seen, report)
+def test_nothing_is_fetched_and_no_error_is_logged_in_the_other_theme(seen, report):
+    test_page_slow.test_nothing_is_fetched_and_no_error_is_logged(seen, report)
 
 
 def test_the_page_itself_never_scrolls_sideways_in_the_other_theme(seen):
     test_page_slow.test_the_page_itself_never_scrolls_sideways(seen)
 
 
-def test_the_answer_is_what_is_seen_first_in_the_other_theme(seen):
-    test_page_slow.test_the_answer_is_what_is_seen_first(seen)
+def test_the_answer_is_visible_first_in_the_other_theme(seen):
+    test_page_slow.test_the_answer_is_visible_first(seen)
 
 
-def test_pictures_and_charts_are_painted_in_the_other_theme(seen):
-    test_page_slow.test_pictures_and_charts_are_painted(seen)
+def test_images_and_charts_are_painted_in_the_other_theme(seen):
+    test_page_slow.test_images_and_charts_are_painted(seen)
 
 
 def test_axe_finds_nothing_in_the_other_theme(seen):
-    test_page_slow.test_axe_finds_nothing_that_keeps_readers_out(seen)
+    test_page_slow.test_axe_finds_no_accessibility_problem(seen)
 
 
 def test_axe_finds_nothing_at_more_widths(seen_at_more_widths):
-    test_page_slow.test_axe_finds_nothing_that_keeps_readers_out(seen_at_more_widths)
+    test_page_slow.test_axe_finds_no_accessibility_problem(seen_at_more_widths)
 
 
 @pytest.mark.parametrize(
@@ -72,8 +72,8 @@ FORMS = (
 
 
 @no_paper
-def test_a_page_that_was_loaded_anew_is_as_in_a_new_window(browser, report, opened):
-    """The tests here share a window: what one does to the page, the next one does not see."""
+def test_a_reloaded_page_matches_a_new_window(browser, report, opened):
+    """The tests here share a window, but no test may see what another has done to the page."""
     fresh = Opened(browser, report)
     fresh.page.evaluate(DRAW_ALL)
     expected = (
@@ -87,11 +87,11 @@ def test_a_page_that_was_loaded_anew_is_as_in_a_new_window(browser, report, open
     opened.page.emulate_media(media="print", color_scheme="dark")
     opened.load_anew()
     opened.page.evaluate(DRAW_ALL)
-    found = (
+    state = (
         opened.page.evaluate(FORMS),
         opened.page.evaluate("[document.documentElement.outerHTML, scrollY, innerWidth]"),
     )
-    assert found == expected and opened.asked == [report.as_uri()] and opened.said == []
+    assert state == expected and opened.asked == [report.as_uri()] and opened.said == []
     names = opened.page.evaluate(CLIPS)
     assert names and all(clip == f"{chart}-panel-{place}" for clip, chart, place in names), names
     assert opened.page.evaluate("matchMedia('screen').matches && matchMedia('(prefers-color-scheme: light)').matches")

@@ -1,4 +1,4 @@
-"""The report in a browser: no errors, nothing fetched, tables sort and filter, the divider moves, both themes read."""
+"""The report in a browser: no errors or requests, sortable and filtered tables, a movable divider and two themes."""
 
 import math
 import re
@@ -21,14 +21,14 @@ SEEN = [(DESKTOP, "light"), (PHONE, "dark")]
 
 @pytest.fixture(scope="module", params=SEEN, ids=str)
 def seen(request, browser, report):
-    """The page at a width in a theme; not to be changed."""
+    """The page at a width in a theme, which tests must not change."""
     page = opened_to_see(browser, report, *request.param)
     yield page
     page.context.close()
 
 
 def opened_to_see(browser, report, size, theme) -> Opened:
-    """The page with its pictures and charts drawn."""
+    """Return the page with its images and charts drawn."""
     page = Opened(browser, report, size, theme)
     page.page.evaluate("Promise.all(Array.from(document.images, (image) => image.decode()))")
     page.come_to("#viewer", VIEWED)
@@ -41,7 +41,7 @@ def opened_to_see(browser, report, size, theme) -> Opened:
     return page
 
 
-def test_nothing_is_fetched_and_nothing_complains(seen, report):
+def test_nothing_is_fetched_and_no_error_is_logged(seen, report):
     assert [url for url in seen.asked if not url.startswith("data:")] == [report.as_uri()]
     assert seen.said == []
     assert seen.page.locator(".plot svg").count() == 4, "a chart for each set of normals"
@@ -70,7 +70,7 @@ HIDDEN_LINKS = """() => {
 
 @pytest.mark.parametrize("width", [1400, 800, 390])
 def test_the_navigation_shows_every_section_and_has_no_scrollbar(opened, width):
-    """With as many sections as a whole run has."""
+    """The navigation has as many sections as in a whole run."""
     opened.page.set_viewport_size({"width": width, "height": 900})
     opened.page.evaluate("""() => { const list = document.querySelector("nav ul"), all = Array.from(list.children);
       for (let at = 0; at < 20 - all.length; at++) list.append(all[at % all.length].cloneNode(true)); }""")
@@ -78,7 +78,7 @@ def test_the_navigation_shows_every_section_and_has_no_scrollbar(opened, width):
     opened.page.set_viewport_size({"width": DESKTOP[0], "height": DESKTOP[1]})
 
 
-def test_the_answer_is_what_is_seen_first(seen):
+def test_the_answer_is_visible_first(seen):
     lead = seen.page.locator(".lead")
     assert lead.text_content().startswith("Normal accuracy")
     box, height = lead.bounding_box(), seen.page.viewport_size["height"]
@@ -86,8 +86,9 @@ def test_the_answer_is_what_is_seen_first(seen):
     assert np.ptp(seen.pixels(".lead")) > 150, "dark on light or light on dark"
 
 
-def test_axe_finds_nothing_that_keeps_readers_out(seen):
-    """WCAG 2.1 A and AA with contrast, landmarks, labels and the order of headings; details closed and open."""
+def test_axe_finds_no_accessibility_problem(seen):
+    """The check covers WCAG 2.1 A and AA with contrast, landmarks, labels and the order of headings, with details
+    closed and open."""
     from axe_playwright_python.base import AXE_FILE_PATH
 
     seen.page.evaluate(AXE_FILE_PATH.read_text() + "; 0")
@@ -108,7 +109,7 @@ CONTRAST = """() => {
 
 
 def luminance(rgb: list[int]) -> float:
-    """Relative luminance, WCAG 2.1."""
+    """Return relative luminance by WCAG 2.1."""
     linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in (v / 255 for v in rgb)]
     return float(np.dot(linear, (0.2126, 0.7152, 0.0722)))
 
@@ -122,14 +123,14 @@ def contrast(one: list[int], other: list[int]) -> float:
 @pytest.mark.parametrize("theme", THEMES)
 def test_text_and_lines_have_contrast_in_both_themes(browser, report, theme):
     page = Opened(browser, report, theme=theme)
-    found = page.page.evaluate(CONTRAST)
+    colours = page.page.evaluate(CONTRAST)
     page.context.close()
-    assert (luminance(found["paper"]) > 0.5) == (theme == "light")
+    assert (luminance(colours["paper"]) > 0.5) == (theme == "light")
     for text in ("ink", "muted", "accent"):
         for ground in ("paper", "raised"):
-            assert contrast(found[text], found[ground]) >= 4.5, (text, ground, found)
-    assert contrast(found["ink"], found["mark"]) >= 4.5
-    lines = {name: contrast(found[name], found["paper"]) for name in ("warning", "a", "b")}
+            assert contrast(colours[text], colours[ground]) >= 4.5, (text, ground, colours)
+    assert contrast(colours["ink"], colours["mark"]) >= 4.5
+    lines = {name: contrast(colours[name], colours["paper"]) for name in ("warning", "a", "b")}
     assert min(lines.values()) >= 3, lines
 
 
@@ -145,28 +146,28 @@ def column(opened: Opened, index: int) -> list[str]:
 def test_tables_sort_by_number_in_both_directions_by_keyboard(opened):
     headers = opened.page.locator(f"{TABLE} >> thead th")
     names = [text.strip() for text in headers.all_text_contents()]
-    at = names.index("PSNR dB")
+    index = names.index("PSNR dB")
     before = column(opened, 0)
-    headers.nth(at).locator("button").focus()
+    headers.nth(index).locator("button").focus()
     for direction, reverse in (("descending", True), ("ascending", False)):
         opened.page.keyboard.press("Enter")
-        expect(headers.nth(at)).to_have_attribute("aria-sort", direction)
-        figures = [float(text) for text in column(opened, at)]
+        expect(headers.nth(index)).to_have_attribute("aria-sort", direction)
+        figures = [float(text) for text in column(opened, index)]
         assert figures == sorted(figures, reverse=reverse) and figures[0] != figures[-1]
     assert column(opened, 0)[-1] == "xyz" and sorted(column(opened, 0)) == sorted(before)
     angles = headers.nth(names.index("mean"))
     angles.locator("button").click()
     assert angles.get_attribute("aria-sort") == "ascending", "the best on top: of angles the smallest"
     headers.nth(0).locator("button").click()
-    assert column(opened, 0) == sorted(before) and headers.nth(at).get_attribute("aria-sort") == "none"
+    assert column(opened, 0) == sorted(before) and headers.nth(index).get_attribute("aria-sort") == "none"
 
 
-def test_what_is_empty_is_last_whichever_way(opened):
+def test_empty_cells_come_last_in_either_order(opened):
     headers = opened.page.locator(f"{TABLE} >> thead th")
-    at = [text.strip() for text in headers.all_text_contents()].index("article dB")
+    index = [text.strip() for text in headers.all_text_contents()].index("article dB")
     for _ in range(2):
-        headers.nth(at).locator("button").click()
-        texts = column(opened, at)
+        headers.nth(index).locator("button").click()
+        texts = column(opened, index)
         filled = [bool(text) for text in texts]
         assert any(filled) and filled == sorted(filled, reverse=True), texts
 
@@ -180,14 +181,14 @@ def test_infinite_figures_sort_as_the_largest(browser, tmp_path, run):
     page.locator("#quality .subject > summary").click()
     table = page.locator("#quality [data-sheet]").first
     headers = table.locator("thead th")
-    at = [text.strip() for text in headers.all_text_contents()].index("PSNR dB JAX")
+    index = [text.strip() for text in headers.all_text_contents()].index("PSNR dB JAX")
     for last in (48.1, math.inf):
-        headers.nth(at).locator("button").click()
-        assert float(table.locator("tbody tr").last.locator("th, td").nth(at).text_content()) == last
+        headers.nth(index).locator("button").click()
+        assert float(table.locator("tbody tr").last.locator("th, td").nth(index).text_content()) == last
     page.close()
 
 
-def test_a_filter_leaves_rows_that_hold_every_word_and_counts_them(opened):
+def test_a_filter_keeps_rows_that_contain_every_word_and_counts_them(opened):
     field = opened.page.locator(f"{TABLE} >> [data-filter]")
     assert field.is_visible() and opened.page.get_by_label("Filter").first.is_visible()
     field.fill("16 octahedral")
@@ -199,19 +200,19 @@ def test_a_filter_leaves_rows_that_hold_every_word_and_counts_them(opened):
     assert status.text_content() == "9 of 9 rows"
 
 
-def test_the_best_of_each_column_is_marked_among_as_many_bits(opened):
+def test_the_best_of_each_column_is_marked_among_equal_bit_counts(opened):
     rows = opened.page.locator(f"{TABLE} >> tbody tr")
     names = [text.strip() for text in opened.texts(f"{TABLE} >> thead th")]
     best = {row.locator("th").text_content(): row.locator(".best").count() for row in rows.all()}
     assert {name for name, count in best.items() if count} >= {"octahedral_precise"}
     assert best["xyz"] == 0, "nothing else has 24 bits"
-    at = names.index("PSNR dB")
-    assert "best" in rows.first.locator("th, td").nth(at).get_attribute("class")
+    index = names.index("PSNR dB")
+    assert "best" in rows.first.locator("th, td").nth(index).get_attribute("class")
     assert rows.first.locator("th").text_content() == "octahedral_precise"
 
 
 @no_files
-def test_a_table_is_copied_as_markdown_and_saved_as_csv_as_it_is_filtered(opened):
+def test_a_filtered_table_is_copied_as_markdown_and_saved_as_csv(opened):
     opened.context.grant_permissions(["clipboard-read", "clipboard-write"])
     sheet = opened.page.locator(TABLE)
     sheet.locator("[data-filter]").fill("octahedral 16")
@@ -249,7 +250,7 @@ def test_a_chart_is_filtered_by_bits_and_saved_as_png(opened):
     assert opened.said == []
 
 
-def test_what_a_hostile_run_holds_is_text_in_the_browser_too(browser, run, tmp_path):
+def test_hostile_names_are_plain_text_in_the_browser_too(browser, run, tmp_path):
     rows = [quality_row(HOSTILE), quality_row("octahedral", storage=HOSTILE)]
     image = {"encoding": HOSTILE, "storage": HOSTILE, "scene": HOSTILE, "psnr_db": 1.0, "normal_psnr_db": 2.0}
     assert run("report", str(a_run(tmp_path / "run", {"quality": rows, "render": [image]})))[0] == 0
@@ -263,8 +264,8 @@ def test_what_a_hostile_run_holds_is_text_in_the_browser_too(browser, run, tmp_p
     page.context.close()
 
 
-def test_the_first_screen_is_painted_soon(browser, report):
-    """Of the small run's page; charts and pictures wait until they come into view or the page is idle."""
+def test_the_first_screen_is_painted_quickly(browser, report):
+    """This is the page of the small run; charts and images wait until they come into view or the page is idle."""
     page = Opened(browser, report)
     painted = page.page.evaluate("performance.getEntriesByName('first-contentful-paint')[0].startTime")
     assert painted < 1500
@@ -284,7 +285,7 @@ new PerformanceObserver((list) => shifts.push(...own(list).map((one) => one.valu
     ("size", "views"), [((1440, 900), ("compare", "codecs")), ((390, 844), ("see", "data"))], ids=str
 )
 def test_nothing_moves_while_a_view_fills(browser, report, size, views):
-    """https://web.dev/articles/cls: below 0.1 is good; here half of that."""
+    """By https://web.dev/articles/cls, below 0.1 is good; the limit here is half of that."""
     for view in views:
         page = Opened(browser, report, size=size, fragment=f"#v1/{view}", before=SHIFTS)
         page.page.wait_for_timeout(1000)
@@ -293,10 +294,10 @@ def test_nothing_moves_while_a_view_fills(browser, report, size, views):
         assert moved < 0.05, f"{view} at {size}: {moved:.3f}"
 
 
-def test_the_theme_is_the_systems_until_the_button_says_another(opened):
+def test_the_theme_is_the_systems_until_the_button_changes_it(opened):
     def paper() -> float:
-        found = opened.page.evaluate("getComputedStyle(document.body).backgroundColor")
-        return luminance([int(n) for n in re.findall(r"\d+", found)[:3]])
+        colour = opened.page.evaluate("getComputedStyle(document.body).backgroundColor")
+        return luminance([int(n) for n in re.findall(r"\d+", colour)[:3]])
 
     button = opened.page.get_by_role("button", name=re.compile("Theme"))
     assert paper() > 0.5
@@ -309,7 +310,7 @@ def test_the_theme_is_the_systems_until_the_button_says_another(opened):
     assert button.text_content() == "Theme: as the system" and paper() > 0.5
 
 
-def test_the_keyboard_starts_with_a_way_past_the_navigation(opened):
+def test_the_keyboard_starts_with_a_link_past_the_navigation(opened):
     opened.page.keyboard.press("Tab")
     assert opened.page.evaluate("document.activeElement.textContent") == "Skip to the answer"
     opened.page.keyboard.press("Enter")
@@ -319,7 +320,7 @@ def test_the_keyboard_starts_with_a_way_past_the_navigation(opened):
     assert links == there and len(links) >= 4
 
 
-def test_headings_go_down_a_step_at_a_time(opened):
+def test_heading_levels_are_not_skipped(opened):
     levels = [int(tag[1]) for tag in opened.page.eval_on_selector_all("h1,h2,h3,h4", "a => a.map((h) => h.tagName)")]
     assert levels[0] == 1 and levels.count(1) == 1
     assert all(after <= before + 1 for before, after in pairwise(levels)), levels
@@ -333,8 +334,8 @@ def test_the_sphere_shows_the_mean_or_the_largest(opened):
     assert set(opened.page.eval_on_selector_all(shown, "all => all.map((i) => i.dataset.which)")) == {"largest"}
 
 
-def test_pictures_and_charts_are_painted(seen):
-    """Not black, not clipped: pictures vary, charts have ink on paper, discs are round and in colour."""
+def test_images_and_charts_are_painted(seen):
+    """Not black, not clipped: images vary, charts have ink on paper, discs are round and in colour."""
     for selector in (".stage", ".thumbs canvas >> nth=0", ".globes img >> nth=2", ".scale img >> nth=0"):
         seen.come_to(selector)
         seen.page.wait_for_timeout(200)

@@ -1,4 +1,4 @@
-"""The pictures of a page: those of the run, pixel by pixel, as many as fit, the best first."""
+"""The images of a page: those of the run, pixel by pixel, as many as fit, the best first."""
 
 import base64
 import io
@@ -21,19 +21,19 @@ def pixels(uri: str) -> np.ndarray:
 
 
 def codes_of(record: dict) -> np.ndarray:
-    """The codes in a page's pictures, read as pictures.js reads them."""
+    """Return the codes in a page's images, read in the way of pictures.js."""
     planes = np.concatenate([pixels(uri) for uri in record["codes"]], axis=-1).astype(np.int64)
-    sizes, at = [-(-bits // 8) for bits in record["bits"]], 0
+    sizes, plane = [-(-bits // 8) for bits in record["bits"]], 0
     codes = np.zeros((*planes.shape[:2], len(sizes)), np.int64)
     for level in range(max(sizes)):
         for i, size in enumerate(sizes):
             if level < size:
-                codes[..., i] = codes[..., i] * 256 + planes[..., at]
-                at += 1
+                codes[..., i] = codes[..., i] * 256 + planes[..., plane]
+                plane += 1
     return codes >> np.array([8 * size - bits for size, bits in zip(sizes, record["bits"], strict=True)])
 
 
-def test_codes_of_any_size_come_back_from_pictures():
+def test_codes_of_any_size_are_recovered_from_images():
     random = np.random.default_rng(0)
     for bits in ((8, 8), (10, 10), (11, 11, 10), (16, 16), (8, 8, 1), (32, 20, 3)):
         codes = np.stack([random.integers(0, 2**n, (6, 9), np.uint32, endpoint=False) for n in bits], axis=-1)
@@ -41,7 +41,7 @@ def test_codes_of_any_size_come_back_from_pictures():
         assert (codes_of(record) == codes).all(), bits
 
 
-def test_an_angle_as_a_byte_is_within_what_the_page_says():
+def test_an_angle_as_a_byte_is_within_the_stated_error():
     degrees = np.array([0.0, 1e-5, 0.003, 0.3, 5.0, 90.0, 180.0, np.nan])
     kept = angle_bytes(degrees, np.ones(8, bool)).astype(float)
     shown = 2.0 ** (LEAST_LOG2 + (kept - 1) / STEPS_PER_OCTAVE)
@@ -50,7 +50,7 @@ def test_an_angle_as_a_byte_is_within_what_the_page_says():
 
 
 def rendered_run(folder: Path) -> Path:
-    """A run whose images were rendered: two codecs in rgba8, one step of red off and exact."""
+    """Write a run with rendered images: two codecs in rgba8, one a step of red off and one exact."""
     about = {"pipeline": "hybrid", "scene": "gloss", "power": 47.0, "shadow": True, "layout": "fp32"}
     about |= {"storage": "rgba8", "rounding": "nearest", "light_buffer": "rgba32f", "light_targets": 2}
     rows = [
@@ -68,7 +68,7 @@ def rendered_run(folder: Path) -> Path:
     return folder
 
 
-def test_flip_is_offered_where_the_run_has_it(run, tmp_path):
+def test_flip_is_offered_if_the_run_has_it(run, tmp_path):
     folder = rendered_run(tmp_path / "run")
     gathered = report_command.gathered(folder, read_run(folder))
     assert embedded.gallery(gathered.subjects).subjects[0]["flip"] is False
@@ -83,18 +83,18 @@ def test_flip_is_offered_where_the_run_has_it(run, tmp_path):
     assert '"100%25%23-pictures/0.js"' in (tmp_path / "100%#.html").read_text(), "an address"
 
 
-def test_rendered_images_are_in_the_page_as_what_differs_from_the_exact_one(tmp_path):
+def test_rendered_images_are_stored_as_differences_from_the_exact_one(tmp_path):
     folder = rendered_run(tmp_path / "run")
     (subject,) = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects).subjects
     assert subject["title"] == "the image of gloss at power 47"
-    assert [one["label"] for one in subject["codecs"]] == ["octahedral rgba8", "xy rgba8"], "the best first"
+    assert [codec["label"] for codec in subject["codecs"]] == ["octahedral rgba8", "xy rgba8"], "the best first"
     exact, off = pixels(subject["original"]), pixels(subject["codecs"][1]["apart"])
     with Image.open(folder / "images/gloss-power47-hybrid-fp32-xy-rgba8-rgba32fx2-final.png") as final:
         assert (exact + off == np.asarray(final)).all()
     assert (pixels(subject["codecs"][0]["apart"]) == 0).all()
 
 
-def test_pictures_beside_the_page_are_all_there_in_full_size(run, tmp_path):
+def test_images_next_to_the_page_are_complete_and_full_size(run, tmp_path):
     folder = rendered_run(tmp_path / "run")
     status, out, _ = run("report", str(folder), "--pictures", "beside", "-o", str(tmp_path / "page.html"))
     assert (status, out) == (0, f"{tmp_path / 'page.html'}\n")
@@ -110,7 +110,7 @@ def test_pictures_beside_the_page_are_all_there_in_full_size(run, tmp_path):
 
 
 def pick_row(encoding: str, mean: float, slots: int) -> dict:
-    """A code of an answer."""
+    """Return the row of an encoding in an answer."""
     about = {"asked": "rg8", "storage": "rg8", "encoding": encoding, "normals": "sphere", "scene": "gloss", "bits": 16}
     about |= {
         "aim": "angle",
@@ -128,8 +128,8 @@ def pick_row(encoding: str, mean: float, slots: int) -> dict:
     return TABLES["pick"].empty(["gloss_47"]) | about | figures | costs
 
 
-def test_the_answer_is_the_first_screen_and_the_first_line(run, tmp_path):
-    """With its price, whatever names hold."""
+def test_the_answer_is_on_the_first_screen_and_the_first_line(run, tmp_path):
+    """The answer includes its cost, and hostile names are escaped."""
     rows = [pick_row("<b>fine", 0.2, 90), pick_row("_cheap_ www.a.b", 0.3, 10)]
     folder = a_run(tmp_path / "run", {"pick": rows, "quality": [quality_row("xyz")]})
     assert run("report", str(folder))[0] == 0
@@ -147,7 +147,7 @@ def test_the_answer_is_the_first_screen_and_the_first_line(run, tmp_path):
     )
 
 
-def test_the_answers_table_is_open_what_does_not_qualify_folded_and_its_storage_comes_first(run, tmp_path):
+def test_answer_table_is_open_with_rejects_folded_and_its_storage_first(run, tmp_path):
     lost = pick_row("xy", 0.5, 10) | {"domain": "hemisphere", "lost_percent": 50.0}
     rows = [pick_row("octahedral", 0.2, 90), pick_row("spheremap", 0.3, 10), lost]
     sets = [("playground", "rgba8"), ("sphere", "rg8"), ("playground", "rg8")]

@@ -1,4 +1,4 @@
-"""The pictures of a page: those of the run, pixel by pixel, as many as fit, the best first."""
+"""The images of a page: those of the run, pixel by pixel, as many as fit, the best first."""
 
 import json
 import shutil
@@ -15,7 +15,8 @@ from normalbench.reports.page import embedded
 
 
 def answered_run(folder: Path) -> Path:
-    """A run with an answer for two storages on two scenes, each with its images; in rg8 on gloss red is 2 steps off."""
+    """Write a run with an answer for two storages on two scenes, each with images; in rg8 on gloss, red is 2 steps
+    off."""
     (folder / "images").mkdir(parents=True)
     of_room = {"scene": "gloss,room", "image_db_room_47": 50.0}
     rows = [
@@ -32,21 +33,21 @@ def answered_run(folder: Path) -> Path:
     return a_run(folder, {"pick": rows}, request={"tables": ["pick"]})
 
 
-def test_an_answers_pictures_are_of_its_own_scene_the_best_first(tmp_path):
+def test_images_of_an_answer_show_its_own_scene_the_best_first(tmp_path):
     folder = answered_run(tmp_path / "run")
     first, second = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects).subjects
     assert [first["title"], second["title"]] == ["the answer on gloss at power 47", "the answer on room at power 47"]
-    assert [one["codec"] for one in first["codecs"]] == ["fine rg8", "xy rg8", "fine rgb10a2", "xy rgb10a2"]
+    assert [codec["codec"] for codec in first["codecs"]] == ["fine rg8", "xy rg8", "fine rgb10a2", "xy rgb10a2"]
     assert pixels(first["codecs"][0]["apart"])[0, 0].tolist() == [2, 0, 0]
     assert pixels(second["codecs"][0]["apart"]).max() == 0
 
 
-def test_pictures_in_the_page_are_those_of_the_run_pixel_by_pixel(results):
+def test_images_in_the_page_match_the_run_pixel_by_pixel(results):
     folder, *_ = results
     (subject,) = report_command.gathered(folder, read_run(folder)).subjects
     (inside,) = embedded.gallery([subject]).subjects
     assert (inside["title"], inside["step"]) == ("the normals of playground", 2)
-    assert [one["label"] for one in inside["codecs"]][:2] == ["octahedral_precise rgba8", "octahedral rgba8"]
+    assert [codec["label"] for codec in inside["codecs"]][:2] == ["octahedral_precise rgba8", "octahedral rgba8"]
     for record in inside["codecs"][:3]:
         name = f"playground-{record['label'].replace(' ', '-')}"
         with (
@@ -58,28 +59,28 @@ def test_pictures_in_the_page_are_those_of_the_run_pixel_by_pixel(results):
             assert (pixels(record["decoded"]) == np.asarray(png)[::2, ::2]).all(), name
 
 
-def test_pictures_that_do_not_fit_are_named_and_the_best_come_first(results):
+def test_images_that_do_not_fit_are_named_and_the_best_come_first(results):
     (subject,) = report_command.gathered(results[0], read_run(results[0])).subjects
-    made = embedded.gallery([subject], budget=300_000)
-    (shown,) = made.subjects
-    assert len(json.dumps(made.subjects)) <= 310_000
+    gallery = embedded.gallery([subject], budget=300_000)
+    (shown,) = gallery.subjects
+    assert len(json.dumps(gallery.subjects)) <= 310_000
     assert (
         shown["codecs"][0]["label"] == "octahedral_precise rgba8"
-        and "xy rgba8, the normals of playground" in made.left_out
+        and "xy rgba8, the normals of playground" in gallery.left_out
     )
-    assert len(shown["codecs"]) + len(made.left_out) == len(subject.codecs)
-    ranked = [one.label for one in sorted(subject.codecs, key=lambda one: one.rank)]
-    assert {one["label"] for one in shown["codecs"]} == set(ranked[: len(shown["codecs"])]), "no worse one in its place"
+    assert len(shown["codecs"]) + len(gallery.left_out) == len(subject.codecs)
+    ranked = [codec.label for codec in sorted(subject.codecs, key=lambda one: one.rank)]
+    assert {c["label"] for c in shown["codecs"]} == set(ranked[: len(shown["codecs"])]), "no worse one in its place"
 
 
-def test_damaged_pictures_are_named(results, tmp_path):
+def test_damaged_images_are_named(results, tmp_path):
     folder = tmp_path / "run"
     shutil.copytree(results[0], folder)
     (folder / "images/playground-octahedral-rgba8.npz").write_bytes(b"PK no")
     (folder / "images/playground-xy-rgba8-decoded.png").write_bytes(b"\x89PNG\r\n\x1a\nno")
     Image.new("RGB", (8, 8)).save(folder / "images/playground-xyz-rgba8-decoded.png")
-    made = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects)
-    assert sorted(name.split(",")[0] for name in made.damaged) == ["octahedral rgba8", "xy rgba8", "xyz rgba8"]
+    gallery = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects)
+    assert sorted(name.split(",")[0] for name in gallery.damaged) == ["octahedral rgba8", "xy rgba8", "xyz rgba8"]
     (folder / "images/playground-normals.png").write_bytes(b"no")
-    made = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects)
-    assert (made.damaged, made.subjects) == (["the normals of playground"], [])
+    gallery = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects)
+    assert (gallery.damaged, gallery.subjects) == (["the normals of playground"], [])

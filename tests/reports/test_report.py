@@ -1,4 +1,4 @@
-"""The report: what it holds, of runs that are whole, partial, old, stopped or hostile."""
+"""The content of the report, for runs that are complete, partial, old, stopped or hostile."""
 
 import hashlib
 import json
@@ -42,7 +42,7 @@ def text_of_page(folder: Path) -> str:
 
 
 def a_run(folder: Path, tables: dict[str, list], **facts) -> Path:
-    """A results folder by hand."""
+    """Write a made-up results folder."""
     folder.mkdir(parents=True, exist_ok=True)
     about = {
         "schema": SCHEMA,
@@ -58,7 +58,7 @@ def a_run(folder: Path, tables: dict[str, list], **facts) -> Path:
 
 
 def test_the_rows_of_a_table_are_finished_once_for_a_page(run, tmp_path, monkeypatch):
-    """And nobody writes into those that were kept."""
+    """One report finishes both rows in a single call."""
     work = import_module("normalbench.bench.tables.quality.work")
     seen: list[int] = []
     counting = replace(work.WORK, finish=lambda rows: seen.append(len(rows)) or work.WORK.finish(rows))
@@ -87,7 +87,7 @@ class Read(HTMLParser):
 
 
 def reported(run, folder: Path, told: str = "") -> tuple[str, Read]:
-    """The page of a run, and what it reads; `told` is the line on standard error, if one is expected."""
+    """Return the page of a run and its parsed text; `told` is the expected line on standard error, if any."""
     status, out, err = run("report", str(folder))
     assert status == 0 and (told in err and err.count("\n") == 1 if told else not err), err
     assert out == f"{folder / 'report.html'}\n"
@@ -95,7 +95,7 @@ def reported(run, folder: Path, told: str = "") -> tuple[str, Read]:
     return text, Read(text)
 
 
-def test_a_name_leads_to_no_file_outside_the_run(run, tmp_path):
+def test_names_cannot_reach_files_outside_the_run(run, tmp_path):
     rows = [quality_row("secret", normals=".."), quality_row("../secret"), quality_row("secret")]
     folder = a_run(tmp_path / "run", {"quality": rows})
     (folder / "images").mkdir()
@@ -108,7 +108,7 @@ def test_a_name_leads_to_no_file_outside_the_run(run, tmp_path):
     assert "secret" in read.text and not any(a.get("id") == "pictures" for a in read.all("section"))
 
 
-def test_a_stopped_run_and_one_of_other_sources_say_so(run, tmp_path):
+def test_page_reports_a_stopped_run_and_other_sources(run, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("octahedral")]}, finished=False, sources="other")
     _, read = reported(run, folder)
     assert "This run is not finished. Completed steps: 1." in read.text
@@ -125,28 +125,28 @@ def test_rows_of_one_set_with_several_counts_are_not_compared(run, tmp_path):
 
 
 def lines_without_room(text: str) -> list[str]:
-    """The lines of a page in Markdown that follow another one without an empty line between."""
+    """Return the lines of a page in Markdown that follow another line without an empty line between."""
     lines = text.splitlines()
     return [line for before, line in pairwise(lines) if before and line]
 
 
 def test_rows_without_figures_make_no_table_of_their_own(run, tmp_path):
-    """They have no count of normals; the page says why among every row."""
+    """Such rows have no count of normals; the page gives the reason in the table of every row."""
     lost = {"psnr_db": None, "psnr_article_db": None, "angle_mean_deg": None, "count": None, "skipped": "no twin"}
     rows = [quality_row("mine", **lost), quality_row("mine", backend="glsl", count=4096)]
     rows += [quality_row("xy", count=4096), quality_row("mine", storage="rg8", **lost)]
     folder = a_run(tmp_path / "run", {"quality": rows})
     _, read = reported(run, folder)
     status, text, _ = run("report", str(folder), "--markdown")
-    for said in (read.text, text):
-        assert "playground, rgba8: dB by backend" in said and "None normals" not in said
-        assert "playground, rg8" not in said and status == 0
+    for page_text in (read.text, text):
+        assert "playground, rgba8: dB by backend" in page_text and "None normals" not in page_text
+        assert "playground, rg8" not in page_text and status == 0
     assert all(line.startswith(("|", "-")) for line in lines_without_room(text)), text
     assert "no twin" in packed_text(text_of_page(folder), "data-quality")
 
 
-def test_a_column_that_is_infinite_for_several_has_no_star_and_the_articles_is_left_out(run, tmp_path):
-    """Rounded to 8 bits, as the article does, many exact codes lose nothing: the column then tells nothing."""
+def test_infinite_column_has_no_star_and_the_article_column_is_hidden(run, tmp_path):
+    """Rounded to 8 bits as in the article, many exact encodings lose nothing, so the column is of no use."""
     best = {"psnr_db": math.inf, "psnr_article_db": math.inf, "angle_mean_deg": 0.1}
     rows = [quality_row("xyz", **best), quality_row("octahedral", **best), quality_row("xy")]
     text, _ = reported(run, a_run(tmp_path / "run", {"quality": rows}))
@@ -164,13 +164,13 @@ def test_a_column_that_is_infinite_for_several_has_no_star_and_the_articles_is_l
     assert "PSNR article" in shown and '<td class="n best">inf</td>' in shown
 
 
-def test_what_was_left_out_of_a_run_is_said(run, tmp_path):
+def test_page_lists_what_a_run_skipped(run, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("xy")]}, left_out=["mine.glsl: line 3 does not compile"])
     _, read = reported(run, folder)
     assert "Skipped in this run: mine.glsl: line 3 does not compile." in read.text
 
 
-def test_an_encoding_without_a_twin_has_its_place_in_charts_and_tables(run, tmp_path):
+def test_encoding_without_a_twin_appears_in_charts_and_tables(run, tmp_path):
     rows = [quality_row("xy"), quality_row("xy", backend="glsl"), quality_row("mine", backend="glsl")]
     folder = a_run(tmp_path / "run", {"quality": rows})
     text, read = reported(run, folder)
@@ -178,17 +178,17 @@ def test_an_encoding_without_a_twin_has_its_place_in_charts_and_tables(run, tmp_
     assert 'data-codec="mine rgba8"' in text and text.count(">mine rgba8</option>") == 2
 
 
-def test_a_run_of_another_version_says_how_to_measure_it_again(run, tmp_path):
-    """By the same command, less the folder that holds it."""
+def test_a_run_of_another_version_shows_how_to_measure_it_again(run, tmp_path):
+    """The command is the same, without the folder of the run."""
     command = ["run", "--tables", "quality", "-o", "old run", "--normals", "my set.npy"]
     folder = a_run(tmp_path / "run", {"quality": [quality_row("xy")]}, sources="other", command=command)
-    said = "Measure it again: normalbench run --tables quality --normals 'my set.npy'."
-    assert said in reported(run, folder)[1].text
+    advice = "Measure it again: normalbench run --tables quality --normals 'my set.npy'."
+    assert advice in reported(run, folder)[1].text
     assert "Measure it again" in run("report", str(folder), "--markdown")[1]
 
 
 def test_a_row_without_an_encoding_has_no_empty_heading(run, tmp_path):
-    """The cost of a storage alone."""
+    """Such a row is the cost of a storage alone."""
     about = {"measure": "isa", "storage": "rg8", "operation": "encode", "stage": "fragment", "family": "navi31"}
     rows = [TABLES["cost"].empty() | about | {"instructions": count} for count in (3, 4)]
     text, _ = reported(run, a_run(tmp_path / "run", {"cost": rows}))
@@ -217,17 +217,17 @@ def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
     assert "octahedral" in packed_text(text, "data-quality") and "its rows keep no histograms" in read.text
 
 
-def test_rows_of_a_table_that_is_no_more_are_left_out_with_a_line(run, tmp_path):
-    """Where people look at the run: its page and its text."""
+def test_rows_of_a_removed_table_are_left_out_with_a_note(run, tmp_path):
+    """The note appears for the page and for the text."""
     tables = {"throughput": [{"encoding": "xy", "rate": 1.0}], "growth": [], "quality": [quality_row("xy")]}
     folder = a_run(tmp_path / "run", tables)
     for words in ((), ("--markdown",)):
         status, _, err = run("report", str(folder), *words)
-        said = f"{folder}: Rows of throughput, growth are left out, because this version has no such table\n"
-        assert status == 0 and said in err and "Traceback" not in err
+        message = f"{folder}: Rows of throughput, growth are left out, because this version has no such table\n"
+        assert status == 0 and message in err and "Traceback" not in err
 
 
-def test_an_empty_run_is_a_page(run, tmp_path):
+def test_an_empty_run_still_has_a_page(run, tmp_path):
     _, read = reported(run, a_run(tmp_path / "run", {}))
     assert "Nothing yet" in read.text
 
@@ -241,14 +241,14 @@ def test_an_empty_run_is_a_page(run, tmp_path):
         (["{run}", "--markdown", "-o", "/proc/nowhere/page.md"], "cannot write"),
     ],
 )
-def test_bad_input_is_one_line(run, tmp_path, arguments, said):
+def test_bad_input_is_a_one_line_error(run, tmp_path, arguments, said):
     folder = a_run(tmp_path / "run", {})
     status, out, err = run("report", *(a.format(tmp=tmp_path, run=folder) for a in arguments))
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
     assert {path.name for path in folder.iterdir()} == {"run.json", "rows.jsonl"}
 
 
-def test_the_page_has_the_glsl_beside_each_kernel(run, tmp_path):
+def test_the_page_shows_the_glsl_next_to_each_kernel(run, tmp_path):
     folder, rows = tmp_path / "run", []
     for name, count in (("per_pixel_view", 30), ("spherical", 24)):
         about = {"measure": "isa", "encoding": name, "operation": "encode", "stage": "fragment", "family": "navi31"}
@@ -260,31 +260,31 @@ def test_the_page_has_the_glsl_beside_each_kernel(run, tmp_path):
     (folder / "disassembly" / "source" / "spherical.glsl").write_text("// <b>spherical</b>\n")
     text, _ = reported(run, a_run(folder, {"cost": rows}))
     kernels = json.loads(packed_text(text, "data-listings"))
-    assert "// <b>spherical</b>" in [one["source"] for one in kernels.values()], "the GLSL stands beside its kernel"
+    assert "// <b>spherical</b>" in [entry["source"] for entry in kernels.values()], "the GLSL stands beside its kernel"
     assert "<b>spherical" not in text
     (folder / "disassembly" / path).unlink()
     _, read = reported(run, folder)
     assert "spherical" in read.text
 
 
-def test_charts_of_odd_rows_keep_their_lines_apart_and_are_read_by_a_browser():
-    """Roundings, layouts and names of users' files; no infinity in what a browser reads."""
+def test_charts_of_odd_rows_keep_lines_apart_and_are_valid_json():
+    """The rows have roundings, layouts and names of users' files; a browser cannot read infinity."""
     rows = [quality_row("xy"), quality_row("xy", rounding="truncate"), quality_row('$a\\b"')]
     chart = histogram_chart(0, rows)
-    made = [wire.spec(chart)]
-    lines = set(made[0]["panels"][0]["tables"][0]["line"]["names"])
+    specs = [wire.spec(chart)]
+    lines = set(specs[0]["panels"][0]["tables"][0]["line"]["names"])
     assert lines == {"xy rgba8", "xy rgba8 truncate", '$a\\b" rgba8'}
     image = {"encoding": "xy", "storage": "rgba8", "rounding": "nearest", "psnr_db": math.inf, "normal_psnr_db": 50.0}
     chart = image_chart(0, "gloss", [image | {"layout": name} for name in ("thin", "wide")])
     assert chart.y.names == ("xy rgba8 thin", "xy rgba8 wide")
-    made.append(wire.spec(chart))
+    specs.append(wire.spec(chart))
     panel = pareto.Panel('$x"', [pareto.Point("xy", math.inf, 40.0, 16, codec="xy rgba8")])
     front = front_chart("cost-0", HOSTILE, [panel])
-    json.dumps([*made, wire.spec(front)], allow_nan=False)
+    json.dumps([*specs, wire.spec(front)], allow_nan=False)
 
 
 def test_every_column_is_defined():
-    """Of rows and of summaries; a definition is a sentence."""
+    """This covers rows and summaries; a definition is a sentence."""
     for table in TABLES.values():
         for column in (*table.columns, *table.also):
             assert re.fullmatch(r"\S.*\.", column.says, re.S), f"{table.name}.{column.name}"
@@ -293,10 +293,10 @@ def test_every_column_is_defined():
     assert all(TABLES["quality"].column(column) for column in shown)
 
 
-def test_a_histograms_outline_holds_its_counts():
-    found = bins("0:5 0.00005:2 0.125:10 0.140625:20 0.25:4")
-    assert found[2] == (0.125, 0.140625, 10) and found[4] == (0.25, 0.28125, 4)
-    edges, heights = steps(found)
+def test_histogram_outline_preserves_the_counts():
+    bars = bins("0:5 0.00005:2 0.125:10 0.140625:20 0.25:4")
+    assert bars[2] == (0.125, 0.140625, 10) and bars[4] == (0.25, 0.28125, 4)
+    edges, heights = steps(bars)
     octaves = np.diff(np.log2(edges))
     assert np.dot(octaves, heights) == pytest.approx(41) and heights[0] * octaves[0] == pytest.approx(7)
     assert (np.diff(edges) > 0).all() and 0.0 in heights, "what is between is empty"

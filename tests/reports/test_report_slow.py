@@ -1,4 +1,4 @@
-"""The report: what it holds, of runs that are whole, partial, old, stopped or hostile."""
+"""The content of the report, for runs that are complete, partial, old, stopped or hostile."""
 
 import re
 import time
@@ -23,7 +23,7 @@ FORBIDDEN = ("<script>alert", "<img src=x", "\u202e", "\x1b")
 
 
 def test_a_hostile_run_injects_nothing(run, tmp_path):
-    """Names come from users' files: in rows, columns, tables, facts and the names of pictures."""
+    """Names come from users' files: in rows, columns, tables, facts and image names."""
     rows = [quality_row(HOSTILE, skipped=HOSTILE), quality_row("octahedral", psnr_db=49.0) | {HOSTILE: HOSTILE}]
     tables = {
         "quality": rows,
@@ -46,7 +46,7 @@ def test_a_hostile_run_injects_nothing(run, tmp_path):
     assert charts and not any("<script" in chart.read_text() for chart in charts)
 
 
-def test_a_run_of_one_table_says_what_is_not_there(run, tmp_path):
+def test_page_of_one_table_does_not_mention_the_others(run, tmp_path):
     row = {"depth": "linear", "storage": "r32f", "rebuilt": "eye_ray", "backend": "jax", "near": 0.1, "far": 10.0}
     rows = [TABLES["depth"].empty() | row | {"fov": 60.0, "distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]
     request = {"tables": ["depth"], "count": 4096, "seed": 0}
@@ -60,7 +60,7 @@ def test_a_run_of_one_table_says_what_is_not_there(run, tmp_path):
 
 
 def test_a_chart_is_drawn_once_for_each_file(tmp_path, monkeypatch):
-    """And laid out in the first one."""
+    """The layout is computed for the first file."""
     figure = draw.figure([histogram_chart(0, [quality_row("xy")])])
     drawn, painted = [], type(figure).draw
     monkeypatch.setattr(type(figure), "draw", lambda self, renderer: drawn.append(self.dpi) or painted(self, renderer))
@@ -70,7 +70,7 @@ def test_a_chart_is_drawn_once_for_each_file(tmp_path, monkeypatch):
         assert image.size == tuple(np.rint(figure.get_size_inches() * plots.DPI).astype(int))
 
 
-def test_markdown_calls_nobody_links_nowhere_and_fits_a_comment(run, tmp_path):
+def test_markdown_has_no_mentions_or_links_and_fits_a_comment(run, tmp_path):
     many = [quality_row(f"code_{n}", normals=f"set_{n % 40}") for n in range(1000)]
     first = quality_row("@everyone", psnr_db=60.0)
     folder = a_run(tmp_path / "run", {"quality": [first, quality_row(HOSTILE), *many]})
@@ -81,7 +81,7 @@ def test_markdown_calls_nobody_links_nowhere_and_fits_a_comment(run, tmp_path):
     assert out.startswith("## normalbench: run\n")
 
 
-def test_markdown_of_a_real_run(run, results, tmp_path):
+def test_markdown_of_a_real_run_is_short_and_without_links(run, results, tmp_path):
     folder, *_ = results
     status, _, err = run("report", str(folder), "--markdown", "-o", str(tmp_path / "comment.md"))
     text = (tmp_path / "comment.md").read_text()
@@ -90,7 +90,7 @@ def test_markdown_of_a_real_run(run, results, tmp_path):
     assert "| octahedral " in text and "http" not in text and "](" not in text
 
 
-def test_reading_leaves_the_run_as_it_is_and_run_has_written_the_same_report(run, results, tmp_path):
+def test_report_leaves_the_run_unchanged_and_matches_the_page_of_run(run, results, tmp_path):
     folder, out, _ = results
     before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     assert f"Page: {folder / 'report.html'}" in out

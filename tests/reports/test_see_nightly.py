@@ -1,11 +1,11 @@
-"""The laboratory's window in a browser: presets, the camera by hand, files of the reader's, addresses and pictures."""
+"""The laboratory's window in a browser: presets, camera control, readers' files, addresses and images."""
 
 import numpy as np
 import pytest
 import test_see_slow
 
 
-def test_it_wobbles_once_where_little_motion_is_wanted(laboratory):
+def test_wobble_runs_once_with_reduced_motion(laboratory):
     """The page is opened with reduced motion."""
     page = laboratory.page
     before = laboratory.picture()

@@ -1,4 +1,4 @@
-"""The laboratory's window in a browser: presets, the camera by hand, files of the reader's, addresses and pictures."""
+"""The laboratory's window in a browser: presets, camera control, readers' files, addresses and images."""
 
 import base64
 import io
@@ -34,38 +34,38 @@ DROP = """([name, text]) => {
 
 
 def bumps(size: int = 48) -> np.ndarray:
-    """Unit normals of waves, float64 of shape (size, size, 3), +y up."""
+    """Return unit normals of waves, float64 of shape (size, size, 3), +y up."""
     y, x = np.mgrid[0:size, 0:size] / size * 6.0
     n = np.stack([0.6 * np.sin(x), 0.5 * np.cos(y), np.ones_like(x)], axis=-1)
     return n / np.linalg.norm(n, axis=-1, keepdims=True)
 
 
 def sky(width: int = 64) -> np.ndarray:
-    """Radiance by longitude and latitude, with a lamp that is brighter than a screen."""
-    made = np.full((width // 2, width, 3), 0.25)
-    made[4:8, 10:30] = (8.0, 4.0, 2.0)
-    return made
+    """Return radiance by longitude and latitude, with a lamp that is brighter than a screen."""
+    radiance = np.full((width // 2, width, 3), 0.25)
+    radiance[4:8, 10:30] = (8.0, 4.0, 2.0)
+    return radiance
 
 
 def opened_file(laboratory, name: str, data: bytes, said_of: str = "") -> str:
-    """Chooses a file; what is said of it then."""
-    said = laboratory.page.locator("[data-drop=said]")
+    """Choose a file and return the message about it."""
+    status = laboratory.page.locator("[data-drop=said]")
     laboratory.page.locator("[data-drop=file]").set_input_files({"name": name, "mimeType": "", "buffer": data})
     laboratory.says("[data-drop=said]", re.compile(rf"{said_of}.*( as |is not shown)"))
     laboratory.settle()
-    return said.text_content()
+    return status.text_content()
 
 
 def shown_normals(laboratory) -> np.ndarray:
-    """The dropped normals as they are on the GPU's side, upper row first."""
-    found = laboratory.page.evaluate(
+    """Return the dropped normals as on the GPU, top row first."""
+    reply = laboratory.page.evaluate(
         "live.see.scene.normals().then((n) => [live.see.scene.width, live.see.scene.height, Array.from(n)])"
     )
-    width, height, normals = found
+    width, height, normals = reply
     return np.array(normals, np.float64).reshape(height, width, 4)[::-1]
 
 
-def test_the_first_picture_shows_the_steps_of_eight_bits(laboratory):
+def test_the_first_image_shows_8_bit_banding(laboratory):
     assert laboratory.texts("[data-preset][aria-pressed=true]") == ["Bonnet"]
     pictures = []
     for name in ("exact normals", "octahedral rgba8"):
@@ -78,20 +78,20 @@ def test_the_first_picture_shows_the_steps_of_eight_bits(laboratory):
 
 
 def test_a_preset_sets_scene_shading_and_camera(laboratory):
-    found = {}
+    views = {}
     for name in ("floor", "face", "bonnet"):
         laboratory.page.locator(f"[data-preset={name}]").click()
         laboratory.settle()
         shown = laboratory.page.locator("[data-see=shown]").input_value()
-        found[name] = (shown, laboratory.page.evaluate(CAMERA), laboratory.picture())
+        views[name] = (shown, laboratory.page.evaluate(CAMERA), laboratory.picture())
         assert laboratory.page.locator("[data-see=subject]").input_value() == name
-        assert len(np.unique(found[name][2].reshape(-1, 3), axis=0)) > 300, name
-    assert [found[name][0] for name in ("floor", "face", "bonnet")] == ["studio", "studio", "zebra"]
-    assert len({tuple(camera) for _, camera, _ in found.values()}) == 3
+        assert len(np.unique(views[name][2].reshape(-1, 3), axis=0)) > 300, name
+    assert [views[name][0] for name in ("floor", "face", "bonnet")] == ["studio", "studio", "zebra"]
+    assert len({tuple(camera) for _, camera, _ in views.values()}) == 3
 
 
-def test_less_roughness_is_sharper(laboratory):
-    """A soft box's edge is the steepest where the surface is a mirror."""
+def test_lower_roughness_is_sharper(laboratory):
+    """A soft box's edge is steepest in a mirror."""
     steep = []
     laboratory.page.locator("[data-preset=floor]").click()
     laboratory.choose(left="exact normals", right="exact normals")
@@ -104,7 +104,7 @@ def test_less_roughness_is_sharper(laboratory):
     assert steep[0] > 2 * steep[1] > 4 * steep[2], steep
 
 
-def test_hands_move_the_camera(laboratory):
+def test_pointer_keys_and_touch_move_the_camera(laboratory):
     page = laboratory.page
     box = page.locator("[data-live=canvas]").bounding_box()
     x, y = box["x"] + box["width"] * 0.3, box["y"] + box["height"] * 0.5
@@ -148,13 +148,13 @@ def test_hands_move_the_camera(laboratory):
     assert (around, over) == (0, 0) and away < -0.5
 
 
-def test_a_normal_map_is_seen_through_the_codecs(laboratory):
+def test_a_normal_map_is_shown_through_the_codecs(laboratory):
     n = bumps()
     data = pixel_files.png(np.rint((n * 0.5 + 0.5) * 255).astype(np.uint8))
     assert opened_file(laboratory, "wall.png", data) == "wall.png as normals, as colours"
     assert laboratory.page.locator("[data-see=subject]").input_value() == "dropped"
-    found = shown_normals(laboratory)
-    assert abs(found[..., :3] - n).max() < 0.01 and (found[..., 3] == 1).all()
+    shown = shown_normals(laboratory)
+    assert abs(shown[..., :3] - n).max() < 0.01 and (shown[..., 3] == 1).all()
     laboratory.page.locator("[data-drop=flipped]").check()
     assert abs(shown_normals(laboratory)[..., :3] - n * (1, -1, 1)).max() < 0.01
     laboratory.choose(left="octahedral rgba8", right="octahedral rgba8", shown="error")
@@ -164,7 +164,7 @@ def test_a_normal_map_is_seen_through_the_codecs(laboratory):
 
 
 def test_a_png_of_16_bits_is_read_to_its_last_bit(laboratory):
-    """With rows of each filter, in two parts; Pillow's 8 bits of the same file are off by 65 times as much."""
+    """Rows use every filter, in two parts; Pillow's 8-bit reading of the file is off by 65 times as much."""
     n = bumps()
     data = pixel_files.png16(np.rint((n * 0.5 + 0.5) * 65535).astype(np.uint16))
     with Image.open(io.BytesIO(data)) as image:
@@ -176,8 +176,8 @@ def test_a_png_of_16_bits_is_read_to_its_last_bit(laboratory):
 @pytest.mark.parametrize(("packing", "kind"), [("none", np.float32), ("ZIP", np.float32)])
 def test_an_exr_of_normals_is_read_to_its_last_bit(laboratory, packing, kind):
     n = bumps()
-    said = opened_file(laboratory, "n.exr", pixel_files.exr(n, packing, kind, names="XYZ"))
-    assert said == "n.exr as normals, as vectors"
+    message = opened_file(laboratory, "n.exr", pixel_files.exr(n, packing, kind, names="XYZ"))
+    assert message == "n.exr as normals, as vectors"
     kept = n.astype(kind).astype(np.float64)
     expected = kept / np.linalg.norm(kept, axis=-1, keepdims=True)
     assert abs(shown_normals(laboratory)[..., :3] - expected).max() < 2e-7
@@ -189,8 +189,8 @@ def test_surroundings_are_mirrored(laboratory, make):
     data = pixel_files.exr(radiance) if make == "exr" else pixel_files.hdr(radiance, runs=make == "hdr")
     before = laboratory.picture()
     assert opened_file(laboratory, f"sky.{make[-3:]}", data) == f"sky.{make[-3:]} as surroundings"
-    found = np.array(laboratory.page.evaluate("Array.from(live.see.surroundings.pixels)")).reshape(32, 64, 4)
-    assert abs(found[..., :3] / radiance - 1).max() < 0.01
+    pixels = np.array(laboratory.page.evaluate("Array.from(live.see.surroundings.pixels)")).reshape(32, 64, 4)
+    assert abs(pixels[..., :3] / radiance - 1).max() < 0.01
     assert laboratory.page.locator("[data-see=shown]").input_value() == "studio"
     picture = laboratory.picture()
     assert (abs(picture - before).max(axis=-1) > 8).mean() > 0.3
@@ -220,7 +220,7 @@ DAMAGED = {
 }
 
 
-def test_a_damaged_file_is_said_in_a_line_and_changes_nothing(laboratory):
+def test_damaged_file_is_a_one_line_error_and_changes_nothing(laboratory):
     before = laboratory.page.evaluate(SMALL)
     for name, (data, reason) in DAMAGED.items():
         # Several of them have the same reason: each is another file, of which something is said anew.
@@ -230,13 +230,13 @@ def test_a_damaged_file_is_said_in_a_line_and_changes_nothing(laboratory):
     assert laboratory.page.evaluate(SMALL) == before, "one of them changed the picture"
 
 
-def test_a_file_is_dropped_on_the_picture(laboratory):
+def test_a_file_can_be_dropped_on_the_image(laboratory):
     data = base64.b64encode(pixel_files.exr(bumps(), names="XYZ")).decode("ascii")
     laboratory.page.evaluate(DROP, ["dropped.exr", data])
     laboratory.says("[data-drop=said]", "dropped.exr as normals, as vectors")
 
 
-def test_an_address_gives_everything_back(reader_browser, report, laboratory):
+def test_an_address_restores_everything(reader_browser, report, laboratory):
     page = laboratory.page
     page.locator("[data-preset=face]").click()
     laboratory.choose(left="spherical rgba8", right="octahedral rgba8", shown="zebra")
@@ -258,7 +258,7 @@ def test_an_address_gives_everything_back(reader_browser, report, laboratory):
     values = "live.share.values()"
     assert other.page.evaluate(values) == page.evaluate(values)
     page.locator("[data-share=link]").evaluate("link => { link.parentNode.hidden = true; }")
-    sizes = [one.evaluate("live.see.size") for one in (page, other.page)]
+    sizes = [tab.evaluate("live.see.size") for tab in (page, other.page)]
     if sizes[0] != sizes[1]:
         other.page.evaluate("size => { live.see.size = size; live.see.change(); }", sizes[0])
         page.evaluate("size => { live.see.size = size; live.see.change(); }", sizes[0])
@@ -273,12 +273,12 @@ def test_an_address_gives_everything_back(reader_browser, report, laboratory):
     other.context.close()
 
 
-def test_the_address_follows_the_camera_and_goes_back_to_the_usual(laboratory):
+def test_the_address_follows_the_camera_and_returns_to_the_default(laboratory):
     plain = laboratory.page.evaluate("location.hash")
     length = laboratory.page.evaluate("history.length")
     laboratory.press(".live-stage", *["ArrowLeft"] * 10)
-    found = json.loads(laboratory.page.evaluate("inflated(state.live)"))
-    assert set(found) == {"around"}
+    settings = json.loads(laboratory.page.evaluate("inflated(state.live)"))
+    assert set(settings) == {"around"}
     assert laboratory.page.evaluate("history.length") == length, "Back takes no step of the camera's"
     laboratory.press(".live-stage", *["ArrowRight"] * 10)
     # The address is written between two frames, which a busy machine draws late.
@@ -293,20 +293,20 @@ UNKNOWN = [
 ]
 
 
-def test_what_an_address_cannot_mean_is_said(laboratory):
+def test_an_invalid_address_is_reported(laboratory):
     before = laboratory.page.evaluate("live.share.values()")
-    for packed, said in UNKNOWN:
+    for packed, message in UNKNOWN:
         # Without it, the line of the last one would do.
         laboratory.page.evaluate("() => { document.querySelector('#unknown').textContent = ''; }")
         text = packed if isinstance(packed, str) else laboratory.page.evaluate("deflated", json.dumps(packed))
         laboratory.page.evaluate("packed => { location.hash = `#v1/see?live=${packed}`; }", text)
-        laboratory.says("#unknown", said)
+        laboratory.says("#unknown", message)
         laboratory.settle()
-        assert laboratory.page.evaluate("live.share.values()") == before, said
+        assert laboratory.page.evaluate("live.share.values()") == before, message
 
 
 @no_files
-def test_the_picture_is_saved_with_names_and_figures(laboratory):
+def test_the_image_is_saved_with_names_and_figures(laboratory):
     canvas = laboratory.picture()
     with laboratory.page.expect_download() as download:
         laboratory.page.locator("[data-share=picture]").click()
@@ -324,7 +324,7 @@ def test_the_picture_is_saved_with_names_and_figures(laboratory):
     assert re.fullmatch(r"mean 0\.33\d°, largest 0\.9\d+°, PSNR 48\.\d+ dB, 16 bits", lines[1])
 
 
-def test_what_is_typed_survives_a_reload(laboratory):
+def test_typed_text_survives_a_reload(laboratory):
     page = laboratory.page
     typed = page.locator("[data-own=text]").input_value().replace("// A unit", "// Mine: a unit")
     page.locator("[data-own=text]").fill(typed)
@@ -342,7 +342,7 @@ def test_a_mistake_is_marked_at_its_line_and_leaves_no_old_map(laboratory):
     page = laboratory.page
     assert page.locator("[data-own=globe]").is_visible()
     figures = [row.split("°")[0] for row in laboratory.texts("[data-own=figures] tr")]
-    assert [one[:12] for one in figures] == ["your encoder", "octahedral r"]
+    assert [figure[:12] for figure in figures] == ["your encoder", "octahedral r"]
     text = page.locator("[data-own=text]")
     text.fill(text.input_value().replace("max(-z, 0.0)", "maxi(-z, 0.0)"))
     page.wait_for_selector("[data-own=text][aria-invalid=true]")

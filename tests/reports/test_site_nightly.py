@@ -1,4 +1,4 @@
-"""The website of a run: what is in it, that its links lead somewhere, and that it is read without scripts."""
+"""The website of a run: its content, its links, and reading it without scripts."""
 
 import pytest
 import test_site_slow
@@ -20,10 +20,10 @@ FAULTS = {
 }
 
 
-def test_pages_keep_to_the_rules_of_html(site, pages, results):
+def test_pages_follow_the_rules_of_html(site, pages, results):
     for text, fault in FAULTS.items():
-        found = faults(f"<!doctype html><title>a</title>{text}")
-        assert any(fault in one for one in found), (text, found)
+        messages = faults(f"<!doctype html><title>a</title>{text}")
+        assert any(fault in message for message in messages), (text, messages)
     for path in (results[0] / "report.html", *(site / name for name in pages)):
         assert faults(path.read_text(encoding="utf-8")) == [], path.name
 
@@ -32,5 +32,5 @@ def test_pages_keep_to_the_rules_of_html(site, pages, results):
     ("name", "size", "theme"),
     [(name, PHONE, "dark") for name in WIDE] + [(name, DESKTOP, "light") for name in NARROW],
 )
-def test_no_page_keeps_anybody_out_in_the_other_theme(browser, site, name, size, theme):
-    test_site_slow.test_no_page_keeps_anybody_out(browser, site, name, size, theme)
+def test_every_page_is_accessible_in_the_other_theme(browser, site, name, size, theme):
+    test_site_slow.test_every_page_is_accessible(browser, site, name, size, theme)

@@ -1,4 +1,4 @@
-"""The website of a run: what is in it, that its links lead somewhere, and that it is read without scripts."""
+"""The website of a run: its content, its links, and reading it without scripts."""
 
 import shutil
 from html.parser import HTMLParser
@@ -39,7 +39,7 @@ def run_folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def site(run_folder):
-    """Of the run and one device."""
+    """The site of the run and one device."""
     made.write(run_folder.parent / "files" / "a.json")
     assert site_command([run_folder, run_folder.parent / "files"], run_folder.parent / "site") == 0
     return run_folder.parent / "site"
@@ -47,17 +47,17 @@ def site(run_folder):
 
 @pytest.fixture(scope="module")
 def pages(site) -> dict[str, Read]:
-    found = sorted(site.rglob("*.html"))
-    return {str(path.relative_to(site)): Read(path.read_text(encoding="utf-8")) for path in found}
+    paths = sorted(site.rglob("*.html"))
+    return {str(path.relative_to(site)): Read(path.read_text(encoding="utf-8")) for path in paths}
 
 
-def test_the_pages_are_those_of_the_run(pages):
+def test_the_pages_match_the_run(pages):
     top = {"index.html", "choose.html", "layouts.html", "codecs/index.html", "devices/index.html"}
     assert set(pages) == top | {f"codecs/{name}.html" for name in ENCODINGS}
 
 
-def test_imported_devices_have_the_sections_that_their_files_have(run, run_folder, tmp_path):
-    """But for the browser, which a run knows by its short name."""
+def test_imported_devices_have_the_sections_of_their_files(run, run_folder, tmp_path):
+    """Only the browser differs, because a run stores its short name."""
     shutil.copytree(run_folder, tmp_path / "run")
     file = made.write(tmp_path / "files" / "a.json")
     assert run("import", str(file), "-o", str(tmp_path / "run"))[0] == 0
@@ -72,47 +72,47 @@ def test_imported_devices_have_the_sections_that_their_files_have(run, run_folde
     assert status == 0 and "1 device\n" in out and "is from the same device and browser and at least as recent" in err
 
 
-def test_every_link_leads_to_a_page_and_a_place_in_it(site, pages):
+def test_every_link_leads_to_an_existing_page_and_place(site, pages):
     checked = 0
     for name, read in pages.items():
-        for link in (one["href"] for one in read.all("a")):
+        for link in (anchor["href"] for anchor in read.all("a")):
             file, _, place = link.partition("#")
             to = str(((site / name).parent / file).resolve().relative_to(site.resolve())) if file else name
             assert to in pages, f"{name}: {link}"
             if place.startswith("v1/"):
                 view = place[3:].partition("?")[0]
-                assert any(one.get("data-view") == view for one in pages[to].all("div")), f"{name}: {link}"
+                assert any(element.get("data-view") == view for element in pages[to].all("div")), f"{name}: {link}"
             # A laboratory is in a run that keeps codes for it.
             elif place:
-                assert any(one.get("id") == unquote(place) for _, one in pages[to].tags), f"{name}: {link}"
+                assert any(element.get("id") == unquote(place) for _, element in pages[to].tags), f"{name}: {link}"
             checked += 1
     assert checked > 50, checked
 
 
 def test_every_page_leads_to_the_others(site, pages):
     for name, read in pages.items():
-        files = [one["href"].partition("#")[0] for one in read.all("a")]
+        files = [anchor["href"].partition("#")[0] for anchor in read.all("a")]
         linked = {str(((site / name).parent / file).resolve().relative_to(site.resolve())) for file in files if file}
         assert linked >= {"choose.html", "layouts.html", "codecs/index.html", "devices/index.html"} - {name}, name
-    assert {f"codecs/{one}.html" for one in ENCODINGS} <= {
-        f"codecs/{one['href']}" for one in pages["codecs/index.html"].all("a")
+    assert {f"codecs/{encoding}.html" for encoding in ENCODINGS} <= {
+        f"codecs/{anchor['href']}" for anchor in pages["codecs/index.html"].all("a")
     }
 
 
-def test_titles_and_descriptions_are_a_pages_own(site, pages):
+def test_titles_and_descriptions_are_unique(site, pages):
     titles = {name: (site / name).read_text().split("<title>")[1].split("</title>")[0] for name in pages}
-    said = {
-        name: [one["content"] for one in read.all("meta") if one.get("name") == "description"]
+    contents = {
+        name: [meta["content"] for meta in read.all("meta") if meta.get("name") == "description"]
         for name, read in pages.items()
     }
     assert len(set(titles.values())) == len(titles), titles
-    assert all(len(one) == 1 and len(one[0]) > 30 for one in said.values()), said
-    assert len({one[0] for one in said.values()}) == len(said), said
-    assert "octahedral" in titles["codecs/octahedral.html"] and "mean error" in said["codecs/octahedral.html"][0]
+    assert all(len(content) == 1 and len(content[0]) > 30 for content in contents.values()), contents
+    assert len({content[0] for content in contents.values()}) == len(contents), contents
+    assert "octahedral" in titles["codecs/octahedral.html"] and "mean error" in contents["codecs/octahedral.html"][0]
 
 
 class Nested(HTMLParser):
-    """Elements that are closed in another order than they were opened in."""
+    """Elements that are closed in a different order than they were opened."""
 
     EMPTY = frozenset(("meta", "link", "br", "img", "input"))
 
@@ -130,27 +130,27 @@ class Nested(HTMLParser):
             self.wrong.append((tag, self.getpos()))
 
 
-def test_elements_are_closed_and_their_ids_are_their_own(site, pages):
+def test_elements_are_closed_and_their_ids_are_unique(site, pages):
     for name, read in pages.items():
         nested = Nested((site / name).read_text(encoding="utf-8")) if name != "index.html" else None
         assert not nested or (nested.wrong, nested.open) == ([], []), f"{name}: {nested.wrong} {nested.open}"
-        ids = [one["id"] for _, one in read.tags if "id" in one]
-        assert len(set(ids)) == len(ids), f"{name}: {[one for one in ids if ids.count(one) > 1]}"
+        ids = [element["id"] for _, element in read.tags if "id" in element]
+        assert len(set(ids)) == len(ids), f"{name}: {[element_id for element_id in ids if ids.count(element_id) > 1]}"
 
 
-def test_the_large_page_is_there_once(site):
+def test_only_the_first_page_is_large(site):
     sizes = {path.name: path.stat().st_size for path in site.rglob("*.html") if path.name != "index.html"}
     assert max(sizes.values()) < 2**19, sizes
 
 
-def test_two_runs_are_one_line(run, run_folder, tmp_path):
+def test_two_runs_are_a_one_line_error(run, run_folder, tmp_path):
     status, out, err = run("site", str(run_folder), str(run_folder), "-o", str(tmp_path / "site"))
     assert (status, out, err.count("\n")) == (2, "", 1) and "name only one" in err
     assert not Path(tmp_path / "site").exists()
 
 
 def test_an_encoding_is_read_without_scripts(browser, site, run_folder):
-    """Its formula, its source, its figures and its code, as the run keeps it."""
+    """The page shows the formula, source, figures and code that the run keeps."""
     context = browser.new_context(java_script_enabled=False, offline=True)
     page = context.new_page()
     page.goto((site / "codecs/octahedral.html").as_uri())
@@ -166,7 +166,7 @@ def test_an_encoding_is_read_without_scripts(browser, site, run_folder):
     kept = read_code(run_folder)
     places = kept["codecs"]["octahedral rgba8"]["texts"]["c"]
     shown = page.get_by_label("octahedral rgba8 in C", exact=True)
-    assert shown.text_content() == "".join(kept["pieces"][at] for at in places)
+    assert shown.text_content() == "".join(kept["pieces"][place] for place in places)
     page.goto((site / "choose.html").as_uri())
     assert "take octahedral" in page.locator("h1 + p").inner_text()
     context.close()
@@ -183,8 +183,8 @@ def test_the_first_page_begins_with_the_laboratory(gl_browser, results, tmp_path
     device.page.wait_for_url("**/index.html#**")
     device.page.locator("#live").wait_for(state="visible")
     assert page.said == [] == device.said
-    for one in (page, device):
-        one.context.close()
+    for opened_page in (page, device):
+        opened_page.context.close()
 
 
 # What is opened wide and in the light, and narrow and in the dark; at night the other way round.
@@ -199,7 +199,7 @@ NARROW = ("choose.html", "codecs/index.html", "devices/index.html")
     ("name", "size", "theme"),
     [(name, DESKTOP, "light") for name in WIDE] + [(name, PHONE, "dark") for name in NARROW],
 )
-def test_no_page_keeps_anybody_out(browser, site, name, size, theme):
+def test_every_page_is_accessible(browser, site, name, size, theme):
     from axe_playwright_python.base import AXE_FILE_PATH
 
     page = Opened(browser, site / name, size, theme)

@@ -12,12 +12,12 @@ STATES = 200
 
 
 def random_states(opened) -> list[dict]:
-    """States of the page's own views, codecs and places, and of keys that another version may have written."""
+    """Return states of the page's own views, codecs and places, and of keys that another version may have written."""
     rng = np.random.default_rng(7)
     views = opened.page.eval_on_selector_all(".view", "all => all.map((one) => one.dataset.view)")
     codecs = ["", *opened.page.evaluate("known.codecs")]
     words = ["", "x=1&y", "ä ö", "%", "a#b?c", "50 %/2"]
-    made = []
+    states = []
     for _ in range(STATES):
         a, b = (codecs[i] for i in rng.choice(len(codecs), 2, replace=False))
         others = [[f"key {i}", words[rng.integers(len(words))]] for i in range(rng.integers(3))]
@@ -27,8 +27,8 @@ def random_states(opened) -> list[dict]:
         yes = {key: ("", "yes", "no")[rng.integers(3)] for key in ("holes", "lengths", "tables")}
         yes |= {"uses": ("", "none", "filter,blend")[rng.integers(3)], "gpu": ("", "navi31")[rng.integers(2)]}
         about = {"view": views[rng.integers(len(views))], "for": words[rng.integers(len(words))], **asked, **yes}
-        made.append({**about, "a": a, "b": b, "at": "", "live": "", "others": others})
-    return made
+        states.append({**about, "a": a, "b": b, "at": "", "live": "", "others": others})
+    return states
 
 
 BOTH_WAYS = """(states) => states.map((state) => {
@@ -37,8 +37,8 @@ BOTH_WAYS = """(states) => states.map((state) => {
 })"""
 
 
-def test_an_address_gives_its_state_back(opened):
-    """Keys of another version are kept, and what is as usual is left out."""
+def test_an_address_restores_its_state(opened):
+    """Keys of another version are kept, and default values are left out."""
     states = random_states(opened)
     for state, (address, given, unknown, again) in zip(states, opened.page.evaluate(BOTH_WAYS, states), strict=True):
         assert given == state and unknown == [], address
@@ -46,7 +46,7 @@ def test_an_address_gives_its_state_back(opened):
     assert opened.page.evaluate("hashOf({ ...DEFAULTS, others: [] })") == "#v1/codecs"
 
 
-def test_what_an_address_names_and_the_page_lacks_is_said(opened):
+def test_names_in_the_address_that_the_page_lacks_are_reported(opened):
     opened.page.evaluate("location.hash = '#v1/nowhere?a=nothing%20rg8&b=xy%20rgba8&zoom=3'")
     opened.says(
         "#unknown", "The address names the view nowhere and the codec nothing rg8, which this page does not have."
@@ -58,12 +58,12 @@ def test_what_an_address_names_and_the_page_lacks_is_said(opened):
 
 
 def go_back(opened):
-    """As the browser's button does; within a page there is no load to wait for."""
+    """Go back as the browser's button does, without waiting for a load."""
     gone = "new Promise((done) => { addEventListener('popstate', done, { once: true }); history.back(); })"
     opened.page.evaluate(gone)
 
 
-def test_back_takes_a_step_and_one_view_is_shown(opened):
+def test_back_undoes_one_step_and_one_view_is_shown(opened):
     shown = "all => all.filter((one) => !one.hidden).map((one) => one.dataset.view)"
     opened.page.locator("nav [data-to=data]").click()
     opened.page.evaluate("choose('xy rgba8')")
@@ -81,8 +81,8 @@ def test_back_takes_a_step_and_one_view_is_shown(opened):
     assert opened.page.locator("nav [aria-current=page]").get_attribute("data-to") == "codecs"
 
 
-def test_a_place_in_another_view_is_gone_to(opened):
-    """By the anchors of headings, and by links to every row, which are opened."""
+def test_a_place_in_another_view_is_scrolled_to(opened):
+    """This works with the anchors of headings, and with links to every row, which are opened."""
     for key in opened.page.eval_on_selector_all("section[id], details[id]", "all => all.map((one) => one.id)"):
         opened.page.evaluate("key => location.hash = key", key)
         opened.page.locator(f"#{key}").wait_for(state="visible")
@@ -100,8 +100,8 @@ def test_a_place_in_another_view_is_gone_to(opened):
 
 
 @no_files
-def test_every_row_is_the_file_to_the_byte(opened, results):
-    """Each table's block gives the CSV file that lies beside the page; a filter leaves some of its lines."""
+def test_every_row_matches_the_csv_file_byte_for_byte(opened, results):
+    """Each table's block gives the CSV file next to the page; a filter leaves some of its lines."""
     opened.page.locator("nav [data-to=data]").click()
     tables = opened.page.eval_on_selector_all("details[data-table]", "all => all.map((one) => one.dataset.table)")
     assert tables
@@ -123,16 +123,16 @@ def test_every_row_is_the_file_to_the_byte(opened, results):
 
 
 def test_the_conditions_of_a_table_are_those_of_its_rows(opened, results):
-    """Built when they are opened, and gone when they are closed."""
+    """The conditions are built when the section is opened, and removed when it is closed."""
     rows = json.loads((results[0] / "quality.json").read_text(encoding="utf-8"))
     opened.come_to("#quality .method")
     method = opened.page.locator("#quality .method")
     method.locator("summary").click()
     method.locator("dd").first.wait_for()
-    said = dict(zip(*(method.locator(tag).all_text_contents() for tag in ("dt", "dd")), strict=True))
+    conditions = dict(zip(*(method.locator(tag).all_text_contents() for tag in ("dt", "dd")), strict=True))
     for name in ("encoding", "storage", "count"):
         values = list(dict.fromkeys(str(row[name]) for row in rows))
-        assert said[name] == ", ".join(values[:8]) + (" ..." if len(values) > 8 else "")
+        assert conditions[name] == ", ".join(values[:8]) + (" ..." if len(values) > 8 else "")
     method.locator("summary").click()
     expect(method.locator("dt")).to_have_count(0)
 
@@ -155,7 +155,7 @@ ODD = [
 ]
 
 
-def test_numbers_are_written_as_python_writes_them(opened):
+def test_numbers_are_written_as_in_python(opened):
     rng = np.random.default_rng(3)
     values = [*ODD, *(rng.uniform(-1, 1, 300) * 10.0 ** rng.integers(-30, 30, 300)).tolist()]
     assert opened.page.evaluate("all => JSON.parse(all).map(exactText)", json.dumps(values)) == list(map(repr, values))
@@ -163,9 +163,9 @@ def test_numbers_are_written_as_python_writes_them(opened):
 
 @pytest.mark.parametrize("name", ["octahedral", "octahedral rgba8"])
 def test_a_rule_covers_the_codecs_of_an_encoding(opened, name):
-    """A row of an encoding alone is that of each of its codecs; another encoding of that beginning is not."""
+    """A row of an encoding alone belongs to each of its codecs, but not to an encoding with a longer name."""
     codes = ["octahedral", "octahedral rgba8", "octahedral rg8", "octahedral_precise rgba8", "xy rgba8"]
-    found = opened.page.evaluate(
+    answers = opened.page.evaluate(
         """([name, codes]) => {
           const style = element("style", {}, ruleOf(name, "a")), root = element("div", {}, style);
           root.append(...codes.map((code) => element("i", { "data-codec": code })));
@@ -179,5 +179,5 @@ def test_a_rule_covers_the_codecs_of_an_encoding(opened, name):
     )
     of_all = {code for code in codes if code.startswith(f"{name} ")} if " " not in name else set()
     expected = {name, "octahedral"} | of_all
-    for at in (1, 2):
-        assert {one[0] for one in found if one[at]} == expected, found
+    for column in (1, 2):
+        assert {answer[0] for answer in answers if answer[column]} == expected, answers

@@ -23,11 +23,11 @@ def test_no_cell_of_csv_is_a_formula(text):
 
 
 @pytest.mark.parametrize("text", ["-1", "-0.52032965", "17", "+0.0362", "-1.2e-05", "-inf", "+20.1 %"])
-def test_a_number_as_it_is_printed_stays_one_in_csv(text):
+def test_a_number_as_it_is_printed_stays_a_number_in_csv(text):
     assert tables.to_csv([{"printed": text}]).splitlines()[1] == text
 
 
-def test_markdown_reads_nothing_into_a_cell():
+def test_markdown_in_a_cell_is_escaped():
     text = tables.to_markdown([{"name": HOSTILE, "n": 1}, {"name": "octahedral", "n": 2}])
     outside = re.sub(r"`[^`\n]*`", "", text)
     assert not re.search(r"[<@\[\x1b]|http", outside), text
@@ -42,15 +42,15 @@ def test_a_terminal_gets_no_control_characters():
 
 @pytest.mark.parametrize("format", ["table", "markdown"])
 def test_no_line_around_a_table_has_control_characters(format, monkeypatch):
-    """The lead, the line below and the names of columns; colours are not asked for either."""
+    """This covers the lead, the line below and the names of columns; colours cannot be forced either."""
     monkeypatch.setenv("FORCE_COLOR", "1")
     rows = [{"name": "a", HOSTILE: 1.0}, {"name": "b", HOSTILE: 2.0}]
     text = tables.written(rows, format, 100, lead=HOSTILE, total=HOSTILE)
     assert text.count("\\x1b[2J") >= 2 and not tables.CONTROL.search(text), text
 
 
-def test_what_is_printed_has_no_control_characters(capsys):
-    """In every format; JSON and CSV that are read back have the name."""
+def test_printed_text_has_no_control_characters(capsys):
+    """This holds in every format; JSON and CSV still give the name when they are read back."""
     row = {"name": f"{HOSTILE}\x7f", "figure": 1.5}
     for way in ("table", "json", "csv", "markdown"):
         say(tables.written([row], way))
@@ -63,49 +63,50 @@ def test_what_is_printed_has_no_control_characters(capsys):
 
 
 @pytest.mark.parametrize("name", ["[/red].glsl", "[red]a.glsl", "a\x1b[2Jb.glsl"])
-def test_a_bar_shows_names_as_they_are(name, monkeypatch):
-    """Square brackets are no markup, and a terminal gets no escapes of a name."""
+def test_a_progress_bar_shows_names_literally(name, monkeypatch):
+    """Square brackets are not markup, and a terminal gets no escape sequences from a name."""
     shown = io.StringIO()
-    made = Console(file=shown, force_terminal=True, width=200)
-    monkeypatch.setattr("rich.console.Console", lambda **_: made)
+    console = Console(file=shown, force_terminal=True, width=200)
+    monkeypatch.setattr("rich.console.Console", lambda **_: console)
     with progress(1) as tick:
         tick(name)
     assert tables.visible(name) in shown.getvalue() and "\x1b[2J" not in shown.getvalue(), shown.getvalue()
 
 
-def test_what_is_code_stays_code():
+def test_escaped_text_is_not_escaped_again():
     assert tables.markdown_text(tables.markdown_text(HOSTILE)) == tables.markdown_text(HOSTILE)
     assert tables.markdown_text("rg8 (a, b)") == "rg8 (a, b)"
 
 
-def test_what_may_be_spared_first_goes_first():
+def test_optional_columns_are_dropped_first():
     rows = [{"name": "one", "first": "a" * 30, "second": "b" * 30}, {"name": "two", "first": "c", "second": "d"}]
     wide, narrow = (tables.written(rows, "table", width, ("first", "second")).split() for width in (200, 50))
     assert wide[:3] == ["name", "first", "second"] and narrow[:2] == ["name", "second"], (wide, narrow)
 
 
 def test_figures_of_a_page_sort_by_all_their_digits():
-    """To four digits both are shown alike."""
-    made = page.table("t", [{"name": name, "db": db} for name, db in (("a", 50.00001), ("b", 50.00002))], lambda _: "")
-    one, other = (line.cells[1] for line in made.rows)
-    assert one.text == other.text and float(one.value) < float(other.value), (one, other)
+    """Rounded to four digits, both figures look the same."""
+    table = page.table("t", [{"name": name, "db": db} for name, db in (("a", 50.00001), ("b", 50.00002))], lambda _: "")
+    first, other = (line.cells[1] for line in table.rows)
+    assert first.text == other.text and float(first.value) < float(other.value), (first, other)
 
 
-def test_no_name_of_the_pages_scripts_is_there_twice():
-    """They share one scope, the laboratory's with them, which is added when it is opened: a second `const` ends it."""
+def test_names_in_the_scripts_of_the_page_are_unique():
+    """The scripts share one scope, also with the laboratory's, which are added when it is opened: a second `const` of
+    a name stops them."""
     paths = [page.WEB / name for name in page.SCRIPTS] + [live.FOLDER / name for name in live.SCRIPTS]
     texts = [path.read_text(encoding="utf-8") for path in paths]
     declared = re.compile(r"^(const|let|class|function|async function)\s+(\w+)([^\n]*)", re.MULTILINE)
-    found = [one.groups() for text in texts for one in declared.finditer(text)]
+    parts = [match.groups() for text in texts for match in declared.finditer(text)]
     # Several to a line: const VERSION = "v1", CODECS = [...].
-    more = [re.findall(r", (\w+) = ", rest) for kind, _, rest in found if kind in ("const", "let") and "=>" not in rest]
-    names = [name for _, name, _ in found] + [name for several in more for name in several]
+    more = [re.findall(r", (\w+) = ", rest) for kind, _, rest in parts if kind in ("const", "let") and "=>" not in rest]
+    names = [name for _, name, _ in parts] + [name for several in more for name in several]
     assert len(names) > 100
     assert not {name for name in names if names.count(name) > 1}
 
 
-def test_no_text_of_the_laboratorys_scripts_has_several_lines():
-    """The page holds them without indents and lines of comment."""
+def test_strings_in_the_laboratory_scripts_are_on_one_line():
+    """The page contains the scripts without indentation and comment lines."""
     wrong = [
         f"{name}: {line}"
         for name in live.SCRIPTS

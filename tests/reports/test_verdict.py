@@ -1,4 +1,4 @@
-"""What the page says of the back ends."""
+"""The page's statement about the backends."""
 
 import math
 
@@ -10,7 +10,7 @@ def row(encoding: str, psnr_db: float | None, **more) -> dict:
     return about | {"bits": 16, "psnr_db": psnr_db} | more
 
 
-def test_the_largest_distance_of_two_back_ends_is_said():
+def test_the_largest_difference_between_two_backends_is_stated():
     rows = [row("whole", 50.0), row("other", 49.0), row("exact", math.inf), row("lost", None)]
     others = [r | {"backend": "glsl"} for r in rows]
     others[0]["psnr_db"], others[1]["psnr_db"] = 50.01, 48.7
@@ -18,6 +18,6 @@ def test_the_largest_distance_of_two_back_ends_is_said():
     assert agreement([*rows, *(r | {"backend": "glsl"} for r in rows)]) == "JAX and GLSL agree within 0.001 dB."
 
 
-def test_of_one_back_end_alone_nothing_is_said():
+def test_a_single_backend_has_no_statement():
     assert agreement([]) == agreement([row("whole", 50.0)]) == ""
     assert agreement([row("whole", 50.0), row("whole", 45.0, normals="sphere", backend="glsl")]) == ""

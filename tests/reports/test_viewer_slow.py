@@ -1,4 +1,4 @@
-"""The pictures in a browser: what each view draws, divider, lens, gain and highlight, by pointer and by keyboard."""
+"""The images in a browser: what each view draws, divider, lens, gain and highlight, by pointer and by keyboard."""
 
 import numpy as np
 from browsing import VIEWED, Opened
@@ -9,7 +9,7 @@ from test_pictures_slow import answered_run
 
 
 def viewed(opened: Opened, **chosen: str) -> None:
-    """The viewer with options chosen by their labels or values."""
+    """Show the viewer with options chosen by their labels or values."""
     opened.come_to("#viewer", VIEWED)
     for name, value in chosen.items():
         opened.page.locator(f"#{name}").select_option(value)
@@ -17,16 +17,16 @@ def viewed(opened: Opened, **chosen: str) -> None:
 
 
 def drawn(opened: Opened, side: str) -> np.ndarray:
-    """The pixels of a side of the viewer."""
+    """Return the pixels of a side of the viewer."""
     uri = opened.page.locator(f"[data-canvas={side}]").evaluate("canvas => canvas.toDataURL()")
     return pixels(uri).astype(int)
 
 
 def kept(results, name: str) -> dict[str, np.ndarray]:
     with np.load(results[0] / f"images/playground-{name}.npz") as arrays:
-        found = {key: arrays[key][::2, ::2] for key in ("angle", "codes")}
+        planes = {key: arrays[key][::2, ::2] for key in ("angle", "codes")}
     with Image.open(results[0] / f"images/playground-{name}-decoded.png") as image:
-        return found | {"decoded": np.asarray(image)[::2, ::2].astype(int)}
+        return planes | {"decoded": np.asarray(image)[::2, ::2].astype(int)}
 
 
 def test_each_view_is_drawn_from_the_pixels_of_the_run(opened, results):
@@ -47,7 +47,7 @@ def test_each_view_is_drawn_from_the_pixels_of_the_run(opened, results):
     assert (drawn(opened, "left")[..., :2] == codes).all()
 
 
-def test_the_gain_and_the_colours_of_an_angle_are_chosen(opened, results):
+def test_the_gain_and_the_colours_of_an_angle_can_be_chosen(opened, results):
     viewed(opened, left="octahedral rgba8", right="xy rgba8", view="angle", colours="grey")
     degrees = 2.0 ** (-20 + (kept(results, "octahedral-rgba8")["angle"] - 1.0) / 8)
     gain = opened.page.locator("#scale")
@@ -70,7 +70,7 @@ def test_the_gain_and_the_colours_of_an_angle_are_chosen(opened, results):
     assert opened.texts("[data-most]") == ["1° and more"]
 
 
-def test_the_divider_is_dragged_on_the_picture_and_moved_by_keyboard(opened):
+def test_the_divider_is_dragged_on_the_image_and_moved_by_keyboard(opened):
     viewed(opened, left="exact", right="spherical rgba8", view="error")
     stage = opened.page.locator("#viewer .stage")
     box = stage.bounding_box()
@@ -91,7 +91,7 @@ def test_the_divider_is_dragged_on_the_picture_and_moved_by_keyboard(opened):
     assert opened.texts("[data-divided]") == ["0 %"]
 
 
-def test_the_lens_shows_the_pixels_at_the_pointer_and_says_what_they_are(opened, results):
+def test_the_lens_shows_and_describes_the_pixels_at_the_pointer(opened, results):
     viewed(opened, left="octahedral rgba8", right="spheremap rgba8", view="decoded")
     assert opened.page.locator(".lens").is_hidden()
     box = opened.page.locator("#viewer .stage").bounding_box()
@@ -103,10 +103,10 @@ def test_the_lens_shows_the_pixels_at_the_pointer_and_says_what_they_are(opened,
     )
     cells = np.array(data, np.uint8).reshape(11, 12, 11, 12, 4)[:, 6, :, 6, :3]
     assert (cells == arrays["decoded"][55:66, 95:106]).all(), "11 x 11 pixels of 12 x 12"
-    (said,) = opened.texts("[data-pixel=left]")
+    (text,) = opened.texts("[data-pixel=left]")
     code = " ".join(f"{number:08b}" for number in arrays["codes"][60, 100])
     degrees = 2.0 ** (-20 + (arrays["angle"][60, 100] - 1.0) / 8)
-    assert said.startswith(f"code {code}, decoded (") and said.endswith(f"off by {float(f'{degrees:.2g}'):g}°")
+    assert text.startswith(f"code {code}, decoded (") and text.endswith(f"off by {float(f'{degrees:.2g}'):g}°")
     assert opened.texts("[data-values]")[0].startswith("Pixel 200, 120, exact normal (")
     opened.page.locator("#viewer .stage").focus()
     opened.page.keyboard.press("ArrowRight")
@@ -122,8 +122,8 @@ WITHOUT = """(name) => {
 }"""
 
 
-def test_nothing_is_drawn_of_a_codec_without_a_picture(opened):
-    """Not another codec in its place; a line says what to run."""
+def test_a_codec_without_an_image_is_not_drawn(opened):
+    """No other codec takes its place, and a line names the command to run."""
     viewed(opened)
     opened.page.evaluate(WITHOUT, "spheremap rgba8")
     opened.page.evaluate("change({ a: 'octahedral rgba8', b: 'spheremap rgba8' })")
@@ -150,8 +150,8 @@ CHOSEN = """() => ({
 })"""
 
 
-def test_a_codec_chosen_anywhere_is_that_everywhere(opened):
-    """As A; by a picture, which is put to the right, as B."""
+def test_a_codec_chosen_anywhere_is_chosen_everywhere(opened):
+    """The codec becomes A; a codec chosen by its image is put on the right and becomes B."""
     viewed(opened)
     opened.come_to("figure[data-chart]", "figure[data-chart] .plot svg")
     opened.page.wait_for_timeout(500)
@@ -169,7 +169,7 @@ def test_a_codec_chosen_anywhere_is_that_everywhere(opened):
 
 
 def choose_spheremap(opened: Opened, by: str) -> None:
-    """Choose a codec by what a reader has in front."""
+    """Choose a codec by this part of the page."""
     if by == "the list":
         opened.page.locator("#side-a").select_option("spheremap rgba8")
     elif by == "a picture":
@@ -184,7 +184,7 @@ def choose_spheremap(opened: Opened, by: str) -> None:
         button.click() if by == "a row" else opened.page.keyboard.press("Enter")
 
 
-def test_rendered_images_and_pictures_beside_the_page_are_shown(browser, run, tmp_path):
+def test_rendered_images_and_images_next_to_the_page_are_shown(browser, run, tmp_path):
     folder = rendered_run(tmp_path / "run")
     assert run("report", str(folder), "--pictures", "beside", "-o", str(tmp_path / "page.html"))[0] == 0
     page = Opened(browser, tmp_path / "page.html")
@@ -195,17 +195,17 @@ def test_rendered_images_and_pictures_beside_the_page_are_shown(browser, run, tm
         assert (drawn(page, "right") == np.asarray(reference)).all()
     viewed(page, view="apart", colours="grey")
     assert len(np.unique(drawn(page, "left"))) == 1 and drawn(page, "left").max() > 100, "3 of 255 everywhere"
-    (said,) = page.texts("[data-pixel=left]")
-    assert said.endswith("off by 3 of 255") and page.said == []
+    (text,) = page.texts("[data-pixel=left]")
+    assert text.endswith("off by 3 of 255") and page.said == []
     page.context.close()
 
 
-def test_the_answers_pictures_open_the_viewer_at_its_own_scene(browser, run, tmp_path):
+def test_images_of_an_answer_open_the_viewer_at_its_own_scene(browser, run, tmp_path):
     assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")
     page.page.wait_for_selector(".proof:not([hidden]) button:nth-child(4)")
-    said = page.texts(".proof button span")
-    assert said == [
+    captions = page.texts(".proof button span")
+    assert captions == [
         *("A fine rg8: image", "B xy rg8: image"),
         *(f"{side}: largest difference 2 of 255, above 2 in 0 % of the pixels" for side in ("A fine rg8", "B xy rg8")),
     ]

@@ -1,1 +1,1 @@
-"""How fast the program itself is: programs, and no tests. See `python -m tests.speed --help`."""
+"""The speed of the program itself: programs rather than tests. See `python -m tests.speed --help`."""

@@ -1,14 +1,14 @@
-"""Measures the program itself, and prints the rows of one run as JSON.
+"""A command that measures the program itself and prints the rows of one run as JSON.
 
     python -m tests.speed commands [--only NAMES]
     python -m tests.speed throughput [--encoding NAMES] [--counts COUNTS]
     python -m tests.speed growth [--over KINDS] [--sizes SIZES]
     python -m tests.speed simulate [--record TABLES] [--file FILE]
 
-`commands` measures the wall and processor seconds of commands, as someone types them. `throughput` measures rows of
-the quality table next to a C program, NumPy and reading the input, in turns. `growth` times one kind of work at
-several sizes. `simulate` says how long a run takes on many workers, by recorded times of steps. Names, counts and
-sizes are comma-separated.
+`commands` measures the wall and processor seconds of commands, as a user types them. `throughput` measures rows of
+the quality table, in turn with a C program, NumPy and reading the input. `growth` times one kind of work at several
+sizes. `simulate` computes how long a run takes on many workers, from recorded times of steps. Names, counts and sizes
+are comma-separated.
 """
 
 from __future__ import annotations
@@ -66,26 +66,26 @@ def _asked(words: list[str] | None) -> argparse.Namespace:
     programs = parser.add_subparsers(required=True)
 
     def program(name: str, rows: Callable[[argparse.Namespace], list[Row]]) -> argparse.ArgumentParser:
-        made = programs.add_parser(name)
-        made.set_defaults(rows=rows)
-        return made
+        subparser = programs.add_parser(name)
+        subparser.set_defaults(rows=rows)
+        return subparser
 
-    one = program("commands", _commands)
-    one.add_argument("--only", default="all", help=f"{', '.join(commands.COMMANDS)}, or all, which takes 20 minutes.")
-    one = program("throughput", _throughput)
-    one.add_argument("--encoding", default="spheremap,octahedral,spherical,xyz,per_pixel_view")
-    one.add_argument("--counts", default="2^22", help="Normals, such as 2^18,2^20; rounded down to whole blocks.")
-    one = program("growth", _growth)
-    one.add_argument("--over", default="all", help=f"{', '.join(growth.KINDS)}, or all.")
-    one.add_argument("--sizes", default="", help="Of one kind. Default: three, each about ten times the one before.")
-    one = program("simulate", _simulate)
-    one.add_argument("--record", default="", help="Measure the steps of these tables, and what sending costs, first.")
-    one.add_argument("--file", type=Path, default=RECORD, help="The record of step times.")
+    sub = program("commands", _commands)
+    sub.add_argument("--only", default="all", help=f"{', '.join(commands.COMMANDS)}, or all, which takes 20 minutes.")
+    sub = program("throughput", _throughput)
+    sub.add_argument("--encoding", default="spheremap,octahedral,spherical,xyz,per_pixel_view")
+    sub.add_argument("--counts", default="2^22", help="Normals, such as 2^18,2^20; rounded down to whole blocks.")
+    sub = program("growth", _growth)
+    sub.add_argument("--over", default="all", help=f"{', '.join(growth.KINDS)}, or all.")
+    sub.add_argument("--sizes", default="", help="Of one kind. Default: three, each about ten times the one before.")
+    sub = program("simulate", _simulate)
+    sub.add_argument("--record", default="", help="Measure the steps of these tables, and what sending costs, first.")
+    sub.add_argument("--file", type=Path, default=RECORD, help="The record of step times.")
     return parser.parse_args(words)
 
 
 def main(words: list[str] | None = None) -> None:
-    """Print the rows of a program. Raises SystemExit for what cannot be, with one line."""
+    """Print the rows of a program. Raises SystemExit with one line for invalid requests."""
     asked = _asked(words)
     try:
         print(json.dumps(asked.rows(asked), indent=1))

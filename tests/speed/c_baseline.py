@@ -1,4 +1,4 @@
-"""The row in C (`row.c`), compiled for this machine where there is a C compiler."""
+"""The row in C (`row.c`), compiled for this machine if it has a C compiler."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ COMPILING_S = 60
 
 
 def missing(name: str) -> str:
-    """Why there are no figures of C for an encoding; empty where there are."""
+    """Return the reason why C has no figures for an encoding, or an empty text if it has."""
     if name not in ENCODINGS:
         return f"{SOURCE.name} has no {name}"
     return "" if shutil.which("cc") else NONE
 
 
 def work(name: str, function: str, n: np.ndarray, view: np.ndarray) -> Callable[[], np.ndarray]:
-    """A function that measures an encoding through UNORM8 once, on all cores.
+    """Return a function that measures an encoding through 8-bit UNORM once, on all cores.
 
     Args:
         name: one of ENCODINGS.
-        function: "row": the sum of the angles, that of their squares, and the largest, in degrees; "reading": the sum
-            of all components.
+        function: "row": the sum of the angles, that of their squares, and the largest angle, in degrees; "reading":
+            the sum of all components.
         n, view: float32 of shape (count, 3).
 
     Raises:
-        OSError, subprocess.SubprocessError: it cannot be compiled.
+        OSError, subprocess.SubprocessError: the encoding cannot be compiled.
     """
     call, figures = getattr(_library(name), function), np.zeros(3)
     planes = [np.ascontiguousarray(a.T, np.float32) for a in (n, view)]

@@ -1,7 +1,7 @@
-"""How long commands take from their start to their end: wall and processor seconds, those of their children too.
+"""Times of commands from start to end: wall and processor seconds, including those of their children.
 
-Medians of three runs, each in a process of its own. "warm" has compiled programs, emitted code and counts of earlier
-runs, and measures every row and figure; "cold" has an empty cache.
+The figures are medians of three runs, each in a process of its own. "warm" has the compiled programs, emitted code
+and counts of earlier runs, and measures every row and figure; "cold" has an empty cache.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class Command:
     """A command line.
 
     Attributes:
-        words: what is typed.
-        is_cold: whether nothing is there of earlier runs.
+        words: the arguments.
+        is_cold: whether the cache of earlier runs is empty.
         writes: whether it writes a folder, which -o names.
     """
 
@@ -56,7 +56,7 @@ COMMANDS: Mapping[str, Command] = {
 
 
 def rows(names: tuple[str, ...]) -> list[Row]:
-    """Measure commands by name; what is warm runs once before."""
+    """Measure commands by name; warm commands run once before."""
     return [_measured(name, COMMANDS[name]) for name in names]
 
 
@@ -71,7 +71,7 @@ def _measured(name: str, command: Command) -> Row:
 
 
 def _seconds(command: Command) -> tuple[float, float]:
-    """Wall and processor seconds of one run. Raises CalledProcessError."""
+    """Return the wall and processor seconds of one run. Raises CalledProcessError."""
     with tempfile.TemporaryDirectory() as folder:
         words = [*command.words.split(), *(["-o", f"{folder}/run"] if command.writes else [])]
         cache = {"XDG_CACHE_HOME": f"{folder}/cache"} if command.is_cold else {}
@@ -82,6 +82,6 @@ def _seconds(command: Command) -> tuple[float, float]:
 
 
 def _used() -> float:
-    """Processor seconds of all children that have ended."""
+    """Return the processor seconds of all children that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime

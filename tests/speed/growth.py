@@ -1,4 +1,4 @@
-"""How the time of one kind of work grows with its size, with all else the same."""
+"""The growth of the time of one kind of work with its size, all else being equal."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ OBJECTS, LIGHTS = 100, 64
 
 @dataclass(frozen=True)
 class Kind:
-    """What is made larger.
+    """A kind of work that is made larger.
 
     Attributes:
         timed: what is timed, in words.
-        seconds: of one size.
-        usual: the sizes where nobody names others, each ten times the one before, or near it.
-        least, most: the sizes that there may be.
+        seconds: seconds for a size.
+        usual: default sizes, each about ten times the one before.
+        least, most: smallest and largest size allowed.
     """
 
     timed: str
@@ -50,16 +50,16 @@ class Kind:
 
 
 def rows(over: str, sizes: Sequence[int]) -> list[Row]:
-    """A row for each size of one of KINDS, the smallest first, with the exponent from the one before."""
-    made = [measure(over, size) for size in sorted({rounded(over, size) for size in sizes})]
-    for smaller, larger in pairwise(made):
+    """Return a row for each size of one of KINDS, the smallest first, with the exponent from the row before."""
+    measured = [measure(over, size) for size in sorted({rounded(over, size) for size in sizes})]
+    for smaller, larger in pairwise(measured):
         if smaller["seconds"] and larger["seconds"]:
             larger["exponent"] = exponent(*([row[name] for row in (smaller, larger)] for name in ("size", "seconds")))
-    return made
+    return measured
 
 
 def measure(over: str, size: int) -> Row:
-    """One row without its exponent, or the reason why there is none."""
+    """Return one row without its exponent, or with the reason why it has no time."""
     row: Row = {"over": over, "size": size, "timed": KINDS[over].timed, "seconds": None, "exponent": None}
     try:
         seconds = KINDS[over].seconds(size)
@@ -69,7 +69,7 @@ def measure(over: str, size: int) -> Row:
 
 
 def rounded(over: str, size: int) -> int:
-    """The nearest size that there is: two numbers of equal bits have a power of 4 codes."""
+    """Return the nearest possible size: two numbers of equal bits have a power of 4 codes."""
     return 4 ** _bits(size) if over == "codes" else size
 
 
@@ -87,9 +87,9 @@ def _normals(size: int) -> float:
 
 
 def _codecs(size: int) -> float:
-    """Evenly from all that there are, since they differ in what they take; some come again where there are fewer."""
+    """Return the seconds of codecs spread evenly over all, because their costs differ; some may repeat."""
     every = [codec for codec in codecs_named(("all",), ("all",), ("nearest",)) if codec.fits]
-    return _quality([every[at * len(every) // size] for at in range(size)], NORMALS)
+    return _quality([every[index * len(every) // size] for index in range(size)], NORMALS)
 
 
 def _codes(size: int) -> float:

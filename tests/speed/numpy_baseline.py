@@ -1,7 +1,7 @@
-"""The encodings in NumPy, whole arrays of shape (count, 3), as one would write them in an afternoon.
+"""The encodings in NumPy, on whole arrays of shape (count, 3), as written in an afternoon.
 
-What the throughput is held against, and a second, independent implementation for the tests: no encoding here is shared
-with the catalogue. Any float dtype; codes are signed.
+Throughput is compared with this baseline, which is also a second, independent implementation for the tests: no
+encoding here is shared with the catalogue. Any float dtype; codes are signed.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from normalbench.bench.ground.angles import angles_deg
 
 
 def quantise_unorm(code: np.ndarray, levels: int = 255) -> np.ndarray:
-    """Codes in [-1, 1] through UNORM and back."""
+    """Return codes in [-1, 1] through UNORM and back."""
     return np.round(np.clip(code * 0.5 + 0.5, 0, 1) * levels) / levels * 2 - 1
 
 
@@ -128,7 +128,7 @@ BASELINES = {
 
 
 def whole_row(n: np.ndarray, d: np.ndarray) -> tuple[float, ...]:
-    """MSE, the article's 8-bit MSE, and mean, RMS, 99th percentile and largest of the angle in degrees."""
+    """Return MSE, the article's 8-bit MSE, and the mean, RMS, 99th percentile and largest angle in degrees."""
     difference = np.abs(n - d)
     angle = angles_deg(n, d)
     return (

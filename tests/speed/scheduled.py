@@ -1,4 +1,4 @@
-"""A scheduler of dask on this machine and workers that joined it, as a user starts them."""
+"""A dask scheduler on this machine and the workers that joined it, started as a user starts them."""
 
 import os
 import re
@@ -19,11 +19,11 @@ class Scheduled:
         self.start()
 
     def start(self, port: str = "0") -> None:
-        """Start a scheduler; at the same port, it takes the place of another one."""
+        """Start a scheduler; at the same port, it replaces another scheduler."""
         words = [port if word == "0" else word for word in SCHEDULER]
         self.scheduler = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
-        said = iter(self.scheduler.stderr.readline, "")
-        self.address = next(match[1] for line in said if (match := re.search(r"Scheduler at:\s+(\S+)", line)))
+        lines = iter(self.scheduler.stderr.readline, "")
+        self.address = next(match[1] for line in lines if (match := re.search(r"Scheduler at:\s+(\S+)", line)))
 
     def join(self, variables: Mapping[str, str] = os.environ) -> subprocess.Popen[str]:
         """Start a worker."""
@@ -32,24 +32,24 @@ class Scheduled:
         return self.workers[-1]
 
     def end(self) -> None:
-        """End all of them, by force where that takes long: that a worker ends when told to has a test of its own."""
-        for one in (*self.workers, self.scheduler):
-            one.terminate()
-        for one in (*self.workers, self.scheduler):
+        """End all processes, by force if that takes too long; another test checks that a worker ends when told to."""
+        for process in (*self.workers, self.scheduler):
+            process.terminate()
+        for process in (*self.workers, self.scheduler):
             try:
-                one.communicate(timeout=30)
+                process.communicate(timeout=30)
             except subprocess.TimeoutExpired:
-                one.kill()
-                one.communicate()
+                process.kill()
+                process.communicate()
 
 
 @contextmanager
 def scheduled(*workers: Mapping[str, str]) -> Iterator[Scheduled]:
-    """A scheduler with a worker for each set of variables."""
-    found = Scheduled()
+    """Yield a scheduler with a worker for each set of variables."""
+    cluster = Scheduled()
     try:
         for variables in workers:
-            found.join(os.environ | variables)
-        yield found
+            cluster.join(os.environ | variables)
+        yield cluster
     finally:
-        found.end()
+        cluster.end()

@@ -1,4 +1,4 @@
-"""How long a run takes on many workers: a simulation of the same rules for tasks, with recorded times of steps."""
+"""A simulation of a run on many workers: the same rules for tasks, with recorded times of steps."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ TASKS, BYTES, ROW = 1000, 1 << 24, {"row": "0" * 1500}
 
 @dataclass(frozen=True)
 class Costs:
-    """What is not measuring, in seconds.
+    """Costs other than measuring, in seconds.
 
     Attributes:
         start: from a worker's start to its first task.
-        task: of the command, for a task: sending it and taking its answer.
-        row: of the command, to keep a step's rows on the disk.
-        byte: of the command, to send or take a byte.
+        task: time of the command to send a task and take its answer.
+        row: time of the command to save a step's rows to disk.
+        byte: time of the command to send or take a byte.
     """
 
     start: float
@@ -51,10 +51,10 @@ class Load:
 
     Attributes:
         seconds: recorded times of steps, from which those of the load are drawn.
-        steps: how many steps there are.
+        steps: number of steps.
         prepare: seconds in which a worker makes the steps.
         sent, taken: bytes to each worker, and back for each step.
-        is_timed: whether a clock is read: then the command measures them itself.
+        is_timed: whether a clock is read: then the command measures the steps itself.
     """
 
     seconds: Sequence[float]
@@ -67,83 +67,83 @@ class Load:
 
 @dataclass(frozen=True)
 class Simulated:
-    """A load on some workers: how long it takes, and for how much of it the command is busy."""
+    """A load on some workers: its duration, and how long the command is busy."""
 
     seconds: float
     command: float
 
 
 def simulated(load: Load, workers: int, costs: Costs, seed: int = 0) -> Simulated:
-    """Workers take chunks as they get free. The command serves one at a time."""
+    """Simulate workers that take chunks as they become free. The command serves one worker at a time."""
     rng, hands = random.Random(seed), 1 if load.is_timed else workers
     times = rng.choices(load.seconds, k=load.steps)
     free, knows = [(0.0, number) for number in range(hands)], set[int]()
     clock = busy = end = 0.0
-    at = 0
-    while at < load.steps:
+    position = 0
+    while position < load.steps:
         ready, number = heapq.heappop(free)
-        size = 1 if load.is_timed else chunk_size(load.steps - at, hands)
+        size = 1 if load.is_timed else chunk_size(load.steps - position, hands)
         is_new = number not in knows
         knows.add(number)
         served = costs.task + size * (costs.row + load.taken * costs.byte) + is_new * load.sent * costs.byte
         clock, busy = max(clock, ready) + served, busy + served
-        done = clock + sum(times[at : at + size]) + is_new * load.prepare
+        done = clock + sum(times[position : position + size]) + is_new * load.prepare
         heapq.heappush(free, (done, number))
-        at, end = at + size, max(end, done)
+        position, end = position + size, max(end, done)
     return Simulated(end, busy)
 
 
 def rows(name: str, loads: Sequence[Load], costs: Costs) -> list[Row]:
-    """A row for each number of workers; the loads are measured one after the other.
+    """Return a row for each number of workers; the loads are measured one after the other.
 
-    From the row before the time grows as workers^exponent: -1 where twice as many take half the time.
+    From the row before, the time grows as workers^exponent: -1 if twice as many take half the time.
     """
     alone = sum(simulated(load, 1, costs).seconds for load in loads)
-    made: list[Row] = []
+    figures: list[Row] = []
     fewer: tuple[int, float] | None = None
     for workers in WORKERS:
-        found = [simulated(load, workers, costs) for load in loads]
-        took = costs.start + sum(one.seconds for one in found)
+        runs = [simulated(load, workers, costs) for load in loads]
+        took = costs.start + sum(run.seconds for run in runs)
         row = {"work": name, "workers": workers, "minutes": round(took / 60, 1), "times faster": round(alone / took, 1)}
-        made.append(row | {"workers busy %": round(100 * alone / took / workers)})
-        made[-1]["command busy %"] = round(100 * sum(one.command for one in found) / took, 1)
+        figures.append(row | {"workers busy %": round(100 * alone / took / workers)})
+        figures[-1]["command busy %"] = round(100 * sum(run.command for run in runs) / took, 1)
         # Of as many digits as machines agree on.
-        made[-1]["exponent"] = fewer and round(exponent((fewer[0], workers), (fewer[1], took)) or 0.0, 6)
+        figures[-1]["exponent"] = fewer and round(exponent((fewer[0], workers), (fewer[1], took)) or 0.0, 6)
         fewer = workers, took
-    return made
+    return figures
 
 
 def loads_of(record: Mapping[str, Any]) -> dict[str, list[Load]]:
-    """The work of a record: by name the loads, one after the other."""
+    """Return the loads of each work in a record, by name; a work's loads are measured one after the other."""
     times, sizes = record["seconds"], record["bytes"]
     everything = [
-        Load(times[one["table"]], one["steps"], one["prepare"], 0.0, sizes[one["table"]], is_timed=one["timed"])
-        for one in record["everything"]
+        Load(times[work["table"]], work["steps"], work["prepare"], 0.0, sizes[work["table"]], is_timed=work["timed"])
+        for work in record["everything"]
     ]
     return {"all encodings, storages and sets": everything}
 
 
 def table(record: Mapping[str, Any]) -> list[Row]:
-    """The rows of every work in a record."""
+    """Return the rows of every work in a record."""
     costs = Costs(**record["costs"])
     return [row for name, loads in loads_of(record).items() for row in rows(name, loads, costs)]
 
 
 def record(names: Iterable[str], path: Path) -> None:
-    """Put step times of tables, and what sending costs here, into a record; what else it holds stays.
+    """Write step times of tables, and the costs of sending here, into a record; all other contents stay.
 
     Raises:
         UsageError: an unknown table.
     """
     before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    made = {"seconds": dict(before.get("seconds", {})), "bytes": dict(before.get("bytes", {}))}
+    measured = {"seconds": dict(before.get("seconds", {})), "bytes": dict(before.get("bytes", {}))}
     for table in choose("table", names, TABLES):
-        made["seconds"][table.name], made["bytes"][table.name] = step_times(table)
-    path.write_text(json.dumps(before | made | {"costs": asdict(measured_costs())}) + "\n", encoding="utf-8")
+        measured["seconds"][table.name], measured["bytes"][table.name] = step_times(table)
+    path.write_text(json.dumps(before | measured | {"costs": asdict(measured_costs())}) + "\n", encoding="utf-8")
 
 
 def step_times(table: Table) -> tuple[list[float], int]:
-    """The seconds of a table's usual steps in this process, and the mean bytes of their pictures."""
+    """Return the seconds of a table's default steps in this process, and the mean bytes of their images."""
     with tempfile.TemporaryDirectory() as folder:
         images = {PICTURES: Path(folder)} if PICTURES in table.files else {}
         ask = asked(table, table.options(), replace(table.outputs(), **images))
@@ -156,7 +156,7 @@ def step_times(table: Table) -> tuple[list[float], int]:
 
 
 def measured_costs() -> Costs:
-    """What a task, a row and a byte cost here, with two workers of a scheduler."""
+    """Measure the costs of a task, a row and a byte here, with two workers of a scheduler."""
     from distributed import Client
 
     from normalbench.bench.run.workers.worker import quiet
@@ -173,7 +173,7 @@ def measured_costs() -> Costs:
 
 
 def _through(client: Any, count: int, data: bytes) -> float:
-    """Seconds for so many tasks."""
+    """Return the seconds for `count` tasks."""
     began = time.perf_counter()
     client.gather([client.submit(len, data, pure=False) for _ in range(count)])
     return time.perf_counter() - began

@@ -1,7 +1,7 @@
-"""How fast rows of the quality table are measured, against C, NumPy and reading the input once.
+"""The speed of the quality table's rows, compared with C, NumPy and reading the input once.
 
-All of them encode, store in UNORM of 8 bits, decode and measure the same normals, on all cores in one run. C's row is
-the angle's mean, RMS, maximum and histogram. With -ffast-math C may round otherwise.
+All of them encode, store in 8-bit UNORM, decode and measure the same normals, on all cores in one run. C's row is
+the angle's mean, RMS, maximum and histogram. With -ffast-math, C may round differently.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Normals:
 
 
 def normals(count: int, seed: int = 0) -> Normals:
-    """Directions, uniform on the sphere, and positions in front of the eye."""
+    """Return directions, uniform on the sphere, and positions in front of the eye."""
     rng = np.random.default_rng(seed)
     n = rng.normal(size=(count, 3)).astype(np.float32)
     n /= np.linalg.norm(n, axis=1, keepdims=True)
@@ -52,21 +52,21 @@ def normals(count: int, seed: int = 0) -> Normals:
 
 
 def rows(encodings: Sequence[Encoding], counts: Sequence[int]) -> list[Row]:
-    """A row for each encoding and count, with rates in million normals a second, and their ratios."""
-    made: list[Row] = []
+    """Return a row for each encoding and count, with rates in million normals per second, and their ratios."""
+    measured: list[Row] = []
     for count in dict.fromkeys(count // WHOLE * WHOLE for count in counts):
         data = normals(count)
         in_c, _ = by_c(ANY_IN_C, "reading", data)
         reading = rates(in_c, count)[0] if in_c else None
-        made += [measure(encoding, data, reading) for encoding in encodings]
-    return made
+        measured += [measure(encoding, data, reading) for encoding in encodings]
+    return measured
 
 
 def measure(encoding: Encoding, data: Normals, reading: float | None) -> Row:
-    """One row; one without rates, and why, for an encoding that is written in GLSL alone.
+    """Return one row; for an encoding written only in GLSL, the row has a reason instead of rates.
 
     Args:
-        reading: the rate at which C reads the normals; None where it cannot be compiled.
+        reading: the rate at which C reads the normals; None if it cannot be compiled.
     """
     count = len(data.n)
     row: Row = {"encoding": encoding.name, "count": count, "device": f"{jax.devices()[0].device_kind}, {cores()} cores"}
@@ -82,14 +82,14 @@ def measure(encoding: Encoding, data: Normals, reading: float | None) -> Row:
 
 
 def by_jax(encoding: Encoding, data: Normals) -> Task:
-    """The program's own row."""
+    """Return the work of the program's own row."""
     given = from_arrays("", "", data.n, data.view, np.ones(len(data.n), bool))
     case = quality.QualityCase(Codec(encoding, STORAGES[STORAGE]), given, "jax")
     return lambda: quality.measure(case)
 
 
 def by_c(name: str, function: str, data: Normals) -> tuple[list[Task], str | None]:
-    """The work of one of C's functions, and why there is none."""
+    """Return the work of one of C's functions, or the reason why it is missing."""
     if missing := c_baseline.missing(name):
         return [], missing
     try:
@@ -99,7 +99,7 @@ def by_c(name: str, function: str, data: Normals) -> tuple[list[Task], str | Non
 
 
 def _by_numpy(name: str, data: Normals) -> dict[str, float]:
-    """NumPy's rates over whole arrays, and over blocks; none where the encoding is not written in NumPy."""
+    """Return NumPy's rates over whole arrays and over blocks; empty if the encoding is not written in NumPy."""
     round_trip = baseline.BASELINES.get(name)
     if round_trip is None:
         return {}

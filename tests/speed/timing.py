@@ -1,4 +1,4 @@
-"""Times of works that take turns, and how times grow with a size."""
+"""Times of tasks that take turns, and the growth of times with a size."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ Task = Callable[[], object]
 
 
 def least_times(works: Sequence[Task]) -> list[float]:
-    """Seconds of works that take turns: the least of three turns or more, for LONG_ENOUGH_S each, after one to warm
-    up."""
+    """Return the lowest time of each task in seconds. The tasks take turns, one to warm up and then at least three,
+    for LONG_ENOUGH_S per task."""
     for work in works:
         work()
     times: list[list[float]] = [[] for _ in works]
@@ -32,12 +32,12 @@ def least_times(works: Sequence[Task]) -> list[float]:
 
 
 def rates(works: Sequence[Task], count: int) -> list[float]:
-    """Million normals a second of works on so many, by their least times."""
+    """Return million normals per second of tasks on `count` normals, by their lowest times."""
     return [count / taken / 1e6 for taken in least_times(works)]
 
 
 def exponent(sizes: Sequence[float], times: Sequence[float]) -> float | None:
-    """The e of time = c size^e, by least squares in logarithms; None of fewer than two sizes."""
+    """Return the e of time = c size^e, by least squares in logarithms, or None for fewer than two sizes."""
     if len(set(sizes)) < 2:
         return None
     return float(np.polyfit(np.log(sizes), np.log(times), 1)[0])

@@ -1,4 +1,4 @@
-"""Codes of other kinds than normals: every kind, and all that may be wrong."""
+"""Codes of other quantities than normals: every kind, and every error."""
 
 import pytest
 import test_examine_others_slow
@@ -8,10 +8,10 @@ pytestmark = pytest.mark.usefixtures("gl", "slang")
 
 
 @pytest.mark.parametrize("name", [name for name in MEASURED if name not in BY_DAY])
-def test_codes_of_all_kinds_are_told_what_they_are_of(run, name):
-    test_examine_others_slow.test_a_code_is_told_what_it_is_of_and_what_measures_it(run, name)
+def test_doctor_names_the_quantity_and_the_command_for_all_kinds(run, name):
+    test_examine_others_slow.test_doctor_names_the_quantity_and_the_command_that_measures_it(run, name)
 
 
-@pytest.mark.parametrize("text", [text for at, text in enumerate(WRONG) if at % 3])
-def test_all_that_is_wrong_is_told(run, tmp_path, text):
-    test_examine_others_slow.test_what_is_wrong_is_told(run, tmp_path, text)
+@pytest.mark.parametrize("text", [text for index, text in enumerate(WRONG) if index % 3])
+def test_doctor_reports_all_errors(run, tmp_path, text):
+    test_examine_others_slow.test_doctor_reports_errors(run, tmp_path, text)

@@ -1,4 +1,4 @@
-"""`doctor` of users' codes of something else than normals: what they are of, what is wrong, and what measures them."""
+"""`doctor` on users' codes of quantities other than normals: the quantity, errors, and the measuring command."""
 
 import json
 
@@ -21,16 +21,16 @@ BY_DAY = ("velocity.slang", "light.frag")
 
 
 @pytest.mark.parametrize("name", BY_DAY)
-def test_a_code_is_told_what_it_is_of_and_what_measures_it(run, name):
+def test_doctor_names_the_quantity_and_the_command_that_measures_it(run, name):
     of, command, note = MEASURED[name]
     status, out, err = run("doctor", str(INPUTS / name), "--format", "json")
     assert status == 0 and not err
-    found = json.loads(out)
-    assert [row["finding"] for row in found if row["kind"] == "verdict"] == ["No problems found."]
-    assert {row["domain"] for row in found} == {of}
-    notes = [row["finding"] for row in found if row["kind"] == "note"]
+    rows = json.loads(out)
+    assert [row["finding"] for row in rows if row["kind"] == "verdict"] == ["No problems found."]
+    assert {row["domain"] for row in rows} == {of}
+    notes = [row["finding"] for row in rows if row["kind"] == "note"]
     assert f"`{command.format(INPUTS / name)}` measures it" in notes
-    assert any(note in one for one in notes), notes
+    assert any(note in finding for finding in notes), notes
 
 
 PAIR = "float2 DecodeVelocity(float2 e) { return e; }"
@@ -48,19 +48,19 @@ WRONG = {
 
 
 @pytest.mark.parametrize("text", [*WRONG][::3])
-def test_what_is_wrong_is_told(run, tmp_path, text):
-    status, said = WRONG[text]
+def test_doctor_reports_errors(run, tmp_path, text):
+    status, message = WRONG[text]
     (tmp_path / "mine.hlsl").write_text(text)
-    found, out, err = run("doctor", str(tmp_path / "mine.hlsl"), "--format", "json")
-    assert found == status
+    exit_status, out, err = run("doctor", str(tmp_path / "mine.hlsl"), "--format", "json")
+    assert exit_status == status
     if status == 2:
-        assert err.count("\n") == 1 and said in err
+        assert err.count("\n") == 1 and message in err
     else:
-        assert any(said in row["finding"] and row["kind"] == "finding" for row in json.loads(out)), out
+        assert any(message in row["finding"] and row["kind"] == "finding" for row in json.loads(out)), out
 
 
 @pytest.mark.parametrize("words", [("--storage", "rg8"), ("--domain", "sphere"), ("--plot", "sphere.png")])
-def test_what_is_asked_of_normals_is_refused(run, tmp_path, words):
+def test_options_for_normals_are_refused(run, tmp_path, words):
     words = [str(tmp_path / word) if word.endswith(".png") else word for word in words]
     status, _, err = run("doctor", str(INPUTS / "velocity.hlsl"), *words)
     assert status == 2 and f"{words[0]} requires normals; this file is of motion vectors" in err

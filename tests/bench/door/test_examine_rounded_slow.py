@@ -1,4 +1,4 @@
-"""What `doctor` says of codes once a storage has rounded them: no numbers, unused signs, steps that do not match."""
+"""What `doctor` reports about rounded codes: results that are not numbers, unused signs and mismatched steps."""
 
 import json
 
@@ -45,20 +45,20 @@ def findings(run, tmp_path, text: str, *words: str) -> list[str]:
     return [row["finding"] for row in json.loads(out) if row["kind"] == "finding"]
 
 
-def test_rounded_codes_that_are_no_numbers_are_counted(run, tmp_path):
-    (said,) = findings(run, tmp_path, ROOT, "--storage", "rg8")
-    assert "of 65536 rounded codes (3.3%) decode to NaN or infinity" in said, said
+def test_rounded_codes_that_decode_to_nan_are_counted(run, tmp_path):
+    (finding,) = findings(run, tmp_path, ROOT, "--storage", "rg8")
+    assert "of 65536 rounded codes (3.3%) decode to NaN or infinity" in finding, finding
     assert findings(run, tmp_path, ROOT.replace("sqrt(1.0 - dot(p, p))", "sqrt(max(0.0, 1.0 - dot(p, p)))")) == []
 
 
-def test_a_signed_storage_whose_sign_is_not_used_is_a_finding(run, tmp_path):
-    (said,) = findings(run, tmp_path, UNIT, "--storage", "rg8_snorm")
-    assert "this is octahedral, but 100% worse" in said and "use half of the range" in said, said
+def test_an_unused_sign_of_a_signed_storage_is_reported(run, tmp_path):
+    (finding,) = findings(run, tmp_path, UNIT, "--storage", "rg8_snorm")
+    assert "this is octahedral, but 100% worse" in finding and "use half of the range" in finding, finding
     assert findings(run, tmp_path, UNIT, "--storage", "rg8") == []
 
 
 @pytest.mark.parametrize(("encode", "decode"), [(256, 255), (255, 256), (255, 255)])
-def test_steps_of_an_angle_that_do_not_match_are_named(run, tmp_path, encode, decode):
-    said = findings(run, tmp_path, ANGLES.replace("ENCODE", f"{encode}.0").replace("DECODE", f"{decode}.0"))
+def test_mismatched_steps_of_an_angle_are_reported(run, tmp_path, encode, decode):
+    lines = findings(run, tmp_path, ANGLES.replace("ENCODE", f"{encode}.0").replace("DECODE", f"{decode}.0"))
     expected = f"the angle about z comes back {encode}/{decode} times as large"
-    assert [line[: len(expected)] for line in said] == ([expected] if encode != decode else []), said
+    assert [line[: len(expected)] for line in lines] == ([expected] if encode != decode else []), lines

@@ -139,14 +139,14 @@ def doctor(folder, *words: str) -> list[dict]:
 
 @pytest.fixture(scope="module")
 def told(engine, tmp_path_factory):
-    """By file its row, of several the first, and the patch; and all rows."""
+    """Each file's row (the first if it has several), the patch, and all rows."""
     patch = tmp_path_factory.mktemp("patch") / "best.patch"
     rows = doctor(engine, "--diff", str(patch), "--report", str(patch.with_name("page.html")))
     return {row["file"]: row for row in reversed(rows)}, patch, rows
 
 
 def test_each_pair_of_a_folder_has_a_row(told):
-    """What the pair does not reach does not matter; a decoder beside a function of something else is no pair."""
+    """Code that a pair does not use is ignored; a decoder next to a function for something else is not a pair."""
     rows, _, _ = told
     octahedral = {name for name, row in rows.items() if row["mean_deg"] == pytest.approx(0.337, abs=0.001)}
     assert octahedral == {
@@ -169,25 +169,25 @@ def test_a_broken_pair_next_to_a_right_one_has_its_row(told):
 
 
 def test_all_codes_of_a_file_have_a_line(told):
-    """Those of normals that are measured, what rounding does to them, those that must be named, and those of depth."""
+    """Lines cover measured normals, the effects of rounding, functions that the user must name, and depth."""
     _, _, rows = told
     lines = {row["functions"]: row["says"] for row in rows if row["file"] == "post/packing.glsl"}
     assert "rounded codes (3.3%) decode to NaN" in lines["encodeDir:decodeDir"]
-    assert any("packDirToUint:unpackDirFromUint" in said and "if it is named" in said for said in lines.values())
+    assert any("packDirToUint:unpackDirFromUint" in line and "if it is named" in line for line in lines.values())
     depth = lines["packDepth:unpackDepth"]
     assert "not a multiple of 1/255; use powers of 255 instead of 256" in depth
     assert "`normalbench depth --depth" in depth
 
 
-def test_a_pair_that_is_not_compiled_says_which_include_is_missing(told):
+def test_a_pair_that_does_not_compile_names_the_missing_include(told):
     rows, _, _ = told
-    said = rows["lost/unity.hlsl"]["says"]
-    assert "PackOct" in said and "Packages/core/Packing.hlsl is not next to unity.hlsl" in said
-    assert "--include Packages=FOLDER" in said and rows["lost/unity.hlsl"]["mean_deg"] is None
+    message = rows["lost/unity.hlsl"]["says"]
+    assert "PackOct" in message and "Packages/core/Packing.hlsl is not next to unity.hlsl" in message
+    assert "--include Packages=FOLDER" in message and rows["lost/unity.hlsl"]["mean_deg"] is None
 
 
 def test_the_patch_is_applied_and_measured_again(told, engine):
-    """In HLSL with the ends of lines that the file has; what it cannot change stays."""
+    """The patched HLSL file keeps its line endings and its scale to [0, 1]."""
     _, patch, _ = told
     subprocess.run(["git", "init", "-q"], cwd=engine, check=True)
     subprocess.run(["git", "apply", str(patch)], cwd=engine, check=True)

@@ -1,4 +1,4 @@
-"""Names are understood as people type them, and what is nearly right is said."""
+"""Names are understood in common spellings, and a near miss gets a suggestion."""
 
 import pytest
 from typed import choose
@@ -51,15 +51,15 @@ def test_a_name_is_understood(what, typed, meant):
         ("encoding", "zzzz", "unknown encoding 'zzzz'; known: all, xyz"),
     ],
 )
-def test_what_is_nearly_right_is_said(what, typed, said):
+def test_a_near_miss_gets_a_suggestion(what, typed, said):
     with pytest.raises(UsageError) as error:
         choose(what, typed, KNOWN[what])
     assert said in str(error.value)
 
 
 @pytest.mark.parametrize("what", KNOWN)
-def test_no_two_names_are_spelled_alike(what):
-    """Each is found by its own name, in capitals and with hyphens."""
+def test_names_differ_by_more_than_spelling(what):
+    """Each name is found in capitals and with hyphens."""
     for name in KNOWN[what]:
         assert choose(what, name.upper().replace("_", "-"), KNOWN[what]) == [name]
 
@@ -73,8 +73,8 @@ FORMATS_OF_APIS = {
 }
 
 
-def test_formats_are_known_by_the_names_of_apis():
-    """As RenderDoc, DXGI, Vulkan, OpenGL, Metal, WebGPU and Unreal write them; a format that is no storage is none."""
+def test_formats_are_recognised_by_their_api_names():
+    """Names are from RenderDoc, DXGI, Vulkan, OpenGL, Metal, WebGPU and Unreal; other formats are not storages."""
     for storage, names in FORMATS_OF_APIS.items():
         assert {spelled("storage", name, STORAGES) for name in names.split()} == {storage}
     for name in ("DXGI_FORMAT_R24G8_TYPELESS", "VK_FORMAT_R8G8_UINT", "R64G64_SFLOAT", "a2", "gpu", ""):

@@ -1,4 +1,4 @@
-"""Storages by rule: the catalogue's where there is one, ranges, and what cannot be."""
+"""Storages by rule: names of the catalogue if they match, ranges, and impossible storages."""
 
 import pytest
 from typed import roundings_named, storages_named
@@ -56,12 +56,12 @@ def test_bits_name_a_storage(said, names):
 
 
 @pytest.mark.parametrize("storage", [*STORAGES.values(), *MOTION_STORAGES.values()], ids=lambda s: s.name)
-def test_every_storage_is_said_by_its_bits(storage):
-    """What `list storages` says of it names it, or another one with these numbers: rg16f has two of rgba16f's four."""
+def test_every_storage_has_a_name_by_its_bits(storage):
+    """The rule names the storage or one with the same numbers: `rg16f` has two of the four of `rgba16f`."""
     if storage.name != "r11g11b10f":
-        said = storage_of(rule_of(storage))
-        assert (said.kind, said.is_centred, said.is_full) == (storage.kind, storage.is_centred, storage.is_full)
-        assert said.bits[: storage.channels] == storage.bits
+        parsed = storage_of(rule_of(storage))
+        assert (parsed.kind, parsed.is_centred, parsed.is_full) == (storage.kind, storage.is_centred, storage.is_full)
+        assert parsed.bits[: storage.channels] == storage.bits
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_every_storage_is_said_by_its_bits(storage):
         ("rg9", "unknown storage 'rg9'"),
     ],
 )
-def test_what_cannot_be_is_a_line(said, message):
+def test_an_impossible_storage_is_a_one_line_error(said, message):
     with pytest.raises(UsageError, match=message):
         storages_named(said)
 
@@ -103,14 +103,14 @@ def test_python_takes_one_codec_at_a_time():
         ("octahedral", "rgba16f", "rgba16f", (16, 16, 16, 16)),
     ],
 )
-def test_floats_are_as_many_as_the_codes_numbers(encoding, said, name, sizes):
-    """Where nobody says how many; a format that is named has its own."""
+def test_floats_have_as_many_components_as_the_encoding(encoding, said, name, sizes):
+    """A format that is given by name keeps its own number of components."""
     (storage,) = storages_named(said)
     stored = Codec(ENCODINGS[encoding], storage).storage
     assert (stored.name, stored.bits) == (name, sizes)
 
 
-def test_floats_are_as_many_as_a_code_of_any_kind_has_numbers():
+def test_floats_have_as_many_components_as_an_encoding_of_any_kind():
     (storage,) = storages_named("float:5:10")
     assert CurveCodec(CURVE_ENCODINGS["linear"], storage).storage.name == "r16f"
     assert MotionCodec(MOTION_ENCODINGS["linear"], storage).storage.name == "rg16f"
@@ -118,7 +118,7 @@ def test_floats_are_as_many_as_a_code_of_any_kind_has_numbers():
     assert LightCodec(LIGHT_ENCODINGS["plain"], storage).storage == STORAGES["rgba16f"]
 
 
-def test_who_is_refused_noise_is_told_which_tables_add_it():
+def test_refused_dithering_names_the_tables_that_support_it():
     for table in ("quality", "render"):
         assert DITHERED in fields_of(TABLES[table].options)["rounding"].option.help
     assert roundings_named("nearest,dithered", ROUNDINGS_AND_DITHERED) == ["nearest", DITHERED]

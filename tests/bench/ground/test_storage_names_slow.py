@@ -1,10 +1,10 @@
-"""Storages by rule: the catalogue's where there is one, ranges, and what cannot be."""
+"""Storages by rule: names of the catalogue if they match, ranges, and impossible storages."""
 
 import json
 
 
-def test_centred_numbers_are_measured_and_not_laid_out(run):
-    """In both languages: axes are exact, as in SNORM, and in a UNORM target. What cannot have them says so."""
+def test_centred_numbers_can_be_measured_but_not_used_in_a_layout(run):
+    """Axes are exact in both languages, as in SNORM but in a UNORM target. A layout reports the limitation."""
     words = ("--encoding", "octahedral", "--storage", "centred:8:8", "--format", "json")
     status, out, err = run("quality", *words, "--normals", "axes")
     assert status == 0 and {row["backend"] for row in json.loads(out)} == {"jax", "glsl"}, err

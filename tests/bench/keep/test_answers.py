@@ -1,4 +1,4 @@
-"""Answers that are kept: given again as they were, until something changes that decides them."""
+"""Cached answers are repeated until something that affects them changes."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ PICK = TABLES["pick"]
 
 @pytest.fixture
 def asked(own_cache, monkeypatch, tmp_path):  # noqa: ARG001 (an empty cache)
-    """A command that is counted; it says a line on standard error, a text on standard output, and fails."""
+    """A command that counts its runs, prints to standard error and standard output, and fails."""
     ran, driver = [], tmp_path / "lib" / "driver.so"
     driver.parent.mkdir()
     driver.write_text("1")
@@ -35,7 +35,7 @@ def asked(own_cache, monkeypatch, tmp_path):  # noqa: ARG001 (an empty cache)
     return ask
 
 
-def test_an_answer_is_given_again_as_it_was(asked, capsys):
+def test_a_cached_answer_is_repeated_unchanged(asked, capsys):
     first = (asked(), *capsys.readouterr())
     again = (asked(), *capsys.readouterr())
     assert first == (1, "the answer\n", "normalbench: a code is left out\n")
@@ -45,7 +45,7 @@ def test_an_answer_is_given_again_as_it_was(asked, capsys):
 
 
 @pytest.mark.parametrize("change", ["driver", "driver gone", "setting", "sources", "width", "anew", "packages"])
-def test_it_is_measured_again_where_something_changed(asked, monkeypatch, change):
+def test_an_answer_is_measured_again_if_something_changed(asked, monkeypatch, change):
     asked()
     if change == "driver":
         asked.driver.write_text("22")
@@ -70,7 +70,7 @@ def test_each_question_has_an_answer_of_its_own(asked):
     assert len(asked.ran) == 4
 
 
-def test_a_question_about_files_is_not_kept(asked, monkeypatch, tmp_path):
+def test_an_answer_about_files_is_not_cached(asked, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine").write_text("")
     for word in ("mine.glsl", "folder/mine", "mine", "C:\\mine.hlsl"):

@@ -1,4 +1,4 @@
-"""`normalbench compare`: nothing of the same work, exactly what is another, times only beyond chance."""
+"""`normalbench compare`: no differences for the same work, exact differences otherwise, times only beyond chance."""
 
 import json
 import math
@@ -25,7 +25,7 @@ def timed(name: str, times) -> dict:
     return {"pipeline": name, "ms_frame": float(np.median(times)), "ms_frame_each": " ".join(map(str, times))}
 
 
-def test_figures_are_compared_exactly_and_nan_is_itself():
+def test_figures_are_compared_exactly_and_nan_equals_nan():
     same = {"pipeline": "a", "triangles": 1 / 3, "triangles_lights": float("nan"), "clock": "wall", "ms_frame": 1.0}
     assert compared(run_of(same), run_of(same | {"ms_frame": 9.0, "clock": "query"})) == []
     (change,) = compared(run_of(same), run_of(same | {"triangles": np.nextafter(1 / 3, 1)}))
@@ -33,12 +33,12 @@ def test_figures_are_compared_exactly_and_nan_is_itself():
     assert change["verdict"] == "worse"
 
 
-def test_rows_that_were_measured_otherwise_are_said():
-    """Rounded by another, or of another number of normals: no figure is compared without a word."""
+def test_rows_measured_under_other_conditions_are_reported():
+    """Figures with another rounding or another number of normals are not compared without a message."""
     row = {"encoding": "xyz", "storage": "rg8", "count": 2**20, "rounded_by": "device", "psnr_db": 50.0}
     others = [row | {"count": 2**26, "rounded_by": "shader"}, row | {"storage": "rg16", "count": 2**26}]
     runs = [
-        Done(MACHINE, [{"table": "quality", "key": {}, "rows": [one]} for one in rows])
+        Done(MACHINE, [{"table": "quality", "key": {}, "rows": [step_row]} for step_row in rows])
         for rows in ([row, row | {"storage": "rg16"}], others)
     ]
     assert measured_otherwise(*runs) == [
@@ -48,23 +48,23 @@ def test_rows_that_were_measured_otherwise_are_said():
     assert measured_otherwise(runs[0], runs[0]) == []
 
 
-def test_rows_of_a_table_that_is_no_more_are_not_compared():
-    """Both runs of it, and one; the sentence names it."""
-    one, other = (Done(MACHINE, [{"table": "growth", "key": {}, "rows": [{"seconds": at}]}]) for at in (1.0, 2.0))
-    assert compared(one, other) == compared(one, run_of()) == [] and not one.tables
-    assert one.left_out == "Rows of growth are left out, because this version has no such table"
+def test_rows_of_a_table_that_no_longer_exists_are_not_compared():
+    """Both runs have the table, or one has it; a sentence names the table."""
+    run, other = (Done(MACHINE, [{"table": "growth", "key": {}, "rows": [{"seconds": time}]}]) for time in (1.0, 2.0))
+    assert compared(run, other) == compared(run, run_of()) == [] and not run.tables
+    assert run.left_out == "Rows of growth are left out, because this version has no such table"
     assert run_of({"pipeline": "a"}).left_out == ""
 
 
-def test_steps_that_one_run_lacks_are_named():
+def test_rows_missing_from_one_run_are_named():
     a, b = {"pipeline": "a", "triangles": 1}, {"pipeline": "b", "triangles": 1}
     (change,) = compared(run_of(a, b), run_of(b))
     assert (change["row"], change["before"], change["after"], change["change"]) == ("a", True, False, "only before")
     assert change["verdict"] == "gone" and compared(run_of(b), run_of(a, b))[0]["verdict"] == ""
 
 
-def test_rows_of_versions_that_rounded_in_one_way_alone_are_those_of_the_nearest():
-    """The column came later: a run without it is compared with one that has it, and with none that rounds otherwise."""
+def test_rows_without_a_rounding_column_count_as_rounded_to_nearest():
+    """The column was added later: a row without it matches `nearest`, but not `truncate`."""
     old, nearest, cut = (
         Done(MACHINE, [{"table": "depth", "key": {}, "rows": [{"depth": "linear", "error_max": 1.0} | more]}])
         for more in ({}, {"rounding": "nearest"}, {"rounding": "truncate"})
@@ -82,14 +82,14 @@ def picked(**figures) -> Done:
     ("why", "lost", "found"),
     [({}, ("not measured", ""), ("new", "")), ({"skipped": "no GL"}, ("not measured", "worse"), ("new", "better"))],
 )
-def test_a_figure_that_was_not_looked_for_is_not_worse_unless_the_row_says_why(why, lost, found):
+def test_an_unmeasured_figure_is_worse_only_if_the_row_states_a_reason(why, lost, found):
     measured = picked(angle_sup_deg=0.95)
     for runs, expected in (((measured, picked(**why)), lost), ((picked(**why), measured), found)):
         changes = {change["column"]: (change["change"], change["verdict"]) for change in compared(*runs)}
         assert changes["angle_sup_deg"] == expected and changes.keys() <= {"angle_sup_deg", "skipped"}
 
 
-def test_new_rows_and_rows_that_are_gone_are_not_said_in_one_line():
+def test_new_rows_and_missing_rows_are_on_separate_lines():
     rows = [{"encoding": name, "storage": storage} for name in ("xy", "xyz") for storage in ("rg8", "rgba8")]
     done = [
         Done(MACHINE, [{"table": "quality", "key": {}, "rows": [row]} for row in part]) for part in (rows[:2], rows[2:])
@@ -106,35 +106,35 @@ def step_of_quality(row: dict) -> dict:
 
 
 def quality_of(**psnr: float) -> Done:
-    """Encodings in rg8, by their error."""
+    """Return a run of encodings in `rg8` with these PSNR values."""
     rows = [{"encoding": name, "storage": "rg8", "psnr_db": db, "angle_max_deg": 90 / db} for name, db in psnr.items()]
     return Done(MACHINE, [{"table": "quality", "key": {}, "rows": rows}])
 
 
-def test_the_total_is_one_of_rows_and_of_figures():
+def test_the_total_counts_rows_and_figures():
     before, after = quality_of(xy=40.0, xyz=45.0, cube=50.0, octahedral=49.0), quality_of(xy=39.0, xyz=46.0, cube=48.0)
     assert total(compared(before, after)) == "4 rows, 6 figures: 2 rows worse, 1 row gone, 1 row better"
     assert total(compared(quality_of(), quality_of(xy=39.0))) == "1 row, 0 figures: 1 row new"
 
 
 def broken_fold() -> tuple[Done, Done]:
-    """One encoding in five storages, of which a sharp one gets the fewest decibels less, and one is nearly the same."""
+    """Return two runs of an encoding in four storages: `rg16f` loses few decibels, `rgba8` almost none."""
     names = ("rg16f", "rg16", "rg8", "rgba8")
     before = [(79.9, math.inf, 0.005), (101.1, math.inf, 0.001), (48.6, 50.0, 0.1), (49.9, 50.0, 0.1)]
     after = [(78.24, 83.0, 0.006), (56.7, 55.4, 0.036), (10.9, 11.0, 22.0), (49.8983, 50.0, 0.1001)]
-    made = []
+    runs = []
     for figures in (before, after):
         rows = [
             {"encoding": "mine", "storage": name, "psnr_db": psnr, "psnr_article_db": article, "angle_mean_deg": mean}
             for name, (psnr, article, mean) in zip(names, figures, strict=True)
         ]
         skipped = {"encoding": "mine", "storage": "rg8", "backend": "jax", "skipped": "no twin"}
-        made.append(Done(MACHINE, [{"table": "quality", "key": {}, "rows": [*rows, skipped]}]))
-    return made[0], made[1]
+        runs.append(Done(MACHINE, [{"table": "quality", "key": {}, "rows": [*rows, skipped]}]))
+    return runs[0], runs[1]
 
 
-def test_rows_are_ordered_by_the_figure_that_they_show_and_small_changes_are_last():
-    """No column that is infinite before ranks a row, and less than 0.1 dB is not said in one word with -44 dB."""
+def test_rows_are_ordered_by_their_shown_figure_with_small_changes_last():
+    """A column with an infinite old value does not rank rows; a loss below 0.1 dB is only "slightly worse"."""
     lines = in_short(compared(*broken_fold()))
     assert [(line["row"], line["column"], line["change"], line["verdict"]) for line in lines] == [
         ("mine rg16", "psnr_db", "-44.4", "worse"),
@@ -147,15 +147,15 @@ def test_rows_are_ordered_by_the_figure_that_they_show_and_small_changes_are_las
     )
 
 
-def test_a_code_that_was_exact_and_is_not_is_among_the_worst():
+def test_an_encoding_that_is_no_longer_exact_is_among_the_worst():
     (line,) = in_short(compared(quality_of(xy=math.inf), quality_of(xy=50.0)))
     assert (line["column"], line["before"], line["verdict"]) == ("psnr_db", math.inf, "worse")
     ranked = in_short(compared(quality_of(xy=60.0, xyz=math.inf), quality_of(xy=55.0, xyz=50.0)))
     assert [line["row"] for line in ranked] == ["xyz rg8", "xy rg8"]
 
 
-def test_the_first_line_says_which_encoding_changed_in_how_many_rows_and_by_how_much():
-    """A row that says why it has no figures does not count."""
+def test_the_first_line_states_the_changed_encoding_its_rows_and_the_change():
+    """A row that states why it has no figures is not counted."""
     before, after = broken_fold()
     assert what_matters(before, after, compared(before, after)) == [
         "mine: worse in 3 of 4 rows, slightly worse in 1; most in quality rg16: "
@@ -164,37 +164,37 @@ def test_the_first_line_says_which_encoding_changed_in_how_many_rows_and_by_how_
     assert what_matters(before, before, []) == []
 
 
-def test_rows_that_are_gone_are_counted_among_those_that_there_were():
-    """Also those that gave a reason for having no figures, which had been left out of the second number."""
+def test_missing_rows_are_counted_among_all_earlier_rows():
+    """The total includes rows that stated why they had no figures."""
     rows = [{"encoding": "xy", "storage": storage, "psnr_db": 40.0, "skipped": None} for storage in ("rg8", "rgba8")]
     rows[1] |= {"psnr_db": None, "skipped": "no GL device"}
     before, other = Done(MACHINE, [step_of_quality(row) for row in rows]), quality_of(xyz=40.0)
-    said = sentences(before, other, compared(before, other))
-    assert said[0].startswith("xy: gone in all 2 rows"), said
+    lines = sentences(before, other, compared(before, other))
+    assert lines[0].startswith("xy: gone in all 2 rows"), lines
 
 
-def test_encodings_that_changed_are_five_sentences_and_a_number():
+def test_changed_encodings_are_five_sentences_and_a_count():
     names = [f"code{number}" for number in range(7)]
-    before, after = (quality_of(**{name: db - at for at, name in enumerate(names)}) for db in (60.0, 50.0))
-    said = what_matters(before, after, compared(before, after))
-    assert len(said) == 6 and said[-1] == "and 2 more of 7"
-    assert said[0].startswith("code0: worse in its only row; most in quality rg8: angle_max_deg ")
+    before, after = (quality_of(**{name: db - index for index, name in enumerate(names)}) for db in (60.0, 50.0))
+    lines = what_matters(before, after, compared(before, after))
+    assert len(lines) == 6 and lines[-1] == "and 2 more of 7"
+    assert lines[0].startswith("code0: worse in its only row; most in quality rg8: angle_max_deg ")
 
 
-def test_runs_that_share_no_row_say_so_first(run, monkeypatch):
+def test_runs_without_a_common_row_are_reported_first(run, monkeypatch):
     runs = {"before": quality_of(xy=40.0), "after": quality_of(xyz=44.0)}
     monkeypatch.setattr(compare_command, "read_to_show", lambda folder, **_: runs[folder.name])
     for kind in ("table", "markdown"):
         assert run("compare", "before", "after", "--format", kind)[1].startswith("the runs have no row in common\n")
 
 
-def test_a_spreadsheet_gets_numbers_as_they_are(run, monkeypatch):
+def test_csv_has_plain_numbers(run, monkeypatch):
     monkeypatch.setattr(compare_command, "read_to_show", lambda folder, **_: broken_fold()[folder.name == "after"])
     out = run("compare", "before", "after", "--format", "csv")[1]
     assert "-inf" in out and "-44.4" in out and "+0.035" in out and "'" not in out
 
 
-def test_columns_that_all_lines_share_are_not_below_the_table_as_its_total(run, monkeypatch):
+def test_columns_that_all_lines_share_are_not_repeated_below_the_table(run, monkeypatch):
     runs = {"before": quality_of(xy=40.0, xyz=45.0), "after": quality_of(xy=39.0, xyz=44.0)}
     monkeypatch.setattr(compare_command, "read_to_show", lambda folder, **_: runs[folder.name])
     for kind in ("table", "markdown"):
@@ -207,8 +207,8 @@ def test_columns_that_all_lines_share_are_not_below_the_table_as_its_total(run, 
     assert status == 0 and out.splitlines()[0] == "table,row,column,before,after,change,verdict"
 
 
-def test_settings_from_outside_are_facts_of_a_run_and_named_where_they_differ(run, monkeypatch):
-    """XLA's flags and Mesa's variables change figures; where something is kept does not."""
+def test_environment_settings_are_facts_of_a_run_and_named_if_they_differ(run, monkeypatch):
+    """XLA's flags and Mesa's variables affect figures; the location of a cache does not."""
     flags = "--xla_cpu_enable_fast_math=true"
     monkeypatch.setenv("XLA_FLAGS", flags)
     monkeypatch.setenv("MESA_SHADER_CACHE_DIR", "/somewhere")
@@ -221,7 +221,7 @@ def test_settings_from_outside_are_facts_of_a_run_and_named_where_they_differ(ru
     assert f"figures may differ because settings changed: XLA_FLAGS was not set and is {flags}" in err, err
 
 
-def test_settings_from_outside_stand_in_a_row(run, monkeypatch):
+def test_environment_settings_are_shown_in_a_row(run, monkeypatch):
     monkeypatch.delenv("LP_NUM_THREADS", raising=False)
     monkeypatch.setenv("MESA_NO_ERROR", "1")
     words = ["quality", "--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--format", "json"]
@@ -229,8 +229,8 @@ def test_settings_from_outside_stand_in_a_row(run, monkeypatch):
     assert devices["jax"] == "cpu, MESA_NO_ERROR=1" and devices["glsl"].endswith(", MESA_NO_ERROR=1")
 
 
-def test_the_encoder_that_broke_comes_before_counts_that_changed_from_0_to_2():
-    """The line has the decibels that people know, and rows that changed together are one."""
+def test_a_broken_encoder_comes_before_counts_that_changed_from_0_to_2():
+    """The line shows decibels, and rows that changed together are one line."""
     costs = [
         {"encoding": "mine", "operation": name, "stage": "fragment", "family": f, "conversion": 0, "instructions": 20}
         for name in ("encode", "decode")
@@ -254,8 +254,8 @@ def step_of(*rows: dict) -> Done:
     return Done(MACHINE, [{"table": "cost", "key": {"family": "navi31"}, "rows": list(rows)}])
 
 
-def test_rows_of_one_step_are_paired_by_what_they_are():
-    """A row that one run lacks is named, and moves no other; two rows of one name are paired in their order."""
+def test_rows_of_one_step_are_paired_by_identity():
+    """A missing row is named and shifts no other row; rows with the same name are paired in order."""
     names = [("xyz", "encode"), ("xyz", "decode"), ("octahedral", "encode"), ("octahedral", "encode")]
     about = [
         {"encoding": e, "operation": o, "stage": "fragment", "family": "navi31", "instructions": x}
@@ -267,14 +267,14 @@ def test_rows_of_one_step_are_paired_by_what_they_are():
     assert (other["row"], other["before"], other["after"]) == ("octahedral encode fragment navi31", 3, 9)
 
 
-def test_a_small_difference_is_none_however_sure():
+def test_a_small_difference_does_not_count_even_if_significant():
     base = 10 + np.linspace(0, 0.01, 9)
     for factor, changed in ((1.02, False), (0.98, False), (1.08, True), (0.92, True)):
         assert mann_whitney(base, base * factor) < 1e-4
         assert bool(compared(run_of(timed("a", base)), run_of(timed("a", base * factor)))) == changed
 
 
-def test_times_count_beyond_chance_and_a_least_effect_and_on_one_machine():
+def test_times_differ_only_beyond_chance_above_a_minimum_and_on_one_machine():
     rng = np.random.default_rng(0)
     base = 10 + rng.uniform(-0.5, 0.5, 9)
     slow, slightly, noisy = base * 1.2, base * 1.02, 10 + rng.uniform(-3, 3, 9) + 0.6
@@ -285,7 +285,7 @@ def test_times_count_beyond_chance_and_a_least_effect_and_on_one_machine():
     assert compared(run_of(timed("a", base)), elsewhere) == []
 
 
-def test_what_is_no_run_is_one_line(run, tmp_path):
+def test_a_folder_that_is_not_a_run_is_a_one_line_error(run, tmp_path):
     status, out, err = run("compare", str(tmp_path), str(tmp_path))
     assert (status, out) == (2, "") and "is not a results folder" in err and err.count("\n") == 1
 
@@ -302,7 +302,7 @@ EMPTIED = {"lines": 2, "digest": "of the rows", "finished": True}
     ],
 )
 def test_a_run_without_rows_is_not_compared(run, tmp_path, monkeypatch, facts, rows, said):
-    """In one line that says why; a history leaves it out."""
+    """A one-line error states the reason; a history leaves the run out."""
     monkeypatch.chdir(tmp_path)
     for name, text in (("empty", rows), ("whole", json.dumps(step_of_quality({"encoding": "xy"})) + "\n")):
         Path(name).mkdir()

@@ -1,4 +1,4 @@
-"""`normalbench compare`: nothing of the same work, exactly what is another, times only beyond chance."""
+"""`normalbench compare`: no differences for the same work, exact differences otherwise, times only beyond chance."""
 
 import json
 import subprocess
@@ -21,8 +21,8 @@ def in_a_copy(folder: Path, name: str) -> None:
 
 
 @pytest.mark.usefixtures("gl")
-def test_two_runs_of_one_commit_are_the_same_and_an_altered_constant_shows_in_its_rows_alone(run, tmp_path):
-    """The stereographic scale of another number: every row of it and no other."""
+def test_runs_of_a_commit_match_and_a_new_constant_changes_only_its_rows(run, tmp_path):
+    """Another stereographic scale changes every row of that encoding and no other."""
     package = a_copy_of_the_rooms(tmp_path)
     in_a_copy(tmp_path, "one")
     in_a_copy(tmp_path, "two")
@@ -37,7 +37,7 @@ def test_two_runs_of_one_commit_are_the_same_and_an_altered_constant_shows_in_it
     altered = {step["key"]["backend"] for step in read_run(tmp_path / "one").steps}
     # In each of its two storages.
     assert len({row["row"] for row in rows if row["column"] == "psnr_db"}) == 2 * len(altered)
-    said = run("compare", str(tmp_path / "one"), str(tmp_path / "altered"))[1]
-    assert "stereographic" in said and len(said.splitlines()) <= 22
+    printed = run("compare", str(tmp_path / "one"), str(tmp_path / "altered"))[1]
+    assert "stereographic" in printed and len(printed.splitlines()) <= 22
     status = [run("compare", str(tmp_path / "one"), str(tmp_path / "altered"), "--fail-on", how)[0] for how in HOWS]
     assert status == [0, int(any(row["verdict"] == "worse" for row in rows)), 1]

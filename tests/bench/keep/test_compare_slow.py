@@ -1,4 +1,4 @@
-"""`normalbench compare`: nothing of the same work, exactly what is another, times only beyond chance."""
+"""`normalbench compare`: no differences for the same work, exact differences otherwise, times only beyond chance."""
 
 import itertools
 
@@ -9,14 +9,14 @@ from normalbench.bench.keep.comparison import mann_whitney
 
 
 def test_the_rank_test_is_exact():
-    """Against every way to deal nine ranks; and the known least of nine against nine, 2 / 48620."""
-    one, other = [1.0, 4.0, 2.5, 8.0], [3.0, 9.0, 7.0, 6.0, 5.0]
-    u = sum(a > b for a in one for b in other)
+    """It matches all ways to deal nine ranks, and the smallest possible value for nine against nine, 2 / 48620."""
+    sample, other = [1.0, 4.0, 2.5, 8.0], [3.0, 9.0, 7.0, 6.0, 5.0]
+    u = sum(a > b for a in sample for b in other)
     dealt = [
         sum(a > b for a in chosen for b in set(range(9)) - set(chosen))
         for chosen in itertools.combinations(range(9), 4)
     ]
     exact = np.mean([abs(k - 10) >= abs(u - 10) for k in dealt])
-    assert mann_whitney(one, other) == pytest.approx(exact, abs=1e-12)
+    assert mann_whitney(sample, other) == pytest.approx(exact, abs=1e-12)
     assert mann_whitney(range(9), range(10, 19)) == pytest.approx(2 / 48620, rel=1e-9)
     assert mann_whitney([1, 1, 1], [1, 1, 1]) == 1

@@ -1,4 +1,4 @@
-"""`normalbench history`: the commit, the row and the figure of each step, and no noise of times."""
+"""`normalbench history`: the commit, the row and the figure of each change, without noise of times."""
 
 import json
 import os
@@ -31,11 +31,11 @@ def rows_of(run, *words):
 
 
 def test_thirty_commits_have_two_regressions_one_of_them_mended(run, thirty):
-    """In two tables; the times of four pipelines, which are noise, are not named."""
+    """The regressions are in two tables; times of four pipelines are noise and are not named."""
     rows = rows_of(run, thirty)
-    found = {(row["commit"], row["table"], row["row"], row["column"], row["verdict"], row["mended"]) for row in rows}
+    changes = {(row["commit"], row["table"], row["row"], row["column"], row["verdict"], row["mended"]) for row in rows}
     mine, longer = (name_of(FOLD), "quality", "mine rg8 sphere jax"), (name_of(LONGER), "cost")
-    assert found == {
+    assert changes == {
         (*mine, "psnr_db", "worse", None),
         (*mine, "angle_mean_deg", "worse", None),
         (*longer, "mine decode fragment navi21", "instructions", "worse", name_of(SHORTER)),
@@ -44,15 +44,15 @@ def test_thirty_commits_have_two_regressions_one_of_them_mended(run, thirty):
     assert rows[0]["column"] == "psnr_db"
 
 
-def test_people_read_a_sentence_and_a_line_for_each(run, thirty):
-    """What still is worse comes first."""
+def test_text_output_has_a_sentence_and_a_line_for_each_regression(run, thirty):
+    """Regressions that are not mended come first."""
     status, out, err = run("history", str(thirty), "--format", "markdown")
     assert (status, err) == (0, "")
-    lead, *said = (line for line in out.splitlines() if line and not line.startswith("|"))
+    lead, *rest = (line for line in out.splitlines() if line and not line.startswith("|"))
     assert lead.startswith(f"30 runs, from {name_of(0)[:8]}, 2026-01-01 (Change 0) to ")
-    assert "(Shorten the fold)" in said[0] and "psnr_db from 48.25 to 45.12 dB" in said[0]
+    assert "(Shorten the fold)" in rest[0] and "psnr_db from 48.25 to 45.12 dB" in rest[0]
     assert (
-        "(Guard the decoder" in said[1] and f"mended at {name_of(SHORTER)[:8]}, 2026-01-22 (Drop the guard)" in said[1]
+        "(Guard the decoder" in rest[1] and f"mended at {name_of(SHORTER)[:8]}, 2026-01-22 (Drop the guard)" in rest[1]
     )
     head, _, first, second = (line for line in out.splitlines() if line.startswith("|"))
     assert all(column in head for column in ("commit", "table", "row", "column", "before", "after", "mended"))
@@ -60,55 +60,55 @@ def test_people_read_a_sentence_and_a_line_for_each(run, thirty):
     assert all(word in second for word in (name_of(LONGER)[:8], "cost", "instructions", name_of(SHORTER)[:8]))
 
 
-def test_the_manual_shows_what_is_printed(run, thirty, monkeypatch):
-    """docs/runs-and-reports.md, at 120 columns."""
+def test_the_manual_shows_the_printed_output(run, thirty, monkeypatch):
+    """The page is docs/runs-and-reports.md, at 120 columns."""
     monkeypatch.setenv("COLUMNS", "120")
     shown = re.search(r"<!-- history -->\n```text\n(.*?)```", PAGES[ROOT / "docs/runs-and-reports.md"], re.S)
     assert shown and shown[1] == run("history", str(thirty))[1]
 
 
-def test_figures_by_commit_are_a_line_where_one_changes(run, thirty):
-    """For programs, each figure in each run."""
+def test_figures_by_commit_have_a_line_for_each_change(run, thirty):
+    """JSON has each figure of each run."""
     words = ("--by", "commit", "--encoding", "mine", "--storage", "rg8", "--column", "psnr-db")
     status, out, _ = run("history", str(thirty), *words, "--format", "markdown")
     lines = [line for line in out.splitlines() if line.startswith("|")][2:]
-    assert status == 0 and [line.split("|")[1].strip() for line in lines] == [name_of(at)[:8] for at in (0, FOLD, 29)]
+    assert status == 0 and [line.split("|")[1].strip() for line in lines] == [name_of(n)[:8] for n in (0, FOLD, 29)]
     rows = rows_of(run, thirty, *words)
     assert [row["value"] for row in rows] == [48.25] * FOLD + [45.125] * (30 - FOLD)
 
 
-def test_rows_of_other_counts_are_not_compared_and_a_line_says_so(run, tmp_path):
-    """A hundred times fewer normals find a smaller largest error, which is no change of the code."""
-    for at, count in enumerate((2**20, 2**14)):
+def test_rows_with_other_counts_are_not_compared_and_this_is_reported(run, tmp_path):
+    """With far fewer normals, the largest sampled error is smaller although the code has not changed."""
+    for number, count in enumerate((2**20, 2**14)):
         steps = histories.steps(0, np.random.default_rng(1))
         for row in (row for step in steps for row in step["rows"] if "count" in row):
             row["count"] = count
-        histories.write_run(tmp_path / str(at), at, steps, request={"count": count})
+        histories.write_run(tmp_path / str(number), number, steps, request={"count": count})
     _, out, _ = run("history", str(tmp_path))
     counted = sum("count" in row for step in steps for row in step["rows"])
-    said = [f"not compared, because their counts of normals differ: {counted} rows", "no figure got worse"]
-    assert counted and out.splitlines()[1:] == said
+    lines = [f"not compared, because their counts of normals differ: {counted} rows", "no figure got worse"]
+    assert counted and out.splitlines()[1:] == lines
 
 
-def test_a_name_that_no_row_has_is_answered_with_those_there_are(run, thirty, tmp_path):
+def test_a_name_without_a_row_lists_the_known_names(run, thirty, tmp_path):
     status, _, err = run("history", str(thirty), "--encoding", "octahedrul")
     assert status == 2 and "did you mean octahedral?" in err and "all, mine, octahedral" in err
     status, _, err = run("history", str(tmp_path / "nothing"))
     assert status == 2 and "contains no run" in err and err.count("\n") == 1
 
 
-def test_a_table_of_one_time_has_times():
+def test_a_table_with_one_time_counts_as_timed():
     assert Series(TABLES["maps"], "a").is_timed and not Series(TABLES["quality"], "a").is_timed
 
 
-def test_only_a_step_of_times_is_named(run, tmp_path):
-    """A fifth more milliseconds from a commit on, in the noise of the others."""
+def test_only_a_lasting_change_of_times_is_named(run, tmp_path):
+    """From one commit on, a pipeline is 30% slower; the other times are noise."""
     noise = np.random.default_rng(1)
-    for at in range(30):
-        steps = histories.steps(at, noise)
+    for number in range(30):
+        steps = histories.steps(number, noise)
         slow = next(step["rows"][0] for step in steps if step["key"].get("pipeline") == "hybrid")
-        slow["ms_frame"] *= 1.3 if at >= 16 else 1
-        histories.write_run(tmp_path / str(at), at, steps)
+        slow["ms_frame"] *= 1.3 if number >= 16 else 1
+        histories.write_run(tmp_path / str(number), number, steps)
     (row,) = rows_of(run, tmp_path, "--tables", "sweep")
     assert (row["row"], row["column"], row["verdict"], row["commit"]) == ("hybrid", "ms_frame", "worse", name_of(16))
     assert 25 < float(row["change"].removesuffix(" %")) < 35
@@ -116,25 +116,25 @@ def test_only_a_step_of_times_is_named(run, tmp_path):
 
 def test_times_of_two_machines_are_not_one_series(run, tmp_path):
     noise = np.random.default_rng(1)
-    for at in range(30):
+    for number in range(30):
         steps = histories.steps(0, noise)
         for step in steps[-4:]:
-            step["rows"][0]["ms_frame"] *= 2 if at >= 16 else 1
-        histories.write_run(tmp_path / str(at), at, steps, machine={"GL": "new" if at >= 16 else "old"})
+            step["rows"][0]["ms_frame"] *= 2 if number >= 16 else 1
+        histories.write_run(tmp_path / str(number), number, steps, machine={"GL": "new" if number >= 16 else "old"})
     assert rows_of(run, tmp_path) == []
     assert run("history", str(tmp_path))[1].splitlines()[1] == "no figure got worse"
 
 
 @pytest.mark.parametrize(("count", "begin", "end"), [(30, 15, 30), (40, 14, 28), (100, 92, 100), (300, 100, 120)])
-def test_a_step_of_times_is_found_where_it_is(count, begin, end):
+def test_a_step_of_times_is_found_at_its_commit(count, begin, end):
     rng = np.random.default_rng(3)
     times = 10 * np.exp(0.01 * rng.normal(0, 1, count))
     times[begin:end] *= 1.1
-    assert time_steps(list(times), count - 1) == [at for at in (begin, end) if at < count]
+    assert time_steps(list(times), count - 1) == [edge for edge in (begin, end) if edge < count]
 
 
-def test_three_runs_behind_a_step_are_too_few():
-    assert time_steps([10 + 0.001 * at for at in range(27)] + [20, 20.1, 20.2], 29) == []
+def test_three_runs_after_a_step_are_too_few():
+    assert time_steps([10 + 0.001 * number for number in range(27)] + [20, 20.1, 20.2], 29) == []
 
 
 def quality(psnr, **more):
@@ -143,19 +143,19 @@ def quality(psnr, **more):
 
 
 def history_of(run, folder, *several, **facts):
-    for at, steps in enumerate(several):
-        histories.write_run(folder / str(at), at, steps, **facts)
+    for number, steps in enumerate(several):
+        histories.write_run(folder / str(number), number, steps, **facts)
     names = {name_of(at): at for at in range(len(several))} | {None: None}
     return [(names[row["commit"]], row["column"], row["verdict"], names[row["mended"]]) for row in rows_of(run, folder)]
 
 
-def test_what_is_as_good_again_is_mended_and_not_better(run, tmp_path):
-    """And what is nearly so, where much was lost; better is only what never was as good."""
+def test_a_figure_that_recovers_is_mended_and_not_better(run, tmp_path):
+    """A near recovery after a large loss counts as mended; only a new best value is better."""
     several = [quality(psnr) for psnr in (50.0, 45.0, 47.0, 49.95, 51.0)]
     assert history_of(run, tmp_path, *several) == [(1, "psnr_db", "worse", 3), (4, "psnr_db", "better", None)]
 
 
-def test_a_figure_that_only_some_runs_look_for_is_compared_with_the_last_that_did(run, tmp_path):
+def test_a_figure_that_some_runs_lack_is_compared_with_its_last_value(run, tmp_path):
     several = [quality(50.0, angle_max_deg=worst) for worst in (0.5, None, 0.6, None, 0.6)]
     assert history_of(run, tmp_path, *several) == [(2, "angle_max_deg", "worse", None)]
 
@@ -165,25 +165,25 @@ def test_a_row_that_cannot_be_measured_any_more_is_worse_until_it_can(run, tmp_p
     assert history_of(run, tmp_path, quality(50.0), lost, lost, quality(50.0)) == [(1, "psnr_db", "worse", 3)]
 
 
-def test_a_row_is_gone_where_the_same_request_no_longer_gives_it(run, tmp_path):
-    """Not in a run that was asked for less, or that was stopped."""
+def test_a_row_is_gone_if_the_same_request_no_longer_yields_it(run, tmp_path):
+    """A row is not gone if a run was stopped or its request was smaller."""
     both, other = quality(50.0) + quality(40.0, encoding="xy"), quality(40.0, encoding="xy")
     assert history_of(run, tmp_path / "same", both, other, other, both) == [(1, "", "gone", 3)]
     assert history_of(run, tmp_path / "stopped", both, other, finished=False) == []
     folder = tmp_path / "less"
-    for at, steps in enumerate((both, other, both, other)):
-        histories.write_run(folder / str(at), at, steps, request={"tables": ["all" if len(steps) > 1 else "quality"]})
+    for n, steps in enumerate((both, other, both, other)):
+        histories.write_run(folder / str(n), n, steps, request={"tables": ["all" if len(steps) > 1 else "quality"]})
     assert rows_of(run, folder) == []
 
 
-def test_rows_of_other_numbers_of_normals_are_not_set_next_to_each_other(run, tmp_path):
-    """A nightly run of more normals between those of each commit."""
-    for at, (psnr, count) in enumerate(((50.0, 4096), (49.9, 2**20)) * 3):
-        histories.write_run(tmp_path / str(at), at, quality(psnr, count=count), request={"count": count})
+def test_rows_with_other_numbers_of_normals_are_not_compared(run, tmp_path):
+    """A nightly run with more normals alternates with the runs of each commit."""
+    for number, (psnr, count) in enumerate(((50.0, 4096), (49.9, 2**20)) * 3):
+        histories.write_run(tmp_path / str(number), number, quality(psnr, count=count), request={"count": count})
     assert rows_of(run, tmp_path) == []
 
 
-def test_what_else_changed_at_a_commit_is_said(run, tmp_path):
+def test_other_changes_at_a_commit_are_reported(run, tmp_path):
     histories.write_run(tmp_path / "one", 0, quality(50.0))
     histories.write_run(tmp_path / "two", 1, quality(45.0), machine={"GL": "two"}, sources="t")
     status, _, err = run("history", str(tmp_path / "two"), str(tmp_path / "one"))
@@ -209,16 +209,16 @@ def repository(tmp_path):
 
 
 def test_a_run_knows_its_commit(repository):
-    one = commit_of(None, repository)
-    assert len(one["name"]) == 40 and (one["time"], one["subject"], one["changed"]) == (FIRST, "Begin", False)
+    head = commit_of(None, repository)
+    assert len(head["name"]) == 40 and (head["time"], head["subject"], head["changed"]) == (FIRST, "Begin", False)
     (repository / "mine.glsl").write_text("// two\n")
-    assert commit_of(None, repository) == one | {"changed": True}
+    assert commit_of(None, repository) == head | {"changed": True}
     assert commit_of("4711", repository) == {"name": "4711"}
 
 
 @pytest.mark.parametrize("setting", ["core.fsmonitor", "core.hooksPath", "filter.odd.clean", "filter.odd.process"])
 def test_no_program_that_a_repository_names_is_run(repository, setting):
-    """The folder may be a stranger's: what watches its files, its hooks, and what converts files for git."""
+    """The folder may be untrusted: file monitors, hooks and filters must not run."""
     started, hooks = repository / "started", repository / "hooks"
     hooks.mkdir()
     for name in ("program", "post-index-change"):
@@ -235,7 +235,7 @@ def test_no_program_that_a_repository_names_is_run(repository, setting):
 
 
 def test_no_filter_of_a_submodule_is_run(repository):
-    """A submodule has settings of its own, which `git status` follows."""
+    """A submodule has its own settings, which `git status` follows."""
     inner, started = repository / "inner", repository / "started"
     inner.mkdir()
     git(inner, "init", "-q")
@@ -252,8 +252,8 @@ def test_no_filter_of_a_submodule_is_run(repository):
     assert started.exists(), "git itself starts it"
 
 
-def test_nothing_missing_is_fetched_from_where_a_repository_says(repository):
-    """A partial clone fetches what is missing by a program that its settings name."""
+def test_missing_objects_are_not_fetched_from_a_repositorys_remote(repository):
+    """A partial clone fetches missing objects with a program that its settings name."""
     started = repository / "started"
     tree = subprocess.run(["git", "rev-parse", "HEAD^{tree}"], cwd=repository, capture_output=True, text=True).stdout
     (repository / ".git" / "objects" / tree[:2] / tree[2:].strip()).unlink()
@@ -267,8 +267,8 @@ def test_nothing_missing_is_fetched_from_where_a_repository_says(repository):
     assert started.exists(), "git itself starts it"
 
 
-def test_commits_of_one_second_are_in_their_order(repository):
-    """As a rebase makes them."""
+def test_commits_within_one_second_keep_their_order(repository):
+    """A rebase makes such commits."""
     ranks = []
     for number in range(3):
         git(repository, "commit", "-q", "--allow-empty", "-m", str(number), at=FIRST + DAY)
@@ -276,14 +276,14 @@ def test_commits_of_one_second_are_in_their_order(repository):
     assert ranks == [1, 2, 3]
 
 
-def test_there_is_no_commit_without_a_repository(tmp_path, monkeypatch):
+def test_a_folder_without_a_repository_has_no_commit(tmp_path, monkeypatch):
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
     assert commit_of(None, tmp_path) == {}
     monkeypatch.setenv("PATH", "")
     assert commit_of(None, tmp_path) == {}
 
 
-def test_changes_without_git_are_in_the_order_of_their_runs_and_called_as_said(run, tmp_path):
+def test_changes_without_git_are_in_run_order_under_their_given_names(run, tmp_path):
     for name, day, psnr in (("b", 3, 45.0), ("a", 1, 50.0), ("c", 2, 50.0)):
         when = f"2026-01-0{day}T00:00:00+0000"
         histories.write_run(tmp_path / name, 0, quality(psnr), time=when, commit={"name": f"change {name}"})
@@ -291,16 +291,16 @@ def test_changes_without_git_are_in_the_order_of_their_runs_and_called_as_said(r
     assert (row["commit"], row["time"]) == ("change b", "2026-01-03T00:00:00Z")
 
 
-def test_a_run_that_goes_on_is_of_the_commit_that_it_goes_on_at(tmp_path):
+def test_a_resumed_run_belongs_to_the_commit_at_which_it_resumes(tmp_path):
     histories.write_run(tmp_path / "run", 0, quality(50.0), finished=False)
     facts = json.loads((tmp_path / "run/run.json").read_text())
     assert _begun_facts(tmp_path / "run", facts | {"commit": {"name": "next"}})["commit"] == {"name": "next"}
 
 
-def test_a_commit_that_somebody_edited_is_no_bug(run, tmp_path):
-    for at, commit in enumerate(({"name": "a", "time": 1e300, "rank": "x"}, {"name": 3, "time": -5, "subject": None})):
+def test_an_edited_commit_causes_no_error(run, tmp_path):
+    for n, commit in enumerate(({"name": "a", "time": 1e300, "rank": "x"}, {"name": 3, "time": -5, "subject": None})):
         histories.write_run(
-            tmp_path / str(at), at, quality(50.0 - at), time=f"2026-01-0{at + 1}T00:00:00+0000", commit=commit
+            tmp_path / str(n), n, quality(50.0 - n), time=f"2026-01-0{n + 1}T00:00:00+0000", commit=commit
         )
     (row,) = rows_of(run, tmp_path)
     assert (row["commit"], row["time"]) == ("3", "2026-01-02T00:00:00Z")

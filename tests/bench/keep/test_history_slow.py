@@ -1,4 +1,4 @@
-"""`normalbench history`: the commit, the row and the figure of each step, and no noise of times."""
+"""`normalbench history`: the commit, the row and the figure of each change, without noise of times."""
 
 import numpy as np
 import pytest
@@ -8,12 +8,12 @@ from normalbench.bench.keep.time_steps import time_steps
 
 
 @pytest.mark.parametrize(("count", "series"), [(30, 120), (300, 20)])
-def test_times_that_waver_have_no_step(count, series):
-    """Also where they waver for days, as those of machines that others use do."""
-    rng, found = np.random.default_rng(4), 0
+def test_noisy_times_have_no_step(count, series):
+    """The noise of consecutive runs is correlated, as on machines that others use."""
+    rng, steps = np.random.default_rng(4), 0
     for _ in range(series):
         off = rng.normal(0, 1, count)
-        for at in range(1, count):
-            off[at] = 0.5 * off[at - 1] + np.sqrt(0.75) * off[at]
-        found += bool(time_steps(list(10 * np.exp(NOISE * off)), 10 * count))
-    assert found == 0
+        for index in range(1, count):
+            off[index] = 0.5 * off[index - 1] + np.sqrt(0.75) * off[index]
+        steps += bool(time_steps(list(10 * np.exp(NOISE * off)), 10 * count))
+    assert steps == 0

@@ -1,4 +1,4 @@
-"""Whoever writes files and is killed leaves the old ones or the new ones, and the next one leaves what it should."""
+"""A writer that is killed leaves the old or the new files, and the next writer completes them."""
 
 import ast
 import json
@@ -23,15 +23,15 @@ MODULES = {
 }
 
 
-def test_every_module_that_puts_a_file_in_its_place_has_a_writer():
-    """They are the ones that call `Path.replace`, which takes one argument, or `moved_over`."""
+def test_every_module_that_replaces_a_file_has_a_writer():
+    """Such modules call `moved_over`, or `Path.replace` with one argument."""
     assert set(MODULES.values()) <= set(killing.WRITERS)
-    found = set()
+    modules = set()
     for path in (ROOT / "bench").rglob("*.py"):
         calls = (node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call))
         if any(_puts_a_file(call) for call in calls):
-            found.add(str(path.relative_to(ROOT / "bench")))
-    assert found == set(MODULES)
+            modules.add(str(path.relative_to(ROOT / "bench")))
+    assert modules == set(MODULES)
 
 
 def _puts_a_file(call: ast.Call) -> bool:
@@ -48,8 +48,8 @@ WRITERS = [pytest.param(name, marks=() if name == "import" else pytest.mark.draw
 
 @pytest.mark.parametrize("writer", WRITERS)
 def test_a_writer_killed_before_any_of_its_changes_leaves_whole_files(tmp_path, writer):
-    """Its partial files are halved, rows lose their end, and it is killed. The same writer then ends with the files of
-    one that nobody disturbed, and nothing else."""
+    """Before each kill, partial files are halved and rows lose their end. The same writer then ends with exactly the
+    files of an undisturbed writer."""
     if writer == "library" and not shutil.which(null_device.COMPILER):
         pytest.skip("no C compiler")
     command = [sys.executable, killing.__file__, writer, str(tmp_path)]

@@ -1,4 +1,4 @@
-"""Results folders: what finished stays, what was stopped goes on, and reading never writes."""
+"""Results folders: finished steps stay, stopped runs resume, and reading never writes."""
 
 import json
 import re
@@ -24,7 +24,7 @@ FACTS = {"schema": SCHEMA, "request": {"count": 1}, "sources": "abc", "machine":
 
 
 def kept(run: Run, count: int, measured: list[int]) -> list[list[dict]]:
-    """The rows of so many steps: those that are kept, or measured now."""
+    """Return the rows of `count` steps, kept from earlier or measured now."""
 
     def measure(step: Step) -> list[dict]:
         measured.append(step.case)
@@ -45,7 +45,7 @@ def test_a_finished_step_is_not_measured_twice(tmp_path):
 
 
 @pytest.mark.parametrize("cut", range(1, 80, 7))
-def test_a_line_that_was_cut_off_is_measured_again_and_no_other(tmp_path, cut):
+def test_only_a_truncated_line_is_measured_again(tmp_path, cut):
     folder, measured = tmp_path / "run", []
     with opened(folder, FACTS) as run:
         kept(run, 3, measured)
@@ -84,7 +84,7 @@ def step(**row) -> str:
         (ROWS, step(encoding=["xyz"]), "row 1, encoding: ['xyz'] is neither text nor a number"),
     ],
 )
-def test_a_damaged_folder_is_one_line_and_no_failed_gate(run, tmp_path, file, text, said):
+def test_a_damaged_folder_is_a_one_line_error_and_not_a_failed_gate(run, tmp_path, file, text, said):
     folder, gates = tmp_path / "run", tmp_path / "gates.toml"
     folder.mkdir()
     (folder / "run.json").write_text(json.dumps(FACTS | {"finished": True}))
@@ -117,8 +117,8 @@ LONG = "llvmpipe of a very long name that goes on and on, "
         ({"machine": {"GL": LONG}}, "machine: GL (c there, llvmpipe of a very long name that goes o... here)"),
     ],
 )
-def test_a_run_of_other_sources_or_another_machine_is_left_alone(tmp_path, other, said):
-    """What differs is named, with both values."""
+def test_a_run_of_other_sources_or_another_machine_is_not_extended(tmp_path, other, said):
+    """The message names the difference with both values."""
     folder, facts = tmp_path / "run", FACTS | {"sources": "a", "machine": {"GL": "c"}}
     with opened(folder, facts) as run:
         kept(run, 1, [])
@@ -128,7 +128,7 @@ def test_a_run_of_other_sources_or_another_machine_is_left_alone(tmp_path, other
     assert (folder / ROWS).read_bytes() == before
 
 
-def test_long_facts_are_shown_where_they_differ(tmp_path):
+def test_long_facts_are_shown_around_their_difference(tmp_path):
     with opened(tmp_path / "run", FACTS | {"machine": {"GL": LONG + "15.0.6"}}):
         pass
     with (
@@ -150,11 +150,11 @@ def test_a_finished_run_is_extended_and_keeps_its_rows(tmp_path):
         run.finish()
     assert measured == [0, 1, 2] and (folder / ROWS).read_bytes().startswith(before)
     done = read_run(folder)
-    assert done.finished and [one["request"] for one in done.facts["before"]] == [{"count": 1}]
+    assert done.finished and [entry["request"] for entry in done.facts["before"]] == [{"count": 1}]
 
 
-def test_a_first_request_that_was_stopped_is_not_finished_by_another(tmp_path):
-    """The facts of a new run do not say whether it is finished."""
+def test_another_request_does_not_finish_a_stopped_first_request(tmp_path):
+    """The facts of a new run do not state whether it is finished."""
     first = {name: fact for name, fact in FACTS.items() if name != "finished"}
     with opened(tmp_path / "run", first):
         pass
@@ -163,7 +163,7 @@ def test_a_first_request_that_was_stopped_is_not_finished_by_another(tmp_path):
     assert not read_run(tmp_path / "run").finished
 
 
-def test_a_run_whose_earlier_request_was_stopped_is_not_finished_by_another(tmp_path):
+def test_another_request_does_not_finish_a_stopped_earlier_request(tmp_path):
     folder, measured, other = tmp_path / "run", [], FACTS | {"request": {"count": 2}}
     with opened(folder, FACTS) as run:
         kept(run, 1, measured)
@@ -183,7 +183,7 @@ def test_a_folder_with_something_else_is_not_touched(tmp_path):
         read_run(tmp_path)
 
 
-def test_a_full_disk_loses_no_finished_row(tmp_path, monkeypatch):
+def test_a_full_disk_does_not_lose_finished_rows(tmp_path, monkeypatch):
     folder, measured = tmp_path / "run", []
     with opened(folder, FACTS) as run:
         kept(run, 1, measured)
@@ -199,7 +199,7 @@ def test_a_full_disk_loses_no_finished_row(tmp_path, monkeypatch):
     assert (folder / ROWS).read_bytes() == before
 
 
-def test_the_newest_stopped_run_of_the_same_work_goes_on(tmp_path):
+def test_the_newest_stopped_run_of_the_same_work_is_resumed(tmp_path):
     for name, facts in (("1", FACTS), ("2", FACTS), ("3", FACTS | {"sources": "other"}), ("4", FACTS)):
         with opened(tmp_path / name, facts) as run:
             if name == "4":
@@ -210,8 +210,8 @@ def test_the_newest_stopped_run_of_the_same_work_goes_on(tmp_path):
 
 
 @pytest.mark.parametrize("name, beside", [("a.obj", "b.mtl"), ("a.gltf", "b.bin"), ("a.glsl", "a.py"), ("a.png", "")])
-def test_a_file_is_known_with_what_is_read_beside_it(tmp_path, name, beside):
-    paths = [tmp_path / one for one in (name, beside) if one]
+def test_a_files_fingerprint_includes_the_files_read_with_it(tmp_path, name, beside):
+    paths = [tmp_path / file for file in (name, beside) if file]
     options, keys = TABLES["quality"].options(normals=str(paths[0])), []
     for content in ("one", "other"):
         for path in paths:
@@ -233,8 +233,8 @@ def test_a_file_is_known_with_what_is_read_beside_it(tmp_path, name, beside):
         ("t//mine.glsl", ["t/mine.glsl"]),
     ],
 )
-def test_files_within_a_name_are_known_and_travel(tmp_path, monkeypatch, word, names):
-    """A changed table or a changed half of a chain is another thing to measure."""
+def test_files_within_a_name_are_fingerprinted_and_sent_to_workers(tmp_path, monkeypatch, word, names):
+    """A changed table or a changed half of a chain must be measured again."""
     monkeypatch.chdir(tmp_path)
     options, keys = TABLES["quality"].options(encoding=f"octahedral,{word}"), []
     Path("t").mkdir()
@@ -257,8 +257,8 @@ def test_files_within_a_name_are_known_and_travel(tmp_path, monkeypatch, word, n
         ("frame.png", [{"unpack": True}, {"unpack": False}, {"curve": "srgb"}, {}]),
     ],
 )
-def test_a_file_that_is_read_otherwise_is_another_thing_to_measure(tmp_path, monkeypatch, name, ways):
-    """Wherever it lies: workers have it in a folder of their own."""
+def test_a_file_read_in_another_way_is_measured_separately(tmp_path, monkeypatch, name, ways):
+    """The folder does not matter, because workers have the file in a folder of their own."""
     keys = []
     for folder in ("here", "there"):
         (tmp_path / folder).mkdir()
@@ -271,11 +271,11 @@ def test_a_file_that_is_read_otherwise_is_another_thing_to_measure(tmp_path, mon
     assert keys[: len(ways)] == keys[len(ways) :] and len(set(keys)) == len(ways), keys
 
 
-def test_sources_are_known_by_their_content():
+def test_sources_have_a_digest_of_sixteen_characters():
     assert sources() == sources() and len(sources()) == 16
 
 
-def test_an_unknown_table_is_one_line(run, tmp_path):
+def test_an_unknown_table_is_a_one_line_error(run, tmp_path):
     status, out, err = run("run", "--tables", "colours", "-o", str(tmp_path / "run"))
     assert (status, out) == (2, "") and "unknown table 'colours'; known: all, pick, budget, quality" in err
     assert not (tmp_path / "run").exists()
@@ -289,7 +289,7 @@ THREE += ("--normals", "axes", "--backend", "jax")
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
-    """A run of three rows, of which each test has a copy."""
+    """The folder of a finished run with three rows; each test uses a copy."""
     folder = tmp_path_factory.mktemp("three") / "run"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys, "argv", ["normalbench", *THREE, "-o", str(folder)])
@@ -300,9 +300,9 @@ def finished(tmp_path_factory):
 @pytest.mark.parametrize("name", ["rows.jsonl", "run.json", "quality.csv"])
 def test_nothing_is_written_over_a_runs_own_files(run, tmp_path, name):
     folder = tmp_path / "run"
-    with opened(folder, FACTS) as made:
-        kept(made, 1, [])
-        made.finish()
+    with opened(folder, FACTS) as open_run:
+        kept(open_run, 1, [])
+        open_run.finish()
     (folder / "quality.csv").write_text("mine")
     before = (folder / name).read_bytes()
     for command in (("report", str(folder)), ("report", str(folder), "--markdown"), ("list", "--format", "csv")):

@@ -1,4 +1,4 @@
-"""Results folders: what finished stays, what was stopped goes on, and reading never writes."""
+"""Results folders: finished steps stay, stopped runs resume, and reading never writes."""
 
 import json
 import os
@@ -34,7 +34,7 @@ def test_every_table_of_a_run_has_steps_and_no_two_share_a_key(tmp_path):
 
 @contextmanager
 def read_only(folder: Path):
-    """Nothing in a folder can be changed, by root either."""
+    """Make a folder read-only, also for root, until the block ends."""
     tool, lock, unlock = ("chattr", "+i", "-i") if os.geteuid() == 0 else ("chmod", "a-w", "u+w")
     if (
         not shutil.which(tool)
@@ -47,7 +47,7 @@ def read_only(folder: Path):
         subprocess.run([tool, "-R", unlock, folder], check=True)
 
 
-def test_a_read_only_folder_is_one_line_and_keeps_its_rows(run, tmp_path, finished):
+def test_a_read_only_folder_is_a_one_line_error_and_keeps_its_rows(run, tmp_path, finished):
     folder = Path(shutil.copytree(finished, tmp_path / "parent" / "run"))
     command = (*THREE, "-o", str(folder))
     lines, facts = (folder / ROWS).read_bytes().splitlines(keepends=True), (folder / "run.json").read_text()
@@ -84,8 +84,8 @@ def unsealed(text: str) -> str:
         ("run.json", unsealed, "does not say how many rows"),
     ],
 )
-def test_a_finished_run_whose_rows_were_touched_is_not_taken_for_whole(run, tmp_path, finished, file, damage, said):
-    """Every command that reads it says so; a check of it fails, and nothing is added to it."""
+def test_a_finished_run_with_altered_rows_is_reported(run, tmp_path, finished, file, damage, said):
+    """Every command that reads the run reports the change; `check` fails, and nothing is added to the run."""
     folder, gates = Path(shutil.copytree(finished, tmp_path / "run")), tmp_path / "gates.toml"
     gates.write_text('[[gate]]\nencoding = "octahedral"\npsnr_db = "at least 1"\n')
     assert run("check", str(gates), "--run", str(folder))[0] == 0
@@ -96,13 +96,13 @@ def test_a_finished_run_whose_rows_were_touched_is_not_taken_for_whole(run, tmp_
         (("compare", str(folder), str(folder)), 0),
         ((*THREE, "-o", str(folder)), 2),
     ):
-        found, out, err = run(*words)
-        assert found == status and said in err.splitlines()[0], (words[0], err)
+        exit_status, out, err = run(*words)
+        assert exit_status == status and said in err.splitlines()[0], (words[0], err)
         assert words[-1] != "--markdown" or said in out, "the text says it too"
 
 
 def test_one_table_that_fails_makes_the_run_fail(run, tmp_path, monkeypatch):
-    """The one that follows does not make up for it."""
+    """A table that succeeds later does not change the status."""
     words = ("--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax", "--count", "64")
     quality = TABLES["quality"]
     failing = replace(quality.work, failures=lambda _: ["it is not as it should be"])

@@ -1,4 +1,4 @@
-"""Figures that come with the package: those that are computed now, and of the codecs as they are now."""
+"""Figures that ship with the package: they match new measurements and the current codecs."""
 
 import json
 from dataclasses import replace
@@ -23,19 +23,19 @@ SPHERE = NORMAL_SETS["sphere"](64, 0)
 @pytest.mark.parametrize(
     "where, name", [(suprema.SUPREMA, lambda codec: suprema.name_of(codec, is_half(codec))), (judge.RECORDED, str)]
 )
-def test_every_codec_is_recorded_as_it_is_now(where, name):
+def test_every_codec_is_recorded_in_its_current_form(where, name):
     kept = json.loads(where.file.read_text())
     keys = {codec.name if name is str else name(codec): where.key(codec) for codec in codecs()}
     assert {name: row["key"] for name, row in kept.items()} == keys, STALE
 
 
-def test_a_recorded_supremum_is_that_of_the_search():
-    found, expected = suprema.supremum(OCTAHEDRAL, False), worst_case(OCTAHEDRAL)
-    assert found.angle_deg == pytest.approx(expected.angle_deg, rel=1e-9) and found.found_by == expected.found_by
+def test_a_recorded_supremum_matches_the_search():
+    worst, expected = suprema.supremum(OCTAHEDRAL, False), worst_case(OCTAHEDRAL)
+    assert worst.angle_deg == pytest.approx(expected.angle_deg, rel=1e-9) and worst.found_by == expected.found_by
 
 
 def test_a_codec_of_other_sources_is_searched(monkeypatch):
-    """One whose sources changed, and one that has a name of the catalogue and is another."""
+    """The codec has changed sources, or the name of a catalogue codec but another decoder."""
     monkeypatch.setattr(suprema, "worst_case", lambda codec, is_half: (codec, is_half))
     mine = replace(OCTAHEDRAL, encoding=replace(OCTAHEDRAL.encoding, decode=ENCODINGS["equal_area_octahedral"].decode))
     assert suprema.supremum(mine, False) == (mine, False)
@@ -43,8 +43,8 @@ def test_a_codec_of_other_sources_is_searched(monkeypatch):
     assert suprema.supremum(OCTAHEDRAL, False) == (OCTAHEDRAL, False)
 
 
-def test_what_uses_do_is_recorded_for_the_usual_mixes_alone(monkeypatch):
-    """What was recorded is what is measured; other seeds and other normals are measured."""
+def test_mixes_are_recorded_only_for_the_usual_settings(monkeypatch):
+    """Recorded figures match a measurement; other seeds, domains and normals are measured."""
     monkeypatch.setattr(judge, "judged_now", lambda *_: "measured")
     uses = ["resolve", "upsample"]
     kept = judge.judgements(OCTAHEDRAL, uses, SPHERE, "sphere")
@@ -59,7 +59,7 @@ def test_what_uses_do_is_recorded_for_the_usual_mixes_alone(monkeypatch):
     assert [judge.judgements(OCTAHEDRAL, uses, *other) for other in others] == ["measured"] * 3
 
 
-def test_comments_and_docstrings_decide_nothing(tmp_path):
+def test_comments_and_docstrings_do_not_change_the_key(tmp_path):
     plain, told, other = (tmp_path / f"{name}.py" for name in ("plain", "told", "other"))
     plain.write_text("def f(x):\n    return x + 1\n")
     told.write_text('"""What it is."""\n\n\ndef f(x):\n    """Add 1."""\n    # why\n    return x + 1\n')

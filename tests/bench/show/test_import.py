@@ -1,4 +1,4 @@
-"""`normalbench import` and the tables of devices: rows in a run, once each, all or none; and what its page shows."""
+"""`normalbench import` and the device tables: each row is added once, all or none, and appears on the page."""
 
 import json
 
@@ -21,19 +21,19 @@ def test_codecs_and_facts_have_their_columns_and_names_that_are_unique(run, tmp_
 def test_a_codec_of_the_readers_own_stays_a_row(run, tmp_path):
     row = made.codec_rows()[0] | {"encoding": "my_own", "storage": "mine"}
     path = made.write(tmp_path / "a.json", codecs=[row])
-    (found,) = json.loads(run("devices", "--devices", str(path), "--format", "json")[1])
-    assert (found["encoding"], found["storage"], found["same_percent"]) == ("my_own", "mine", 100)
+    (shown,) = json.loads(run("devices", "--devices", str(path), "--format", "json")[1])
+    assert (shown["encoding"], shown["storage"], shown["same_percent"]) == ("my_own", "mine", 100)
 
 
 @pytest.mark.parametrize("where, said", [(None, "name the run's folder with -o RUN"), ("nowhere", "is not a results")])
-def test_a_folder_that_is_no_run_is_one_line_and_stays_as_it_is(run, tmp_path, where, said):
+def test_folder_that_is_not_a_run_is_a_one_line_error_and_unchanged(run, tmp_path, where, said):
     words = ("-o", str(tmp_path / where)) if where else ()
     status, out, err = run("import", str(made.write(tmp_path / "a.json")), *words)
     assert (status, out, err.count("\n")) == (2, "", 1) and said in err, err
     assert [path.name for path in tmp_path.iterdir()] == ["a.json"]
 
 
-def test_gates_hold_devices(run, tmp_path):
+def test_gates_check_devices(run, tmp_path):
     made.write(tmp_path / "a.json", truncated=("RGB10_A2",))
     gate = f'[[gate]]\ntable = "devices"\ndevices = "{tmp_path}/a.json"\nfurther = "at most 0"\n'
     (tmp_path / "gates.toml").write_text(gate)
@@ -42,8 +42,8 @@ def test_gates_hold_devices(run, tmp_path):
     assert status == 1 and len(failing) == 8 and all("rgb10a2" in name for name in failing), err
 
 
-def test_gates_hold_facts(run, tmp_path):
-    """Whether they say that facts are meant, or name a column that only facts have."""
+def test_gates_check_facts(run, tmp_path):
+    """A gate asks for facts explicitly, or names a column that only facts have."""
     made.write(tmp_path / "a.json")
     for how in ("facts = true\n", ""):
         gate = f'[[gate]]\ntable = "devices"\ndevices = "{tmp_path}/a.json"\n{how}number = "at least 23"\n'
@@ -59,9 +59,9 @@ def test_the_chart_has_a_dot_for_each_time_above_0_the_fastest_first():
     for name, ms in (("A", 0.05), ("B", 0.01), ("C", 0.0)):
         about = {"device": name, "browser": "Chromium 156"}
         rows += [about | row for row in made.codec_rows(ms_per_bit=ms)]
-    found = timed([*rows, rows[0] | {"encoding": "below", "encode_ms": -1.0, "decode_ms": 0.5}])
-    assert len(found) == 70 and {row["device"] for row in found} == {"A, Chromium 156", "B, Chromium 156"}
-    assert found[0]["codec"] == "xyz rgba8" and found[-1]["codec"] == "octahedral_precise rg16"
+    dots = timed([*rows, rows[0] | {"encoding": "below", "encode_ms": -1.0, "decode_ms": 0.5}])
+    assert len(dots) == 70 and {row["device"] for row in dots} == {"A, Chromium 156", "B, Chromium 156"}
+    assert dots[0]["codec"] == "xyz rgba8" and dots[-1]["codec"] == "octahedral_precise rg16"
 
 
 def test_the_sentences_name_who_agrees_and_where_the_others_differ():
@@ -74,15 +74,15 @@ def test_the_sentences_name_who_agrees_and_where_the_others_differ():
     assert first == "A, Chromium 156 and B, Chromium 156 agree with the run in every code of 35 codecs."
     assert second.startswith("C, Chromium 156 differs in 8 of 35 codecs, most in xyz rgb10a2: 87.6% of its codes, ")
     near = rows[0] | {"device": "D", "one_step": 1, "same_percent": 100 - 100 / 65536}
-    said = sentences([near])
-    assert said == [
+    lines = sentences([near])
+    assert lines == [
         "D, Chromium 156 differs in 1 of 1 codec, most in spheremap rgba8: 0.00153% of its codes, by one step each."
     ]
     assert "2 versions of the program" in sentences([*rows, rows[0] | {"sources": "y"}])[-1]
 
 
 def test_an_older_file_in_a_folder_does_not_stop_a_gate(run, tmp_path):
-    """The newer one is held; nothing that was asked for is missing."""
+    """The gate checks the newer file, and nothing that it needs is missing."""
     made.write(tmp_path / "files/a.json")
     made.write(tmp_path / "files/b.json", made="2026-11-24T15:00:00Z")
     gate = f'[[gate]]\ntable = "devices"\ndevices = "{tmp_path}/files"\nfurther = "at most 0"\n'

@@ -1,4 +1,4 @@
-"""`normalbench import` and the tables of devices: rows in a run, once each, all or none; and what its page shows."""
+"""`normalbench import` and the device tables: each row is added once, all or none, and appears on the page."""
 
 import json
 import os
@@ -19,7 +19,7 @@ OTHER = "ANGLE (NVIDIA Corporation, NVIDIA GeForce RTX 4090/PCIe/SSE2, OpenGL 4.
 
 @pytest.fixture(scope="module")
 def made_once(tmp_path_factory):
-    """A small run, of which each test has a copy."""
+    """A small run, copied for each test."""
     folder = tmp_path_factory.mktemp("small") / "run"
     words = ("--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
     with pytest.MonkeyPatch.context() as patch:
@@ -37,14 +37,14 @@ def content_of(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
-def test_a_device_that_was_compared_with_another_runs_codes_is_named(run, tmp_path, folder):
+def test_device_measured_with_other_sources_is_named_once(run, tmp_path, folder):
     path = made.write(tmp_path / "a.json", sources="another")
-    for said in ("SwiftShader, Chromium 156: measured on a page from other sources", ""):
+    for message in ("SwiftShader, Chromium 156: measured on a page from other sources", ""):
         status, _, err = run("import", str(path), "-o", str(folder))
-        assert status == 0 and said in err and err.count("\n") == bool(said), err
+        assert status == 0 and message in err and err.count("\n") == bool(message), err
 
 
-def test_gpus_that_come_to_share_a_short_name_are_told_apart_whichever_is_first(run, tmp_path, folder):
+def test_gpus_with_the_same_short_name_are_distinguished_in_any_order(run, tmp_path, folder):
     paths = [made.write(tmp_path / "a.json", renderer=made.GEFORCE), made.write(tmp_path / "b.json", renderer=OTHER)]
     for path in paths:
         assert run("import", str(path), "-o", str(folder))[0] == 0
@@ -132,7 +132,7 @@ def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, fo
 
 
 def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
-    """With another set: the devices stay, and the page of the run has them."""
+    """A second set of normals is added; the devices stay and appear on the page."""
     assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
     words = ("--encoding", "xy", "--storage", "rg8", "--normals", "hemisphere", "--backend", "jax", "--count", "64")
     assert run("run", "--tables", "quality", *words, "-o", str(folder))[0] == 0
@@ -141,7 +141,7 @@ def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
     assert '<section id="devices"' in (folder / "report.html").read_text()
 
 
-def test_compare_names_what_a_device_does_otherwise(run, tmp_path, made_once):
+def test_compare_names_the_differences_of_a_device(run, tmp_path, made_once):
     for name, truncated in (("before", ()), ("after", ("RG16F",))):
         path = made.write(tmp_path / f"{name}.json", truncated=truncated)
         folder = shutil.copytree(made_once, tmp_path / name)

@@ -1,4 +1,4 @@
-"""`normalbench budget`: the best layout by exhaustive search, the rules of targets, floors, a layout drawn whole."""
+"""`normalbench budget`: comparison with exhaustive search, rules of targets, minimum precision, a rendered layout."""
 
 import itertools
 from collections import Counter
@@ -45,48 +45,48 @@ USUAL = Rules(
 
 
 def falling(seed: int = 0, attributes=DEFAULT, classes: int = 2) -> dict:
-    """Errors of 6 dB a bit of each number, from a start of each attribute's own in each class."""
+    """Return errors that fall by 6 dB per bit of each number, from a different start for each attribute and class."""
     rng = np.random.default_rng(seed)
-    found = {}
-    for one in attributes:
+    errors = {}
+    for attr in attributes:
         starts = 10 ** rng.uniform(-1, 1, classes)
-        for code in one.codes:
+        for code in attr.codes:
             if code.trip is not None:
                 error = 4.0 ** (-code.total_bits / len(code.bits))
-                found[one.name, code.name] = {f"class {i}": float(start * error) for i, start in enumerate(starts)}
-    return found
+                errors[attr.name, code.name] = {f"class {i}": float(start * error) for i, start in enumerate(starts)}
+    return errors
 
 
 def problem(rules: Rules, attributes=DEFAULT, errors=None, bins=None) -> Problem:
     known = falling(attributes=attributes) if errors is None else errors
-    names = sorted({name for one in known.values() for name in one})
+    names = sorted({name for by_class in known.values() for name in by_class})
     return Problem(attributes, known, names, list(BINS.values()) if bins is None else bins, rules)
 
 
 def by_target(found) -> dict:
     lying = {}
-    for one in found.placed:
-        lying.setdefault((one.bin.name, one.copy), []).append(one)
+    for placed in found.placed:
+        lying.setdefault((placed.bin.name, placed.copy), []).append(placed)
     return lying
 
 
 @pytest.mark.parametrize("limit", [12, 14, 16, 20, 24])
 def test_a_layout_holds_everything_within_its_bytes_and_channels(limit):
-    """Each attribute once, in targets of no more bytes; and the renderer's own reader of layouts agrees."""
-    found = solved(problem(replace(USUAL, bytes=limit)))
-    assert found is not None
-    for name, lying in by_target(found).items():
-        assert len(lying) == 1 or "motion" not in {one.code.attribute for one in lying}, f"motion shares {name}"
-    assert sorted(one.code.attribute for one in found.placed) == sorted(one.name for one in DEFAULT)
-    layout = layout_of("mine", found)
+    """Each attribute is placed once, within the byte limit, and the renderer's layout reader agrees."""
+    solution = solved(problem(replace(USUAL, bytes=limit)))
+    assert solution is not None
+    for name, lying in by_target(solution).items():
+        assert len(lying) == 1 or "motion" not in {placed.code.attribute for placed in lying}, f"motion shares {name}"
+    assert sorted(placed.code.attribute for placed in solution.placed) == sorted(wanted.name for wanted in DEFAULT)
+    layout = layout_of("mine", solution)
     assert layout.bytes_per_pixel <= limit and len(layout.targets) <= 6
-    bits = {one.attribute: one for attribute in DEFAULT for one in attribute.codes[:1]}
+    bits = {code.attribute: code for attribute in DEFAULT for code in attribute.codes[:1]}
     kept = {word.component: word.bits or layout.targets[word.target].storage.bits[word.first] for word in layout.words}
     assert (
         kept["shading_model"] >= bits["shading_model"].total_bits and kept["motion.x"] == 16 and kept["normal.x"] >= 10
     )
     # All bits of a code are there, and nothing else's.
-    for one in found.placed:
+    for one in solution.placed:
         for word, size in zip(one.code.words, one.code.bits, strict=True):
             component = word.partition("(")[2].rstrip(")") or word
             assert component.startswith("other") or kept[component] >= size, one.code
@@ -94,31 +94,31 @@ def test_a_layout_holds_everything_within_its_bytes_and_channels(limit):
 
 def test_decals_have_targets_of_their_own_whose_alpha_is_free():
     blended = frozenset({"normal", "base_color", "roughness"})
-    found = solved(problem(Rules(24, 6, blended=blended)))
-    assert found is not None
-    for (_, _), lying in by_target(found).items():
-        names = {one.code.attribute for one in lying}
+    solution = solved(problem(Rules(24, 6, blended=blended)))
+    assert solution is not None
+    for (_, _), lying in by_target(solution).items():
+        names = {placed.code.attribute for placed in lying}
         if names & blended:
             assert names <= blended, f"{names} share a target that decals blend into"
-            one = lying[0].bin
-            assert one.blends and not one.fields and all(p.code.blends for p in lying)
-            channels = TARGET_FORMATS[one.format].channels
+            target = lying[0].bin
+            assert target.blends and not target.fields and all(p.code.blends for p in lying)
+            channels = TARGET_FORMATS[target.format].channels
             assert sum(len(p.code.bits) for p in lying) < channels or channels < 4, (
                 "the factor's channel holds a number"
             )
 
 
 def test_without_fields_every_number_has_a_channel():
-    """And without integers there are no integer targets; a colour's fourth channel holds what lies beside no colour."""
-    plain = [replace(one, shares=False) for one in BINS.values() if not one.fields]
-    found = solved(problem(replace(USUAL, bytes=24), bins=plain))
-    assert found is not None
-    layout = layout_of("mine", found)
+    """No target is an integer target either."""
+    plain = [replace(home, shares=False) for home in BINS.values() if not home.fields]
+    solution = solved(problem(replace(USUAL, bytes=24), bins=plain))
+    assert solution is not None
+    layout = layout_of("mine", solution)
     assert not any(word.bits for word in layout.words), layout.summary
     assert not any(target.storage.is_integer for target in layout.targets)
 
 
-def test_a_number_beside_an_unused_colour_lies_in_the_fourth_channel():
+def test_number_next_to_an_unused_colour_is_in_the_fourth_channel():
     code = next(code for code in held.SEEN["ao"].codes if code.bits == (8,))
     normal = next(code for code in held.SEEN["normal"].codes if code.name == "octahedral 16:16")
     placed = (Placed(normal, BINS["rg16"], 0), Placed(code, BINS["srgb8_a8"], 0))
@@ -128,39 +128,37 @@ def test_a_number_beside_an_unused_colour_lies_in_the_fourth_channel():
 
 
 @pytest.mark.parametrize("limit", [12, 14, 16, 20])
-def test_what_is_read_alone_lies_in_few_bytes_with_nothing_large(limit):
-    """A normal and a roughness in at most 8 bytes without a colour; ids and flags in one target."""
-    found = solved(problem(replace(USUAL, bytes=limit)))
-    assert found is not None
-    homes = [
-        lying for lying in by_target(found).values() if {"normal", "roughness"} & {p.code.attribute for p in lying}
-    ]
+def test_attributes_read_alone_share_few_bytes_with_nothing_large(limit):
+    """Normal and roughness take at most 8 bytes without a colour; shading model and flags share a target."""
+    best = solved(problem(replace(USUAL, bytes=limit)))
+    assert best is not None
+    homes = [lying for lying in by_target(best).values() if {"normal", "roughness"} & {p.code.attribute for p in lying}]
     assert sum(lying[0].bin.bytes for lying in homes) <= 8
     assert not {"base_color", "motion"} & {p.code.attribute for lying in homes for p in lying}
-    (home,) = [lying for lying in by_target(found).values() if any(p.code.attribute == "shading_model" for p in lying)]
+    (home,) = [lying for lying in by_target(best).values() if any(p.code.attribute == "shading_model" for p in lying)]
     assert "flags" in {p.code.attribute for p in home}
 
 
-def test_webgpus_bytes_a_sample_are_the_specifications():
-    """The costs and alignments of its table of plain colour formats, and 32 of them for a G-buffer and its light."""
+def test_webgpu_bytes_per_sample_follow_the_specification():
+    """Costs and alignments follow the table of plain colour formats; the limit is 32 bytes per sample."""
     assert WEBGPU_BYTES == 32 and webgpu_cost(["rgba8"] * 4) == 32
     assert webgpu_cost(["r8", "r32_uint"]) == 8 and webgpu_cost(["r32_uint", "r8"]) == 5
     assert webgpu_cost(["rg16f", "r32_uint", "rgb10a2"]) == 16 and webgpu_cost(["rg16"]) is None
-    bins = [one for one in BINS.values() if one.format in WEBGPU]
-    found = solved(problem(Rules(20, 6, webgpu=24), bins=bins))
-    assert found is not None
-    cost = webgpu_cost([target.format for target in layout_of("mine", found).targets])
+    bins = [home for home in BINS.values() if home.format in WEBGPU]
+    solution = solved(problem(Rules(20, 6, webgpu=24), bins=bins))
+    assert solution is not None
+    cost = webgpu_cost([target.format for target in layout_of("mine", solution).targets])
     assert cost is not None and cost <= 24
 
 
-def test_what_no_image_shows_has_its_bits_all_the_same():
-    """Ids, flags, custom data and motion at every limit, also where a byte more would be worth much to the image."""
+def test_attributes_that_no_image_shows_keep_their_bits():
+    """Shading model, flags, custom data and motion keep their bits even if another byte would improve the image."""
     hold = "normal,base_color,roughness,metallic,f0,ao,shading_model:4,flags:6,motion,custom:32,other:7"
     wanted = attributes_held(hold, 64.0)
     for limit in (18, 20, 24):
-        found = solved(problem(Rules(limit, 8), wanted))
-        assert found is not None
-        sizes = {one.code.attribute: one.code.total_bits for one in found.placed}
+        solution = solved(problem(Rules(limit, 8), wanted))
+        assert solution is not None
+        sizes = {placed.code.attribute: placed.code.total_bits for placed in solution.placed}
         assert sizes["shading_model"] == 4 and sizes["flags"] == 6 and sizes["custom"] == 32 and sizes["other"] == 7
         assert sizes["motion"] == 32
 
@@ -175,7 +173,7 @@ def test_what_no_image_shows_has_its_bits_all_the_same():
     ids=lambda one: one.name,
 )
 def test_every_code_of_motion_keeps_the_floor(code, codec):
-    """Rest is exact, and up to its speed motion is off by less than 1/16 pixel of 1920 x 1080."""
+    """Rest is exact, and up to the code's speed the error is below 1/16 pixel at 1920 x 1080."""
     speed = held.UP_TO_PIXELS[code]
     assert codec.encoding.name in code.name and code in held.motion(speed, code is held.ROOT_MOTION).codes
     case = vectors.MotionVectorCase(codec, "jax", 1.0, (0.05, 1.0, 16.0, speed), Paths(2**12, 0, (1920, 1080)))
@@ -185,33 +183,33 @@ def test_every_code_of_motion_keeps_the_floor(code, codec):
     assert worst < 1 / 16, f"{worst:.4f} px"
 
 
-def test_motion_faster_than_halves_keep_is_in_whole_numbers():
-    """A pixel a frame more than they keep is refused to halves, and to the root in a word."""
+def test_motion_too_fast_for_half_floats_is_stored_in_integers():
+    """At one pixel per frame above the limit, half floats and the square root in a word are refused."""
     assert [code.name for code in held.motion(64.0, True).codes] == ["linear in halves", "sqrt 14:14"]
     assert [code.name for code in held.motion(121.0, True).codes] == ["linear 16:16"]
 
 
 def test_finalists_are_other_codes_that_count_as_equal():
-    """The first is what is proposed; none of them is worse than the least error by more than 0.2 dB."""
+    """The first is the proposal; no finalist is worse than the smallest error by more than 0.2 dB."""
     asked = problem(USUAL)
-    found = finalists(asked, 3)
-    codes = [frozenset(one.key for one in each.placed) for each in found]
-    assert len(set(codes)) == 3 and codes[0] == frozenset(one.key for one in solved(asked).placed)
-    worst = [each.worst_of(asked.classes) for each in found]
+    solutions = finalists(asked, 3)
+    codes = [frozenset(placed.key for placed in each.placed) for each in solutions]
+    assert len(set(codes)) == 3 and codes[0] == frozenset(placed.key for placed in solved(asked).placed)
+    worst = [each.worst_of(asked.classes) for each in solutions]
     assert max(worst) <= min(worst) * 10**0.0202, worst
 
 
-def test_a_limit_takes_no_bytes_that_bring_nothing():
-    """Where errors show, the smallest layout within half a decibel of the best; where 8 bits of a display show none,
-    the smallest of all."""
+def test_limit_uses_no_bytes_without_a_gain():
+    """If errors are visible, the smallest layout within half a decibel of the best is chosen; if an 8-bit display
+    shows no error, the smallest of all."""
     scaled = [{key: {n: scale * e for n, e in of.items()} for key, of in falling().items()} for scale in (1e3, 1e-6)]
     large, small = scaled
     for limit in (12, 16, 20):
 
         def worst(size: int, limit: int = limit) -> float:
             asked = problem(replace(USUAL, bytes=min(size, limit)), errors=large)
-            found = solved(asked)
-            return found.worst_of(asked.classes) if found else np.inf
+            solution = solved(asked)
+            return solution.worst_of(asked.classes) if solution else np.inf
 
         size, most = enough_bytes(problem(replace(USUAL, bytes=limit), errors=large)), worst(limit) * 10**0.05
         # What is solved is exact to a thousandth, and the plainest may be 0.2 dB worse.
@@ -220,10 +218,9 @@ def test_a_limit_takes_no_bytes_that_bring_nothing():
     assert enough_bytes(problem(replace(USUAL, bytes=8))) is None
 
 
-def test_what_the_worst_class_leaves_goes_to_the_others():
-    """A code whose error one class alone shows is taken as well as the bytes allow, though that class is not the
-    worst."""
-    (metalness,) = (one for one in DEFAULT if one.name == "metallic")
+def test_bits_that_the_worst_class_does_not_need_go_to_the_others():
+    """A code whose error shows in one class gets all bits that fit, even if that class is not the worst."""
+    (metalness,) = (attribute for attribute in DEFAULT if attribute.name == "metallic")
     errors = falling() | {
         ("metallic", code.name): {"class 0": 0.0, "class 1": 1e-4 * 4.0**-code.total_bits} for code in metalness.codes
     }
@@ -234,7 +231,7 @@ def test_what_the_worst_class_leaves_goes_to_the_others():
 
 
 def test_a_scene_judges_layouts_that_the_others_chose():
-    """Two scenes that show other attributes: each has the error of the layout that the other one would take."""
+    """Two scenes show different attributes; each is measured with the layout chosen for the other scene."""
     rates = falling()
     errors = {key: {"first mirror": of["class 0"], "second mirror": of["class 1"]} for key, of in rates.items()}
     for (name, _), of in errors.items():
@@ -257,48 +254,48 @@ def test_a_scene_judges_layouts_that_the_others_chose():
 
 
 def test_two_codes_that_are_worse_together_are_not_taken_together():
-    """What they make beyond their own errors is in the prediction, and 20 dB of it moves one of them."""
+    """The prediction includes the additional joint error of two codes, and 20 dB of it replaces one code."""
     asked = problem(USUAL)
-    found = solved(asked)
-    pair = frozenset(one.key for one in found.placed if one.code.attribute in ("normal", "roughness"))
-    beyond = {name: 99 * found.errors[name] for name in asked.classes}
+    solution = solved(asked)
+    pair = frozenset(part.key for part in solution.placed if part.code.attribute in ("normal", "roughness"))
+    beyond = {name: 99 * solution.errors[name] for name in asked.classes}
     other = solved(replace(asked, together={pair: beyond}))
-    assert not pair <= {one.key for one in other.placed}
-    one = {
+    assert not pair <= {part.key for part in other.placed}
+    limited = {
         attribute: replace(known, codes=tuple(c for c in known.codes if c.key in pair))
         for attribute, known in ((a.name, a) for a in DEFAULT)
         if attribute in ("normal", "roughness")
     }
-    forced = [one.get(known.name, known) for known in DEFAULT]
+    forced = [limited.get(known.name, known) for known in DEFAULT]
     both = solved(replace(asked, attributes=forced, together={pair: beyond}))
     apart = sum(asked.error(placed.code, "class 0") for placed in both.placed)
     assert both.errors["class 0"] == pytest.approx(apart + beyond["class 0"])
 
 
 # The whole layouts of metal/rough materials, which a proposal is compared with.
-COMPARED = [one for one in LAYOUTS.values() if one.is_whole and one.reflects_by != DIFFUSE_F0]
+COMPARED = [layout for layout in LAYOUTS.values() if layout.is_whole and layout.reflects_by != DIFFUSE_F0]
 
 
 @pytest.mark.parametrize("layout", COMPARED, ids=lambda one: one.name)
 def test_a_proposal_holds_what_a_layout_holds_in_targets_of_its_formats(layout):
     asked = own(layout, USUAL)
-    codes = [code for one in asked.attributes for code in one.codes if code.trip]
+    codes = [code for attribute in asked.attributes for code in attribute.codes if code.trip]
     errors = {code.key: {"class": 4.0 ** -min(code.bits)} for code in codes}
-    found = solved(Problem(asked.attributes, errors, ["class"], asked.bins, asked.rules))
-    assert found is not None
-    made = layout_of("mine", found)
-    assert made.bytes_per_pixel <= layout.bytes_per_pixel
+    solution = solved(Problem(asked.attributes, errors, ["class"], asked.bins, asked.rules))
+    assert solution is not None
+    mine = layout_of("mine", solution)
+    assert mine.bytes_per_pixel <= layout.bytes_per_pixel
     theirs = Counter(target.format.removesuffix("_snorm") for target in layout.targets)
-    assert Counter(target.format for target in made.targets) <= theirs
+    assert Counter(target.format for target in mine.targets) <= theirs
     # A power is another word for a roughness, and a light of four numbers for one of three.
-    words = [{c for c in one.components if c not in ("power", "emissive.a", "normal.z")} for one in (made, layout)]
+    words = [{c for c in lay.components if c not in ("power", "emissive.a", "normal.z")} for lay in (mine, layout)]
     assert words[0] == words[1]
-    others = [sum(bits_of(one, word) for word in words_of(one) if word.component == "other") for one in (made, layout)]
+    others = [sum(bits_of(lay, word) for word in words_of(lay) if word.component == "other") for lay in (mine, layout)]
     assert others[0] >= others[1]
 
 
 def words_of(layout):
-    return [word for at, target in enumerate(layout.targets) for word in all_placed(layout.name, at, target)]
+    return [word for index, target in enumerate(layout.targets) for word in all_placed(layout.name, index, target)]
 
 
 def bits_of(layout, word) -> int:
@@ -306,9 +303,9 @@ def bits_of(layout, word) -> int:
 
 
 def test_codes_share_the_channels_of_ten_bits():
-    """A normal, a roughness and an occlusion in 30 bits; the two bits beside them are another's."""
+    """A normal and a metallic value use 27 of 30 bits; the two alpha bits hold flags."""
     home = BINS["rgb10a2"]
-    codes = {code.key: code for one in held.SEEN.values() for code in one.codes}
+    codes = {code.key: code for attribute in held.SEEN.values() for code in attribute.codes}
     flags = held.exact_bits("flags", "other", 2).codes[0]
     names = [("normal", "octahedral 11:11"), ("metallic", "linear 5")]
     layout = layout_of("mine", Solution(tuple(Placed(c, home, 0) for c in (*(codes[n] for n in names), flags)), {}))
@@ -318,18 +315,18 @@ def test_codes_share_the_channels_of_ten_bits():
 
 @pytest.mark.parametrize("name", ["rg32_uint", "rgba32_uint", "rgba16_uint"])
 def test_codes_share_the_channels_of_wide_targets(name):
-    """Everything but motion lies in them; where there is room, no number lies across two channels."""
+    """Wide targets hold everything except motion; only in `rgba16_uint` may a number cross two channels."""
     bins = [BINS[f"{name}_fields"], BINS["rg16f"]]
-    found = solved(problem(replace(USUAL, bytes=20, together=(), read=frozenset()), bins=bins))
-    assert found is not None
-    layout = layout_of("mine", found)
+    solution = solved(problem(replace(USUAL, bytes=20, together=(), read=frozenset()), bins=bins))
+    assert solution is not None
+    layout = layout_of("mine", solution)
     assert {target.format for target in layout.targets} == {name, "rg16f"}
     part = bins[0].part
     across = [w for w in layout.words if w.bits and w.first // part != (w.first + w.bits - 1) // part]
     assert not across or name == "rgba16_uint", across
 
 
-def test_the_usual_reflectance_lies_on_a_code():
+def test_usual_reflectance_is_close_to_a_code():
     for code in held.SEEN["f0"].codes:
         curve, _, limit = code.words[0].partition("(")[0].partition(":")
         scale = 2 ** code.bits[0] - 1
@@ -377,14 +374,14 @@ def test_the_usual_reflectance_lies_on_a_code():
     ],
 )
 @pytest.mark.usefixtures("gl")
-def test_what_cannot_be_asked_is_one_line(run, asked, said):
+def test_invalid_request_is_an_error_message(run, asked, said):
     usual = {"--scene": "ramps", "--size": "64x48"} | dict(zip(asked[::2], asked[1::2], strict=True))
     status, _, err = run("budget", *itertools.chain.from_iterable(usual.items()))
     assert status != 0 and said in err and "Traceback" not in err, err
 
 
 def test_a_run_measures_a_budget_unless_it_names_scenes():
-    """In no more bytes than two limits take; a scene of any kind may be named then, as nothing judges layouts by it."""
+    """The default limits are 12 and 16 bytes. If scenes are named, the budget is measured only on request."""
     (usual,) = options_of(TABLE, {"count": 4096})
     assert TABLE in chosen_tables(("all",), {"count": 4096}) and usual.bytes == ("12", "16")
     assert TABLE not in chosen_tables(("all",), {"scene": ("room",)})
@@ -392,16 +389,16 @@ def test_a_run_measures_a_budget_unless_it_names_scenes():
 
 
 def test_a_change_that_brings_nothing_is_not_named():
-    """Of a layout with the proposal's own codes nothing is; of one with a worse normal the normal alone."""
-    found = solved(problem(USUAL))
-    assert found is not None
+    """A layout with nearly the proposal's errors gets no suggestion; with a worse normal only the normal is named."""
+    best = solved(problem(USUAL))
+    assert best is not None
     errors = falling()
-    mine = {one.code.attribute: errors[one.code.attribute, one.code.name] for one in found.placed if one.code.trip}
+    mine = {part.code.attribute: errors[part.code.attribute, part.code.name] for part in best.placed if part.code.trip}
 
     def said(given):
-        return changes.said(given, found, lambda *key: errors.get(key, {}), ["class 0", "class 1"])
+        return changes.said(given, best, lambda *key: errors.get(key, {}), ["class 0", "class 1"])
 
-    nearly = {name: {k: e * 1.001 for k, e in one.items()} for name, one in mine.items()}
+    nearly = {name: {k: e * 1.001 for k, e in loss.items()} for name, loss in mine.items()}
     assert said(nearly).startswith("no encoding of a proposal"), said(nearly)
-    worse = {name: {k: e * (64 if name == "normal" else 1.001) for k, e in one.items()} for name, one in mine.items()}
+    worse = {name: {k: e * (64 if name == "normal" else 1.001) for k, e in loss.items()} for name, loss in mine.items()}
     assert "normal as" in said(worse) and "; then" not in said(worse), said(worse)

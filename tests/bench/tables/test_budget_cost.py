@@ -1,4 +1,4 @@
-"""What the layouts of `budget` cost: bytes that passes fetch, and issue slots to pack and to unpack."""
+"""Costs of the layouts of `budget`: bytes that passes fetch, and issue slots to pack and unpack."""
 
 import itertools
 from dataclasses import replace
@@ -42,10 +42,10 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
     ],
 )
 def test_a_reader_fetches_the_targets_that_hold_what_it_reads(readers, unreal, signed, said):
-    found = read_readers(BudgetOptions(readers=readers).readers)
-    assert found.bytes_of(LAYOUTS["unreal4"]) == unreal
-    assert found.bytes_of(LAYOUTS["xy_depth_sign"]) == signed
-    assert found.said == said
+    parsed = read_readers(BudgetOptions(readers=readers).readers)
+    assert parsed.bytes_of(LAYOUTS["unreal4"]) == unreal
+    assert parsed.bytes_of(LAYOUTS["xy_depth_sign"]) == signed
+    assert parsed.said == said
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_a_reader_fetches_the_targets_that_hold_what_it_reads(readers, unreal, s
         ("normal+", "--readers normal+: unknown"),
     ],
 )
-def test_readers_that_are_none_are_one_line(readers, said):
+def test_invalid_readers_are_an_error(readers, said):
     with pytest.raises(UsageError) as caught:
         read_readers(BudgetOptions(readers=readers).readers)
     assert said in str(caught.value)
@@ -75,7 +75,7 @@ def test_readers_that_are_none_are_one_line(readers, said):
     ],
 )
 @pytest.mark.usefixtures("gl")
-def test_what_cannot_be_asked_is_one_line(run, asked, said):
+def test_invalid_request_is_an_error_message(run, asked, said):
     status, _, err = run("budget", "--scene", "ramps", "--size", "64x48", *asked)
     assert status != 0 and said in err and "Traceback" not in err, err
 
@@ -87,13 +87,13 @@ def test_without_a_compiler_a_limit_of_slots_says_what_is_missing(run, monkeypat
     assert status == 3 and "--most-instructions requires a compiler: no libvulkan_radeon" in err, err
 
 
-def test_without_a_compiler_no_price_is_known(monkeypatch):
+def test_cost_is_unknown_without_a_compiler(monkeypatch):
     monkeypatch.setattr(cost, "counted", lambda *_: {})
     assert cost.Slots(["navi21"]).columns(LAYOUTS["unreal4"], 1.5, 1.0) == {}
 
 
-def test_the_dearest_family_is_that_of_a_pixel(monkeypatch):
-    """With overdraw 3 and 1 reader A takes 3 x 10 + 30 = 60 and B 3 x 20 + 5 = 65; with 4 readers A takes more."""
+def test_most_expensive_family_is_chosen_per_pixel(monkeypatch):
+    """With overdraw 3 and 1 pass, A takes 3 x 10 + 30 = 60 and B 3 x 20 + 5 = 65; with 4 passes A takes more."""
     told = {"A": (10, 30), "B": (20, 5)}
 
     def counted(cases, family, _):
@@ -104,8 +104,8 @@ def test_the_dearest_family_is_that_of_a_pixel(monkeypatch):
 
     monkeypatch.setattr(cost, "counted", counted)
     slots = cost.Slots(["A", "B"])
-    found = slots.columns(LAYOUTS["unreal4"], 3.0, 1.0)
-    assert found == {"pack_slots": 20, "unpack_slots": 5, "slots": 65, "dearest_family": "B"}
+    row = slots.columns(LAYOUTS["unreal4"], 3.0, 1.0)
+    assert row == {"pack_slots": 20, "unpack_slots": 5, "slots": 65, "dearest_family": "B"}
     assert slots.columns(LAYOUTS["unreal4"], 3.0, 4.0)["dearest_family"] == "A"
     assert slots.once(LAYOUTS["unreal4"]) == 40
 
@@ -122,48 +122,48 @@ HOMES = [replace(BINS[name], copies=1) for name in ("rgb10a2", "rg8", "r32_uint_
 
 
 class Told:
-    """Slots that are told: of a code by itself, and of a layout what joining its words adds to or takes from that."""
+    """Predefined slots: a number for each code, plus or minus a number for each word that a layout joins."""
 
     def __init__(self, seed: int, join: float):
         self._random, self._join = np.random.default_rng(seed), join
         self._codes: dict[tuple[str, str, str], int] = {}
 
     def count_codes(self, _):
-        """Nothing is to be counted."""
+        """Do nothing, because no code needs counting."""
 
     def of_code(self, code, one):
         return self._codes.setdefault((code.attribute, code.name, one.name), int(self._random.integers(1, 30)))
 
     def of_whole(self, placed):
-        joined = len(placed) - len({one.bin.name for one in placed})
-        return sum(self.of_code(one.code, one.bin) for one in placed) + self._join * joined
+        joined = len(placed) - len({part.bin.name for part in placed})
+        return sum(self.of_code(part.code, part.bin) for part in placed) + self._join * joined
 
 
 def _possible(limit: int):
-    """Every way to place the codes of FEW in HOMES within some bytes."""
-    for codes in itertools.product(*(one.codes for one in FEW)):
+    """Yield every way to place the codes of FEW in HOMES within some bytes."""
+    for codes in itertools.product(*(attribute.codes for attribute in FEW)):
         for homes in itertools.product(HOMES, repeat=len(codes)):
             if sum(home.bytes for home in set(homes)) <= limit and fit(codes, homes):
                 yield [Placed(code, home, 0) for code, home in zip(codes, homes, strict=True)]
 
 
 def _errors(seed: int) -> dict:
-    """Errors of 6 dB a bit in two classes."""
+    """Return errors that fall by 6 dB per bit in two classes."""
     rng = np.random.default_rng(seed)
-    starts = {one.name: 10 ** rng.uniform(-1, 1, 2) for one in FEW}
+    starts = {a.name: 10 ** rng.uniform(-1, 1, 2) for a in FEW}
     return {
-        (one.name, code.name): {
-            f"class {i}": start * 4.0 ** (-code.total_bits / len(code.bits)) for i, start in enumerate(starts[one.name])
+        (a.name, code.name): {
+            f"class {i}": start * 4.0 ** (-code.total_bits / len(code.bits)) for i, start in enumerate(starts[a.name])
         }
-        for one in FEW
-        for code in one.codes
+        for a in FEW
+        for code in a.codes
     }
 
 
 @pytest.mark.parametrize("join", [0.0, 2.0, -2.0])
 @pytest.mark.parametrize("seed", range(6))
-def test_the_best_layout_within_a_limit_of_slots_is_that_of_exhaustive_search(monkeypatch, seed, join):
-    """Where whole layouts cost what their codes do; else one that keeps to the limit is found where there is one."""
+def test_best_layout_within_a_slot_limit_matches_exhaustive_search(monkeypatch, seed, join):
+    """The results match if layouts cost as much as their codes; in other cases a layout within the limit is found."""
     told = Told(seed, join)
     monkeypatch.setattr(cost, "whole", lambda slots, found: slots.of_whole(found.placed))
     problem = Problem(FEW, _errors(seed), ["class 0", "class 1"], HOMES, Rules(8, 3))
@@ -171,20 +171,20 @@ def test_the_best_layout_within_a_limit_of_slots_is_that_of_exhaustive_search(mo
     prices = [told.of_whole(placed) for placed in possible]
 
     def worst(placed) -> float:
-        return max(sum(problem.error(one.code, name) for one in placed) for name in problem.classes)
+        return max(sum(problem.error(part.code, name) for part in placed) for name in problem.classes)
 
     def solve(asked):
-        return [found] if (found := solved(asked)) else []
+        return [answer] if (answer := solved(asked)) else []
 
     for most in (min(prices) - 1, min(prices), sorted(prices)[len(prices) // 3], max(prices)):
-        found = cost.within(problem, most, told, solve)
+        solutions = cost.within(problem, most, told, solve)
         if most < min(prices):
-            assert not found
+            assert not solutions
             continue
         fitting = [worst(placed) for placed, price in zip(possible, prices, strict=True) if price <= most]
-        (one,) = found
-        assert told.of_whole(one.placed) <= most
+        (solution,) = solutions
+        assert told.of_whole(solution.placed) <= most
         if not join:
-            assert min(fitting) * (1 - 1e-6) <= worst(one.placed) <= max(min(fitting) * 10**0.0202, 1e-6), most
+            assert min(fitting) * (1 - 1e-6) <= worst(solution.placed) <= max(min(fitting) * 10**0.0202, 1e-6), most
     cheapest = cost.least(problem, told, solve)
     assert cheapest and told.of_whole(cheapest.placed) == min(prices)

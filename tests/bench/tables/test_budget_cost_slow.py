@@ -1,4 +1,4 @@
-"""What the layouts of `budget` cost: bytes that passes fetch, and issue slots to pack and to unpack."""
+"""Costs of the layouts of `budget`: bytes that passes fetch, and issue slots to pack and unpack."""
 
 import json
 import re
@@ -14,11 +14,11 @@ from normalbench.bench.tables.budget.table import BudgetOptions
 
 
 def test_every_code_has_a_kernel_in_every_target_that_holds_it():
-    """Of all that --hold may name: a code without one would count as dearer than any limit."""
+    """This covers all that `--hold` can name; a code without a kernel would exceed every limit."""
     words = "shadow:8,custom:32,other:5,tangent,emissive,motion:packed"
     named = f"normal,base_color,roughness,metallic,f0,ao,shading_model:4,flags:4,{words}"
     held_all = attributes_held(named, BudgetOptions().speed)
-    pairs = [(code, one) for held_one in held_all for code in held_one.codes for one in BINS.values() if one.need(code)]
+    pairs = [(code, box) for held_one in held_all for code in held_one.codes for box in BINS.values() if box.need(code)]
     assert len(pairs) > 200
     for code, one in pairs:
         layout = cost.alone(code, one)
@@ -42,13 +42,13 @@ def test_rows_have_the_slots_of_the_emitted_code_and_the_bytes_of_readers(run):
     assert [mine[name] for name in ("pack_slots", "unpack_slots", "slots")] == [20, 29, 1.5 * 20 + 29]
     assert mine["mb_1080p"] == pytest.approx(1920 * 1080 * (1.5 * 16 + 16 + 8) / 1e6)
     assert proposal["dearest_family"] == "navi21" and proposal["slots"] > 0
-    said = next(sentence for sentence in told(proposal) if sentence.startswith("Packing takes"))
-    assert said.endswith(f"{proposal['slots']:g} per pixel, written 1.5 times and read once in full.")
+    text = next(sentence for sentence in told(proposal) if sentence.startswith("Packing takes"))
+    assert text.endswith(f"{proposal['slots']:g} per pixel, written 1.5 times and read once in full.")
 
 
 @pytest.mark.usefixtures("gl", "radv")
 def test_the_answer_for_a_limit_has_a_dozen_lines(run, monkeypatch):
-    """Of 80 columns; -v prints more of the same figures."""
+    """Lines have 80 columns; `-v` prints more of the same figures."""
     monkeypatch.setenv("COLUMNS", "80")
     (status, short, err), (_, verbose, _) = (run(*FEW_KINDS[:-2], *more) for more in ((), ("-v",)))
     assert status == 0 and short.count("\n") <= 12 < verbose.count("\n"), (short, err)
@@ -57,7 +57,7 @@ def test_the_answer_for_a_limit_has_a_dozen_lines(run, monkeypatch):
 
 
 @pytest.mark.usefixtures("gl", "radv")
-def test_a_limit_of_slots_is_kept_or_the_least_is_named_and_can_be(run):
+def test_slot_limit_is_kept_or_the_lowest_possible_limit_is_named(run):
     status, _, err = run(*FEW_KINDS, "--most-instructions", "1")
     (least,) = map(int, re.findall(r"1 issue slots are too few: the cheapest .* takes (\d+) to pack and unpack", err))
     assert status != 0 and "Traceback" not in err, err

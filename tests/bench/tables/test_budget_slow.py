@@ -1,4 +1,4 @@
-"""`normalbench budget`: the best layout by exhaustive search, the rules of targets, floors, a layout drawn whole."""
+"""`normalbench budget`: comparison with exhaustive search, rules of targets, minimum precision, a rendered layout."""
 
 import itertools
 import json
@@ -23,7 +23,7 @@ from normalbench.reports.sheets import Role
 
 
 def test_the_program_finds_what_exhaustive_search_finds():
-    """Of three attributes with codes of several sizes, in targets of unequal ones, for 50 random limits and errors."""
+    """Three attributes with codes of several sizes are placed in unequal targets, for 50 random limits and errors."""
     attributes = [
         replace(held.SEEN["normal"], codes=tuple(c for c in held.SEEN["normal"].codes if c.bits[0] in (10, 12, 14))),
         replace(held.SEEN["roughness"], codes=held.SEEN["roughness"].codes[1:4]),
@@ -31,7 +31,7 @@ def test_the_program_finds_what_exhaustive_search_finds():
     ]
     bins = [replace(BINS[name], copies=1) for name in ("rgb10a2", "r8", "rg8", "r32_uint_fields")]
     possible = []
-    for codes in itertools.product(*(one.codes for one in attributes)):
+    for codes in itertools.product(*(attribute.codes for attribute in attributes)):
         for homes in itertools.product(bins, repeat=len(codes)):
             if fit(codes, homes):
                 possible.append((codes, sum(home.bytes for home in set(homes))))
@@ -44,9 +44,9 @@ def test_the_program_finds_what_exhaustive_search_finds():
         beyond = {name: float(rng.uniform(0, 1) * errors[min(pair)][name]) for name in ("class 0", "class 1")}
         asked = replace(problem(Rules(limit, 4), attributes, errors, bins), together={pair: beyond})
         fitting = [codes for codes, size in possible if size <= limit]
-        found = solved(asked)
+        solution = solved(asked)
         if not fitting:
-            assert found is None, (limit, found)
+            assert solution is None, (limit, solution)
             continue
 
         def worst(codes, asked=asked, pair=pair, beyond=beyond):
@@ -56,12 +56,12 @@ def test_the_program_finds_what_exhaustive_search_finds():
         best = min(map(worst, fitting))
         assert fewest_bytes(asked) == min(size for _, size in possible)
         # Of those within 0.2 dB the plainest is taken, and what nobody sees is as good as exact.
-        assert found is not None
-        assert best <= found.worst_of(asked.classes) * (1 + 1e-6) <= max(best * 10**0.0202, 1e-6), (limit, seed)
+        assert solution is not None
+        assert best <= solution.worst_of(asked.classes) * (1 + 1e-6) <= max(best * 10**0.0202, 1e-6), (limit, seed)
 
 
-def test_the_answer_does_not_hang_on_the_order_of_sets():
-    """Strings are hashed anew in each process: the plainest of equal layouts is the same in all of them."""
+def test_answer_does_not_depend_on_the_order_of_sets():
+    """Each process hashes strings differently, but the simplest of equal layouts is the same in all processes."""
     lines = (
         "import test_budget as t",
         "found = t.solved(t.problem(t.USUAL))",
@@ -70,12 +70,12 @@ def test_the_answer_does_not_hang_on_the_order_of_sets():
     own = {"PYTHONHASHSEED": "4", "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     asked = [sys.executable, "-c", "; ".join(lines)]
     told = subprocess.run(asked, env={**os.environ, **own}, capture_output=True, text=True, check=True).stdout
-    found = solved(problem(USUAL))
-    assert told.strip() == str(sorted((p.code.name, p.bin.name, p.copy) for p in found.placed))
+    solution = solved(problem(USUAL))
+    assert told.strip() == str(sorted((p.code.name, p.bin.name, p.copy) for p in solution.placed))
 
 
 def test_a_layout_is_drawn_and_is_what_was_predicted(gl, run, tmp_path):
-    """Within half a decibel; it is written as a file that is that layout."""
+    """The errors agree within half a decibel, and the written file describes the same layout."""
     folder = tmp_path / "layouts"
     asked = ["--scene", "ramps", "--size", "160x120", "--bytes", "14", "--format", "json", "--layouts", str(folder)]
     status, out, _ = run("budget", *asked)
@@ -101,8 +101,8 @@ def test_a_layout_is_drawn_and_is_what_was_predicted(gl, run, tmp_path):
         ("normal,base_color", 8, {"normal", "base_color"}),
     ],
 )
-def test_what_is_not_held_is_exact_and_takes_no_bytes(run, kept, size, named):
-    """Of normal and roughness alone, one word of 32 bits: as drawn, and as was predicted."""
+def test_attributes_that_are_not_stored_are_exact_and_take_no_bytes(run, kept, size, named):
+    """Normal and roughness alone share one 32-bit word, and the rendered error matches the prediction."""
     asked = ("--scene", "studio", "--size", "160x120", "--bytes", str(size), "--format", "json")
     status, out, _ = run("budget", "--hold", kept, *asked)
     (row,) = json.loads(out)
@@ -114,7 +114,7 @@ def test_what_is_not_held_is_exact_and_takes_no_bytes(run, kept, size, named):
 
 @pytest.mark.usefixtures("gl")
 def test_integer_targets_are_taken_where_no_others_are_allowed(run):
-    """Also where nothing else could hold it, so that there is nothing to gain on."""
+    """This holds even if no other layout is possible, so that no gain can be measured."""
     asked = ["--scene", "ramps", "--size", "160x120", "--bytes", "20", "--read-alone", "none", "--format", "json"]
     status, out, err = run("budget", *asked, "--formats", "rgba32_uint,rg16f")
     assert status == 0, err
@@ -144,7 +144,7 @@ WEBGPU_NAMES = {
 
 
 def _webgpu_device():
-    """A device of WebGPU's own limit; this machine's may be higher. Skips the test where there is none."""
+    """Return a device with WebGPU's own limit, which may be below this machine's; skip the test without a device."""
     require_runner("wgsl")
     return adapters()[0].request_device_sync(
         required_limits={"max-color-attachment-bytes-per-sample": WEBGPU_BYTES},
@@ -153,14 +153,14 @@ def _webgpu_device():
 
 
 def _refusal(gpu, formats) -> str:
-    """Why WebGPU creates no pipeline that renders to these formats; empty where it does."""
+    """Return why WebGPU creates no pipeline that renders to these formats, or an empty string if it does."""
     import wgpu
 
     names = [WEBGPU_NAMES[name] for name in formats]
     kinds = ["vec4u" if name.endswith("uint") else "vec4f" for name in names]
-    made = ", ".join(f"@location({at}) made_{at}: {kind}" for at, kind in enumerate(kinds))
+    members = ", ".join(f"@location({index}) made_{index}: {kind}" for index, kind in enumerate(kinds))
     text = f"""
-        struct Made {{ {made} }}
+        struct Made {{ {members} }}
         @vertex fn corner() -> @builtin(position) vec4f {{ return vec4f(); }}
         @fragment fn pixel() -> Made {{ var made: Made; return made; }}
     """
@@ -177,7 +177,7 @@ def _refusal(gpu, formats) -> str:
 
 
 def test_wgpu_takes_the_targets_that_cost_32_bytes_and_refuses_more():
-    """Random targets, up to 8; its message says what it counts for them where it refuses."""
+    """Up to 8 random targets are tried; the error of a refusal states the bytes that wgpu counts."""
     gpu, rng = _webgpu_device(), np.random.default_rng(11)
     assert WEBGPU_NAMES.keys() == WEBGPU.keys()
     drawn = [list(rng.choice(list(WEBGPU), size)) for size in rng.integers(4, 9, 120)]
@@ -194,6 +194,6 @@ def test_wgpu_takes_the_targets_that_cost_32_bytes_and_refuses_more():
 
 @pytest.mark.usefixtures("gl")
 def test_a_run_gives_its_scenes_to_the_budget(run, tmp_path):
-    """Before it measures: room cannot be judged by."""
+    """The run checks the scenes before it measures; room cannot judge layouts."""
     status, _, err = run("run", "--tables", "budget", "--scene", "room", "--output", str(tmp_path / "run"))
     assert status != 0 and "room: no metallic-roughness materials" in err, err

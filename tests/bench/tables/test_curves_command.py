@@ -1,4 +1,4 @@
-"""`normalbench curves`: errors that theory gives, dithering, what it prints, and what it says of bad input."""
+"""`normalbench curves`: errors known from theory, dithering, output and messages for bad input."""
 
 import itertools
 import json
@@ -22,22 +22,22 @@ QUICK = ["curves", "--backend", "jax", "--count", "4096", "--format", "json"]
 def row(encoding: str, storage: str, rounding: str = "nearest", backend: str = "jax") -> dict:
     (chosen,) = storages_named(storage)
     codec = CurveCodec(CURVE_ENCODINGS[encoding], chosen, 1.0, rounding)
-    found = curves.measure(curves.CurveCase(codec, backend, 2**16, 0))
-    assert found["skipped"] is None and tuple(found) == tuple(TABLES["curves"].empty()), found
-    return found
+    figures = curves.measure(curves.CurveCase(codec, backend, 2**16, 0))
+    assert figures["skipped"] is None and tuple(figures) == tuple(TABLES["curves"].empty()), figures
+    return figures
 
 
 @pytest.mark.parametrize("bits", [1, 3, 5, 8, 12, 16])
-def test_a_line_is_off_by_a_quarter_of_a_step_on_average_and_by_half_of_one(bits):
-    step, found = 1 / (2**bits - 1), row("linear", f"unorm:{bits}")
-    assert found["error_mean"] == pytest.approx(step / 4, rel=0.01)
-    assert found["error_max"] == pytest.approx(step / 2, rel=0.01)
-    assert found["zero"] == 0 and found["one"] == 1 and found["least"] == pytest.approx(step / 2, rel=0.01)
-    assert abs(found["bias"]) < step / 500 + 2.0**-24 and found["bits"] == bits
+def test_linear_error_is_a_quarter_step_on_average_and_half_a_step_at_most(bits):
+    step, figures = 1 / (2**bits - 1), row("linear", f"unorm:{bits}")
+    assert figures["error_mean"] == pytest.approx(step / 4, rel=0.01)
+    assert figures["error_max"] == pytest.approx(step / 2, rel=0.01)
+    assert figures["zero"] == 0 and figures["one"] == 1 and figures["least"] == pytest.approx(step / 2, rel=0.01)
+    assert abs(figures["bias"]) < step / 500 + 2.0**-24 and figures["bits"] == bits
 
 
-def test_cut_off_numbers_are_half_a_step_too_small_and_dithered_ones_right_on_average():
-    """And a dithered one is off by a third of a step on average: of all it may become, by its share."""
+def test_truncation_has_a_bias_of_half_a_step_and_dithering_has_none():
+    """The mean error of dithering is a third of a step, weighted over all values that a number may become."""
     step = 1 / 31
     cut, dithered = row("linear", "unorm:5", "truncate"), row("linear", "unorm:5", "dithered")
     assert cut["bias"] == pytest.approx(-step / 2, rel=0.01) and cut["error_max"] == pytest.approx(step, rel=0.01)
@@ -58,8 +58,8 @@ def test_a_curve_on_which_no_colours_are_stored_has_no_display_steps():
 
 
 def test_a_floats_error_is_a_share_of_the_quantity():
-    found = row("linear", "float:5:10")
-    assert found["relative_max"] == pytest.approx(100 * 2.0**-11, rel=0.05)
+    figures = row("linear", "float:5:10")
+    assert figures["relative_max"] == pytest.approx(100 * 2.0**-11, rel=0.05)
 
 
 @pytest.mark.usefixtures("gl")
@@ -82,7 +82,7 @@ def test_dithering_is_the_same_in_both_languages():
     assert by_jax["error_mean"] == pytest.approx(by_gl["error_mean"], rel=1e-3)
 
 
-def test_a_curve_lies_where_it_usually_does_over_its_usual_range():
+def test_every_curve_is_measured_over_its_default_range():
     cases = work.cases(CurvesOptions(backend="jax"))
     assert {case.codec.encoding.name for case in cases} == set(CURVE_ENCODINGS)
     assert {case.codec.range for case in cases if case.codec.encoding.name == "log"} == {31.0}
@@ -102,7 +102,7 @@ def test_a_curve_lies_where_it_usually_does_over_its_usual_range():
     ],
     ids=lambda value: value[-1] if isinstance(value, list) else None,
 )
-def test_bad_input_is_one_line_that_says_what_would_be_right(run, words, said):
+def test_bad_input_is_a_one_line_error_with_valid_values(run, words, said):
     status, out, err = run(*QUICK, *words)
     assert status == 2 and not out and err.count("\n") == 1 and all(word in err for word in said), err
 
@@ -114,6 +114,6 @@ def test_without_a_device_glsl_rows_say_why(run, monkeypatch):
     for module in (curves, devices):
         monkeypatch.setattr(module, "device", none)
     status, out, _ = run("curves", "--encoding", "linear", "--storage", "r8", "--count", "256", "--format", "json")
-    by_backend = {found["backend"]: found for found in json.loads(out)}
+    by_backend = {figures["backend"]: figures for figures in json.loads(out)}
     assert status == 0 and by_backend["glsl"]["skipped"] == "no device here"
     assert np.isfinite(by_backend["jax"]["error_mean"])

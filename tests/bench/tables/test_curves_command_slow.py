@@ -1,4 +1,4 @@
-"""`normalbench curves`: errors that theory gives, dithering, what it prints, and what it says of bad input."""
+"""`normalbench curves`: errors known from theory, dithering, output and messages for bad input."""
 
 import json
 from pathlib import Path
@@ -17,12 +17,12 @@ def test_a_users_own_curve_has_the_catalogues_rows(run):
     rows = json.loads(out)
     own, known = ([row for row in rows if (row["encoding"] == "squared") == is_known] for is_known in (False, True))
     assert status == 0 and len(own) == len(known) == 2
-    for one, other in zip(own, known, strict=True):
-        assert all(one[name] == other[name] for name in ("storage", "error_mean", "error_max", "relative_max", "least"))
+    for new, other in zip(own, known, strict=True):
+        assert all(new[name] == other[name] for name in ("storage", "error_mean", "error_max", "relative_max", "least"))
 
 
 def test_rows_are_by_bits_with_the_best_first(run):
     status, out, err = run(*QUICK, "--encoding", "linear,srgb", "--storage", "unorm:4..6")
     rows = json.loads(out)
-    assert status == 0 and not err and [found["bits"] for found in rows] == [4, 4, 5, 5, 6, 6]
-    assert all(one["error_max"] <= other["error_max"] for one, other in zip(rows[::2], rows[1::2], strict=True))
+    assert status == 0 and not err and [row["bits"] for row in rows] == [4, 4, 5, 5, 6, 6]
+    assert all(best["error_max"] <= other["error_max"] for best, other in zip(rows[::2], rows[1::2], strict=True))

@@ -1,4 +1,4 @@
-"""A file that declares numbers of 16 bits is measured in half arithmetic as well, and the answer goes by that."""
+"""Files that declare 16-bit numbers, also measured in half arithmetic, on which the answer is based."""
 
 import pytest
 

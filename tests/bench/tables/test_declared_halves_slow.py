@@ -1,4 +1,4 @@
-"""A file that declares numbers of 16 bits is measured in half arithmetic as well, and the answer goes by that."""
+"""Files that declare 16-bit numbers, also measured in half arithmetic, on which the answer is based."""
 
 import json
 
@@ -30,7 +30,7 @@ def halves():
 
 @pytest.mark.usefixtures("gl", "halves", "slang")
 def test_quality_has_a_row_of_either_arithmetic(run, tmp_path):
-    """xy in 16 bits cannot hold what 16 bits of UNORM can: its mean is 0.0708 degrees in place of 0.0030."""
+    """In half arithmetic xy cannot use all of 16-bit UNORM: its mean is 0.0708 degrees instead of 0.0030."""
     (tmp_path / "dir.glsl").write_text(GLSL)
     files = f"{FORMS / 'half_literal.hlsl'},{tmp_path / 'dir.glsl'},xy"
     asked = ("--storage", "rg16", "--normals", "hemisphere", "--backend", "glsl", "--count", "65536")
@@ -63,13 +63,13 @@ def test_without_a_device_for_halves_the_answer_is_of_32_bits(run, monkeypatch):
         raise MissingError("half arithmetic by glsl needs wgpu; pip install wgpu")
 
     monkeypatch.setattr("normalbench.bench.subjects.codecs.half.compute.half_device", missing)
-    said, file = "computed only in 32 bits: half arithmetic by glsl needs wgpu", str(FORMS / "half_literal.hlsl")
+    message, file = "computed only in 32 bits: half arithmetic by glsl needs wgpu", str(FORMS / "half_literal.hlsl")
     _, out, err = run("pick", "--storage", "rg8", "--against", file, *SMALL_ANSWER)
     (row,) = [row for row in json.loads(out) if row["against"]]
-    assert row["encoding"] == "half_literal.hlsl" and said in err
+    assert row["encoding"] == "half_literal.hlsl" and message in err
     asked = ("--storage", "rg8", "--normals", "hemisphere", "--backend", "glsl", "--count", "4096", "--format", "json")
     _, out, err = run("quality", "--encoding", file, *asked)
-    assert [row["encoding"] for row in json.loads(out)] == ["half_literal.hlsl"] and said in err
+    assert [row["encoding"] for row in json.loads(out)] == ["half_literal.hlsl"] and message in err
 
 
 @pytest.mark.usefixtures("gl", "slang")

@@ -1,4 +1,4 @@
-"""Codes of depth over bytes, as people pack a depth into RGBA8: what is wrong with one, and its errors."""
+"""Depth packed into bytes, as in RGBA8: diagnoses and errors."""
 
 import json
 
@@ -37,8 +37,8 @@ def test_nothing_is_wrong_with_powers_of_255(run, tmp_path, text):
     assert not doctor(run, tmp_path, text)
 
 
-def test_the_number_that_is_no_whole_byte_is_named(run, tmp_path):
-    """A first digit of 256 steps is off by half of 1/255 where a byte has 255: 32 897 steps of 2^-24."""
+def test_component_that_is_not_a_whole_byte_is_named(run, tmp_path):
+    """A first digit in 256 steps is off by half of 1/255 in a byte with 255 steps: 32897 steps of 2^-24."""
     (finding,) = doctor(run, tmp_path, OF_256)
     assert "component 1 of the code alone by 32897, because it is not a multiple of 1/255" in finding
 
@@ -48,9 +48,9 @@ def test_a_digit_that_is_missing_is_named(run, tmp_path):
     assert any("depths that differ by 1/256 share a code: its most significant byte is missing" in f for f in findings)
 
 
-def test_it_is_measured_of_linear_window_and_reversed_window_depth(run, tmp_path):
-    """Of linear depth by half a step of the last digit, which is below float32's own; of the others as a depth buffer
-    of as many bits."""
+def test_packed_bytes_are_measured_on_linear_window_and_reversed_depth(run, tmp_path):
+    """Linear depth is off by half a step of the last digit, which is below the float32 step; the other depths match a
+    depth buffer of as many bits."""
     path = tmp_path / "depth.glsl"
     path.write_text(THREE)
     words = ("--depth", f"{path},window", "--storage", "depth24", "--count", "4096", "--backend", "glsl")

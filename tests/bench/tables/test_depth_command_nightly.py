@@ -1,4 +1,4 @@
-"""`normalbench depth`: what it prints, what it writes, and what it says of bad input."""
+"""`normalbench depth`: output, files and messages for bad input."""
 
 from test_depth_command import QUICK
 

@@ -1,4 +1,4 @@
-"""`normalbench depth`: what it prints, what it writes, and what it says of bad input."""
+"""`normalbench depth`: output, files and messages for bad input."""
 
 import json
 
@@ -34,7 +34,7 @@ def test_json_has_a_row_for_each_distance_and_the_whole_range(run):
 @pytest.mark.parametrize(
     "arguments, said", [(["--near", "20"], "room"), (["--images", "/proc/nowhere"], "/proc/nowhere")]
 )
-def test_pictures_that_cannot_be_are_one_line(run, tmp_path, arguments, said):
+def test_unsupported_pictures_are_a_one_line_error(run, tmp_path, arguments, said):
     status, out, err = run("depth", "--images", str(tmp_path / "pictures"), *arguments)
     assert status == 2 and out == "" and err.count("\n") == 1 and said in err, err
     assert not list(tmp_path.iterdir())
@@ -42,7 +42,7 @@ def test_pictures_that_cannot_be_are_one_line(run, tmp_path, arguments, said):
 
 @pytest.mark.usefixtures("gl")
 def test_the_pictures_show_the_error_and_the_terraces(run, tmp_path):
-    """The picture of the error has the colours of its scale; where steps are coarse the lit surface is striped."""
+    """The error picture uses the colours of its scale; coarse steps show as stripes on the lit surface."""
     codes = ["--depth", "linear", "--storage", "packed16,r32f", "--near", "1", "--count", "100", "--backend", "glsl"]
     status, _, err = run("depth", *codes, "--images", str(tmp_path))
     assert status == 0, err
@@ -71,24 +71,24 @@ WAYS = {"truncate": 2.0, "truncate_half": 4 / 3, "dithered": 4 / 3}
 def test_numbers_are_rounded_as_is_asked_in_both_languages(run, code):
     words = ["--depth", code[0], "--storage", code[1], "--near", "1", "--rounding", "all", "--format", "json"]
     status, out, _ = run("depth", *words, "--count", "4096")
-    found = {(row["rounding"], row["backend"], row["distance"]): row for row in json.loads(out)}
-    roundings = list(dict.fromkeys(rounding for rounding, _, _ in found))
+    by_key = {(row["rounding"], row["backend"], row["distance"]): row for row in json.loads(out)}
+    roundings = list(dict.fromkeys(rounding for rounding, _, _ in by_key))
     assert status == 0 and roundings == ["nearest", "truncate"] + (["truncate_half", "dithered"] * (code[1] != "r16f"))
-    for (rounding, backend, distance), row in found.items():
+    for (rounding, backend, distance), row in by_key.items():
         assert row["error_max"] <= row["bound"] and not row["signs_lost"], row
-        assert row["half_step"] / found["nearest", backend, distance]["half_step"] == pytest.approx(
+        assert row["half_step"] / by_key["nearest", backend, distance]["half_step"] == pytest.approx(
             1 if rounding == "nearest" else 2, rel=0.01
         )
-        assert row["error_mean"] == pytest.approx(found[rounding, "jax", distance]["error_mean"], rel=0.02)
+        assert row["error_mean"] == pytest.approx(by_key[rounding, "jax", distance]["error_mean"], rel=0.02)
     if code[0].startswith("linear"):
-        nearest = found["nearest", "jax", None]["error_mean"]
+        nearest = by_key["nearest", "jax", None]["error_mean"]
         for rounding in roundings[1:]:
-            ratio = found[rounding, "jax", None]["error_mean"] / nearest
+            ratio = by_key[rounding, "jax", None]["error_mean"] / nearest
             assert ratio == pytest.approx(WAYS[rounding], rel=0.05), rounding
 
 
 def test_noise_leaves_a_depths_sign_and_the_mean_of_its_codes():
-    """Near 0, too, where noise is larger than the number: there the mean is a little more."""
+    """This holds even near 0, where the noise is larger than the number and the mean is slightly larger."""
     codec = DepthCodec(DEPTH_ENCODINGS["linear_sign"], DEPTH_STORAGES["packed16"], "dithered")
     noise = codec.dither.added[..., 0].ravel()
     for exact in (0.5 * codec.step, 3.25 * codec.step, 0.7):
@@ -101,7 +101,7 @@ def test_noise_leaves_a_depths_sign_and_the_mean_of_its_codes():
 
 
 def test_without_a_gl_driver_the_jax_rows_are_there(run, tmp_path, monkeypatch):
-    """The others say what to install; GLSL alone, and pictures, are status 3."""
+    """The GLSL rows say what to install; GLSL alone and pictures end with status 3."""
 
     def no_device():
         raise NoDeviceError("no OpenGL 4.3 device: gone; install an OpenGL driver")

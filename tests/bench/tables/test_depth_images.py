@@ -1,4 +1,4 @@
-"""`normalbench depth --depths`: the depths of a frame of one's own, in every form, and what is said of bad ones."""
+"""`normalbench depth --depths`: depths of users' frames in every form, and errors for bad files."""
 
 import json
 
@@ -71,11 +71,11 @@ def test_every_form_gives_the_same_depths(tmp_path, monkeypatch, how):
     if "depth_unit" in given:
         given["depth_unit"] = float(given["depth_unit"])
     (frame,) = frames.frames_named(DepthOptions(depths=name, **given))
-    found = frame.surface(Camera(NEAR, FAR, 60.0, 1.0))
-    assert found == pytest.approx(SLOPE, rel=1e-5)
+    surface = frame.surface(Camera(NEAR, FAR, 60.0, 1.0))
+    assert surface == pytest.approx(SLOPE, rel=1e-5)
 
 
-def test_of_a_large_frame_every_second_pixel_is_measured(run, tmp_path, monkeypatch):
+def test_every_second_pixel_of_a_large_frame_is_measured(run, tmp_path, monkeypatch):
     monkeypatch.setattr(frames, "MOST_PIXELS", 24 * 16)
     np.save(tmp_path / "large.npy", SLOPE)
     rows, err = rows_of(run, tmp_path / "large.npy")
@@ -83,7 +83,7 @@ def test_of_a_large_frame_every_second_pixel_is_measured(run, tmp_path, monkeypa
 
 
 def test_wide_arrays_are_images(run, tmp_path):
-    """The columns of an array of (height, width) are no channels, of which 1024 are the most."""
+    """Columns of a (height, width) array are not taken for channels, of which at most 1024 are allowed."""
     np.save(tmp_path / "wide.npy", np.full((2, 2000), 5, np.float32))
     assert rows_of(run, tmp_path / "wide.npy")[0][0]["count"] == 4000
 
@@ -124,7 +124,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_bad_input_is_one_line(run, tmp_path, monkeypatch, what):
+def test_bad_input_is_a_one_line_error(run, tmp_path, monkeypatch, what):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "there").mkdir()
     for name, array in (("a", SLOPE), ("there/a", SLOPE), ("behind", -SLOPE), ("cube", np.ones((2, 2, 2, 2)))):
@@ -133,6 +133,6 @@ def test_bad_input_is_one_line(run, tmp_path, monkeypatch, what):
     (tmp_path / "scene.glb").write_bytes(b"glTF")
     write_exr(tmp_path / "rgb.exr", dict.fromkeys("RGB", SLOPE))
     (tmp_path / "cut.exr").write_bytes((tmp_path / "rgb.exr").read_bytes()[:200])
-    words, said = BAD[what]
+    words, message = BAD[what]
     status, out, err = run("depth", "--backend", "jax", *PLANES, *words)
-    assert (status, out) == (2, "") and len(err.splitlines()) == 1 and said in err, err
+    assert (status, out) == (2, "") and len(err.splitlines()) == 1 and message in err, err

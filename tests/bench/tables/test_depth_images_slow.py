@@ -1,4 +1,4 @@
-"""`normalbench depth --depths`: the depths of a frame of one's own, in every form, and what is said of bad ones."""
+"""`normalbench depth --depths`: depths of users' frames in every form, and errors for bad files."""
 
 import numpy as np
 import pytest
@@ -18,14 +18,14 @@ def figures(rows: list[dict]) -> dict[tuple[str, ...], tuple[float, ...]]:
 
 
 def test_a_code_is_measured_on_the_depths_of_an_image(run, tmp_path):
-    """Of 16 bits of linear depth the error is that of rounding each depth to a step of far / 65535."""
+    """The error of 16-bit linear depth equals rounding each depth to a step of far / 65535."""
     rows, err = rows_of(run, write_exr(tmp_path / "a.exr", {"Depth.Z": SKY}))
-    found = SLOPE[3:].astype(np.float64)
-    again = np.round(found / FAR * 65535) / 65535 * FAR
+    exact = SLOPE[3:].astype(np.float64)
+    again = np.round(exact / FAR * 65535) / 65535 * FAR
     (row,) = (row for row in rows if (row["depth"], row["storage"]) == ("linear", "packed16"))
-    assert row["relative_mean"] == pytest.approx(np.mean(abs(again - found) / found), rel=0.01)
-    assert row["relative_max"] == pytest.approx(np.max(abs(again - found) / found), rel=0.01)
-    assert row["error_max"] == pytest.approx(np.max(abs(again - found)), rel=0.01)
+    assert row["relative_mean"] == pytest.approx(np.mean(abs(again - exact) / exact), rel=0.01)
+    assert row["relative_max"] == pytest.approx(np.max(abs(again - exact) / exact), rel=0.01)
+    assert row["error_max"] == pytest.approx(np.max(abs(again - exact)), rel=0.01)
     assert row["error_max"] <= row["bound"] and row["half_step"] == pytest.approx(FAR / 65535 / 2)
     assert (row["depths"], row["distance"], row["count"]) == ("a.exr", None, 21 * 32)
     assert (row["background"], row["not_finite"], row["fov"], row["seed"]) == (3 * 32, 0, None, None)
@@ -39,12 +39,12 @@ def test_the_device_gives_the_same_figures(run, tmp_path):
     rows, _ = rows_of(run, path, "--backend", "jax,glsl", "--fov", "50")
     by = {name: figures([row for row in rows if row["backend"] == name]) for name in ("jax", "glsl")}
     assert by["jax"].keys() == by["glsl"].keys()
-    for key, found in by["glsl"].items():
-        assert found == pytest.approx(by["jax"][key], rel=0.1), key
+    for key, figure in by["glsl"].items():
+        assert figure == pytest.approx(by["jax"][key], rel=0.1), key
 
 
 def test_positions_are_those_of_pixels_where_the_angle_is_known(run, tmp_path):
-    """Depths are off by the same share; a position in a corner is farther off than one on the axis, by its ray."""
+    """The relative error of depths stays the same; a position in a corner is farther off by the length of its ray."""
     path = write_exr(tmp_path / "a.exr", {"Z": np.full((24, 32), 40.1, np.float32)})
     (on_axis, *_), _ = rows_of(run, path)
     (seen, *_), err = rows_of(run, path, "--fov", "90")
@@ -55,7 +55,7 @@ def test_positions_are_those_of_pixels_where_the_angle_is_known(run, tmp_path):
 
 
 def test_whole_numbers_are_in_their_unit_or_shares_of_one(run, tmp_path):
-    """Millimetres, as depth cameras give them; and z/w of 16 bits, whose own steps make depth16 look exact."""
+    """Depth cameras give millimetres; 16-bit z/w has steps that make depth16 look exact."""
     millimetres = np.round(SLOPE * 1000).astype(np.uint16)
     (tmp_path / "a.png").write_bytes(png_bytes(millimetres[..., None]))
     rows, err = rows_of(run, tmp_path / "a.png", "--depth-unit", "0.001")
@@ -63,21 +63,21 @@ def test_whole_numbers_are_in_their_unit_or_shares_of_one(run, tmp_path):
     stored = np.round(window(SLOPE.astype(float)) * 65535).astype(np.uint16)
     (tmp_path / "w.png").write_bytes(png_bytes(stored[..., None]))
     rows, _ = rows_of(run, tmp_path / "w.png", "--depths-are", "window", "--storage", "depth16,packed16")
-    found = {(row["depth"], row["storage"]): row["relative_max"] for row in rows}
-    assert found["window", "depth16"] < 0.02 * found["linear", "packed16"]
+    largest = {(row["depth"], row["storage"]): row["relative_max"] for row in rows}
+    assert largest["window", "depth16"] < 0.02 * largest["linear", "packed16"]
 
 
-def test_what_looks_wrong_or_favours_a_code_is_said(run, tmp_path):
+def test_suspicious_images_and_images_that_favour_a_code_are_noted(run, tmp_path):
     np.save(tmp_path / "half.npy", SLOPE.astype(np.float16))
     assert "all its values are half floats" in rows_of(run, tmp_path / "half.npy")[1]
     np.save(tmp_path / "share.npy", window(SLOPE.astype(float)))
-    said = rows_of(run, tmp_path / "share.npy", "--near", "0.01")[1]
-    assert "in [0, 1]; for a depth buffer use --depths-are window, reversed_window or linear" in said
+    stderr = rows_of(run, tmp_path / "share.npy", "--near", "0.01")[1]
+    assert "in [0, 1]; for a depth buffer use --depths-are window, reversed_window or linear" in stderr
     lost = SLOPE.copy()
     lost[0, :5] = np.nan
     np.save(tmp_path / "nan.npy", lost)
-    rows, said = rows_of(run, tmp_path / "nan.npy", "--count", "5")
-    assert "5 values are NaN and left out" in said and "--count has no effect on depth images" in said
+    rows, stderr = rows_of(run, tmp_path / "nan.npy", "--count", "5")
+    assert "5 values are NaN and left out" in stderr and "--count has no effect on depth images" in stderr
     assert {(row["count"], row["background"], row["not_finite"]) for row in rows} == {(24 * 32 - 5, 0, 5)}
 
 
@@ -94,10 +94,10 @@ def test_the_table_names_each_way_and_gates_and_python_take_images(run, tmp_path
     assert run("check", str(tmp_path / "gates.toml"))[0] == 0
     (tmp_path / "gates.toml").write_text(gate + 'relative_max = "at most 1e-9"\n')
     assert run("check", str(tmp_path / "gates.toml"))[0] == 1
-    found = normalbench.depth(depths=tmp_path / "a.npy", near=0.5, far=80, depth="linear", backend="jax")
-    assert set(found["depths"]) == {"a.npy"} and (found["relative_max"] < 0.01).all()
+    table = normalbench.depth(depths=tmp_path / "a.npy", near=0.5, far=80, depth="linear", backend="jax")
+    assert set(table["depths"]) == {"a.npy"} and (table["relative_max"] < 0.01).all()
     own = normalbench.depth(depths={"mine": SLOPE}, near=0.5, far=80, depth="linear", backend="jax")
-    assert set(own["depths"]) == {"mine"} and own["error_max"].tolist() == found["error_max"].tolist()
+    assert set(own["depths"]) == {"mine"} and own["error_max"].tolist() == table["error_max"].tolist()
     with pytest.raises(UsageError, match=r"mine is of int64 and shape \(24, 32\); give floats or unsigned"):
         normalbench.depth(depths={"mine": SLOPE.astype(int)})
 

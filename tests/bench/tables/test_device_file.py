@@ -1,4 +1,4 @@
-"""Device files: what is read of them, and that damaged, hostile and enormous ones are one line each."""
+"""Device files: reading them, and one-line errors for damaged, hostile and enormous files."""
 
 import json
 import os
@@ -38,7 +38,7 @@ def test_a_renderer_has_a_short_name(renderer, name):
 
 
 def test_renderers_that_share_a_short_name_stay_apart_in_any_order():
-    """By their API; by four digits of a hash where that is the same too."""
+    """Renderers are told apart by their API, or by four digits of a hash if the API is the same too."""
     other = "ANGLE (NVIDIA Corporation, NVIDIA GeForce RTX 4090/PCIe/SSE2, OpenGL 4.5.0)"
     assert told_apart([made.GEFORCE, other]) == {
         made.GEFORCE: "GeForce RTX 4090 (Direct3D11)",
@@ -66,8 +66,8 @@ def test_a_browser_has_a_short_name(agent, name):
     assert browser_name(agent) == name
 
 
-def test_a_file_is_read_as_it_is_but_for_its_text(tmp_path):
-    """Times in UTC, text without control characters."""
+def test_a_file_is_read_unchanged_except_for_times_and_control_characters(tmp_path):
+    """Times are converted to UTC, and control characters are removed."""
     path = made.write(tmp_path / "a.json", made="2026-11-23T16:00:00+01:00", vendor="a\u202eb\n\x1b[31mc")
     file = read_device_file(path).file
     assert file.made == "2026-11-23T15:00:00Z" and file.vendor == "a b [31mc"
@@ -76,7 +76,7 @@ def test_a_file_is_read_as_it_is_but_for_its_text(tmp_path):
 
 
 def edited(change) -> bytes:
-    """A device file with a change to its content."""
+    """Return a device file with a change to its content."""
     content = made.content()
     change(content)
     return json.dumps(content).encode()
@@ -164,16 +164,16 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_a_bad_file_is_one_line_with_its_name_and_the_place(run, tmp_path, what):
-    data, said = BAD[what]
+def test_bad_file_is_a_one_line_error_with_its_name_and_the_place(run, tmp_path, what):
+    data, message = BAD[what]
     path = tmp_path / "bad.json"
     path.write_bytes(data)
     status, out, err = run("devices", "--devices", str(path))
-    assert (status, out) == (2, "") and err.startswith(f"normalbench: {path}: ") and said in err, err
+    assert (status, out) == (2, "") and err.startswith(f"normalbench: {path}: ") and message in err, err
     assert err.count("\n") == 1 and len(err) < 400 + len(str(path)), err
 
 
-def test_what_is_no_file_is_one_line(run, tmp_path):
+def test_missing_file_empty_folder_and_pipe_are_one_line_errors(run, tmp_path):
     (tmp_path / "folder").mkdir()
     (tmp_path / "empty").mkdir()
     os.mkfifo(tmp_path / "pipe")
@@ -182,15 +182,15 @@ def test_what_is_no_file_is_one_line(run, tmp_path):
         "none.json": "there is no such file",
         "empty": "no *.json files here",
     }
-    for name, said in expected.items():
+    for name, message in expected.items():
         status, out, err = run("devices", "--devices", str(tmp_path / name))
-        assert (status, out, err.count("\n")) == (2, "", 1) and said in err, err
+        assert (status, out, err.count("\n")) == (2, "", 1) and message in err, err
     status, _, err = run("devices")
     assert status == 2 and "--devices: no device file named" in err
 
 
 def test_an_enormous_file_is_refused_before_it_is_read(tmp_path):
-    """A sparse file of 1 TiB, in no time."""
+    """A sparse file of 1 TiB is refused within a second."""
     path, begun = tmp_path / "large.json", time.perf_counter()
     with path.open("wb") as file:
         file.truncate(1 << 40)
@@ -200,11 +200,11 @@ def test_an_enormous_file_is_refused_before_it_is_read(tmp_path):
     assert took < 1, f"{took:.2f} s"
 
 
-def test_the_largest_file_that_is_read_takes_little_time(tmp_path):
-    """4096 codecs and 512 facts."""
+def test_the_largest_accepted_file_is_read_quickly(tmp_path):
+    """A file of 4096 codecs and 512 facts takes less than 2 seconds."""
     row = made.codec_rows()[0]
-    rows = [row | {"encoding": f"mine_{at}"} for at in range(device_file.MOST_CODECS)]
-    facts = {f"fact {at}": at for at in range(device_file.MOST_FACTS)}
+    rows = [row | {"encoding": f"mine_{number}"} for number in range(device_file.MOST_CODECS)]
+    facts = {f"fact {number}": number for number in range(device_file.MOST_FACTS)}
     path, begun = made.write(tmp_path / "large.json", codecs=rows, facts=facts), time.perf_counter()
     file = read_device_file(path).file
     took = time.perf_counter() - begun

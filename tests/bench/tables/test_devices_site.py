@@ -1,4 +1,4 @@
-"""`normalbench site`: what it makes of ten devices, that it writes all or nothing, and that it leaves others' files."""
+"""`normalbench site`: its page for ten devices, all-or-nothing writing, and files of others left alone."""
 
 import json
 import os
@@ -49,7 +49,7 @@ def files_of(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_the_page_says_who_agrees_and_what_to_take_on_each(site):
+def test_the_page_says_which_devices_agree_and_what_to_use_on_each(site):
     text = Read(site / "index.html").text
     assert "5 devices agree with the run in every code of 35 codecs." in text
     assert "Mali-G78, Chromium 156 differs in 8 of 35 codecs, most in xyz rgb10a2: 87.6% of its codes" in text
@@ -59,15 +59,15 @@ def test_the_page_says_who_agrees_and_what_to_take_on_each(site):
 
 
 def answered(tmp_path, **more) -> dict[str, str]:
-    """By storage the code to take on a device."""
+    """Return the encoding to use on a device, by storage."""
     (device,) = devices([read_device_file(made.write(tmp_path / "a.json", **more))])
     rows = codec_rows(device)
     sheets = list(answers(rows, Known([rows])))
     return {sheet.keys["storage"]: sheet.keys["take"] for sheet in sheets}
 
 
-def test_the_answer_is_by_the_devices_own_errors(tmp_path):
-    """Where a device gives octahedral back far off, the answer is another one."""
+def test_the_answer_uses_the_devices_own_errors(tmp_path):
+    """If a device decodes octahedral with large errors, the answer is another encoding."""
     usual = answered(tmp_path)
     assert usual == {
         "rg8": "octahedral",
@@ -83,17 +83,17 @@ def test_the_answer_is_by_the_devices_own_errors(tmp_path):
     assert answered(tmp_path, codecs=rows) == usual | {"rg8": "octahedral_precise"}
 
 
-def test_codes_whose_decodes_have_not_length_1_are_not_taken(tmp_path):
-    """Of two codes with the same errors; light needs a normalise behind `xyz`."""
-    one, other = made.codec_rows()[5], made.codec_rows()[25]
-    assert (one["encoding"], other["encoding"]) == ("octahedral", "xyz")
-    other |= {name: one[name] for name in ("mean_deg", "max_deg", "target", "storage")}
-    assert answered(tmp_path, codecs=[one, other]) == {one["storage"]: "octahedral"}
-    assert answered(tmp_path, codecs=[other]) == {one["storage"]: None}
+def test_encodings_that_do_not_decode_to_length_1_are_not_recommended(tmp_path):
+    """Both encodings have the same errors, but lighting needs a normalise after `xyz`."""
+    codec, other = made.codec_rows()[5], made.codec_rows()[25]
+    assert (codec["encoding"], other["encoding"]) == ("octahedral", "xyz")
+    other |= {name: codec[name] for name in ("mean_deg", "max_deg", "target", "storage")}
+    assert answered(tmp_path, codecs=[codec, other]) == {codec["storage"]: "octahedral"}
+    assert answered(tmp_path, codecs=[other]) == {codec["storage"]: None}
 
 
-def test_a_code_of_the_readers_own_is_left_out_of_the_answer(tmp_path):
-    """Nobody knows which normals it is made for."""
+def test_a_users_own_encoding_is_left_out_of_the_answer(tmp_path):
+    """The program does not know which normals a user's encoding is made for."""
     rows = [made.codec_rows()[5], made.codec_rows()[5] | {"encoding": "mine", "mean_deg": 0.0}]
     assert answered(tmp_path, codecs=rows) == {rows[0]["storage"]: "octahedral"}
     assert answered(tmp_path, codecs=rows[1:]) == {rows[0]["storage"]: None}
@@ -119,7 +119,7 @@ def test_damaged_files_are_named_and_left_out(run, tmp_path):
 
 
 @pytest.mark.parametrize("name, said", [("nowhere", "there is no such folder"), ("a.json", "is not a folder")])
-def test_what_is_no_folder_is_one_line(run, tmp_path, name, said):
+def test_missing_folder_is_a_one_line_error(run, tmp_path, name, said):
     made.write(tmp_path / "a.json")
     status, out, err = run("site", str(tmp_path / name), "-o", str(tmp_path / "site"))
     assert (status, out, err.count("\n")) == (2, "", 1) and said in err
@@ -170,7 +170,7 @@ def test_nobody_elses_file_is_touched(run, tmp_path, name, text, said):
     assert files_of(tmp_path) == before
 
 
-def test_a_link_in_the_site_leads_nowhere_else(tmp_path):
+def test_a_link_in_the_site_is_not_followed(tmp_path):
     (tmp_path / "other").mkdir()
     (tmp_path / "site").mkdir()
     (tmp_path / "site/devices").symlink_to(tmp_path / "other")
@@ -198,7 +198,7 @@ def test_a_full_disk_leaves_the_earlier_site(run, tmp_path, monkeypatch):
     assert files_of(site) == before and [p.name for p in tmp_path.iterdir() if "partial" in p.name] == []
 
 
-def test_two_files_of_one_device_are_one_section(run, tmp_path):
+def test_two_files_of_one_device_become_one_section(run, tmp_path):
     made.write(tmp_path / "files/a.json", made="2026-11-22T15:00:00Z")
     made.write(tmp_path / "files/b.json")
     status, out, err = run("site", str(tmp_path / "files"), "-o", str(tmp_path / "site"))
@@ -209,8 +209,8 @@ def test_two_files_of_one_device_are_one_section(run, tmp_path):
     )
 
 
-def test_markup_of_a_device_stays_text(run, tmp_path):
-    """In every text that a file has, on every page of the site."""
+def test_markup_in_a_device_file_stays_text(run, tmp_path):
+    """Markup in any text of a device file is escaped on every page of the site."""
     row = made.codec_rows()[0] | dict.fromkeys(("encoding", "storage", "rounding", "target", "timer"), MARKUP)
     about = dict.fromkeys(("renderer", "vendor", "browser", "program", "sources"), MARKUP)
     made.write(tmp_path / "files/a.json", codecs=[row], facts={MARKUP: MARKUP}, **about)
@@ -224,8 +224,8 @@ def test_markup_of_a_device_stays_text(run, tmp_path):
 
 
 def test_devices_whose_names_give_one_address_have_sections_of_their_own(run, tmp_path):
-    for at, renderer in enumerate(("GPU+", "GPU-", "\u7a7a", "\u7a7a\u7a7a")):
-        made.write(tmp_path / f"files/{at}.json", renderer=renderer, browser="\u7a7a")
+    for number, renderer in enumerate(("GPU+", "GPU-", "\u7a7a", "\u7a7a\u7a7a")):
+        made.write(tmp_path / f"files/{number}.json", renderer=renderer, browser="\u7a7a")
     assert run("site", str(tmp_path / "files"), "-o", str(tmp_path / "site"))[0] == 0
     sections = [attributes["id"] for tag, attributes in Read(tmp_path / "site/index.html").tags if tag == "section"]
     assert sections[-4:] == ["device-gpu", "device-gpu-2", "device-one", "device-one-2"], sections

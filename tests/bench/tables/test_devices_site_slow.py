@@ -1,4 +1,4 @@
-"""`normalbench site`: what it makes of ten devices, that it writes all or nothing, and that it leaves others' files."""
+"""`normalbench site`: its page for ten devices, all-or-nothing writing, and files of others left alone."""
 
 import time
 
@@ -25,8 +25,8 @@ MOST_SECONDS = 10
 
 
 def test_ten_devices_take_less_than_ten_seconds(run, tmp_path, monkeypatch):
-    """With nothing in the cache, so that instructions are counted anew. The best of three, on a machine that may do
-    other things."""
+    """The cache is empty, so that instructions are counted again. The best of up to three runs counts, because the
+    machine may be busy."""
     made.write_ten(tmp_path / "files")
     times: list[float] = []
     while not times or (times[-1] >= MOST_SECONDS and len(times) < 3):

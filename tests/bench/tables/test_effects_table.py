@@ -1,4 +1,4 @@
-"""`normalbench effects`: rows, their order, pictures, effects in other tables, and what it says of bad input."""
+"""`normalbench effects`: rows, their order, pictures, effects in other tables, and messages for bad input."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ pytestmark = pytest.mark.usefixtures("gl")
 
 
 def test_a_hit_moved_if_it_is_lost_or_more_than_a_pixel_away():
-    """Four hits: in place, a pixel away, two pixels away, lost. A NaN is away; without hits there is no share."""
+    """Hits in place, one pixel away, two pixels away and lost. A NaN counts as moved; no hits give None."""
     exact = np.array([[[5, 5, 0, 1]] * 4 + [[0, 0, 0, 0]]], np.float32)
     hits = np.array([[[5, 5, 0, 1], [6, 5, 0, 1], [5, 7, 0, 1], [0, 0, 0, 0], [9, 9, 0, 1]]], np.float32)
     assert moved_percent(hits, exact) == 50
@@ -18,13 +18,13 @@ def test_a_hit_moved_if_it_is_lost_or_more_than_a_pixel_away():
     assert moved_percent(hits, 0 * exact) is None
 
 
-def test_codes_stand_by_bits_the_best_first_and_depth_codes_after_them():
+def test_rows_are_sorted_by_bits_then_error_with_depth_encodings_last():
     def row(effect, bits, apart, depth=None):
         about = {"effect": effect, "pipeline": "hybrid", "scene": "room", "depth": depth}
         return about | {"normal_bits": bits, "effect_rms": apart}
 
-    made = [row("b", 20, 2), row("b", None, 1, "window/r32f"), row("b", 16, 4), row("a", 16, 1), row("b", 16, 3)]
-    assert in_order(made) == [made[4], made[2], made[0], made[1], made[3]]
+    rows = [row("b", 20, 2), row("b", None, 1, "window/r32f"), row("b", 16, 4), row("a", 16, 1), row("b", 16, 3)]
+    assert in_order(rows) == [rows[4], rows[2], rows[0], rows[1], rows[3]]
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_codes_stand_by_bits_the_best_first_and_depth_codes_after_them():
         (("--images", "/proc/none"), "cannot write to /proc/none"),
     ],
 )
-def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, words, said):
+def test_bad_input_is_a_one_line_error_and_nothing_is_written(run, tmp_path, monkeypatch, words, said):
     monkeypatch.chdir(tmp_path)
     effect = () if "--effect" in words else ("--effect", "lpv")
     status, out, err = run("effects", *effect, *words)
@@ -84,7 +84,7 @@ def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch
     assert not list(tmp_path.iterdir())
 
 
-def test_an_effect_is_where_its_alpha_says():
+def test_an_effects_alpha_says_where_it_is_drawn():
     own, surfaces = np.zeros((1, 3, 4), np.float32), np.array([[True, True, False]])
     assert not drawn_at(own, surfaces).any() and np.array_equal(drawn_at(own[..., :1], surfaces), surfaces)
     own[0, 1:, 3] = 1
@@ -98,6 +98,6 @@ def test_two_effects_of_one_kind_are_refused(run):
 
 
 @pytest.mark.parametrize("table", ["render", "pick"])
-def test_other_tables_refuse_an_effect_that_is_not_there(run, table):
+def test_other_tables_refuse_an_unknown_effect(run, table):
     status, out, err = run(table, "--effects", "lpv,glow")
     assert (status, out) == (2, "") and "unknown effect 'glow'; known: all, " in err and err.count("\n") == 1, err

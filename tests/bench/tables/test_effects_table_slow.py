@@ -1,4 +1,4 @@
-"""`normalbench effects`: rows, their order, pictures, effects in other tables, and what it says of bad input."""
+"""`normalbench effects`: rows, their order, pictures, effects in other tables, and messages for bad input."""
 
 import json
 import sys
@@ -42,7 +42,7 @@ def pictures(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def rows(pictures):
-    """Two normal codes, a depth code and a layout that is exact."""
+    """Rows of two normal encodings, a depth encoding and an exact layout."""
     table = TABLES["effects"]
     options = {"effect": EFFECT, "size": "96x72", "lights": 2, "repeats": 1}
     options |= {"encoding": "octahedral", "storage": "rg8,rgb10a2", "depth": "linear/packed16", "layout": "fp32"}
@@ -51,18 +51,18 @@ def rows(pictures):
 
 
 def drawn(gl, layout):
-    """The effect's own image, the normals and where there is a surface, by the renderer alone."""
+    """Return the effect's own image, the normals and where there is a surface, drawn by the renderer alone."""
     effect = effects_named(EFFECT)[0]
     pipeline = PIPELINES["hybrid"].with_effect(effect.passes())
     plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
-    with rendering(gl, pipeline, SCENES["room"].make(Setting(lights=2)), plan) as made:
-        made.draw()
-        position, direction, *_ = made.gbuffer()
-        return made.read(effect.effect.result)[0][..., :3], direction[..., :3], position[..., 2] != 0
+    with rendering(gl, pipeline, SCENES["room"].make(Setting(lights=2)), plan) as renderer:
+        renderer.draw()
+        position, direction, *_ = renderer.gbuffer()
+        return renderer.read(effect.effect.result)[0][..., :3], direction[..., :3], position[..., 2] != 0
 
 
 def test_figures_are_those_of_the_two_images(gl, rows):
-    """Computed anew from the renderer's buffers: PSNR, RMS, mean, maximum, slope and angles."""
+    """PSNR, RMS, mean, maximum, slope and angles are recomputed from the renderer's buffers."""
     row = next(row for row in rows if row["storage"] == "rg8")
     own, normals, _ = drawn(gl, LAYOUTS["fp32"].with_codec(codecs_named("octahedral", "rg8", "nearest")[0]))
     exact, right, covered = drawn(gl, LAYOUTS["fp32"])
@@ -94,7 +94,7 @@ def test_an_exact_layout_loses_nothing_and_more_bits_lose_less(rows):
 
 
 def test_reflections_say_how_many_hits_moved(run):
-    """Two more bits a number move fewer than half as many."""
+    """With two more bits per number, fewer than half as many hits move."""
     words = ("effects", "--effect", "ssr:rays=1,gtao", "--size", "96x72", "--lights", "2", "--rays", "0")
     status, out, _ = run(*words, "--encoding", "octahedral", "--storage", "rg8,rgb10a2", "--depth", "none", *JSON)
     coarse, fine, *other = json.loads(out)
@@ -104,12 +104,12 @@ def test_reflections_say_how_many_hits_moved(run):
     assert {row["moved_percent"] for row in other} == {None} and len(other) == 2
 
 
-def test_a_scene_is_made_once_for_all_rows_of_it(gl):
-    """Two codes and their reference: three frames of one scene."""
-    made = []
+def test_a_scene_is_made_once_for_all_its_rows(gl):
+    """Two encodings and their reference are three frames of one scene."""
+    settings = []
 
     def room(setting):
-        made.append(setting)
+        settings.append(setting)
         return SCENES["room"].make(setting)
 
     options = {"effect": EFFECT, "size": "96x72", "lights": 2, "storage": "rg8,rgb10a2", "depth": "none"}
@@ -117,10 +117,10 @@ def test_a_scene_is_made_once_for_all_rows_of_it(gl):
     maker = replace(cases[0].maker, make=room)
     bench = EffectsBench(gl, repeats=0, rays=0, with_flip=False)
     rows = [bench.measure(replace(case, maker=maker))[0] for case in cases]
-    assert [row["storage"] for row in rows] == ["rg8", "rgb10a2"] and made == [Setting(lights=2)]
+    assert [row["storage"] for row in rows] == ["rg8", "rgb10a2"] and settings == [Setting(lights=2)]
 
 
-def test_times_are_of_the_effects_passes(rows):
+def test_times_are_those_of_the_effects_passes(rows):
     names = [stage.name for stage in effects_named(EFFECT)[0].passes()]
     for row in rows:
         assert row["ms_effect"] == pytest.approx(sum(row[f"ms_{name}"] for name in names))
@@ -128,7 +128,7 @@ def test_times_are_of_the_effects_passes(rows):
 
 
 def test_pictures_show_the_effect_alone(pictures, rows):
-    """Bright and dark; those of a coarser code differ; the page finds all of them."""
+    """The reference has bright and dark pixels, the exact layout matches it, and the page finds every image."""
     files = {path.name: np.asarray(Image.open(path)) for path in pictures.glob("*.png")}
     own = {name: pixels for name, pixels in files.items() if name.endswith("-effect.png")}
     assert len(own) == 5 and len(files) == 10, sorted(files)
@@ -138,13 +138,13 @@ def test_pictures_show_the_effect_alone(pictures, rows):
         name for name in own if "rgba32f" in name
     }
     (subject,) = TABLES["effects"].work.subjects(pictures, rows)
-    assert [one.label for one in subject.codecs][-1] == "depth linear/packed16" and len(subject.codecs) == 4
+    assert [codec.label for codec in subject.codecs][-1] == "depth linear/packed16" and len(subject.codecs) == 4
     assert np.array_equal(subject.original(), reference)
-    assert all(one.load().final.shape == (72, 96, 3) for one in subject.codecs)
+    assert all(codec.load().final.shape == (72, 96, 3) for codec in subject.codecs)
 
 
 def test_an_effect_lights_the_image_of_other_tables(run):
-    """`render` names it in its rows, and the image is another one."""
+    """`render` names the effect in its rows, and the image changes."""
     words = ("render", "--scene", "room", "--size", "96x72", "--lights", "2", "--repeats", "0", "--encoding", "xy")
     images = []
     for more in ((), ("--effects", EFFECT)):
@@ -155,8 +155,9 @@ def test_an_effect_lights_the_image_of_other_tables(run):
     assert images[0]["psnr_db"] != images[1]["psnr_db"]
 
 
-def test_a_method_is_judged_by_rays_where_there_are_any(run, monkeypatch):
-    """The same for every code; without a ray caster the row has the rest, and a line says what to install."""
+def test_a_method_is_judged_by_rays_if_a_ray_caster_is_installed(run, monkeypatch):
+    """The figure is the same for every encoding. Without a ray caster a row has the other figures, and a line says
+    what to install."""
     words = ("effects", "--effect", "gtao", "--size", "96x72", "--encoding", "octahedral,xy", "--depth", "none")
     status, out, err = run(*words, "--rays", "64", "--format", "json")
     first, second = json.loads(out)
@@ -169,8 +170,8 @@ def test_a_method_is_judged_by_rays_where_there_are_any(run, monkeypatch):
     assert "method_rms is empty: rays need embreex" in err and err.count("\n") == 1, err
 
 
-def test_an_effect_out_of_the_picture_has_no_figures(run):
-    """One pixel of the head's scene shows no skin."""
+def test_an_effect_that_shows_nothing_is_an_error(run):
+    """The only pixel of the head's scene shows no skin."""
     words = ("--effect", "subsurface", "--encoding", "octahedral", "--depth", "none", "--size", "1x1")
     status, out, err = run("effects", *words)
     assert (status, out, err) == (2, "", "normalbench: subsurface shows nothing in this image\n")

@@ -1,4 +1,4 @@
-"""`normalbench frames`: what is measured, its limits, what it prints, and what it says of bad input."""
+"""`normalbench frames`: its measurements, bounds, output and messages for bad input."""
 
 import json
 import math
@@ -24,7 +24,7 @@ QUICK = ["frames", "--count", "4096", "--backend", "jax", "--encoding", "octahed
 
 
 def turned(angle: float, axis: int, count: int = 3) -> Frames:
-    """Frames turned about one of their own axes: 0 the tangent, 1 the bitangent, 2 the normal."""
+    """Return frames turned about one of their own axes: 0 the tangent, 1 the bitangent, 2 the normal."""
     cosine, sine = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     matrix = np.eye(3)
     a, b = (axis + 1) % 3, (axis + 2) % 3
@@ -37,26 +37,26 @@ def turned(angle: float, axis: int, count: int = 3) -> Frames:
 @pytest.mark.parametrize("angle", [1e-5, 0.1, 60.0, 180.0])
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_angles_are_those_of_a_known_turn(angle, axis):
-    """About the tangent the normal alone moves, about the normal the tangent alone; the rotation is the turn."""
-    found = frames.frame_angles(turned(0, axis), turned(angle, axis))[:, 0]
+    """About the tangent only the normal moves, about the normal only the tangent. The rotation is the turn."""
+    angles = frames.frame_angles(turned(0, axis), turned(angle, axis))[:, 0]
     expected = [0.0 if axis == 2 else angle, 0.0 if axis == 0 else angle, angle]
-    assert found == pytest.approx(expected, rel=1e-6, abs=1e-12)
+    assert angles == pytest.approx(expected, rel=1e-6, abs=1e-12)
 
 
-def test_a_hand_that_is_lost_and_a_decode_that_is_no_number_are_counted():
+def test_lost_hands_and_decodes_that_are_not_numbers_are_counted():
     total = frames.FrameTotal()
-    given, found = turned(0, 0, 4), turned(1, 0, 4)
-    found.normals[0, 3] = -1
-    found.tangents[1, 0] = np.nan
+    given, decoded = turned(0, 0, 4), turned(1, 0, 4)
+    decoded.normals[0, 3] = -1
+    decoded.tangents[1, 0] = np.nan
     with np.errstate(invalid="ignore"):
-        total.add(given, found)
+        total.add(given, decoded)
     assert (total.count, total.hands_lost, total.invalid) == (4, 1, 1)
     assert total.largest[2] == 180 and total.sums[2] == pytest.approx(3 + 180)
 
 
 def test_the_limit_of_few_codes_is_known():
-    """One rotation: every angle, up to 180 degrees. The cube's 24: 62.80 degrees at most and 40.74 in the mean between
-    two cubes (Mackenzie 1958), which is above the limit, and not by much."""
+    """One rotation: every angle, up to 180 degrees. The 24 rotations of a cube: at most 62.80 degrees and 40.74 in
+    the mean between two cubes (Mackenzie 1958), slightly above the bound."""
     all_of_them = frame_limit(2)
     assert all_of_them.max_deg == pytest.approx(180)
     assert all_of_them.mean_deg == pytest.approx(np.degrees(np.pi / 2 + 2 / np.pi))
@@ -65,8 +65,9 @@ def test_the_limit_of_few_codes_is_known():
 
 
 @pytest.mark.parametrize("codes", [2, 3, 100, 2**26, 2**32, 2**64, 2**124])
-def test_the_limit_is_the_ball_that_is_its_share(codes):
-    """theta - sin theta = 2 pi / N, and by a series where float64 cancels; bits of the limit's RMS are the codes'."""
+def test_the_bound_is_a_ball_with_each_codes_share_of_the_rotations(codes):
+    """theta - sin theta = 2 pi / N, by a series where float64 cancels. The effective bits of the bound's RMS error
+    are the bits of the codes."""
     least = frame_limit(codes)
     theta = np.radians(least.max_deg)
     exact = theta - np.sin(theta) if theta > 0.1 else theta**3 / 6 * (1 - theta**2 / 20)
@@ -79,7 +80,7 @@ def test_the_limit_is_the_ball_that_is_its_share(codes):
     assert ball_moment(np.pi, 0) == pytest.approx(1)
 
 
-def test_what_no_codes_can_do_is_said():
+def test_errors_below_the_bound_are_reported():
     least = frame_limit(2**20)
     assert not frames_broken(2**20, 10**6, least.mean_deg, least.rms_deg)
     spared = 1 - 2 * SCATTER / 1000
@@ -98,7 +99,7 @@ ELSEWHERE = {
 
 
 @pytest.mark.parametrize("name, storage", ELSEWHERE)
-def test_codes_of_rotations_lose_what_was_measured_elsewhere(name, storage):
+def test_rotation_encodings_have_the_errors_measured_elsewhere(name, storage):
     mean, largest = ELSEWHERE[name, storage]
     codec = FrameCodec(FRAME_ENCODINGS[name], storages_named(storage)[0])
     row = frames.measure(frames.FrameCase(codec, rotations(2**16, 3), "jax"))
@@ -106,8 +107,8 @@ def test_codes_of_rotations_lose_what_was_measured_elsewhere(name, storage):
     assert row["rotation_max_deg"] == pytest.approx(largest, rel=0.05), row
 
 
-def test_noise_of_a_frame_is_added_to_each_number_but_one_of_few_values():
-    """The mean over a whole tile is the number, and what was stored before it was settled has no noise twice."""
+def test_noise_is_added_to_all_numbers_of_a_frame_except_few_valued_ones():
+    """The mean over a whole tile is the number, and numbers stored before settling do not get noise twice."""
     codec = FrameCodec(FRAME_ENCODINGS["smallest_three"], FRAME_STORAGES["rgb10a2"], "dithered")
     added = codec.dither.added.reshape(-1, 4)
     assert np.allclose(np.ptp(added, axis=0) / codec.storage.step(0), [1, 1, 1, 0], atol=1e-3)
@@ -124,27 +125,27 @@ def test_noise_of_a_frame_is_added_to_each_number_but_one_of_few_values():
         (["--rounding", "dithered", "--storage", "rgba16f"], "use noise only with fixed point"),
     ],
 )
-def test_what_noise_has_no_part_in_is_a_line(run, asked, said):
+def test_dithering_that_cannot_apply_is_a_one_line_error(run, asked, said):
     status, out, err = run(*QUICK[:5], "--encoding", "octahedral_angle", *asked)
     assert (status, out, err.count("\n")) == (2, "", 1) and said in err, err
 
 
 def test_an_angle_about_the_true_normal_would_be_lost_at_the_seam():
-    """What `settle` is for: without it rounding takes normals to the other side, and their tangents anywhere."""
+    """Without `settle`, rounding moves normals across the seam, and their tangents point anywhere."""
     settled = FRAME_ENCODINGS["octahedral_angle"]
-    found = [
+    rows = [
         frames.measure(frames.FrameCase(FrameCodec(encoding, FRAME_STORAGES["rgb10a2"]), rotations(2**14, 0), "jax"))
         for encoding in (settled, replace(settled, settle=None))
     ]
-    assert found[0]["rotation_max_deg"] < 0.3 and found[1]["rotation_max_deg"] > 90
+    assert rows[0]["rotation_max_deg"] < 0.3 and rows[1]["rotation_max_deg"] > 90
 
 
-def test_tangents_that_lean_or_vanish_make_frames_all_the_same():
+def test_tangents_that_lean_or_vanish_still_make_frames():
     normals = np.float64([[0, 0, 1], [0, 0, 1], [1, 0, 0]])
-    made = frames_from(normals, np.float64([[1, 0, 1, -1], [0, 0, 1, 1], [0, 0, 0, 1]]))
-    n, t = made.normals[:, :3], made.tangents[:, :3]
+    built = frames_from(normals, np.float64([[1, 0, 1, -1], [0, 0, 1, 1], [0, 0, 0, 1]]))
+    n, t = built.normals[:, :3], built.tangents[:, :3]
     assert np.sum(n * t, axis=1) == pytest.approx(0, abs=1e-7) and np.linalg.norm(t, axis=1) == pytest.approx(1)
-    assert t[0] == pytest.approx([1, 0, 0]) and made.normals[:, 3].tolist() == [-1, 1, 1]
+    assert t[0] == pytest.approx([1, 0, 0]) and built.normals[:, 3].tolist() == [-1, 1, 1]
 
 
 BAD = {
@@ -162,13 +163,13 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_bad_input_is_one_line_that_says_what_would_be_right(run, what, tmp_path, monkeypatch):
-    arguments, said = BAD[what]
+def test_bad_input_is_a_one_line_error_that_says_what_would_be_right(run, what, tmp_path, monkeypatch):
+    arguments, parts = BAD[what]
     monkeypatch.chdir(tmp_path)
     status, out, err = run("frames", *arguments)
     assert status == 2 and out == ""
     assert err.count("\n") == 1 and err.startswith("normalbench: "), err
-    assert all(part in err for part in said), err
+    assert all(part in err for part in parts), err
     assert not list(tmp_path.iterdir()), "something was left behind"
 
 
@@ -178,7 +179,7 @@ def test_a_row_below_its_limit_is_named_and_the_status_is_1(run, monkeypatch):
     assert status == 1 and err.count("\n") == 2 and "octahedral_angle/rgb10a2: RMS 0.1 degrees" in err
 
 
-def test_without_a_gl_driver_the_jax_rows_are_there(run, monkeypatch):
+def test_jax_rows_are_measured_without_an_opengl_driver(run, monkeypatch):
     def no_device():
         raise NoDeviceError("no OpenGL 4.3 device: gone; install an OpenGL driver")
 
@@ -193,7 +194,7 @@ def test_without_a_gl_driver_the_jax_rows_are_there(run, monkeypatch):
     assert status == 3 and err.count("\n") == 1 and "install an OpenGL driver" in err
 
 
-def test_a_lost_hand_counts_whichever_it_was():
+def test_lost_hands_of_either_sign_are_counted():
     given = rotations(8, 0).chunk(0)
     assert set(given.normals[:, 3]) == {-1.0, 1.0}
     for lost in (given.normals[:, 3] > 0, given.normals[:, 3] < 0):

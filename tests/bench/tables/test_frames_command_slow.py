@@ -1,4 +1,4 @@
-"""`normalbench frames`: what is measured, its limits, what it prints, and what it says of bad input."""
+"""`normalbench frames`: its measurements, bounds, output and messages for bad input."""
 
 import json
 
@@ -18,10 +18,11 @@ from normalbench.gbuffer.scenes.mesh import sphere
 
 
 def test_random_rotations_are_spread_evenly():
-    """By Haar's measure the angle to a fixed rotation has the mean pi/2 + 2/pi, 126.5 degrees; half have each hand."""
+    """By the Haar measure the mean angle to a fixed rotation is pi/2 + 2/pi, 126.5 degrees. Both hands are equally
+    common."""
     count = 2 * CHUNK + 100
-    made = rotations(count, 0)
-    chunks = list(made.chunks())
+    turns = rotations(count, 0)
+    chunks = list(turns.chunks())
     normals, tangents = (np.concatenate([getattr(c, name) for c in chunks]) for name in ("normals", "tangents"))
     assert normals.shape == tangents.shape == (count, 4)
     still = Frames(*(np.tile(row, (count, 1)) for row in ([0.0, 0, 1, 1], [1.0, 0, 0, 0])))
@@ -29,8 +30,8 @@ def test_random_rotations_are_spread_evenly():
     for column, mean in ((0, 90.0), (1, 90.0), (2, np.degrees(np.pi / 2 + 2 / np.pi))):
         assert angles[column].mean() == pytest.approx(mean, abs=5 * angles[column].std() / np.sqrt(count))
     assert abs(normals[:, 3].mean()) < 5 / np.sqrt(count)
-    assert np.array_equal(made.chunk(0).normals, rotations(10**6, 0).chunk(0).normals), "a prefix is a prefix"
-    assert not np.array_equal(made.chunk(0).normals, rotations(count, 1).chunk(0).normals)
+    assert np.array_equal(turns.chunk(0).normals, rotations(10**6, 0).chunk(0).normals), "a prefix is a prefix"
+    assert not np.array_equal(turns.chunk(0).normals, rotations(count, 1).chunk(0).normals)
 
 
 @pytest.mark.usefixtures("gl")
@@ -39,8 +40,8 @@ def test_random_rotations_are_spread_evenly():
     [("octahedral_angle", "unorm:12:12:12:1"), ("qtangent", "rgba8_snorm"), ("rotation_vector", "rgb10a2")],
 )
 def test_noise_costs_a_bit_and_a_half_and_no_hand(name, storage):
-    """A squared error is a sixth of a squared step in place of a twelfth: half a bit of each of three numbers. What is
-    settled after the first numbers were rounded is noisy as well, and both languages add the same."""
+    """The squared error is a sixth of a squared step instead of a twelfth: half a bit for each of three numbers.
+    Numbers that are settled after the first are rounded have noise as well, and both languages add the same noise."""
 
     def row(rounding: str, backend: str) -> dict:
         codec = FrameCodec(FRAME_ENCODINGS[name], storages_named(storage)[0], rounding)
@@ -56,8 +57,8 @@ def test_noise_costs_a_bit_and_a_half_and_no_hand(name, storage):
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("storage", ["rgba8", "rgba16f", "unorm:12:12:7:1"])
-def test_numbers_that_are_cut_off_are_so_in_both_languages(storage):
-    """The error is about twice that of the nearest, the hand stays, and what is stored already is not cut off again."""
+def test_numbers_are_truncated_alike_in_both_languages(storage):
+    """The error is about twice that of nearest, the hand is kept, and stored numbers are not truncated again."""
     (chosen,) = storages_named(storage)
 
     def row(rounding: str, backend: str) -> dict:
@@ -72,7 +73,7 @@ def test_numbers_that_are_cut_off_are_so_in_both_languages(storage):
 
 
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
-def test_every_code_keeps_its_hand_and_its_limit(request, backend):
+def test_every_encoding_keeps_the_hand_and_stays_above_the_bound(request, backend):
     if backend == "glsl":
         request.getfixturevalue("gl")
     for encoding in FRAME_ENCODINGS.values():
@@ -87,7 +88,7 @@ def test_every_code_keeps_its_hand_and_its_limit(request, backend):
 
 
 @pytest.mark.usefixtures("rows_are_shared")
-def test_json_is_flat_rows_the_best_first(run):
+def test_json_has_flat_rows_best_first(run):
     status, out, err = run(*QUICK, "--storage", "rgba8,rgb10a2", "--format", "json")
     rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
     assert (status, err) == (0, "") and len(rows) == 4
@@ -96,15 +97,16 @@ def test_json_is_flat_rows_the_best_first(run):
 
 
 @pytest.mark.usefixtures("gl", "rows_are_shared")
-def test_the_table_has_both_back_ends_of_a_code_side_by_side(run):
+def test_the_table_shows_both_backends_of_an_encoding_one_after_the_other(run):
     status, out, _ = run("frames", "--count", "4096", "--encoding", "qtangent")
     lines = [line.split() for line in out.splitlines() if line.startswith("rgba") and "bits" not in line]
     assert status == 0 and len(lines) == 8
     assert all(a[0] == b[0] and {a[1], b[1]} == {"jax", "glsl"} for a, b in zip(lines[::2], lines[1::2], strict=True))
 
 
-def test_the_frames_of_a_mesh_are_its_vertices(run, tmp_path):
-    """Authored tangents and their signs under a mirrored node; no limit, for they are not spread evenly."""
+def test_the_frames_of_a_mesh_are_those_of_its_vertices(run, tmp_path):
+    """The mesh has authored tangents and signs under a mirrored node. Its frames have no bound, because they are not
+    spread evenly."""
     as_document([sphere(1.0, 16, 8)]).write(tmp_path / "scene.glb")
     status, out, err = run(*QUICK, "--frames", str(tmp_path / "scene.glb"), "--format", "json")
     rows = json.loads(out)

@@ -1,4 +1,4 @@
-"""Light added up: the model, the GL device, and what the articles found."""
+"""Accumulated light: the model, the OpenGL device, and the findings of the articles."""
 
 import json
 
@@ -41,15 +41,15 @@ TABLE = [
 
 @pytest.mark.parametrize("name, channels, total, count, value", TABLE)
 def test_the_model_gives_the_accumulation_table(name, channels, total, count, value):
-    found = {}
+    by_channel = {}
     for row in equal_lights(by_model(name), [float(total)], [count]):
-        found |= dict.fromkeys(row["channel"], row["model"])
+        by_channel |= dict.fromkeys(row["channel"], row["model"])
     for channel in channels:
-        assert abs(found[channel] - value) <= 0.0005, f"{name} {channel}: {found[channel]} for {value}"
+        assert abs(by_channel[channel] - value) <= 0.0005, f"{name} {channel}: {by_channel[channel]} for {value}"
 
 
-def test_the_bound_is_half_a_code_a_blend():
-    """linear: 2/255 is a code; log: near 1 a code is 1/(255 2^-L ln 2) of light."""
+def test_the_bound_is_half_a_code_per_blend():
+    """linear: a code is 2/255; log: near 1 a code is 1/(255 2^-L ln 2) of light."""
     linear, log = (next(iter(equal_lights(by_model(name), [1.0], [64]))) for name in ("linear", "log"))
     assert abs(linear["bound"] / (64 / 255) - 1) < 0.01, linear
     assert abs(log["bound"] / (64 * 0.5 / (255 * 0.5 * np.log(2))) - 1) < 0.01, log
@@ -65,14 +65,15 @@ def test_orders_are_permutations():
 
 
 def bands(name: str, peak: float) -> dict[str, dict]:
-    found = {}
+    by_channel = {}
     for row in banding(by_model(name), [peak]):
-        found |= dict.fromkeys(row["channel"], row)
-    return found
+        by_channel |= dict.fromkeys(row["channel"], row)
+    return by_channel
 
 
 def test_srgb_bands_much_less_than_linear_but_not_in_its_fourth_channel():
-    """J. Ols, 2010: two targets: less banding in dim light, smooth falloff to the edge; one: the highlight's stays."""
+    """J. Ols, 2010: with two targets there is less banding in dim light and a smooth falloff to the edge; with one
+    target the banding of the highlight stays."""
     for peak in (0.1, 1.0):
         linear, srgb = bands("linear", peak), bands("srgb", peak)
         assert srgb["r"]["shown_step"] < linear["r"]["shown_step"] / 8, (peak, srgb["r"], linear["r"])
@@ -80,16 +81,17 @@ def test_srgb_bands_much_less_than_linear_but_not_in_its_fourth_channel():
     assert bands("srgb", 0.1)["r"]["levels"] > 4 * bands("linear", 0.1)["r"]["levels"]
 
 
-def test_log_light_holds_more_and_is_coarser_at_its_end():
-    """J. Ols, 2010: extended range; linear cuts off a lamp of 3, log does not, and its steps grow with light."""
+def test_log_light_has_a_larger_range_and_coarser_steps_at_its_end():
+    """J. Ols, 2010: extended range. `linear` clips a lamp of 3, `log` does not, but its steps grow with the light."""
     peak = gradient(3.0)
     linear, log = (by_model(name).model(peak[None]).light[:, 0] for name in ("linear", "log"))
     assert linear.max() == 2.0 and abs(log.max() - 3.0) < 0.05
     assert bands("log", 3.0)["r"]["largest_step"] > 5 * bands("linear", 3.0)["r"]["largest_step"]
 
 
-def test_log_light_is_coarser_in_the_dark_than_rgba8_that_holds_no_more_than_1():
-    """J. Ols, 2010: whose plain RGBA8 held [0, 1]: slightly worse on dim lights. Steps of 1/(255 ln 2) to 1/255."""
+def test_log_light_is_coarser_in_the_dark_than_rgba8_with_a_range_of_1():
+    """J. Ols, 2010: `log` is slightly worse on dim lights than plain RGBA8 with the range [0, 1]. The steps are
+    1/(255 ln 2) and 1/255."""
     plain, log = Adder(LINEAR_1, None), by_model("log")
     steps = [next(iter(banding(adder, [0.1])))["largest_step"] for adder in (plain, log)]
     assert abs(steps[0] * 255 - 1) < 1e-3 and 1.4 < steps[1] / steps[0] < 1.6, steps
@@ -98,7 +100,7 @@ def test_log_light_is_coarser_in_the_dark_than_rgba8_that_holds_no_more_than_1()
     assert lost[1] > lost[0], lost
 
 
-def test_a_range_may_be_given_and_both_languages_know_it(gl):
+def test_both_languages_use_a_given_range(gl):
     with Adder(LINEAR_1, gl) as adder:
         light = np.full((3, 1, 4), 0.2, np.float32)
         model, got = adder.model(light).light[0], adder.device(light).light[0]
@@ -108,7 +110,7 @@ def test_a_range_may_be_given_and_both_languages_know_it(gl):
     assert light_buffers_named("rgbm:51.5")[0].limit == 51.5
 
 
-def test_light_that_is_missing_is_drawn_as_far_off_as_light_that_is_too_much():
+def test_the_chart_shows_missing_light_like_excess_light():
     row = {"experiment": "equal", "sum": 1.0, "light_buffer": "linear", "bound": 1.0}
     (chart,) = charts([row | {"lights": 4, "error": -0.5}, row | {"lights": 8, "error": 0.25}])
     assert [(point["x"], point["y"]) for point in chart.rows] == [(4, 0.5), (8, 0.25)]
@@ -154,7 +156,7 @@ def test_without_a_device_the_model_is_measured_alone(run, monkeypatch):
         (["-o", "/proc/none/rows.csv"], "cannot write"),
     ],
 )
-def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, arguments, said):
+def test_bad_input_is_a_one_line_error_and_nothing_is_written(run, tmp_path, monkeypatch, arguments, said):
     monkeypatch.chdir(tmp_path)
     status, out, err = run("lights", *arguments)
     assert (status, out) == (2, "")

@@ -1,4 +1,4 @@
-"""Light added up: the model, the GL device, and what the articles found."""
+"""Accumulated light: the model, the OpenGL device, and the findings of the articles."""
 
 import itertools
 
@@ -17,8 +17,8 @@ EACH = itertools.product(LIGHT_PIPELINES, (1, 4))
 
 
 @pytest.mark.parametrize("pipeline, samples", [drawn for drawn in EACH if drawn not in BY_DAY])
-def test_every_code_is_the_light_buffer_of_the_other_pipelines(gl, pipeline, samples):
-    test_lights_slow.test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples)
+def test_every_light_encoding_works_in_the_other_pipelines(gl, pipeline, samples):
+    test_lights_slow.test_every_light_encoding_works_in_every_pipeline(gl, pipeline, samples)
 
 
 def test_pictures_and_plot_are_written(run, tmp_path):

@@ -1,4 +1,4 @@
-"""Light added up: the model, the GL device, and what the articles found."""
+"""Accumulated light: the model, the OpenGL device, and the findings of the articles."""
 
 import csv
 import json
@@ -31,8 +31,8 @@ EVERY = sorted(LIGHT_BUFFERS)
 
 
 @pytest.mark.parametrize("name", EVERY[:4])
-def test_no_error_is_beyond_the_blends_times_half_a_step(name):
-    """Of the model, which rounds to nearest: equal and random lights, in every order, every number of them."""
+def test_no_error_exceeds_half_a_step_per_blend(name):
+    """The model rounds to nearest; it adds equal and random lights, in every order and several numbers."""
     adder = by_model(name)
     rows = [*equal_lights(adder, [1.0, 4.0], [8, 64, 256]), *random_lights(adder, 1.0, [8, 64, 256], 0)]
     for row in rows:
@@ -41,8 +41,8 @@ def test_no_error_is_beyond_the_blends_times_half_a_step(name):
         assert error <= row["bound"] + row["lights"] * 2.0**-23, f"{name}: {row}"
 
 
-def test_a_pure_blue_light_amplifies_what_quantisation_loses_13_85_times(gl):
-    """1/0.0722, measured through every code that holds a fourth number, by the model and by the device."""
+def test_pure_blue_light_amplifies_quantisation_errors_13_85_times(gl):
+    """The factor is 1/0.0722, in every encoding with a fourth number, by the model and by the device."""
     expected = {"white": 1.0, "red": 1 / 0.2126, "green": 1 / 0.7152, "blue": 1 / 0.0722}
     for name, encoding in LIGHT_BUFFERS.items():
         with Adder(encoding, gl) as adder:
@@ -58,7 +58,7 @@ def test_a_pure_blue_light_amplifies_what_quantisation_loses_13_85_times(gl):
 QUICK = ("--counts", "8")
 
 
-def test_tables_are_one_for_each_experiment(run):
+def test_each_experiment_has_one_table(run):
     status, out, _ = run("lights", *QUICK, "--light-buffer", "linear,log", "--experiment", "equal,banding")
     assert status == 0 and out.count("experiment equal") == out.count("experiment banding") == 1
     assert "shown" not in out.split("experiment equal")[0], "no table has another's columns"
@@ -77,8 +77,8 @@ BY_DAY = [("hybrid", 1), ("prepass", 4)]
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_the_device_adds_up_as_the_model_that_rounds_like_it(gl, name):
-    """Fixed point exactly and floats within a unit, for equal lights; a conversion of the device's own is said so."""
+def test_the_device_adds_up_like_the_model_with_its_rounding(gl, name):
+    """Equal lights agree exactly in fixed point and within a unit in floats. A device's own conversion is named."""
     encoding = LIGHT_BUFFERS[name]
     with Adder(encoding, gl) as adder:
         rounding = adder.rounding
@@ -97,7 +97,8 @@ def test_the_device_adds_up_as_the_model_that_rounds_like_it(gl, name):
 
 @pytest.mark.parametrize("name", ["linear", "rgb9e5", "rgba32f"])
 def test_random_lights_add_up_to_the_same_texels(gl, name):
-    """Codes without a transcendental function: every pixel of 256 coloured lights, not one code apart."""
+    """Encodings without a transcendental function: at every pixel of 256 coloured lights, fixed point agrees exactly
+    and floats within a step."""
     encoding = LIGHT_BUFFERS[name]
     with Adder(encoding, gl) as adder:
         light = coloured_lights(256, 1.0, 0)
@@ -107,11 +108,11 @@ def test_random_lights_add_up_to_the_same_texels(gl, name):
 
 
 @pytest.mark.parametrize("name", EVERY[4:])
-def test_no_error_is_beyond_the_blends_times_half_a_step_of_any_code(name):
-    test_no_error_is_beyond_the_blends_times_half_a_step(name)
+def test_no_error_of_any_encoding_exceeds_half_a_step_per_blend(name):
+    test_no_error_exceeds_half_a_step_per_blend(name)
 
 
-def test_light_beyond_the_range_is_in_the_bound():
+def test_the_bound_includes_light_beyond_the_range():
     for name, total in (("linear:0.01", 1.0), ("srgb", 4.0), ("rgbm:1", 30.0)):
         (encoding,) = light_buffers_named(name)
         for row in random_lights(Adder(encoding, None), total, [1, 8], 0):
@@ -119,9 +120,9 @@ def test_light_beyond_the_range_is_in_the_bound():
 
 
 @pytest.mark.parametrize("name", [name for name in EVERY if name not in ("linear", "rgba32f", COARSE)])
-def test_dim_lights_first_lose_less(name):
-    """A step is smallest where there is little light yet; in linear fixed point it is the same everywhere, and a hue of
-    6 bits is off by the same share."""
+def test_adding_dim_lights_first_has_smaller_errors(name):
+    """Steps are smallest while there is little light. In linear fixed point all steps are the same, and a hue of
+    6 bits always has the same relative error."""
     rms = {row["order"]: row["model_rms"] for row in random_lights(by_model(name), 1.0, [64], 0)}
     assert rms["dimmest first"] < rms["as drawn"] <= rms["brightest first"] * 1.05, rms
 
@@ -131,20 +132,21 @@ def plan(name: str, targets: int, samples: int = 1) -> Plan:
 
 
 def targets_of(pipeline: str, encoding: LightCodec) -> list[int]:
-    """One target needs the fourth number, of a pipeline that may have two."""
+    """Return the numbers of targets to test. If a pipeline can have two, a single target needs the fourth number."""
     asked = PIPELINES[pipeline].light_targets
     return [n for n in asked if n == max(asked) or encoding.has_alpha]
 
 
 def frame(gl, pipeline: str, made_with: Plan) -> np.ndarray:
-    with rendering(gl, PIPELINES[pipeline], scene_of("room"), made_with) as made:
-        made.draw()
-        return made.image()
+    with rendering(gl, PIPELINES[pipeline], scene_of("room"), made_with) as renderer:
+        renderer.draw()
+        return renderer.image()
 
 
 @pytest.mark.parametrize("pipeline, samples", BY_DAY)
-def test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples):
-    """Near the reference, and finite: by blending and by reading, with one target and two, also at several samples."""
+def test_every_light_encoding_works_in_every_pipeline(gl, pipeline, samples):
+    """Images are finite and near the reference: by blending and by reading, with one target and with two, also at
+    several samples."""
     samples = gl.given_samples(samples)
     most = max(PIPELINES[pipeline].light_targets)
     reference = displayed(frame(gl, pipeline, plan("rgba32f", most, samples)))
@@ -159,7 +161,7 @@ def test_every_code_is_the_light_buffer_of_every_pipeline(gl, pipeline, samples)
             assert psnr > least, f"{pipeline}, {encoding.name}x{targets}, {samples} samples: {psnr:.1f} dB"
 
 
-def test_rows_say_everything_once(run, gl, monkeypatch):
+def test_rows_have_all_columns_and_all_experiments_in_order(run, gl, monkeypatch):
     monkeypatch.delenv("LP_NUM_THREADS", raising=False)
     status, out, err = run("lights", *QUICK, "--light-buffer", "linear,log,rgbm", "--format", "json")
     rows = json.loads(out)

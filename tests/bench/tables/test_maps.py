@@ -1,4 +1,4 @@
-"""`normalbench maps`: what block compression loses of normal maps, and what it refuses."""
+"""`normalbench maps`: the errors that block compression causes in normal maps, and refused requests."""
 
 import json
 from dataclasses import replace
@@ -19,7 +19,7 @@ def case(normals, block="bc5", swizzle="rg", encoding="xy", decoder="model"):
 
 
 def small(height, width, covered=None):
-    """The corner of the smooth map as a set of its own."""
+    """Return the corner of the smooth map as a normal set."""
     n, _ = quality.image_of(MAPS["bumps"]())
     n = n[:height, :width]
     covered = np.ones((height, width), bool) if covered is None else covered
@@ -28,7 +28,7 @@ def small(height, width, covered=None):
 
 @pytest.mark.parametrize("block", FORMATS)
 def test_only_real_texels_count_and_the_edge_is_repeated(block):
-    """7 x 5 texels give the same as the real ones of 8 x 8 whose edge is repeated by hand."""
+    """7 x 5 texels give the same figures as the real texels of 8 x 8 whose edge is repeated by hand."""
     odd = case(small(7, 5), block)
     (band,) = bands(odd.normal_set)
     assert band.n.shape[:2] == (8, 8) and np.array_equal(band.n[7, :5], band.n[6, :5])
@@ -44,10 +44,10 @@ def test_only_real_texels_count_and_the_edge_is_repeated(block):
 def test_texels_without_a_surface_are_flat_and_do_not_count():
     covered = np.ones((8, 8), bool)
     covered[:, 4:] = False
-    one = case(small(8, 8, covered))
-    (band,) = bands(one.normal_set)
+    map_case = case(small(8, 8, covered))
+    (band,) = bands(map_case.normal_set)
     assert (band.n[:, 4:] == [0, 0, 1]).all()
-    (row,) = measure(one)
+    (row,) = measure(map_case)
     assert (row["count"], row["background"], row["invalid"]) == (32, 32, 0)
 
 
@@ -66,8 +66,8 @@ def test_two_channels_leave_nothing_to_choose():
     assert not swizzles_of(FORMATS["eac_rg11"], 3, rrrg) and not swizzles_of(FORMATS["astc_4x4"], 3, rrrg)
 
 
-def test_blocks_that_cross_the_fold_of_an_octahedral_code_are_the_long_tail():
-    """Of the scene with silhouettes: the mean doubles, the largest angle is more than tenfold."""
+def test_blocks_across_the_octahedral_fold_cause_the_long_tail():
+    """In the scene with silhouettes the mean doubles, and the largest angle grows more than tenfold."""
     none, bc5 = (
         measure(case(NORMAL_SETS["playground"](0, 0), block, encoding="octahedral"))[0] for block in ("none", "bc5")
     )
@@ -75,7 +75,7 @@ def test_blocks_that_cross_the_fold_of_an_octahedral_code_are_the_long_tail():
     assert bc5["angle_max_deg"] > 10 * none["angle_max_deg"], bc5["angle_max_deg"]
 
 
-def test_what_a_named_format_has_no_room_for_is_said(run):
+def test_an_encoding_that_does_not_fit_a_named_format_is_reported(run):
     status, out, err = run("maps", "--normals", "bumps", "--encoding", "xy,xyz", "--block", "bc5", "--format", "json")
     assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["xy"]
     assert "left out: xyz: 3 components, but BC5 has 2 channels" in err
@@ -98,12 +98,12 @@ def test_what_a_named_format_has_no_room_for_is_said(run):
         (("--normals", "none.png"), "none.png: there is no such file"),
     ],
 )
-def test_bad_input_is_one_line(run, words, said):
+def test_bad_input_is_a_one_line_error(run, words, said):
     status, out, err = run("maps", *words)
     assert (status, out, err.count("\n")) == (2, "", 1) and said in err, err
 
 
-def test_a_gate_may_hold_a_row(run, tmp_path):
+def test_a_gate_can_check_a_row(run, tmp_path):
     gate = '[[gate]]\ntable = "maps"\nencoding = "xy"\nblock = "{}"\nangle_mean_deg = "at most 0.5"\n'
     for block, status in (("bc5", 0), ("eac_rg11", 1)):
         (tmp_path / "gates.toml").write_text(gate.format(block))

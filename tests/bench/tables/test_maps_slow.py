@@ -1,4 +1,4 @@
-"""`normalbench maps`: what block compression loses of normal maps, and what it refuses."""
+"""`normalbench maps`: the errors that block compression causes in normal maps, and refused requests."""
 
 import json
 
@@ -24,8 +24,8 @@ from normalbench.gbuffer.gl.device import device
 
 
 @pytest.mark.parametrize(("encoding", "swizzle", "storage"), [("octahedral", "rg", "rg8"), ("xyz", "rgb", "rgba8")])
-def test_what_is_not_compressed_is_a_row_of_quality(encoding, swizzle, storage):
-    """But for the last place of float32."""
+def test_uncompressed_rows_have_the_figures_of_quality(encoding, swizzle, storage):
+    """The figures agree to a relative difference of 1e-4."""
     normals = NORMAL_SETS["playground"](0, 0)
     (row,) = measure(case(normals, "none", swizzle, encoding))
     same = quality.measure(quality.QualityCase(Codec(ENCODINGS[encoding], STORAGES[storage]), normals, "jax"))
@@ -35,13 +35,13 @@ def test_what_is_not_compressed_is_a_row_of_quality(encoding, swizzle, storage):
 
 
 def test_the_angles_are_those_of_the_decoded_normals():
-    one = case(MAPS["bumps"]())
-    (band,) = bands(one.normal_set)
-    found = through(one, band, Clock()).astype(np.float64)
+    map_case = case(MAPS["bumps"]())
+    (band,) = bands(map_case.normal_set)
+    decoded = through(map_case, band, Clock()).astype(np.float64)
     n = band.n.astype(np.float64)
-    cosines = np.sum(n * found, axis=-1) / np.linalg.norm(found, axis=-1) / np.linalg.norm(n, axis=-1)
+    cosines = np.sum(n * decoded, axis=-1) / np.linalg.norm(decoded, axis=-1) / np.linalg.norm(n, axis=-1)
     angles = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
-    (row,) = measure(one)
+    (row,) = measure(map_case)
     figures = [row[f"angle_{name}_deg"] for name in ("mean", "rms", "p99", "max")]
     expected = [angles.mean(), np.sqrt(np.mean(angles**2)), np.percentile(angles, 99), angles.max()]
     assert figures == pytest.approx(expected, rel=2e-3)
@@ -78,7 +78,7 @@ def test_the_command_measures_a_file_and_names_its_rows(run, tmp_path):
 
 
 def test_a_missing_encoder_is_named(run, monkeypatch):
-    """Asked for, it is exit status 3; of all formats the others are measured."""
+    """If the encoder's format is requested, the exit status is 3; of all formats the others are measured."""
     there = encoders.import_module
 
     def import_module(name):
@@ -112,32 +112,33 @@ def psnr_db(numbers, given):
 
 @pytest.mark.parametrize("name", MAPS)
 @pytest.mark.parametrize("block", TOOLS)
-def test_the_psnr_of_the_channels_is_what_another_tool_gives(block, name):
-    """The same blocks by texture2ddecoder, which gives 8 bits: the same of BC7. EAC has 11 bits, BC5 is exact between
-    its ends and ASTC is in 16-bit floats: on noise 8 bits hardly matter, on the smooth map they are 0.2 and 0.7 dB."""
+def test_the_channel_psnr_agrees_with_another_tool(block, name):
+    """texture2ddecoder decodes the same blocks to 8 bits, which is exact for BC7. EAC has 11 bits, BC5 is exact
+    between its ends and ASTC uses 16-bit floats: 8 bits change the PSNR by at most 0.1 dB on noise, and by at most
+    0.2 dB (BC5) and 0.7 dB (ASTC) on the smooth map."""
     swizzle, tool = TOOLS[block]
-    one = case(MAPS[name](), block, swizzle)
-    (band,) = bands(one.normal_set)
-    given = code_texels(one.codec, band)
-    texels = Texels(one.swizzle.texels(given).tobytes(), (SIZE, SIZE), one.swizzle.read)
-    blocks = one.block.encoder.encoded(texels)
+    map_case = case(MAPS[name](), block, swizzle)
+    (band,) = bands(map_case.normal_set)
+    given = code_texels(map_case.codec, band)
+    texels = Texels(map_case.swizzle.texels(given).tobytes(), (SIZE, SIZE), map_case.swizzle.read)
+    blocks = map_case.block.encoder.encoded(texels)
     theirs = np.frombuffer(tool(blocks, SIZE, SIZE), np.uint8).reshape(SIZE, SIZE, 4)[..., [2, 1, 0, 3]]
-    ours = one.swizzle.numbers(one.block.by_specification(blocks, (SIZE, SIZE)))
-    (row,) = measure(one)
+    ours = map_case.swizzle.numbers(map_case.block.by_specification(blocks, (SIZE, SIZE)))
+    (row,) = measure(map_case)
     assert row["code_psnr_db"] == pytest.approx(psnr_db(ours, given), abs=1e-9)
-    apart = row["code_psnr_db"] - psnr_db(one.swizzle.numbers(theirs) / 255, given)
+    apart = row["code_psnr_db"] - psnr_db(map_case.swizzle.numbers(theirs) / 255, given)
     most = {"bc7": 1e-4}.get(block, 0.1 if name == "grain" else {"astc_4x4": 0.7, "bc5": 0.2}.get(block, 0.1))
     assert abs(apart) < most, f"{apart} dB"
     if block == "bc5":
         cut = np.floor(ours.astype(np.float64) * 255 + 1e-3) / 255
-        assert psnr_db(cut, given) == pytest.approx(psnr_db(one.swizzle.numbers(theirs) / 255, given), abs=1e-6)
+        assert psnr_db(cut, given) == pytest.approx(psnr_db(map_case.swizzle.numbers(theirs) / 255, given), abs=1e-6)
 
 
 def test_pictures_and_the_plot_show_something(run, tmp_path):
     words = ("--normals", "bumps", "--encoding", "xy", "--block", "bc5,bc7", "--images", str(tmp_path / "p"))
     status, *_ = run("maps", *words, "--plot", str(tmp_path / "plot.png"))
-    found = sorted(path.name for path in (tmp_path / "p").iterdir())
-    assert status == 0 and len(found) == 6 and "bumps-xy-bc7-rrrg-model-error.png" in found
+    names = sorted(path.name for path in (tmp_path / "p").iterdir())
+    assert status == 0 and len(names) == 6 and "bumps-xy-bc7-rrrg-model-error.png" in names
     for path in [*(tmp_path / "p").iterdir(), tmp_path / "plot.png"]:
         pixels = np.asarray(Image.open(path).convert("RGB"))
         assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 50 and pixels.mean() > 5, path.name

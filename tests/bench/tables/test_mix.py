@@ -1,4 +1,4 @@
-"""`normalbench mix`: what filters, mip levels, resolves and blending make of stored codes."""
+"""`normalbench mix`: the effect of filters, mip levels, resolves and blending on stored codes."""
 
 import numpy as np
 import pytest
@@ -20,8 +20,8 @@ COUNT, SAMPLES = 512, 4
 
 
 def codec(name: str):
-    (found,) = codecs_named(*name.split("/"), "nearest")
-    return found
+    (named_codec,) = codecs_named(*name.split("/"), "nearest")
+    return named_codec
 
 
 def mixes(normals: str = "axes", angle: float = 5.0, count: int = COUNT):
@@ -39,7 +39,7 @@ def angle_deg(a, b):
 
 @pytest.fixture(scope="module")
 def rows(gl):  # noqa: ARG001 # it skips where there is no device
-    """Every operation on three codes about the axes, by both back ends."""
+    """Rows of every operation on three encodings near the axes, by both backends."""
     table = TABLES["mix"]
     options = {"encoding": "octahedral,spherical,xyz_renormalised", "normals": "axes", "angle": "5", "edge": "none"}
     options |= {"count": COUNT}
@@ -51,8 +51,8 @@ def test_unquantised_xyz_interpolates_with_the_error_of_geometry(backend, reques
     """Normals theta apart give atan2(t sin theta, 1 - t + t cos theta), and the length of `lerp_length`."""
     given, exact = mixes("sphere", 20.0), codec("xyz/rgba32f")
     if backend == "jax":
-        made = Modelled(exact, given)
-        mixed = made.decoded(made.mixed("blend", made.given(made.texels()), MODEL))
+        model = Modelled(exact, given)
+        mixed = model.decoded(model.mixed("blend", model.given(model.texels()), MODEL))
     else:
         with MixPasses(request.getfixturevalue("gl"), exact, given.meetings(), SAMPLES) as passes:
             mixed = passes.blended(given.meetings().seconds).normals.reshape(-1, 3)
@@ -68,7 +68,7 @@ def test_unquantised_xyz_interpolates_with_the_error_of_geometry(backend, reques
 
 
 def test_reoriented_normals_turn_the_detail_as_the_base_is_turned():
-    """A flat detail gives the base, a flat base gives the detail, and a detail at part of its tilt lies on the arc."""
+    """A flat detail gives the base, a flat base gives the detail, and a detail at part of its tilt is on the arc."""
     random = np.random.default_rng(0)
     base = reference.unit_rows(random.normal(size=(1000, 3)))
     tilt, turn, alpha = random.uniform(0, 1, 1000), random.uniform(0, 6, 1000), random.uniform(0, 1, 1000)
@@ -83,39 +83,39 @@ def test_reoriented_normals_turn_the_detail_as_the_base_is_turned():
     assert angle_deg(behind, np.array([[0.0, 0.0, -1.0]]))[0] == pytest.approx(np.degrees(tilt[0]))
 
 
-def test_toksvigs_power_is_the_articles():
+def test_toksvigs_power_is_that_of_the_article():
     """s' = f s with f = |n| / (|n| + s (1 - |n|)), by hand: 32 / 32.5 for s = 64 and a mean of length one half."""
     lengths = np.array([1.0, 1.001, 0.5, 0.0])
     assert reference.toksvig_power(lengths, 64.0) == pytest.approx([64, 64, 64 * 0.5 / (0.5 + 32), 0])
 
 
-def test_what_is_decoded_first_never_lies_across_a_seam(rows):
+def test_decoding_first_never_mixes_across_a_seam(rows):
     for row in rows:
         if row["operation"] in ("resolve_decoded", "blend_decoded", "upsample"):
             assert row["garbage_percent"] == 0 and row["angle_max_deg"] < 2 * row["alone_max_deg"] + 0.1, row
 
 
-def test_a_fixed_filter_is_the_float_one_to_a_step():
-    """By the model: fractions of 8 bits and rounded steps move a number of UNORM8 by at most two steps."""
-    given, made = mixes(), Modelled(codec("octahedral/rg8"), mixes())
-    mixed = [made.mixed("filter", made.given(made.texels()), way) for way in (MODEL, Way(True, 8))]
+def test_a_fixed_point_filter_matches_the_float_filter_to_two_steps():
+    """In the model, 8-bit fractions and rounded steps move a UNORM8 number by at most two steps."""
+    given, model = mixes(), Modelled(codec("octahedral/rg8"), mixes())
+    mixed = [model.mixed("filter", model.given(model.texels()), way) for way in (MODEL, Way(True, 8))]
     steps = np.abs(mixed[0] - mixed[1]).max() * 255 / 2
     assert 0.4 < steps < 2.0 and given.shares.max() < 1, steps
 
 
 @pytest.mark.parametrize("name", [name for name, storage in STORAGES.items() if storage.channels < 4])
 def test_texels_of_a_storage_come_back_as_the_same_numbers(name):
-    """Also where numbers are laid across channels."""
+    """This also holds for numbers that span channels."""
     chosen = codec(f"octahedral/{name}")
-    made = Modelled(chosen, mixes("sphere", 5.0))
-    stored = made.texels()
+    model = Modelled(chosen, mixes("sphere", 5.0))
+    stored = model.texels()
     texels = Texels(chosen)
     again = texels.code(texels.of(stored))
     assert np.abs(again - stored).max() < 1e-6, np.abs(again - stored).max()
 
 
-def test_blends_of_whole_shares_are_the_source_and_the_base():
-    """By every way to mix, to a step of the storage."""
+def test_blends_of_1_and_0_are_the_source_and_the_base():
+    """Both ways to mix agree to a hundredth of a step."""
     texels, shape = Texels(codec("octahedral/rg8")), (2, 64)
     base, source = (np.random.default_rng(i).integers(0, 256, shape).astype(np.float32) / 255 for i in (0, 1))
     for way in (MODEL, Way(is_fixed=True, rounds_source=True)):
@@ -124,7 +124,7 @@ def test_blends_of_whole_shares_are_the_source_and_the_base():
             assert np.abs(got - expected).max() * 255 < 0.01, (way, alpha)
 
 
-def test_patches_of_a_direction_lie_as_far_apart_as_was_asked():
+def test_neighbours_in_a_patch_have_the_requested_angle():
     """Neighbours through the direction are `angle` apart; curvature brings the others closer by its square."""
     given = mixes("sphere", 5.0).patches
     assert given.normals.shape == (TEXELS, 512, 3)
@@ -132,7 +132,7 @@ def test_patches_of_a_direction_lie_as_far_apart_as_was_asked():
     assert across.min() > 4.9 and across.max() < 5.0001, (across.min(), across.max())
 
 
-def test_codes_of_half_a_sphere_are_mixed_there():
+def test_hemisphere_encodings_are_mixed_on_their_hemisphere():
     row = rows_of("hemi_octahedral/rg16", normals="sphere")["filter"]
     assert 100 < row["count"] < COUNT and row["garbage_percent"] == 0, row["count"]
 
@@ -142,7 +142,7 @@ def test_rows_of_one_alpha_are_one_band():
 
 
 def test_a_verdict_follows_from_the_thresholds():
-    """Garbage, or an added error above the share of the reach, is a no; operations that are missing leave it open."""
+    """Garbage, or an added error above the allowed share of the reach, is a no. Missing operations decide nothing."""
     base = {"encoding": "e", "storage": "s", "backend": "jax", "normals": "sphere", "angle_deg": 5.0}
     base |= {f"worst_{name}": "(0, 0, 1)" for name in ("first", "second", "result")}
     base |= {
@@ -168,14 +168,14 @@ def test_a_verdict_follows_from_the_thresholds():
 
 
 def test_an_edge_runs_through_the_mix_of_every_patch():
-    """The first texel and the second lie on either side, turned apart by the angle about a tangent."""
+    """The first and second texels are on opposite sides, turned apart by the angle about a tangent."""
     _, edges = patches_of(NORMAL_SETS["sphere"](COUNT, 0), (1.0,), COUNT, 0, (60.0,))
     first, second = edges.normals[:2]
     apart = angle_deg(first, second)
     assert edges.edge_deg == 60.0 and apart.min() > 58.9 and apart.max() < 61.1, (apart.min(), apart.max())
 
 
-def test_the_page_has_a_chart_and_the_summary_the_verdicts(rows):
+def test_the_page_has_a_chart_and_the_summary_has_the_verdicts(rows):
     work = TABLES["mix"].work
     (chart,) = work.charts(rows)
     assert list(chart.x.names) == [name.replace("_", " ") for name in OPERATIONS]
@@ -187,7 +187,7 @@ def test_the_page_has_a_chart_and_the_summary_the_verdicts(rows):
     assert any("octahedral/rgba8: normals 5 degrees apart on axes" in note for note in sheet.notes)
 
 
-def test_a_gate_holds_the_share_of_garbage(run, tmp_path):
+def test_a_gate_checks_the_share_of_garbage(run, tmp_path):
     gate = '[[gate]]\ntable = "mix"\nencoding = "{}"\nstorage = "rg16"\noperation = "resolve"\nnormals = "axes"\n'
     gate += 'angle = "5"\nedge = "none"\nbackend = "jax"\ncount = 256\ngarbage_percent = "at most 0"\n'
     path = tmp_path / "gates.toml"
@@ -197,14 +197,14 @@ def test_a_gate_holds_the_share_of_garbage(run, tmp_path):
         assert status == expected, out + err
 
 
-def test_a_detail_of_another_alpha_lies_on_the_arc():
-    """As reoriented normal mapping has it of the scaled tilt."""
+def test_a_detail_at_another_alpha_is_on_the_arc():
+    """The result is that of reoriented normal mapping with the scaled tilt."""
     given = mixes("sphere", 5.0, 64)
-    made = worst._between(given.patches.normals[0], given.decals, given.alphas)
-    assert np.abs(made - given.details).max() < 1e-6
+    details = worst._between(given.patches.normals[0], given.decals, given.alphas)
+    assert np.abs(details - given.details).max() < 1e-6
 
 
-def test_only_weights_are_changed_where_the_normals_are_given():
+def test_only_weights_change_if_the_normals_are_given():
     """An axis stays in the first four texels of each patch of `axes`."""
     given = mixes("axes", 5.0, 64)
     moved = worst._moved(given, np.full(len(given.alphas), 5.0), np.random.default_rng(0))
@@ -237,18 +237,18 @@ def test_rows_have_the_columns_of_the_table(rows):
         (("--plot", "mix.txt"), "mix.txt: a plot's name ends in .png, .svg, .pdf"),
     ],
 )
-def test_what_cannot_be_measured_is_one_line(run, words, said):
+def test_bad_input_is_a_one_line_error(run, words, said):
     status, out, err = run("mix", *words)
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
 
 
-def test_what_pick_cannot_be_asked_is_one_line(run):
+def test_unknown_use_is_a_one_line_error_of_pick(run):
     status, out, err = run("pick", "--needs", "swim")
     assert (status, out) == (2, "") and "unknown use 'swim'; known: all, filter, blend, resolve, upsample" in err, err
 
 
-def test_an_image_without_a_square_of_texels_is_one_line(run, tmp_path):
-    """Of 3 x 3 pixels there is no patch."""
+def test_an_image_without_a_covered_square_is_an_error(run, tmp_path):
+    """An image of 3 x 3 pixels is too small for a patch."""
     flat = np.zeros((3, 3, 3), np.float32)
     flat[..., 2] = 1.0
     np.save(tmp_path / "small.npy", flat)
@@ -257,7 +257,7 @@ def test_an_image_without_a_square_of_texels_is_one_line(run, tmp_path):
 
 
 def test_a_set_of_few_normals_is_mixed_evenly_and_with_every_alpha():
-    """Each of the six axes gets as many patches, and every alpha of a blend."""
+    """Each of the six axes gets about the same number of patches, and every alpha of a blend."""
     given = mixes("axes", 1.0, 1024)
     centre = given.patches.normals[:4].mean(axis=0)
     axis = np.argmax(np.concatenate([centre, -centre], axis=1), axis=1)

@@ -1,4 +1,4 @@
-"""`normalbench mix`: what filters, mip levels, resolves and blending make of stored codes."""
+"""`normalbench mix`: the effect of filters, mip levels, resolves and blending on stored codes."""
 
 import json
 import re
@@ -24,7 +24,7 @@ OWN = "its own arithmetic"
 
 
 def on_sphere(name: str, operations: tuple[str, ...], seed: int = 0, worst_case: bool = False):
-    """Rows of a codec on the whole sphere, 5 degrees apart, by the model."""
+    """Return the rows of a codec on the whole sphere, with normals 5 degrees apart, by the model."""
     (patches,) = patches_of(NORMAL_SETS["sphere"](COUNT, seed), (5.0,), COUNT, seed)
     return measure(MixCase(codec(name), mixes_of(patches, SAMPLES), "jax", operations, 64.0, worst_case=worst_case))
 
@@ -32,7 +32,7 @@ def on_sphere(name: str, operations: tuple[str, ...], seed: int = 0, worst_case:
 def test_the_fold_of_octahedral_and_the_wrap_of_spherical_are_named(rows):
     """Octahedral fails between normals of z < 0 across x = 0 or y = 0; spherical at x < 0 across y = 0."""
     for row in rows:
-        pair = np.array([[float(c) for c in row[f"worst_{one}"][1:-1].split(",")] for one in ("first", "second")])
+        pair = np.array([[float(c) for c in row[f"worst_{end}"][1:-1].split(",")] for end in ("first", "second")])
         if row["operation"] not in ("filter", "mip_2x2", "resolve", "blend"):
             continue
         if row["encoding"] == "xyz_renormalised":
@@ -54,7 +54,7 @@ def test_the_fold_of_octahedral_and_the_wrap_of_spherical_are_named(rows):
 @pytest.mark.parametrize("storage", ["rg8", "rg8_snorm", "rgb10a2"])
 @pytest.mark.usefixtures("gl")
 def test_device_and_model_agree_or_the_row_says_how_the_device_mixes(storage):
-    """To 0.01 degrees, of the codes that the device stored. Filters of UNORM of 8 bits have 8 bits of fraction here."""
+    """Angles agree to 0.01 degrees for the codes that the device stored. 8-bit UNORM filters use 8-bit fractions."""
     for name in ("octahedral", "xy_sign"):
         for operation, row in rows_of(f"{name}/{storage}", "glsl").items():
             is_told = operation in BY_MODEL and row["mixed_by"].startswith(OWN)
@@ -70,19 +70,19 @@ def test_a_filters_fractions_are_probed(gl):
     """llvmpipe filters RG8 as integers with fractions of 8 bits, and half floats as floats."""
     if "llvmpipe" not in gl.renderer:
         pytest.skip("another device filters in its own way")
-    said = [rows_of(f"octahedral/{s}", "glsl", ("filter",))["filter"]["mixed_by"] for s in ("rg8", "rg16f")]
-    assert said == ["integers, fractions of 8 bits", "32-bit floats"]
+    ways = [rows_of(f"octahedral/{s}", "glsl", ("filter",))["filter"]["mixed_by"] for s in ("rg8", "rg16f")]
+    assert ways == ["integers, fractions of 8 bits", "32-bit floats"]
 
 
-def test_patches_of_an_image_are_its_own_neighbours():
+def test_patches_of_an_image_are_its_neighbouring_pixels():
     playground = NORMAL_SETS["playground"](0, 0)
     given, edges = patches_of(playground, (5.0,), 64, 0)
     planes = [np.asarray(c) for load in playground.loads() for c in [np.stack(load().n, axis=1)]]
     image = np.concatenate(planes)[: playground.count].reshape(*playground.shape, 3)
     for patch in range(3):
         block = given.normals[:, patch].reshape(SIDE, SIDE, 3)
-        at = np.argwhere(np.abs(image - block[0, 0]).max(axis=-1) < 1e-6)
-        squares = (image[y : y + SIDE, x : x + SIDE] for y, x in at)
+        positions = np.argwhere(np.abs(image - block[0, 0]).max(axis=-1) < 1e-6)
+        squares = (image[y : y + SIDE, x : x + SIDE] for y, x in positions)
         assert any(square.shape == block.shape and np.abs(square - block).max() < 1e-6 for square in squares)
     assert given.angle_deg is None and given.count + edges.count == 64 and given.edge_deg is None
     grid = edges.normals.reshape(SIDE, SIDE, -1, 3)
@@ -93,25 +93,25 @@ def test_patches_of_an_image_are_its_own_neighbours():
 
 
 def test_octahedral_can_be_filtered_where_z_is_not_negative():
-    """Its seams lie at z < 0; the sentence says what goes wrong on the whole sphere."""
+    """The seams of octahedral are at z < 0; the sentence says what goes wrong on the whole sphere."""
     sphere = NORMAL_SETS["sphere"](64, 0)
-    found = judgement(codec("octahedral/rg8"), ("filter", "blend"), sphere, "sphere").inside
-    assert set(found) == {"filter", "blend"} and "garbage, up to" in found["filter"], found
+    inside = judgement(codec("octahedral/rg8"), ("filter", "blend"), sphere, "sphere").inside
+    assert set(inside) == {"filter", "blend"} and "garbage, up to" in inside["filter"], inside
     assert not judgement(codec("octahedral/rg8"), ("filter", "blend", "resolve"), sphere, "hemisphere").inside
 
 
-def test_a_code_may_survive_inside_a_surface_and_not_across_an_edge():
-    """xyz / max |n| weighs normals by another length; xyz is linear. Who decodes first has no edge to mind."""
+def test_an_encoding_may_survive_inside_a_surface_but_not_across_an_edge():
+    """xyz / max |n| weighs normals by another length; xyz is linear. Decoding first makes edges irrelevant."""
     sphere = NORMAL_SETS["sphere"](64, 0)
-    found = judgement(codec("xyz_largest/rgba8"), ("filter", "upsample"), sphere, "sphere")
-    assert not found.inside and set(found.across) == {"filter"}, found
-    assert "an edge of 60 degrees" in found.across["filter"], found
-    found = judgement(codec("xyz_renormalised/rgba8"), ("filter", "upsample"), sphere, "sphere")
-    assert (found.inside, found.across) == ({}, {}), found
+    verdict = judgement(codec("xyz_largest/rgba8"), ("filter", "upsample"), sphere, "sphere")
+    assert not verdict.inside and set(verdict.across) == {"filter"}, verdict
+    assert "an edge of 60 degrees" in verdict.across["filter"], verdict
+    verdict = judgement(codec("xyz_renormalised/rgba8"), ("filter", "upsample"), sphere, "sphere")
+    assert (verdict.inside, verdict.across) == ({}, {}), verdict
 
 
-def test_a_code_of_best_fit_loses_its_advantage_where_it_is_filtered():
-    """Its texels have lengths of their own, which weigh the normals: by itself it is four times as exact."""
+def test_best_fit_loses_its_advantage_if_it_is_filtered():
+    """Texels of best_fit differ in length, which weighs the normals. Unfiltered texels are four times as accurate."""
     sphere = NORMAL_SETS["sphere"](64, 0)
     own, plain = (
         judgement(codec(name), ("filter",), sphere, "sphere") for name in ("best_fit/rgba8", "xyz_largest/rgba8")
@@ -120,16 +120,17 @@ def test_a_code_of_best_fit_loses_its_advantage_where_it_is_filtered():
 
 
 @pytest.mark.parametrize("name", ["xy_sign/rg8", "octahedral/rg8", "spherical/rg8"])
-def test_no_code_of_two_numbers_in_rg8_can_be_filtered_on_the_sphere(name):
-    """xy_sign is 6 degrees off by itself and 9 after a mip: its own error is no excuse. All can be upsampled."""
-    found = judgement(codec(name), ("filter", "upsample"), NORMAL_SETS["sphere"](64, 0), "sphere")
-    assert set(found.inside) == {"filter"} and "upsample" not in found.across, found
+def test_no_encoding_in_rg8_can_be_filtered_on_the_whole_sphere(name):
+    """xy_sign is off by 6 degrees alone and by 9 after a mip: its own error is no excuse. All encodings can be
+    upsampled."""
+    verdict = judgement(codec(name), ("filter", "upsample"), NORMAL_SETS["sphere"](64, 0), "sphere")
+    assert set(verdict.inside) == {"filter"} and "upsample" not in verdict.across, verdict
 
 
 def test_the_standard_error_is_the_scatter_of_seeds():
-    found = [on_sphere("octahedral/rg8", ("mip_4x4",), seed)[0] for seed in range(24)]
-    scatter = np.std([row["garbage_percent"] for row in found], ddof=1)
-    assert scatter == pytest.approx(np.mean([row["garbage_error_percent"] for row in found]), rel=0.5)
+    seed_rows = [on_sphere("octahedral/rg8", ("mip_4x4",), seed)[0] for seed in range(24)]
+    scatter = np.std([row["garbage_percent"] for row in seed_rows], ddof=1)
+    assert scatter == pytest.approx(np.mean([row["garbage_error_percent"] for row in seed_rows]), rel=0.5)
     none = error_of_percent(np.zeros(98, bool))
     # By hand: a share of 1 / 100, sqrt(0.01 x 0.99 / 101).
     assert none == pytest.approx(100 * 0.0099005, rel=1e-3)
@@ -152,7 +153,7 @@ def test_device_and_model_agree_or_the_row_says_how_the_device_mixes_in_wider_st
 
 
 @pytest.mark.usefixtures("gl", "radv")
-def test_pick_leaves_out_what_does_not_survive(run):
+def test_pick_leaves_out_encodings_that_do_not_survive(run):
     words = ("pick", "--encoding", "octahedral,xy_sign", "--storage", "rg8", "--count", "4096")
     status, out, _ = run(*words)
     assert status == 0 and "take octahedral" in out and "cannot be" not in out
@@ -169,8 +170,8 @@ def test_pick_leaves_out_what_does_not_survive(run):
 
 
 def check_the_worst_mixes(*operations):
-    """Means of octahedral codes on opposite corners of the square, which are -z, are +z: 180 degrees off. A code
-    without a seam in its domain stays within what its texels alone and its kinks explain."""
+    """Check the worst mixes. The mean of octahedral codes at opposite corners of the square, both -z, is +z: it is
+    180 degrees off. An encoding without a seam in its domain stays within the errors of its texels and its kinks."""
     for name, least, most in (("octahedral/rg8", 179.0, 180.0), ("hemi_octahedral/rg8", 1.0, 3.5)):
         for row in on_sphere(name, operations, worst_case=True):
             assert row["angle_max_deg"] <= row["angle_worst_deg"] and least <= row["angle_worst_deg"] <= most, row

@@ -1,4 +1,4 @@
-"""`normalbench motion`: the wobble of a code, of highlights and of images, animations, and bad input."""
+"""`normalbench motion`: the wobble of codes, highlights and images, animations, and bad input."""
 
 import json
 import math
@@ -31,7 +31,7 @@ def wobble(name, space="view", moves="camera", axis="yaw", turn=0.25, frames=32,
 
 
 def ramp(step):
-    """A code that is a linear ramp: the angle about y in steps of so many degrees."""
+    """Return the round trip of a linear ramp: the angle about y, in steps of `step` degrees."""
 
     def trip(n, _):
         angle = np.degrees(np.arctan2(n[:, 0].astype(float), n[:, 2]))
@@ -44,8 +44,8 @@ def ramp(step):
 
 @pytest.mark.parametrize("codes_a_frame", [0.05, 0.25, 0.5, 7.1])
 def test_a_linear_ramp_wobbles_as_a_sawtooth_does(codes_a_frame):
-    """A sawtooth's autocorrelation at a lag of f periods is 1 - 6 f (1 - f), so the ratio is sqrt(6 f (1 - f)); and a
-    share f of the codes changes in a frame, or all."""
+    """A sawtooth's autocorrelation at a lag of f periods is 1 - 6 f (1 - f), so the ratio is sqrt(6 f (1 - f)). A
+    share f of the codes changes per frame, at most all."""
     step = 0.5
     motion = Motion("view", "camera", "yaw", codes_a_frame * step, 8)
     row = code_wobble(ramp(step), "sphere", motion, COUNT, SEED)
@@ -56,14 +56,14 @@ def test_a_linear_ramp_wobbles_as_a_sawtooth_does(codes_a_frame):
 
 
 def linear_colour(n, _):
-    """x as a channel of 8 bits keeps a linear ramp; y and z are exact."""
+    """Return the code and the decoded normal: x as an 8-bit channel keeps a linear ramp, y and z are exact."""
     code = np.rint(n[:, 0].astype(float) * 127.5)
     return code[:, None], np.stack([code / 127.5, n[:, 1], n[:, 2]], axis=1)
 
 
-def test_a_ramp_of_many_codes_a_frame_is_noise():
-    """A linear colour ramp at up to 18 codes a frame, each point at its own speed: a ratio of 1, within 5 %. Of three
-    such channels, yaw leaves y where it is: a third of the squared error stays."""
+def test_a_ramp_of_many_codes_per_frame_is_noise():
+    """A linear colour ramp at up to 18 codes per frame, each point at its own speed, has a ratio of 1, within 5%. Of
+    three such channels, yaw leaves y unchanged: a third of the squared error stays."""
     motion = Motion("view", "camera", "yaw", 8.0, 16)
     assert code_wobble(linear_colour, "sphere", motion, COUNT, SEED)["ratio"] == pytest.approx(1, rel=0.05)
     assert wobble("xyz_renormalised", turn=8.0, frames=16)["ratio"] == pytest.approx(math.sqrt(2 / 3), rel=0.03)
@@ -71,22 +71,22 @@ def test_a_ramp_of_many_codes_a_frame_is_noise():
 
 @pytest.mark.parametrize("axis", TURNS)
 @pytest.mark.parametrize("name", ["octahedral", "spheremap", "best_fit"])
-def test_a_code_in_world_space_stays_while_a_camera_turns(name, axis):
-    """To the bit; and it does not while an object turns."""
+def test_a_code_in_world_space_does_not_change_while_a_camera_turns(name, axis):
+    """The code is the same to the bit, but changes while an object turns."""
     row = wobble(name, "world", "camera", axis, frames=4, count=4096)
     assert (row["wobble_deg"], row["jumps_percent"], row["ratio"]) == (0, 0, 0) and row["static_rms_deg"] > 0
     assert wobble(name, "world", "object", axis, frames=4, count=4096)["ratio"] > 0.3
 
 
-def test_only_what_an_encoding_is_made_for_counts():
+def test_only_normals_that_an_encoding_is_made_for_count():
     """Normals of z < 0 would come back from `xy` mirrored, some 100 degrees off."""
     row = wobble("xy", turn=1.0, count=4096)
     assert row["static_rms_deg"] < 5 and 0 < row["wobble_deg"] < 5
 
 
 @pytest.mark.parametrize("axis", TURNS)
-def test_an_error_that_turns_with_the_surface_is_no_wobble(axis):
-    """An offset along n x k stays on a surface that turns about k, and turns by 40 degrees a frame in view space."""
+def test_an_error_that_turns_with_the_surface_is_not_wobble(axis):
+    """An offset along n x k stays on a surface turning about k, and turns by 40 degrees per frame in view space."""
     k = np.eye(3)[TURNS.index(axis)]
 
     def swirl(n, _):
@@ -96,7 +96,7 @@ def test_an_error_that_turns_with_the_surface_is_no_wobble(axis):
     assert row["ratio"] < 1e-3 < row["static_rms_deg"] and row["jumps_percent"] == 0, row
 
 
-def test_what_is_no_number_counts_as_the_opposite_direction():
+def test_nan_counts_as_the_opposite_direction():
     def broken(n, _):
         return np.zeros((len(n), 1)), np.where(np.arange(len(n))[:, None] % 2, np.nan, n)
 
@@ -105,11 +105,11 @@ def test_what_is_no_number_counts_as_the_opposite_direction():
 
 
 def test_a_turn_goes_to_and_fro():
-    """Never farther than its swing, always by as much; a step beyond the swing goes there and back."""
+    """All steps have the same size and stay within the swing; a step beyond the swing goes there and back."""
     assert turning.angles(10.0, 8).tolist() == [0, 10, 20, 30, 20, 10, 0, 10]
     assert turning.angles(45.0, 4).tolist() == [0, 45, 0, 45]
-    found = turning.angles(0.25, 1000)
-    assert found.max() == turning.SWING_DEG and set(np.abs(np.diff(found)).round(9)) == {0.25}
+    angles = turning.angles(0.25, 1000)
+    assert angles.max() == turning.SWING_DEG and set(np.abs(np.diff(angles)).round(9)) == {0.25}
 
 
 @pytest.mark.parametrize(
@@ -117,7 +117,7 @@ def test_a_turn_goes_to_and_fro():
     [("yaw", (-1, 0, 0), (0, 1, 0)), ("pitch", (0, 1, 0), (0, 0, 1)), ("roll", (0, 0, -1), (-1, 0, 0))],
 )
 def test_a_camera_turns_left_up_and_counter_clockwise(axis, forward, up):
-    """By 90 degrees, where it stands; all the way around it is as before."""
+    """The camera turns by 90 degrees on the spot; a full turn brings it back."""
     view = View((1.0, 2.0, 3.0), (1.0, 2.0, 0.0), 40.0, 1.0, 10.0)
     turned = view.turned(axis, 90.0)
     assert np.subtract(turned.target, turned.eye) / 3 == pytest.approx(forward, abs=1e-12)
@@ -131,8 +131,8 @@ def pictures(tmp_path_factory):
 
 
 @pytest.mark.parametrize("axis", TURNS)
-def test_a_camera_goes_around_what_it_looks_at(axis):
-    """It stays as far away, looks at the same point, and turns as it would where it stands."""
+def test_a_camera_orbits_its_target(axis):
+    """The camera keeps its distance and its target, and turns as it would on the spot."""
     view = View((3.0, 2.0, 5.0), (1.0, 0.0, -1.0), 40.0, 0.1, 20.0)
     gone = panel.around(view, axis, 7.0)
     assert np.linalg.norm(np.subtract(gone.eye, gone.target)) == pytest.approx(np.sqrt(44))
@@ -141,22 +141,22 @@ def test_a_camera_goes_around_what_it_looks_at(axis):
 
 
 def test_codes_on_surfaces_are_those_of_a_turned_camera():
-    """A normal and its position, turned, encoded, decoded and turned back."""
+    """A normal and its position are turned, encoded, decoded and turned back."""
     (codec,) = codecs_named("octahedral", "rg8", "nearest")
     n = np.array([[0.48, 0.6, 0.64]], np.float32)
     matrix = turning.rotations("roll", 30.0, 2)[1]
     with trip_of(codec) as trip:
-        found = on_surfaces(trip, matrix, matrix)(n, n)
+        decoded = on_surfaces(trip, matrix, matrix)(n, n)
         by_hand = trip((n @ matrix.T).astype(np.float32), n)[1] @ matrix
-    assert found == pytest.approx(by_hand, abs=1e-6)
+    assert decoded == pytest.approx(by_hand, abs=1e-6)
 
 
 def test_a_code_in_world_space_is_the_same_from_every_camera():
-    """What the G-buffer keeps of a normal is the same in world space from two cameras, and another in view space."""
+    """In world space the G-buffer stores the same normal for two cameras; in view space it does not."""
     (codec,) = codecs_named("octahedral", "rg8", "nearest")
     n = np.array([[0.48, 0.6, 0.64], [-0.36, 0.48, 0.8]])
     first = View((0.0, 0.0, 5.0), (0.0, 1.0, 0.0), 40.0, 1.0, 10.0)
-    found = {}
+    differences = {}
     with trip_of(codec) as trip:
         for space in turning.SPACES:
             seen = []
@@ -164,8 +164,8 @@ def test_a_code_in_world_space_is_the_same_from_every_camera():
                 to_view = view.matrix()[:3, :3]
                 mine = (n @ to_view.T).astype(np.float32)
                 seen.append(in_space(trip, space, view)(mine, mine) @ to_view)
-            found[space] = np.abs(seen[0] - seen[1]).max()
-    assert found["world"] < 1e-6 and found["view"] > 1e-3, found
+            differences[space] = np.abs(seen[0] - seen[1]).max()
+    assert differences["world"] < 1e-6 and differences["view"] > 1e-3, differences
 
 
 def test_a_highlight_is_where_its_light_is():
@@ -174,10 +174,10 @@ def test_a_highlight_is_where_its_light_is():
     spheres[1:3, 1:4] = 1
     light[1, 1, 0], light[1, 3, 0] = 1.0, 3.0
     light[3, 4, 0] = 100.0  # beyond the sphere
-    one, other = highlights.spots(light, spheres), highlights.spots(np.roll(light, 1, axis=0), spheres)
-    assert one.centroids[0, 0].tolist() == [2.5, 1.0] and one.peaks[0, 0] == 3.0
-    assert np.isnan(one.centroids[1:]).all() and np.isnan(one.centroids[0, 1:]).all()
-    lit = [highlights.Spots(spots.centroids[:, :1], spots.peaks[:, :1]) for spots in (one, other, one)]
+    before, other = highlights.spots(light, spheres), highlights.spots(np.roll(light, 1, axis=0), spheres)
+    assert before.centroids[0, 0].tolist() == [2.5, 1.0] and before.peaks[0, 0] == 3.0
+    assert np.isnan(before.centroids[1:]).all() and np.isnan(before.centroids[0, 1:]).all()
+    lit = [highlights.Spots(spots.centroids[:, :1], spots.peaks[:, :1]) for spots in (before, other, before)]
     lit[1].peaks[0] = 1.5
     moved, flickered = highlights.wobble(lit, lit[0])
     assert moved[0] == 1.0 and flickered[0] == 50.0**2
@@ -185,10 +185,10 @@ def test_a_highlight_is_where_its_light_is():
 
 def test_a_difference_counts_where_both_frames_have_a_surface():
     """A difference of 0.1 that vanishes on one pixel of the two that both frames cover."""
-    one, other = np.full((1, 3, 3), 0.1), np.zeros((1, 3, 3))
+    first, other = np.full((1, 3, 3), 0.1), np.zeros((1, 3, 3))
     other[0, 1], other[0, 2] = 0.1, 9.0
     sums = Differences()
-    sums.add(one, np.array([[True, True, False]]))
+    sums.add(first, np.array([[True, True, False]]))
     sums.add(other, np.array([[True, True, True]]))
     assert sums.wobble_db == pytest.approx(psnr_db(0.01 / 2)) and sums.static[0] == pytest.approx(0.01)
 
@@ -202,14 +202,14 @@ def test_an_animation_that_is_damaged_or_too_large_is_left_out(tmp_path):
     assert film_uri(damaged) == film_uri(large) == film_uri(tmp_path / "none.png") == ""
 
 
-def test_a_still_code_leaves_a_plot_empty_and_is_no_error(run, tmp_path):
+def test_a_code_that_does_not_move_leaves_the_plot_empty_without_an_error(run, tmp_path):
     words = ("motion", "--encoding", "octahedral", "--space", "world", "--picture-turn", "none", *SMALL)
     plot = tmp_path / "plot.svg"
     status, _, err = run(*words, "--plot", str(plot))
     assert (status, err) == (0, f"normalbench: the chart is in {plot}\n") and plot.exists()
 
 
-def test_frames_are_rendered_of_the_turn_nearest_a_quarter_of_a_degree():
+def test_frames_are_rendered_for_the_turn_nearest_a_quarter_of_a_degree():
     assert picture_turns(MotionOptions()) == (0.25,)
     assert picture_turns(MotionOptions(turn="0.01,1,4")) == (1.0,)
     assert picture_turns(MotionOptions(turn="20")) == ()
@@ -219,7 +219,7 @@ def test_frames_are_rendered_of_the_turn_nearest_a_quarter_of_a_degree():
 
 
 def test_without_a_device_codes_alone_are_measured(run, monkeypatch):
-    """And a line says so."""
+    """One line says that no frames are rendered."""
     from normalbench.bench.tables.motion import work
 
     monkeypatch.setattr(work, "found_device", lambda: (None, "there is no GL device"))
@@ -253,13 +253,13 @@ def test_without_a_device_codes_alone_are_measured(run, monkeypatch):
     ],
 )
 @pytest.mark.usefixtures("gl")
-def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, words, said):
+def test_bad_input_is_a_one_line_error_and_nothing_is_written(run, tmp_path, monkeypatch, words, said):
     monkeypatch.chdir(tmp_path)
     status, out, err = run("motion", *words)
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
     assert not list(tmp_path.iterdir())
 
 
-def test_the_axes_and_spaces_are_those_that_the_help_names(run):
+def test_the_help_names_all_axes_spaces_and_moves(run):
     _, out, _ = run("motion", "--help")
     assert all(word in out for word in (*TURNS, *turning.SPACES, *turning.MOVES))

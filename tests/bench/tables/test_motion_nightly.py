@@ -1,4 +1,4 @@
-"""`normalbench motion`: the wobble of a code, of highlights and of images, animations, and bad input."""
+"""`normalbench motion`: the wobble of codes, highlights and images, animations, and bad input."""
 
 import numpy as np
 from PIL import Image
@@ -8,19 +8,19 @@ from normalbench.bench.tables.motion.table import MotionOptions
 
 
 def test_a_page_holds_its_charts_and_its_animation(run, tmp_path, monkeypatch):
-    """And `compare` finds no difference between a run and itself."""
-    one = tmp_path / "one"
+    """`compare` finds no difference between a run and itself."""
+    folder = tmp_path / "one"
     # `run` has no options for these.
     for name, value in (("frames", 8), ("count", 2048), ("size", "96x72"), ("lights", 2)):
         monkeypatch.setitem(MotionOptions.__init__.__kwdefaults__, name, value)
     words = ("run", "--tables", "motion", "--encoding", "spheremap", "--turn", "0.25,1")
-    status, _, err = run(*words, "-o", str(one))
+    status, _, err = run(*words, "-o", str(folder))
     assert status == 0, err
-    page = (one / "report.html").read_text()
+    page = (folder / "report.html").read_text()
     assert "Temporal stability" in page and page.count("data:image/png;base64,") == 1
-    assert 'data-chart="motion"' in page and (one / "charts" / "motion.svg").exists()
+    assert 'data-chart="motion"' in page and (folder / "charts" / "motion.svg").exists()
     assert "Wobble by speed of the turn" in page and "The highlight that moves the most: spheremap rg8" in page
-    status, _, err = run("compare", str(one), str(one))
+    status, _, err = run("compare", str(folder), str(folder))
     assert status == 0, err
 
 

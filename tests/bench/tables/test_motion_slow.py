@@ -1,4 +1,4 @@
-"""`normalbench motion`: the wobble of a code, of highlights and of images, animations, and bad input."""
+"""`normalbench motion`: the wobble of codes, highlights and images, animations, and bad input."""
 
 import itertools
 import json
@@ -35,24 +35,24 @@ pictures = test_motion.pictures
 FRAMES = 8
 
 
-def test_a_frame_of_the_pixels_own_turns_along_with_a_yaw():
-    """Its axes are level, so that a camera that yaws turns them with the surface; one that rolls does not."""
+def test_a_per_pixel_frame_turns_with_a_yawing_camera():
+    """The frame's axes are level, so a yawing camera turns them with the surface; a rolling camera does not."""
     yaw, roll = (wobble("per_pixel_view", axis=axis, count=4096) for axis in ("yaw", "roll"))
     assert yaw["ratio"] < 0.02 and roll["ratio"] > 0.5, (yaw, roll)
 
 
 @pytest.mark.parametrize("name", ["octahedral", "spheremap", "per_pixel_view"])
 def test_figures_are_the_same_for_every_seed(name):
-    """Within 2 % of their mean, at the usual count."""
-    found = [wobble(name, axis="roll", frames=6, count=MotionOptions().count, seed=seed) for seed in range(4)]
+    """The figures are within 2% of their mean at the default count."""
+    seed_rows = [wobble(name, axis="roll", frames=6, count=MotionOptions().count, seed=seed) for seed in range(4)]
     for column in ("static_rms_deg", "wobble_deg", "ratio", "jumps_percent", "jump_deg"):
-        values = np.array([row[column] for row in found])
+        values = np.array([row[column] for row in seed_rows])
         assert np.max(np.abs(values / values.mean() - 1)) < 0.02, (column, values)
 
 
 @pytest.mark.usefixtures("gl")
 def test_an_encoding_in_glsl_alone_is_measured(run, tmp_path):
-    """By GLSL, with the figures of its twin in the catalogue."""
+    """GLSL gives the encoding the figures of its counterpart in the catalogue, to 1%."""
     text = (ENCODINGS["octahedral"].glsl.parents[1] / "vec.glsl").as_posix()
     text = ENCODINGS["octahedral"].glsl.read_text().replace("octahedral_", "mine_").replace("../vec.glsl", text)
     (tmp_path / "mine.glsl").write_text(text)
@@ -62,14 +62,14 @@ def test_an_encoding_in_glsl_alone_is_measured(run, tmp_path):
     assert status == 0, err
     by_jax, by_glsl = ([row for row in rows if row["backend"] == backend] for backend in ("jax", "glsl"))
     assert len(by_jax) == len(by_glsl) == 5
-    for one, other in zip(by_jax, by_glsl, strict=True):
+    for jax_row, other in zip(by_jax, by_glsl, strict=True):
         for column in ("static_rms_deg", "wobble_deg", "jumps_percent"):
-            assert one[column] == pytest.approx(other[column], rel=0.01), column
+            assert jax_row[column] == pytest.approx(other[column], rel=0.01), column
 
 
 @pytest.fixture(scope="module")
 def rows(gl, pictures):  # noqa: ARG001 # a device is needed
-    """Two codes of 16 bits, rendered while the camera rolls by a quarter of a degree."""
+    """Rows of two 16-bit encodings, rendered while the camera rolls by a quarter of a degree per frame."""
     table = TABLES["motion"]
     options = {"encoding": "octahedral,per_pixel_view", "axis": "roll", "turn": "0.25,2", "count": 4096}
     options |= {"frames": FRAMES, "size": "160x120", "lights": 3}
@@ -84,7 +84,7 @@ def test_rows_have_the_columns_of_the_table(rows):
 
 
 def test_highlights_wobble_in_view_space_and_stay_in_world_space(rows):
-    """Of the rendered turn alone; sharp highlights more than dull ones."""
+    """Only the rendered turn has these figures. Sharp highlights wobble more than dull highlights."""
     view, _, world, _, pixel, _ = rows
     assert all(row["highlight_px"] is row["wobble_psnr_db"] is None for row in rows if row["turn_deg"] == 2)
     assert world["highlight_px"] == world["peak_percent"] == 0 and world["reprojected_psnr_db"] == math.inf
@@ -95,15 +95,15 @@ def test_highlights_wobble_in_view_space_and_stay_in_world_space(rows):
 
 
 def test_the_image_is_that_of_a_real_target(gl, rows):
-    """Drawn anew by GLSL, which encodes into a texture of RG8 and decodes from it: the same static and moving PSNR."""
+    """GLSL draws the image again through a texture of RG8: the static and moving PSNR are the same."""
     (codec,) = codecs_named("octahedral", "rg8", "nearest")
     shots = FrameSequence("roll", 0.25, FRAMES, (160, 120), Setting(1, 3, SEED))
     images = [drawn(gl, shots, layout) for layout in (LAYOUTS["fp32"].with_codec(codec), LAYOUTS["fp32"])]
     covered = images[1][1]
     apart = images[0][0] - images[1][0]
-    static = np.mean([np.mean(one[where] ** 2) for one, where in zip(apart, covered, strict=True)])
+    static = np.mean([np.mean(frame[where] ** 2) for frame, where in zip(apart, covered, strict=True)])
     both = covered[1:] & covered[:-1]
-    moving = np.mean([np.mean(one[where] ** 2) for one, where in zip(np.diff(apart, axis=0), both, strict=True)])
+    moving = np.mean([np.mean(frame[where] ** 2) for frame, where in zip(np.diff(apart, axis=0), both, strict=True)])
     assert rows[0]["static_psnr_db"] == pytest.approx(psnr_db(static), abs=0.1)
     assert rows[0]["wobble_psnr_db"] == pytest.approx(psnr_db(moving), abs=0.1)
 
@@ -115,46 +115,46 @@ def test_rows_of_a_camera_have_a_panel(rows):
 
 
 def test_steps_of_a_panel_crawl_in_view_space_and_stay_in_world_space(gl):
-    """8:8 bits, a camera that goes around it: in world space more steps are there to see, and they move by less. The
+    """8:8 bits and a camera that orbits the panel: in world space more steps are visible, but they move less. The
     manual has these figures."""
-    found = {}
+    sums = {}
     with (
         panel.going_around(gl, "yaw", 0.25, 16) as around,
         trip_of(codecs_named("octahedral", "rg8", "nearest")[0]) as trip,
     ):
         right = panel.exact(around)
         for space in turning.SPACES:
-            found[space] = Differences()
+            sums[space] = Differences()
             for apart, covered in panel.differences(around, right, partial(in_space, trip, space)):
-                found[space].add(apart, covered)
-    still, moving = ([getattr(found[space], of) for space in turning.SPACES] for of in ("static_db", "wobble_db"))
+                sums[space].add(apart, covered)
+    still, moving = ([getattr(sums[space], of) for space in turning.SPACES] for of in ("static_db", "wobble_db"))
     assert (*still, *moving) == pytest.approx((27.7, 21.5, 26.0, 36.6), abs=0.3)
 
 
-def test_the_panel_is_drawn_as_by_a_real_target(gl):
-    """By GLSL, which encodes into a texture of RG8 and decodes from it: the same difference from exact normals."""
+def test_the_panel_looks_like_one_drawn_by_a_real_target(gl):
+    """GLSL, which encodes into an RG8 texture and decodes from it, gives the same difference from exact normals."""
     (codec,) = codecs_named("octahedral", "rg8", "nearest")
     with panel.going_around(gl, "yaw", 0.5, 3) as around, trip_of(codec) as trip:
         right = panel.exact(around)
-        found = [one for one, _ in panel.differences(around, right, partial(in_space, trip, "world"))]
+        errors = [error for error, _ in panel.differences(around, right, partial(in_space, trip, "world"))]
         layout = replace(LAYOUTS["fp32"], space="world").with_codec(codec)
-        with rendering(gl, PIPELINES["deferred"], around.scene, replace(around.made.frame.plan, layout=layout)) as made:
-            for at, view in enumerate(around.views()):
-                made.draw(replace(around.scene, view=view, previous=view))
-                apart = right.display.image(made.image()).astype(np.float32) - right.shown[at] - found[at]
-                assert psnr_db(float(np.mean(apart[right.covered[at]] ** 2))) > 45, at
+        with rendering(gl, PIPELINES["deferred"], around.scene, replace(around.made.frame.plan, layout=layout)) as r:
+            for index, view in enumerate(around.views()):
+                r.draw(replace(around.scene, view=view, previous=view))
+                apart = right.display.image(r.image()).astype(np.float32) - right.shown[index] - errors[index]
+                assert psnr_db(float(np.mean(apart[right.covered[index]] ** 2))) > 45, index
 
 
 def drawn(gl, shots, layout):
-    """The displayed images of a sequence, and where there is a surface, by the renderer alone."""
+    """Return the displayed images of a sequence, and where there is a surface, by the renderer alone."""
     pipeline, scene = PIPELINES["deferred"], gloss(shots.setting)
     plan = Plan(shots.size, 1, layout, LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), False, 1.0)
     images, covered = [], []
     for view in shots.views(scene.view):
-        with rendering(gl, pipeline, gloss(shots.setting, view), plan) as made:
-            made.draw()
-            images.append(displayed(made.image()))
-            covered.append(made.gbuffer()[0][..., 2] != 0)
+        with rendering(gl, pipeline, gloss(shots.setting, view), plan) as drawing:
+            drawing.draw()
+            images.append(displayed(drawing.image()))
+            covered.append(drawing.gbuffer()[0][..., 2] != 0)
     return np.stack(images), np.stack(covered)
 
 
@@ -164,24 +164,24 @@ def gloss(setting, view=None):
 
 
 def test_an_animation_shows_the_highlight_and_the_page_has_it(rows, pictures):
-    """As many frames as were rendered, none black, no two the same; the page's is that of the worst row."""
+    """Every frame that was rendered is there, none black and no two the same. The page shows the worst row."""
     path = pictures / "octahedral-rg8-nearest-view-roll-0.25.png"
     assert len(list(pictures.iterdir())) == 3
     with Image.open(path) as image:
         frames = []
-        for at in range(image.n_frames):
-            image.seek(at)
+        for index in range(image.n_frames):
+            image.seek(index)
             frames.append(np.asarray(image.convert("RGB")).astype(int))
     assert len(frames) == FRAMES and all(frame.max() == 255 and frame.std() > 20 for frame in frames)
-    assert all(np.abs(one - other).max() > 8 for one, other in itertools.pairwise(frames))
+    assert all(np.abs(earlier - other).max() > 8 for earlier, other in itertools.pairwise(frames))
     (film,) = TABLES["motion"].work.films(pictures, rows)
     worst = max((row for row in rows if row["highlight_px"] is not None), key=lambda row: row["highlight_px"])
     assert worst["encoding"] in film.said and worst["encoding"] in film.path.name
     assert 1000 < len(film_uri(film.path)) < 300_000
 
 
-def test_a_code_that_stays_is_not_drawn():
-    """float32 moves a few codes in a million of a pixel's own axes that yaw along."""
+def test_a_code_that_does_not_move_is_not_drawn():
+    """float32 moves a few codes in a million of a per-pixel frame that yaws with the camera."""
     table = TABLES["motion"]
     options = table.options(picture_turn="none", count=4096, frames=4)
     done = measured(asked(table, options, table.outputs()), Nothing())
@@ -200,7 +200,7 @@ PROTOTYPE = {
 
 @pytest.mark.parametrize("name", PROTOTYPE)
 def test_the_wobble_is_that_of_the_prototype(name):
-    """Within 3 %: normals over z >= 0.2 of the first frame, 32 frames of yaw."""
+    """The figures agree within 3%, for normals with z >= 0.2 in the first frame and 32 frames of yaw."""
     static, wobbles = PROTOTYPE[name]
     rows = [wobble(name, turn=turn, count=2**16) for turn in (0.01, 0.05, 0.25, 1.0)]
     assert rows[0]["static_rms_deg"] == pytest.approx(static, rel=0.03)

@@ -1,4 +1,4 @@
-"""A table is a folder and a line: in a copy of the tree, one is added, and everything knows it."""
+"""A new table: a folder and a line in a copy of the tree add the table everywhere."""
 
 import json
 import os
@@ -14,7 +14,7 @@ ECHO = EXAMPLES["a table"]
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
-    """The tree with one more table; nothing else is touched."""
+    """A copy of the tree with one more table and no other change."""
     folder = tmp_path_factory.mktemp("copy")
     package = a_copy_of_the_rooms(folder)
     ECHO.add_to(package)
@@ -22,7 +22,7 @@ def copy(tmp_path_factory):
     return folder
 
 
-def test_it_is_a_command_with_help_and_formats(copy):
+def test_the_new_table_is_a_command_with_help_and_formats(copy):
     assert "Words to repeat" in normalbench_in(copy, "echo", "--help").stdout
     done = normalbench_in(copy, "echo", "--word", "one,three", "--format", "json")
     assert [(row["word"], row["letters"]) for row in json.loads(done.stdout)] == [("one", 3), ("three", 5)], done.stderr
@@ -30,7 +30,7 @@ def test_it_is_a_command_with_help_and_formats(copy):
     assert "echo" in normalbench_in(copy, "run", "--help").stdout
 
 
-def test_a_gate_and_a_test_may_hold_it(copy):
+def test_a_gate_and_a_test_can_check_the_new_table(copy):
     (copy / "gates.toml").write_text('[[gate]]\ntable = "echo"\nword = "three"\nletters = "at most 4"\n')
     done = normalbench_in(copy, "check", "gates.toml")
     assert done.returncode == 1 and "FAIL" in done.stdout and "three" in done.stdout, done.stderr
@@ -44,7 +44,7 @@ def test_a_gate_and_a_test_may_hold_it(copy):
     assert "2 passed" in done.stdout, done.stdout
 
 
-def test_compare_names_its_rows_and_the_page_shows_it(copy):
+def test_compare_names_the_new_rows_and_the_page_shows_the_new_table(copy):
     path = copy / "normalbench/bench/tables/echo/work.py"
     work = path.read_text()
     for name, letters in (("before", "len(word)"), ("after", "len(word) + (word == 'c')")):

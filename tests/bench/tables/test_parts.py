@@ -1,5 +1,5 @@
-"""A set that takes hours is measured in parts: the row is that of the set at once, to the last digit, and a part is
-never measured twice."""
+"""Large sets that are measured in parts: the row is the same to the last digit as for the whole set, and no
+part is measured twice."""
 
 import itertools
 import json
@@ -44,8 +44,8 @@ def test_a_set_of_the_usual_size_has_no_parts():
 
 
 @pytest.mark.usefixtures("small_parts")
-def test_a_command_with_a_file_goes_on_and_leaves_nothing_behind(run, tmp_path, monkeypatch):
-    """Parts count as steps of the command, and are nobody else's."""
+def test_a_command_with_a_file_resumes_and_leaves_nothing_behind(run, tmp_path, monkeypatch):
+    """Parts count as steps of the command, and no other command uses them."""
     arguments = ["quality", "--encoding", "octahedral", "--storage", "rgba8", "--count", str(COUNT)]
     arguments += ["--normals", "sphere", "--backend", "jax", "-o", str(tmp_path / "rows.json")]
     whole, run_rows = rows_of(ask(encoding="octahedral")), quality.rows
@@ -76,15 +76,15 @@ def test_a_part_that_cannot_be_measured_leaves_the_step_without_figures():
 
 
 def test_sums_are_exact_and_so_is_their_text():
-    """1 and 2^-80 a thousand times: one after the other, or in two parts that are sent as text."""
+    """1 and 2^-80 are added a thousand times, one after the other, or in two parts that are sent as text."""
     counts = np.zeros_like(ErrorTotal().histogram)
     counts[[0, 7, -1]] = 1, 2**40, 3
     worst = Worst(np.float32([0.1, 0.2, 0.3]), np.float32([0.3, 0.2, 0.1]), 1 / 3)
-    parts = [((1.0, 2.0**-80, 3.0, 4.0, 0.0, float(at)), counts, worst if at == 500 else None) for at in range(1000)]
+    parts = [((1.0, 2.0**-80, 3.0, 4.0, 0.0, float(i)), counts, worst if i == 500 else None) for i in range(1000)]
     whole, halves = ErrorTotal(), (ErrorTotal(), ErrorTotal())
-    for at, part in enumerate(parts):
+    for index, part in enumerate(parts):
         whole.add(part)
-        halves[at > 300].add(part)
+        halves[index > 300].add(part)
     assert whole.figures.article_squared == 1000 * 2.0**-80 and whole.figures.largest == 999
     for half in halves:
         half_again = total_of(half.as_text())

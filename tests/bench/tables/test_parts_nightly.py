@@ -1,5 +1,5 @@
-"""A set that takes hours is measured in parts: the row is that of the set at once, to the last digit, and a part is
-never measured twice."""
+"""Large sets that are measured in parts: the row is the same to the last digit as for the whole set, and no
+part is measured twice."""
 
 import json
 
@@ -7,7 +7,7 @@ from normalbench.bench.subjects.normals.normal_sets import CHUNK
 
 
 def test_workers_share_a_row(run):
-    """2^30 normals and some are two parts: two processes give the rows of one."""
+    """Slightly more than 2^30 normals make two parts; two processes give the same rows as one process."""
     arguments = ["quality", "--encoding", "xyz", "--storage", "rgba8", "--count", str(2**30 + 5 * CHUNK)]
     arguments += ["--normals", "sphere", "--backend", "jax", "--format", "json"]
     status, shared, _ = run(*arguments, "--on", "local:2")

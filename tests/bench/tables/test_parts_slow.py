@@ -1,5 +1,5 @@
-"""A set that takes hours is measured in parts: the row is that of the set at once, to the last digit, and a part is
-never measured twice."""
+"""Large sets that are measured in parts: the row is the same to the last digit as for the whole set, and no
+part is measured twice."""
 
 import json
 from dataclasses import replace
@@ -23,8 +23,8 @@ PARTS = ["1 of 3", "2 of 3", "3 of 3"]
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
-def test_the_row_is_that_of_the_set_at_once(backend, monkeypatch):
-    """Also of a set that the encoding is not for, half of whose decodes are far off."""
+def test_the_row_is_the_same_as_for_the_whole_set(backend, monkeypatch):
+    """This also holds for a set that the encoding is not made for, where half of the decodes are far off."""
     at_once = rows_of(ask(backend, "octahedral,xy"))
     monkeypatch.setattr(normal_sets, "PART", 2 * CHUNK)
     in_parts = ask(backend, "octahedral,xy")
@@ -34,14 +34,14 @@ def test_the_row_is_that_of_the_set_at_once(backend, monkeypatch):
 
 
 @pytest.mark.usefixtures("small_parts")
-def test_what_stops_in_the_middle_goes_on_with_the_part_that_is_missing(tmp_path, monkeypatch):
-    """Parts lie in the run's file until their step is whole; nobody sees them as rows."""
+def test_an_interrupted_step_resumes_with_the_missing_part(tmp_path, monkeypatch):
+    """Parts stay in the run's file until their step is complete, and never appear as rows."""
     whole, measured, facts = rows_of(ask()), [], {**facts_of([]), "request": {}}
     run_rows = quality.rows
 
     def some(cases, tick):
-        for at, row in enumerate(run_rows(cases, tick)):
-            if at == 3:
+        for index, row in enumerate(run_rows(cases, tick)):
+            if index == 3:
                 raise KeyboardInterrupt
             measured.append(row)
             yield row
@@ -57,9 +57,9 @@ def test_what_stops_in_the_middle_goes_on_with_the_part_that_is_missing(tmp_path
     wanted = []
     monkeypatch.setattr(quality, "rows", lambda cases, tick: run_rows(wanted.append([*cases]) or wanted[-1], tick))
     with opened(tmp_path / "run", facts) as run:
-        one = ask()
-        assert rows_of(one, run) == json.loads(json.dumps(whole))
-        run.arrange(("quality", step) for step in one.steps)
+        request = ask()
+        assert rows_of(request, run) == json.loads(json.dumps(whole))
+        run.arrange(("quality", step) for step in request.steps)
     assert len(wanted[0]) == 3
     done = read_run(tmp_path / "run")
     assert len(done.steps) == 2 and not done.parts
@@ -67,7 +67,7 @@ def test_what_stops_in_the_middle_goes_on_with_the_part_that_is_missing(tmp_path
     (other,) = ask(encoding="xyz").steps
     with opened(tmp_path / "run", facts) as run:
         run.keep("quality", other.parts[0], [{"total": ""}])
-        run.arrange(("quality", step) for step in one.steps)
+        run.arrange(("quality", step) for step in request.steps)
     done = read_run(tmp_path / "run")
     assert len(done.steps) == 2 and [part["key"]["encoding"] for part in done.parts] == ["xyz"]
     assert done.tables["quality"] == json.loads(json.dumps(whole))
@@ -75,11 +75,11 @@ def test_what_stops_in_the_middle_goes_on_with_the_part_that_is_missing(tmp_path
 
 @pytest.mark.usefixtures("small_parts")
 def test_a_worker_measures_parts_by_their_names():
-    """A step's parts are among what it makes of an order; the rows are those that this process measures."""
-    one = ask(encoding="octahedral")
-    (step,) = one.steps
-    packed = (replace(task, is_packed=True) for task in tasks_of(one, step.parts, 1))
+    """The worker makes a step's parts from an order; its rows are those that this process measures."""
+    request = ask(encoding="octahedral")
+    (step,) = request.steps
+    packed = (replace(task, is_packed=True) for task in tasks_of(request, step.parts, 1))
     answers = [tasks.measure(*task.arguments()) for task in packed]
     assert not any(answer.refused for answer in answers)
     rows = [row for answer in answers for rows, _ in answer.steps for row in rows]
-    assert TABLE.work.merge(step, rows) == rows_of(one)
+    assert TABLE.work.merge(step, rows) == rows_of(request)

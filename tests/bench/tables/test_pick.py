@@ -1,4 +1,4 @@
-"""`normalbench pick`: its answer follows from its rows, whatever is asked, and what it says is what the rows say."""
+"""`normalbench pick`: the answer to any question follows from the rows, and the sentences agree with the rows."""
 
 import json
 import re
@@ -15,8 +15,8 @@ from normalbench.bench.tables.quality.table import COMMON
 from normalbench.bench.tables.registry import TABLES
 
 
-def test_codes_of_a_fixed_size_are_not_taken_for_the_bits_that_they_occupy():
-    """An index of 65536 directions stays one where it lies in 20 bits."""
+def test_fixed_size_codes_keep_their_size_in_a_larger_storage():
+    """An index of 65536 directions still has 16 bits in a storage of 20 bits."""
     codec = codecs_named("spherical_fibonacci", "rgb10a2", "nearest")[0]
     assert codec.code_bits == 16 and codec.bits == 20
     assert codecs_named("octahedral", "rgb10a2", "nearest")[0].code_bits is None
@@ -25,13 +25,13 @@ def test_codes_of_a_fixed_size_are_not_taken_for_the_bits_that_they_occupy():
     about |= {"angle_mean_deg": 0.3, "angle_max_deg": 0.6, "worst_normal": "(0.0, 0.0, 1.0)", "invalid": 0}
     about |= {"encode_slots": 20, "decode_slots": 20, "slots_once": 40, "slots": 100, "enough": 0.3, "look_ups": True}
     about |= {"bits": codec.bits, "free_bits": 12, "bytes": 4}
-    for code_bits, said in ((codec.code_bits, "20 bits, for codes of 16; 12 are free"), (None, "20 bits; 12 are free")):
+    for code_bits, text in ((codec.code_bits, "20 bits, for codes of 16; 12 are free"), (None, "20 bits; 12 are free")):
         (group,) = groups(answered([TABLES["pick"].empty() | about | {"code_bits": code_bits}])).values()
-        assert said in " ".join(sentences(group))
+        assert text in " ".join(sentences(group))
 
 
-def test_angles_of_an_answer_are_shares_of_normals_below_each():
-    """Between the largest and the smallest share that a code has; a code without a histogram has no line."""
+def test_the_chart_of_an_answer_shows_the_share_of_normals_below_each_angle():
+    """The area is between the smallest and the largest share. An encoding without a histogram has no line."""
     about = {"asked": "rg8", "storage": "rg8", "normals": "sphere", "scene": "studio", "bits": 16, "aim": "angle"}
     about |= {"angle_mean_deg": 0.3, "slots_once": 9, "family": "navi21", "domain": "sphere"}
     counts = {"octahedral": "0.25:1 0.28125:2 0.5:1", "spheremap": "0.25:3 2:1", "spherical": None}
@@ -48,7 +48,7 @@ def test_angles_of_an_answer_are_shares_of_normals_below_each():
     assert [(row["low"], row["y"]) for row in area] == [(25.0, 75.0), (75.0, 75.0), (75.0, 100.0), (100.0, 100.0)]
 
 
-def test_where_nothing_qualifies_it_is_said_with_status_1(run):
+def test_no_qualifying_encoding_is_reported_with_status_1(run):
     status, out, err = run("pick", "--encoding", "octahedral", "--storage", "rg8", "--most-instructions", "1")
     assert status == 1 and "no answer for rg8 on sphere" in err and "no encoding qualifies" not in err
     assert "octahedral (more than 1 issue slots)" in out.replace("\n  ", " ")
@@ -79,7 +79,7 @@ def test_where_nothing_qualifies_it_is_said_with_status_1(run):
         ),
     ],
 )
-def test_what_cannot_be_asked_is_one_line(run, words, said):
+def test_invalid_question_is_a_one_line_error(run, words, said):
     status, out, err = run("pick", *words)
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
 
@@ -91,14 +91,14 @@ def test_the_default_answer_has_a_dozen_lines():
 
 
 def test_a_run_measures_the_codes_that_the_default_answer_names():
-    """Those that it takes in every table that a run measures of several codes; those of the ladder in quality, render
-    and cost."""
+    """The recommended encodings are in every table of a run with several encodings, the alternatives in quality,
+    render and cost."""
     kept = ROOT / "tests/manual_tables/kept/answer-normalbench-pick.json"
-    said = [line[1] for line in json.loads(kept.read_text())["lines"]]
-    taken = {match[1] for text in said if (match := re.search(r": take (\w+)\.", text))}
+    texts = [line[1] for line in json.loads(kept.read_text())["lines"]]
+    taken = {match[1] for text in texts if (match := re.search(r": take (\w+)\.", text))}
     ladder = {
         match[1]
-        for text in said
+        for text in texts
         if (match := re.match(r"(\w+) +(?:more accurate|most accurate|cheaper|fewer bits) ", text))
     }
     assert taken == {"octahedral", "xyz_largest"} and ladder >= {"octahedral_precise", "spherical_fibonacci"}
@@ -119,7 +119,7 @@ SMALL = ("pick", "--encoding", CODES, "--count", "4096", "--aim", "image")
 
 @pytest.fixture(scope="module")
 def rows(gl, radv, tmp_path_factory):  # noqa: ARG001 # they skip where this machine lacks them
-    """What the command measures of a dozen codes: with --aim image all that qualify have an image."""
+    """Rows that the command measures for a dozen encodings; with --aim image all that qualify have an image."""
     from normalbench.bench.door.cli import app
 
     output = tmp_path_factory.mktemp("pick") / "rows.json"

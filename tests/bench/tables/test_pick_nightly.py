@@ -1,4 +1,4 @@
-"""`normalbench pick`: its answer follows from its rows, whatever is asked, and what it says is what the rows say."""
+"""`normalbench pick`: the answer to any question follows from the rows, and the sentences agree with the rows."""
 
 import random
 
@@ -10,7 +10,7 @@ from test_pick_slow import EXPECTED, SOME, check_a_question
 rows = test_pick.rows
 
 
-def test_the_answer_to_100_random_questions_of_measured_rows_is_that_of_brute_force(rows):
+def test_100_random_questions_of_measured_rows_match_brute_force(rows):
     chance = random.Random(0)
     for _ in range(100):
         check_a_question(rows, chance)
@@ -18,5 +18,5 @@ def test_the_answer_to_100_random_questions_of_measured_rows_is_that_of_brute_fo
 
 @pytest.mark.usefixtures("gl", "radv")
 @pytest.mark.parametrize("words", [words for words in EXPECTED if words not in SOME])
-def test_the_answer_is_what_an_expert_expects_of_any_question(run, words):
+def test_the_answer_to_any_question_is_what_an_expert_expects(run, words):
     test_pick_slow.test_the_answer_is_what_an_expert_expects(run, words)

@@ -1,4 +1,4 @@
-"""`normalbench pick`: its answer follows from its rows, whatever is asked, and what it says is what the rows say."""
+"""`normalbench pick`: the answer to any question follows from the rows, and the sentences agree with the rows."""
 
 import json
 import math
@@ -43,8 +43,8 @@ rows = test_pick.rows
     ],
 )
 def test_images_lit_by_emulated_codes_are_those_of_the_g_buffer(gl, scene, name):
-    """Against the code in a target, encoded and decoded in shaders, in the space that engines keep it in: to 0.02 dB,
-    at a specular power of 1024."""
+    """At a specular power of 1024, images agree to 0.02 dB with those of codes that shaders encode into a target and
+    decode, in the space that engines use."""
     (codec,) = codecs_named(*name.split("/"), "nearest")
     maker, setting, pipeline = SCENES[scene], Setting(lights=8), PIPELINES["hybrid"]
     power = None if maker.is_metal_rough else 1024.0
@@ -54,15 +54,15 @@ def test_images_lit_by_emulated_codes_are_those_of_the_g_buffer(gl, scene, name)
         image = whole_images(gl, stack, pipeline, maker, setting, [power])[power]
         relit = image.shown(lambda n, p: quality.round_trip(codec, n, p), turn)
         plan = Plan((640, 480), 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
-        made = stack.enter_context(rendering(gl, pipeline, image.scene, plan))
-        made.draw()
-        drawn = image.display.image(made.image())
-    found, expected = (psnr_db(squared_error(shown, image.exact)[0]) for shown in (relit, drawn))
-    assert found == pytest.approx(expected, abs=0.02) and 20 < expected < 80
+        drawing = stack.enter_context(rendering(gl, pipeline, image.scene, plan))
+        drawing.draw()
+        drawn = image.display.image(drawing.image())
+    decibels, expected = (psnr_db(squared_error(shown, image.exact)[0]) for shown in (relit, drawn))
+    assert decibels == pytest.approx(expected, abs=0.02) and 20 < expected < 80
 
 
-def test_an_answer_of_few_random_normals_is_warned_of(capsys):
-    """Of one normal any code may be the best; the axes are few and are all that there are. It is said before anything
+def test_an_answer_from_few_random_normals_gives_a_warning(capsys):
+    """With one normal any encoding may be the best; the axes are few, but complete. The warning comes before anything
     is measured."""
     pick = TABLES["pick"]
 
@@ -88,7 +88,7 @@ SCENES_OF_IMAGES = ("studio", "room_47", "room_1024")
 
 
 def loss(row: dict, aim: str) -> float:
-    """Decibels of the mean angle, of the largest, or of the worst image, where less is better."""
+    """Return the mean angle, the largest angle or the worst image, in decibels; less is better."""
     if aim == "image":
         images = [row[f"image_db_{name}"] for name in SCENES_OF_IMAGES]
         return math.inf if None in images else -min(*images, 70.0)
@@ -101,8 +101,8 @@ def paid(row: dict) -> float:
 
 
 def rank(row: dict) -> tuple:
-    """Codes that nobody sees an error of and that cost at most twice what hides, the cheapest first; then by decibels,
-    a doubling of the price for `worth` of them."""
+    """Return the rank of a row, the lowest first. Encodings with invisible errors at no more than twice the hidden
+    cost come first, by bits and cost; the others by decibels, with `worth` decibels for each doubling of the cost."""
     price, largest = paid(row), max(row["angle_max_deg"], row["angle_sup_deg"] or 0)
     hidden, lost, enough = 16 * (1 + row["readers"]), loss(row, row["aim"]), 2 * largest <= row["enough"]
     if row["aim"] == "cost":
@@ -114,7 +114,7 @@ def rank(row: dict) -> tuple:
 
 
 def lowest(row: dict, yaws: list[int]) -> float:
-    """The PSNR of the worst image over some yaws."""
+    """Return the PSNR of the worst image over some yaws."""
     errors = [by_pole["y"] for by_pole in json.loads(row["image_errors"]).values()]
     return min(70.0, *(-10 * math.log10(sum(of[yaw] for yaw in yaws) / len(yaws)) for of in errors))
 
@@ -127,12 +127,12 @@ def ties(row: dict, best: dict) -> bool:
 
 
 def taken(fit: list[dict]) -> list[dict]:
-    """The codes that may be the answer: those of the least rank; by images, the cheapest of those that tie with it."""
+    """Return the rows that may be the answer: the lowest rank; by images, the cheapest rows that tie with it."""
     least = min(map(rank, fit), default=None)
     first = [row for row in fit if rank(row) == least]
     if not first or least[0] != 1 or first[0]["aim"] != "image":
         return first
-    tied = [row for row in fit if any(row is one or ties(row, one) for one in first)]
+    tied = [row for row in fit if any(row is leader or ties(row, leader) for leader in first)]
     return [row for row in tied if paid(row) == min(map(paid, tied))]
 
 
@@ -148,7 +148,7 @@ def qualifies(row: dict, asked: dict) -> bool:
 
 
 def without_holes(rows: list[dict], asked: dict) -> list[dict]:
-    """Against the least of all that could be asked for, whatever they cost."""
+    """Return the rows without a hole, compared with the smallest largest error of all rows, whatever their cost."""
     largest = {row["encoding"]: max(row["angle_max_deg"], row["angle_sup_deg"] or 0) for row in rows}
     most = math.inf if asked["accept_holes"] else 4 * min(largest.values(), default=0)
     return [row for row in rows if largest[row["encoding"]] <= most]
@@ -187,7 +187,7 @@ QUESTION = {
 
 
 def row_of(encoding: str, storage: str, **figures: object) -> dict:
-    """A row as `pick` measures it. What only codes of half the sphere lose is lost."""
+    """Return a row as `pick` measures it. Encodings for less than the whole sphere lose half of the normals."""
     domain = ENCODINGS[encoding].domain
     about = {"asked": storage, "storage": storage, "encoding": encoding, "domain": domain}
     about |= {"lost_percent": 0.0 if domain == "sphere" else 50.0}
@@ -195,7 +195,7 @@ def row_of(encoding: str, storage: str, **figures: object) -> dict:
 
 
 def images_at_random(chance: random.Random) -> dict:
-    """Errors of each image over four yaws, by which many codes tie."""
+    """Return random errors of each image over four yaws; many encodings tie."""
     level, spread = chance.uniform(20, 80), chance.choice([0.05, 1.0])
     errors = {name: [10 ** (-chance.gauss(level, spread) / 10) for _ in range(4)] for name in SCENES_OF_IMAGES}
     row = {f"image_db_{name}": -10 * math.log10(sum(four) / 4) for name, four in errors.items()}
@@ -203,7 +203,7 @@ def images_at_random(chance: random.Random) -> dict:
 
 
 def rows_at_random(chance: random.Random) -> list[dict]:
-    """Prices and errors of a few sizes, so that many are equal, and codes of every kind that is left out."""
+    """Return rows with few different costs and errors, so that many are equal, and rows of every kind left out."""
     rows = []
     for encoding in CODES.split(","):
         for storage in ("rg8", "rgb10a2"):
@@ -221,7 +221,7 @@ def rows_at_random(chance: random.Random) -> list[dict]:
 
 
 def check_a_question(rows: list[dict], chance: random.Random) -> set[str]:
-    """Check the answer of some of the rows to a question at random. Return the places that they have."""
+    """Check the answer to a random question about some of the rows. Return the places that occur in it."""
     asked, places = asked_at_random(chance), set()
     given = [row | asked | for_readers(row, asked["readers"]) for row in rows if chance.random() < 0.8]
     for group in groups(answered([row for row in given if not row["beside"]])).values():
@@ -230,8 +230,8 @@ def check_a_question(rows: list[dict], chance: random.Random) -> set[str]:
     return places
 
 
-def test_the_answer_to_300_random_questions_is_that_of_brute_force():
-    """The best of all is found by comparing all; the front by comparing all pairs."""
+def test_300_random_questions_match_brute_force():
+    """Brute force compares all rows to find the best, and all pairs of rows to find the front."""
     chance, seen = random.Random(0), set()
     for _ in range(300):
         seen |= check_a_question(rows_at_random(chance), chance)
@@ -246,15 +246,15 @@ def check(group: list[dict], asked: dict) -> None:
     could_be = [row["encoding"] for row in taken(fit)]
     assert len(best) == bool(fit) and set(best) <= set(could_be), (asked, best, could_be)
     for row in fit:
-        figures = {one["encoding"]: (round(loss(one, asked["aim"]), 1), paid(one), one["bits"]) for one in fit}
+        figures = {code["encoding"]: (round(loss(code, asked["aim"]), 1), paid(code), code["bits"]) for code in fit}
         own = figures[row["encoding"]]
         beaten = [name for name, other in figures.items() if other != own and all(map(le, other, own))]
         assert row["front"] == (not beaten), (asked, row["encoding"], beaten)
 
 
 def test_no_code_changes_the_order_of_two_others():
-    """Whichever code of the catalogue is taken away: those that pass the veto stay in their order. By images, what ties
-    with the best is a matter of the best."""
+    """If any encoding is removed, the others that pass the veto keep their order. Questions about images are asked
+    about angles instead, because ties between images depend on the best encoding."""
     chance = random.Random(1)
     for _ in range(40):
         asked = asked_at_random(chance)
@@ -277,7 +277,7 @@ MEASURED = (
 )
 
 
-def test_the_sentences_say_the_rows_figures():
+def test_the_sentences_give_the_figures_of_the_rows():
     answer, first, second, *rest = sentences(answered(MEASURED))
     assert answer.startswith("rg8, on sphere: take octahedral."), answer
     assert "Mean error 0.334°, largest 0.953°." in first, first
@@ -288,8 +288,8 @@ def test_the_sentences_say_the_rows_figures():
     assert any(lost in text for text in rest), rest
 
 
-def test_a_reflection_that_moves_far_is_no_distance():
-    """A hole of 50 degrees moves it by 100: no tangent says where it goes."""
+def test_a_reflection_that_moves_far_has_no_distance():
+    """A hole of 50 degrees moves the reflection by 100: no tangent gives its distance."""
     far = [row | {"angle_max_deg": 50.0, "angle_sup_deg": 50.0, "accept_holes": True} for row in MEASURED]
     group = answered(far)
     assert "at most 100°: it shows another place." in sentences(group)[1], sentences(group)
@@ -339,8 +339,8 @@ def test_the_answer_is_what_an_expert_expects(run, words):
 
 
 @pytest.mark.usefixtures("gl", "radv")
-def test_an_encoder_in_glsl_alone_is_compared_and_said_to_lose_half(run, tmp_path):
-    """Of half the sphere it is measured once: --accept-holes changes what is answered of the same rows."""
+def test_an_encoder_in_glsl_alone_is_compared_and_reported_to_lose_half(run, tmp_path):
+    """On a hemisphere the encoder is measured once: --accept-holes changes the answer from the same rows."""
     path = tmp_path / "flat.glsl"
     path.write_text(ONE_WAY)
     words = ("pick", "--encoding", "octahedral", "--storage", "rg8", "--count", "4096", "--scene", "studio")
@@ -362,30 +362,30 @@ def test_an_encoder_in_glsl_alone_is_compared_and_said_to_lose_half(run, tmp_pat
 
 @pytest.mark.usefixtures("gl", "radv", "rows_are_shared")
 def test_each_way_to_round_is_a_question(run, tmp_path):
-    """Cut off, errors are twice as large; a code that is rounded precisely is not cut off."""
+    """Truncation doubles the errors; an encoding with precise rounding is not truncated."""
     words = ["--encoding", "octahedral,octahedral_precise", "--storage", "rg8", "--count", "4096", "--scene", "room"]
     words += ["--power", "47", "--rounding", "nearest,truncate", "--aim", "worst", "--images", str(tmp_path)]
     status, out, err = run("pick", *words, "--format", "json")
     asked = [row for row in json.loads(out) if not row["beside"]]
-    found = {(row["encoding"], row["rounding"]): row for row in asked}
+    by_code = {(row["encoding"], row["rounding"]): row for row in asked}
     assert status == 0 and err.count("\n") == 2 and "octahedral_precise: it supports only precise rounding" in err
-    assert len(asked) == len(found) == 3 and ("octahedral_precise", "truncate") not in found
-    nearest, cut = (found["octahedral", rounding] for rounding in ("nearest", "truncate"))
+    assert len(asked) == len(by_code) == 3 and ("octahedral_precise", "truncate") not in by_code
+    nearest, cut = (by_code["octahedral", rounding] for rounding in ("nearest", "truncate"))
     for figure in ("angle_mean_deg", "angle_sup_deg"):
         assert cut[figure] / nearest[figure] == pytest.approx(2, rel=0.03), figure
     # On floors and walls the codes of both ways are as far off.
     decibels = [json.loads(row["image_classes"])["room_47"]["glossy"] for row in (nearest, cut)]
     assert decibels[0] - decibels[1] == pytest.approx(6, abs=1)
     groups_of = [group for group in groups(asked).values() if group[0]["rounding"] == "truncate"]
-    (said,) = (" ".join(sentences(group)) for group in groups_of)
-    assert said.startswith("rg8 rounded by truncate, on sphere: take octahedral.")
-    assert "roughness --encoding octahedral --storage rg8 --rounding truncate" in said
+    (text,) = (" ".join(sentences(group)) for group in groups_of)
+    assert text.startswith("rg8 rounded by truncate, on sphere: take octahedral.")
+    assert "roughness --encoding octahedral --storage rg8 --rounding truncate" in text
     names = {path.name for path in tmp_path.iterdir()}
     assert {f"pick-room-power47-octahedral-rg8{way}-final.png" for way in ("", "-truncate")} < names
 
 
-def test_what_was_measured_is_kept_and_only_for_the_same_codes(run, monkeypatch, tmp_path):
-    """A second answer measures nothing; other normals are measured."""
+def test_measurements_are_kept_and_reused_only_for_the_same_normals(run, monkeypatch, tmp_path):
+    """A second answer measures nothing; another number of normals is measured."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     measured = []
     whole = measure.quality.rows
@@ -407,8 +407,8 @@ def test_what_was_measured_is_kept_and_only_for_the_same_codes(run, monkeypatch,
 
 
 @pytest.mark.usefixtures("gl", "radv", "nvidia")
-def test_the_dearest_of_several_families_is_the_price(run):
-    """An NVIDIA GPU is counted in a compute shader; a family may be named as people name it."""
+def test_the_most_expensive_of_several_families_is_the_cost(run):
+    """An NVIDIA GPU is counted in a compute shader; a family can be given by its common name."""
     words = ("pick", "--encoding", "octahedral", "--storage", "rg8", "--count", "4096", "--format", "json")
     rows = {}
     for families in ("navi21", "turing", "navi21,turing"):

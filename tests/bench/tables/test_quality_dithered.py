@@ -1,5 +1,5 @@
-"""`normalbench quality --rounding dithered`: what noise costs a normal, that both languages add the same, and what it
-refuses."""
+"""`normalbench quality --rounding dithered`: the cost of noise, the same noise in both languages, and refused
+requests."""
 
 from dataclasses import replace
 
@@ -25,8 +25,8 @@ def case(
 
 @pytest.mark.parametrize("encoding, storage", [("octahedral", "rg8"), ("cube", "rgba8"), ("octahedral", "rg16_snorm")])
 def test_noise_costs_a_bit(encoding, storage):
-    """A squared error is a sixth of a squared step in place of a twelfth. The RMS angle grows by the root of 2,
-    which half a bit more in each of two numbers makes up for."""
+    """The squared error is a sixth of a squared step instead of a twelfth. The RMS angle grows by the root of 2, for
+    which half a bit more in each of two numbers compensates."""
     dithered, nearest = (quality.measure(case(encoding, storage, rounding)) for rounding in ("dithered", "nearest"))
     assert dithered["angle_rms_deg"] / nearest["angle_rms_deg"] == pytest.approx(2**0.5, rel=0.01)
     assert nearest["effective_bits"] - dithered["effective_bits"] == pytest.approx(1, abs=0.03)
@@ -51,7 +51,7 @@ def test_both_languages_add_the_same_noise(encoding, storage):
     assert (apart > 1e-6).mean() < 1e-3 and apart.max() < 1.01 * STORAGES[storage].step(0)
 
 
-def test_what_has_no_even_steps_of_its_own_is_not_dithered():
+def test_codecs_without_even_steps_of_their_own_are_not_dithered():
     octahedral, rg8 = ENCODINGS["octahedral"], STORAGES["rg8"]
     misfits = {
         "an index": Codec(ENCODINGS["spherical_fibonacci"], rg8, "dithered"),
@@ -63,8 +63,8 @@ def test_what_has_no_even_steps_of_its_own_is_not_dithered():
             replace(octahedral, before=Codec(octahedral, rg8)), rg8, "dithered"
         ),
     }
-    for said, codec in misfits.items():
-        assert said in str(codec.misfit) and "\n" not in str(codec.misfit), codec.misfit
+    for reason, codec in misfits.items():
+        assert reason in str(codec.misfit) and "\n" not in str(codec.misfit), codec.misfit
 
 
 @pytest.mark.parametrize(
@@ -76,6 +76,6 @@ def test_what_has_no_even_steps_of_its_own_is_not_dithered():
         (["--storage", "rg16f", "--backend", "jax"], "use noise only with fixed point"),
     ],
 )
-def test_what_noise_has_no_part_in_is_refused_in_a_line(run, asked, said):
+def test_dithering_that_cannot_apply_is_a_one_line_error(run, asked, said):
     status, out, err = run("quality", "--encoding", "octahedral", "--rounding", "dithered", *asked)
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err

@@ -1,4 +1,4 @@
-"""The quality table as people read it."""
+"""The order and the limit rows of the printed quality table."""
 
 from normalbench.bench.measures.metrics.code_limits import code_limit
 from normalbench.bench.tables.quality.order import in_order, with_limits
@@ -11,7 +11,7 @@ def lines(out: str) -> list[list[str]]:
     return [line.strip("| ").split() for line in out.splitlines()]
 
 
-def test_the_limit_row_says_what_its_bits_could_do(run):
+def test_the_limit_row_gives_the_bound_for_its_bits(run):
     status, out, _ = run(
         "quality", "--encoding", "octahedral,xy", "--normals", "hemisphere", *SMALL, "--format", "markdown"
     )
@@ -21,16 +21,16 @@ def test_the_limit_row_says_what_its_bits_could_do(run):
     assert f"{least.rms_deg:#.4g}" in row and f"{least.max_deg:#.4g}" in row and "16.00" in row
 
 
-def test_on_normals_that_are_not_uniform_the_limit_is_named_for_what_it_is(run):
-    """Codes that favour what is seen may beat it; effective bits are not theirs either."""
+def test_the_limit_row_is_renamed_for_normals_that_are_not_uniform(run):
+    """Encodings that favour visible normals may beat the limit, and effective bits do not apply to them."""
     status, out, _ = run("quality", "--encoding", "octahedral", "--normals", "axes", *SMALL, "--format", "markdown")
     assert status == 0 and "| limit if uniform |" in out
     status, out, _ = run("quality", "--encoding", "octahedral", "--normals", "axes", *SMALL, "--format", "csv")
     assert status == 0 and "limit if" not in out, "programs get what was measured"
 
 
-def test_a_row_that_was_lost_has_a_place_and_no_limit():
-    """What ends a worker leaves a row with its key and a reason, and no bits."""
+def test_a_lost_row_keeps_its_place_and_has_no_limit():
+    """A step that ends its workers leaves a row with its key and a reason, but no bits."""
     names = {"storage": "rg8", "rounding": "nearest", "normals": "sphere"}
     lost = TABLE.empty() | names | {"encoding": "mine", "skipped": "4 workers were lost while they measured it"}
     whole = TABLE.empty() | names | {"encoding": "octahedral", "bits": 16, "angle_rms_deg": 0.37, "domain": "sphere"}

@@ -1,4 +1,4 @@
-"""The quality table as people read it."""
+"""The order and the limit rows of the printed quality table."""
 
 import csv
 import io
@@ -7,7 +7,7 @@ from test_quality_order import SMALL
 
 
 def test_rows_are_grouped_by_bits_the_best_first_and_the_limit_last(run):
-    """Whatever the order asked for; two sets are two groups of each size."""
+    """The order of the arguments does not matter; two normal sets make two groups of each size."""
     words = [
         "--encoding",
         "xy,spherical,octahedral,xyz",

@@ -1,4 +1,4 @@
-"""What encodings cost where no compiler is: counts that were recorded elsewhere."""
+"""Encoding costs without a compiler: counts that were recorded elsewhere."""
 
 import random
 
@@ -12,15 +12,15 @@ from tests.recorded_costs import cases
 STALE = "its GLSL is not what was counted; run python -m tests.recorded_costs"
 
 
-def test_every_operation_of_the_catalogue_is_recorded_as_it_is_now():
+def test_every_operation_of_the_catalogue_has_a_current_recorded_count():
     chosen = cases()
     for family in SURVEYED:
-        found = {case.name for case, _ in recorded.recorded(chosen, family, "fragment")}
-        assert {case.name for case in chosen} == found, STALE
+        names = {case.name for case, _ in recorded.recorded(chosen, family, "fragment")}
+        assert {case.name for case in chosen} == names, STALE
 
 
-def test_what_is_not_what_was_counted_has_no_recorded_count(monkeypatch):
-    """One whose GLSL has changed since; the others keep theirs."""
+def test_an_operation_with_changed_glsl_has_no_recorded_count(monkeypatch):
+    """The other operations keep their counts."""
     chosen = cases()[:3]
     kept = recorded._kept()
     other = kept | {"sources": kept["sources"] | {chosen[1].name: "0" * 16}}
@@ -29,14 +29,14 @@ def test_what_is_not_what_was_counted_has_no_recorded_count(monkeypatch):
 
 
 @pytest.mark.parametrize("family", ["navi21", "tgl"])
-def test_twenty_of_them_are_what_compilers_make_of_them_here(family):
+def test_twenty_recorded_counts_match_the_compilers_here(family):
     if spirv.version(spirv.COMPILER) is None or isa.missing():
         pytest.skip("no compilers")
     chosen = random.Random(52).sample(cases(), 20)
     here = measure.counted(chosen, family, "fragment").values()
-    made = {(row["encoding"] or row["storage"], row["operation"]): row for row in here}
+    rows = {(row["encoding"] or row["storage"], row["operation"]): row for row in here}
     for case, row in recorded.recorded(chosen, family, "fragment"):
-        now = made[case.encoding.name if case.encoding else case.storage, case.operation]
+        now = rows[case.encoding.name if case.encoding else case.storage, case.operation]
         if now["driver"] not in row["recorded_by"]:
             pytest.skip(f"{now['driver']} is not the driver that counted them, {row['recorded_by']}")
         counts = {column: row[column] for column in recorded.COLUMNS}

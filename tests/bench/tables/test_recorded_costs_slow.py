@@ -1,4 +1,4 @@
-"""What encodings cost where no compiler is: the answer is the same."""
+"""Encoding costs without a compiler: the answer is the same."""
 
 import os
 import subprocess
@@ -9,12 +9,12 @@ from other_systems import START
 
 
 def test_an_answer_without_compilers_is_the_answer_with_them():
-    """It says who counted."""
+    """The answer says where its counts come from."""
     words = ["pick", "--bytes", "2", "--encoding", "octahedral,spheremap,xyz", "--scene", "studio"]
-    said = [pick(words, os.environ["PATH"]), pick(words, str(Path(sys.executable).parent))]
-    first, other = (text.splitlines()[0] for text in said)
-    assert first == other and first.startswith("2 bytes, on sphere: take octahedral in rg8."), said
-    assert "recorded with Mesa" in " ".join(said[1].split()) and "recorded with" not in said[0]
+    answers = [pick(words, os.environ["PATH"]), pick(words, str(Path(sys.executable).parent))]
+    first, other = (text.splitlines()[0] for text in answers)
+    assert first == other and first.startswith("2 bytes, on sphere: take octahedral in rg8."), answers
+    assert "recorded with Mesa" in " ".join(answers[1].split()) and "recorded with" not in answers[0]
 
 
 def pick(words, path):

@@ -1,4 +1,4 @@
-"""A table goes by its value alone: in a copy of the tree the folders and the names of those with extras are others."""
+"""Renamed tables: in a copy of the tree, the tables with extras have other folders and names."""
 
 import re
 
@@ -18,7 +18,7 @@ def _renamed_imports(path, tables) -> str:
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
-    """The tree with three tables in other folders, which name them."""
+    """A copy of the tree with three tables in renamed folders, whose names follow."""
     folder = tmp_path_factory.mktemp("copy")
     bench = a_copy_of_the_rooms(folder) / "bench"
     tables = bench / "tables"
@@ -35,7 +35,7 @@ def copy(tmp_path_factory):
 
 @pytest.mark.usefixtures("gl")
 def test_a_run_and_its_page_know_no_table_by_its_name(copy):
-    """The page has what these tables show beside their rows; a gate that names no table means the one of errors."""
+    """The page has the extras of these tables, and a gate that names no table applies to the table of errors."""
     loss, price, advise = RENAMED.values()
     words = ("--encoding", "octahedral,stereographic", "--storage", "rgba8", "--count", "2000")
     done = normalbench_in(copy, "run", "--tables", f"{loss},{price},{advise}", *words, "-o", "run")

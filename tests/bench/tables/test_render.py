@@ -1,4 +1,4 @@
-"""`normalbench render`: rows, pictures, and what it says of bad input."""
+"""`normalbench render`: rows, pictures, and messages for bad input."""
 
 import json
 import re
@@ -56,20 +56,20 @@ def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
     assert octahedral["clock"] == WALL or "query" in octahedral["clock"]
 
 
-def test_ranks_are_those_of_new_rows():
-    """Rows that are kept stay as they were measured."""
+def test_ranking_returns_new_rows():
+    """The rows that are kept stay as they were measured."""
     about = dict.fromkeys(SAME)
     rows = [about | {"psnr_db": db, "normal_psnr_db": db} for db in (40.0, 50.0)]
     assert [row["rank"] for row in ranked(rows)] == [2, 1] and not any("rank" in row for row in rows)
 
 
-def test_rows_stand_by_bits_and_then_the_best_first(run):
+def test_rows_are_sorted_by_bits_and_then_best_first(run):
     _, out, _ = run("render", *SMALL, "--scene", "room", "--encoding", "xy,xyz,octahedral", "--format", "json")
     assert [row["encoding"] for row in json.loads(out)] == ["octahedral", "xy", "xyz"]
 
 
 def test_a_scene_that_draws_nothing_is_refused_and_not_exact(run, tmp_path, monkeypatch):
-    """A camera that looks the other way: the mean of no pixels is no figure, in every table that draws the scene."""
+    """The camera looks the other way, so the errors have no pixels. Every table that draws the scene refuses it."""
     monkeypatch.chdir(tmp_path)
     document = as_document([sphere(1.0, 16, 8)])
     document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]
@@ -82,7 +82,7 @@ def test_a_scene_that_draws_nothing_is_refused_and_not_exact(run, tmp_path, monk
         assert len(err.splitlines()) == 1, err
 
 
-def test_a_scene_that_covers_little_of_its_picture_is_said(run, tmp_path, monkeypatch):
+def test_a_scene_that_covers_little_of_its_image_is_reported(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     document = as_document([sphere(1.0, 16, 8)])
     document.json["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]
@@ -98,7 +98,7 @@ def test_a_scene_that_covers_little_of_its_picture_is_said(run, tmp_path, monkey
         )
 
 
-def test_a_black_image_is_said(run):
+def test_a_black_image_is_reported(run):
     _, out, err = run("render", *SMALL, "--encoding", "octahedral", "--exposure", "-20", "--format", "json")
     assert "100% of the covered pixels are black; errors there are not visible" in err
     assert all(row["black_percent"] == 100 for row in json.loads(out))
@@ -113,12 +113,12 @@ def test_a_black_image_is_said(run):
         (["--tone-mapping", "Filmic"], "unknown tone mapping 'Filmic'; known: none, reinhard, aces"),
     ],
 )
-def test_a_display_that_cannot_be_is_one_line(run, words, said):
+def test_invalid_display_option_is_a_one_line_error(run, words, said):
     status, out, err = run("render", *SMALL, "--encoding", "octahedral", *words)
     assert (status, out) == (2, "") and err == f"normalbench: {said}\n"
 
 
-def test_what_does_not_fit_says_why(run):
+def test_encodings_that_do_not_fit_are_reported_with_the_reason(run):
     """Precise rounding needs fixed point; three components need three channels."""
     codecs = ["--encoding", "octahedral_precise,xyz,octahedral", "--storage", "rg16f", "--pipeline", "deferred"]
     status, out, err = run("render", *SMALL, *codecs, "--format", "json")
@@ -129,7 +129,7 @@ def test_what_does_not_fit_says_why(run):
 
 
 def test_two_encoders_of_one_name_have_a_row_each(run, tmp_path):
-    """Two tables in files of one name, in one command: the published one, and one that leaves a third of the codes."""
+    """Two lookup tables in files of the same name: the published table, and a table filled with 1/3."""
     published = ENCODINGS["best_fit"].tables()["best_fit_scale"]
     paths = [tmp_path / folder / "table.npy" for folder in ("one", "other")]
     for path, table in zip(paths, (published, np.full_like(published, 1 / 3)), strict=True):
@@ -138,13 +138,13 @@ def test_two_encoders_of_one_name_have_a_row_each(run, tmp_path):
     names = ["best_fit", *(f"best_fit:table={path}" for path in paths)]
     arguments = [*SMALL, "--scene", "room", "--pipeline", "deferred", "--encoding", ",".join(names)]
     status, out, _ = run("render", *arguments, "--format", "json")
-    best_fit, one, other = json.loads(out)
-    assert status == 0 and one["encoding"] == other["encoding"] == "best_fit:table=table.npy"
-    assert one["normal_psnr_db"] == best_fit["normal_psnr_db"] > other["normal_psnr_db"] + 3, (one, other)
+    best_fit, same, other = json.loads(out)
+    assert status == 0 and same["encoding"] == other["encoding"] == "best_fit:table=table.npy"
+    assert same["normal_psnr_db"] == best_fit["normal_psnr_db"] > other["normal_psnr_db"] + 3, (same, other)
 
 
-def test_two_layouts_with_two_encoders_of_one_name_are_measured_each(gl):
-    """Each row is that of the encoder its layout holds, whichever came before."""
+def test_layouts_with_encoders_of_the_same_name_are_measured_separately(gl):
+    """Each row is that of its layout's encoder, whichever was measured before."""
     encodings = [ENCODINGS["xyz"], ENCODINGS["octahedral"]]
     encodings += [replace(encoding, name="mine", functions=encoding.prefix) for encoding in encodings]
     (case,) = cases(RenderOptions(size="64x48", lights=4, scene="room", pipeline="deferred", encoding="xy"), gl)
@@ -167,7 +167,7 @@ def test_a_measured_exposure_does_not_depend_on_the_rows_before(gl):
     assert exposures[0] == exposures[1] != 0
 
 
-def test_flip_is_measured_where_it_is_asked_for(run):
+def test_flip_is_measured_on_request(run):
     status, out, _ = run(*QUICK, "--pipeline", "deferred", "--flip")
     octahedral, xy = json.loads(out)
     assert status == 0 and 1 > xy["flip"] > octahedral["flip"] > 0
@@ -183,7 +183,7 @@ def test_layouts_are_measured_as_they_are(run):
     assert [row["normal_bits"] for row in rows] == [32, 32] and all(row["psnr_db"] > 40 for row in rows)
 
 
-def test_what_does_not_suit_is_left_out_and_named(run):
+def test_pipelines_that_do_not_suit_a_layout_are_left_out_and_named(run):
     status, out, err = run(
         *QUICK[:-4], "--format", "json", "--pipeline", "deferred,prepass", "--layout", "normal_depth"
     )
@@ -192,7 +192,7 @@ def test_what_does_not_suit_is_left_out_and_named(run):
 
 
 def test_pictures_show_what_was_rendered(run, tmp_path):
-    """Final, reference and difference; the difference of a coarse codec is not black, the final is no black picture."""
+    """Final, reference and difference images. A coarse codec's difference is not black, nor is its final image."""
     status, *_ = run(*QUICK, "--pipeline", "hybrid", "--images", str(tmp_path))
     assert status == 0 and len(list(tmp_path.iterdir())) == 5, "the reference is there once"
     pixels = {
@@ -209,7 +209,7 @@ def test_pictures_show_what_was_rendered(run, tmp_path):
     assert abs(np.minimum(apart * 16, 255) - pixels["difference"]).max() <= 16
 
 
-def test_lower_resolutions_of_inferred_are_reported(run):
+def test_lower_resolutions_of_inferred_lighting_are_reported(run):
     figures = []
     for scale in ("1", "0.5", "0.25"):
         arguments = ("--layout", "fp32", "--pipeline", "inferred", "--scale", scale, "--format", "json")
@@ -222,24 +222,24 @@ def test_lower_resolutions_of_inferred_are_reported(run):
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_samples_smooth_edges(gl, pipeline):
-    """At 4 samples the picture is nearer to one of 4 times the pixels than at 1 sample."""
+    """At 4 samples the image is closer to an image of 4 times the pixels than at 1 sample."""
     chosen, scene = PIPELINES[pipeline], SCENES["room"].make(Setting(lights=2))
     targets = max(chosen.light_targets, default=1)
     plan = Plan((120, 90), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], targets, False, 1.0)
 
     def image(plan: Plan) -> np.ndarray:
-        with render(gl, chosen, scene, plan) as made:
-            made.draw()
-            return made.image().astype(np.float64)
+        with render(gl, chosen, scene, plan) as drawing:
+            drawing.draw()
+            return drawing.image().astype(np.float64)
 
     fine = image(replace(plan, size=(480, 360))).reshape(90, 4, 120, 4, 3).mean(axis=(1, 3))
-    one, four = (np.mean((displayed(image(replace(plan, samples=n))) - displayed(fine)) ** 2) for n in (1, 4))
+    single, four = (np.mean((displayed(image(replace(plan, samples=n))) - displayed(fine)) ** 2) for n in (1, 4))
     # Inferred lighting shades once a pixel and stipples glass at any number of samples: only outlines are smoothed.
     share = 0.9 if chosen.scaled else 0.5
-    assert four < share * one, f"{four:.2e} at 4 samples, {one:.2e} at 1"
+    assert four < share * single, f"{four:.2e} at 4 samples, {single:.2e} at 1"
 
 
-def test_a_pixel_that_is_no_number_counts_in_full():
+def test_a_nan_pixel_counts_as_a_full_error():
     image = np.full((4, 4, 3), 0.5)
     broken = image.copy()
     broken[1, 2, 0] = np.nan
@@ -284,7 +284,7 @@ def test_a_pixel_that_is_no_number_counts_in_full():
         (["-o", "/proc/none/rows.csv"], "cannot write"),
     ],
 )
-def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, arguments, said):
+def test_bad_input_is_a_one_line_error_and_nothing_is_written(run, tmp_path, monkeypatch, arguments, said):
     monkeypatch.chdir(tmp_path)
     clash = "encoding = 'xy'\n[[targets]]\nformat = 'rgba8'\nholds = 'normal.x normal.y normal.x'\n"
     (tmp_path / "clash.toml").write_text(clash)
@@ -299,8 +299,8 @@ def test_bad_input_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch
 def test_a_rendered_frame_leaves_the_device_as_other_passes_need_it(gl):
     """Values through a float target come back as they were, after a frame that blends and tests depth."""
     plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
-    with render(gl, PIPELINES["hybrid"], SCENES["room"].make(Setting(lights=2)), plan) as made:
-        made.draw()
+    with render(gl, PIPELINES["hybrid"], SCENES["room"].make(Setting(lights=2)), plan) as drawing:
+        drawing.draw()
     values = np.random.default_rng(0).uniform(-1, 1, (36, 48, 4)).astype(np.float32)
     assert np.array_equal(gl.through(values, STORAGES["rgba32f"]), values)
     assert gl.context.error == "GL_NO_ERROR"

@@ -1,4 +1,4 @@
-"""`normalbench render`: rows, pictures, and what it says of bad input."""
+"""`normalbench render`: rows, pictures, and messages for bad input."""
 
 import json
 from dataclasses import replace
@@ -45,7 +45,8 @@ CODECS = [c for c in CODECS if not (c.encoding.is_precise and c.storage.is_packe
 
 
 def test_the_background_counts_in_one_psnr_and_not_in_the_other(run):
-    """It is black in both images, so that the mean over every pixel is that over covered ones times their share."""
+    """The background is black in both images, so the mean over all pixels is that over covered pixels, times their
+    share."""
     words = ["--scene", "playground", "--encoding", "octahedral", "--storage", "rg8", "--format", "json"]
     for more in ([], ["--samples", "4"], ["--pipeline", "forward"]):
         _, out, _ = run("render", *SMALL, *words, *more)
@@ -59,8 +60,8 @@ def test_the_background_counts_in_one_psnr_and_not_in_the_other(run):
 
 
 @pytest.mark.parametrize("name", ["ball", "slab", "pot"])
-def test_a_mesh_of_ones_own_clips_at_most_a_hundredth(run, tmp_path, name):
-    """Whatever its size and shape: sphere, plate and teapot a thousand times as large and as small."""
+def test_a_users_own_mesh_clips_at_most_a_hundredth(run, tmp_path, name):
+    """Size and shape do not matter: a sphere, a plate and a teapot, a thousand times as large and as small."""
     mesh = {"ball": sphere(1e-3, 12, 12), "slab": box(1e3, 10.0, 1e3), "pot": teapot(4)}[name]
     path = tmp_path / f"{name}.obj"
     corners = "".join(f"v {x} {y} {z}\n" for x, y, z in mesh.positions)
@@ -78,7 +79,7 @@ def test_a_mesh_of_ones_own_clips_at_most_a_hundredth(run, tmp_path, name):
 
 
 def test_bytes_per_pixel_count_what_a_frame_keeps(run, gl):
-    """17 of the layout, 4 of the linear depth resolved from it, two light targets of 8; all of it for each sample."""
+    """17 bytes for the layout, 4 for the linear depth resolved from it, two light targets of 8; all per sample."""
     arguments = ("--pipeline", "hybrid", "--layout", "hybrid,xy_depth_sign", "--light-buffer", "rgba16f")
     figures = [json.loads(run(*QUICK[:-4], *arguments, "--format", "json", "--samples", n)[1]) for n in ("1", "2")]
     assert [row["bytes_per_pixel"] for row in figures[0]] == [17 + 4 + 16, 21 + 16]
@@ -88,14 +89,15 @@ def test_bytes_per_pixel_count_what_a_frame_keeps(run, gl):
     assert read[0]["bytes_per_pixel"] == 17 + 4 + 2 * 2 * 4, "what is read while it is written has two copies"
 
 
-def test_codecs_are_ranked_among_their_like(run):
-    """With and without shadows are two contests."""
+def test_codecs_are_ranked_separately_for_each_pipeline_and_shadow(run):
+    """Rows with shadows and rows without shadows have separate ranks."""
     _, out, _ = run(*QUICK[:-2], "--format", "json", "--pipeline", "deferred,hybrid", "--shadow", "on,off")
     assert [row["rank"] for row in json.loads(out)].count(1) == 4
 
 
-def test_one_light_target_is_held_against_two(run):
-    """One target rebuilds the highlights' colour: the row shows what that costs, and its reference does not do it."""
+def test_one_light_target_is_compared_with_two(run):
+    """One target rebuilds the colour of highlights. The row shows the error of that, because its reference rebuilds
+    nothing."""
     status, out, _ = run(
         *(
             "render",
@@ -118,7 +120,7 @@ def test_one_light_target_is_held_against_two(run):
     assert 30 < figures["prepass", 1]["psnr_db"] < figures["hybrid", 1]["psnr_db"] < 90
 
 
-def test_samples_beyond_the_device_are_asked_and_given(run, gl):
+def test_too_many_samples_are_reduced_to_the_devices_maximum(run, gl):
     status, out, _ = run(*QUICK, "--samples", "64", "--pipeline", "deferred,inferred")
     assert status == 0
     for row in json.loads(out):
@@ -128,21 +130,21 @@ def test_samples_beyond_the_device_are_asked_and_given(run, gl):
 
 @pytest.mark.parametrize("pipeline", ["deferred", "hybrid"])
 def test_every_codec_gives_a_finite_image(gl, pipeline):
-    """Every encoding, and every storage of these, one small frame each; all pairs are held to parity elsewhere."""
+    """Every encoding and every storage is drawn in one small frame; other tests check the parity of all pairs."""
     scene = SCENES["room"].make(Setting(lights=2))
     chosen = PIPELINES[pipeline]
     plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(chosen.light_targets), False, 1.0)
     worst = {}
-    with render(gl, chosen, scene, plan) as made:
-        made.draw()
-        exact = displayed(made.image())
+    with render(gl, chosen, scene, plan) as drawing:
+        drawing.draw()
+        exact = displayed(drawing.image())
     # The last storage that an encoding fits, and the last encoding that a storage holds.
     several = {**{c.encoding.name: c for c in CODECS}, **{c.storage.name: c for c in CODECS}}
     assert ENCODINGS.keys() < several.keys()
     for codec in dict.fromkeys(several.values()):
-        with render(gl, chosen, scene, replace(plan, layout=plan.layout.with_codec(codec))) as made:
-            made.draw()
-            error, broken = image_metrics.squared_error(displayed(made.image()), exact)
+        with render(gl, chosen, scene, replace(plan, layout=plan.layout.with_codec(codec))) as drawing:
+            drawing.draw()
+            error, broken = image_metrics.squared_error(displayed(drawing.image()), exact)
         assert broken == 0, f"{codec.name}: {broken} pixels are no number"
         worst[codec.name] = error
     assert max(worst.values()) < 0.02, max(worst, key=lambda name: worst[name])

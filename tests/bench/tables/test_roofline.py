@@ -1,4 +1,4 @@
-"""Bytes against instructions: the model by hand, from how many reads on a code is faster, and GPUs by their rates."""
+"""Bytes against instructions: the model by hand, the reads from which an encoding is faster, and GPU rates."""
 
 import re
 from pathlib import Path
@@ -60,21 +60,21 @@ def test_normals_that_fit_into_their_share_of_the_cache_have_its_bandwidth():
         (Work(4, 0, 0), Work(1, 20, 1), "up to 5"),
     ],
 )
-def test_from_how_many_reads_on_a_code_is_faster(one, other, said):
+def test_the_number_of_reads_decides_which_encoding_is_faster(one, other, said):
     assert from_reads(one, other, ONE, frame(1)) == said
 
 
-def test_a_point_lies_above_its_line_where_memory_takes_longer():
-    """Of codes in memory and of codes that the cache holds."""
+def test_a_point_is_above_its_line_if_memory_takes_longer():
+    """This holds for codes in memory and for codes in the cache."""
     rates = Rates("", "navi21", 1, 1.0, 1, 20, 4)
     rows = []
-    for at, work in enumerate((Work(2, 1, 1), Work(2, 20, 20), Work(9, 10, 10), Work(9, 50, 50))):
-        about = {"encoding": f"e{at}", "storage": "s", "gpu": "g", "size": "1920x1080", "reads": 1, "overdraw": 1.0}
+    for number, work in enumerate((Work(2, 1, 1), Work(2, 20, 20), Work(9, 10, 10), Work(9, 50, 50))):
+        about = {"encoding": f"e{number}", "storage": "s", "gpu": "g", "size": "1920x1080", "reads": 1, "overdraw": 1.0}
         rows.append(about | measure._figures(work, frame(1), rates))
     assert [row["in_cache"] for row in rows] == [True, True, False, False]
-    found = points(rows)
-    lines = ridge_lines(found, "g")
-    for row, point in zip(rows, found, strict=True):
+    plotted = points(rows)
+    lines = ridge_lines(plotted, "g")
+    for row, point in zip(rows, plotted, strict=True):
         on_line = min(lines[row["in_cache"]], key=lambda place: abs(place[0] - point["x"]))
         slope = on_line[1] / on_line[0]
         assert (point["y"] > slope * point["x"]) == (row["bound"] == "memory"), row
@@ -91,21 +91,21 @@ def test_equal_codes_share_a_rank():
     ]
 
 
-def test_every_gpu_is_of_a_family_and_stands_in_the_manual():
+def test_every_gpu_has_a_family_and_is_in_the_manual():
     lines = re.findall(
         r"^\| `(\w+)` \((.+)\) \| `(\w+)` \| (\S+) \| (\S+) \| (\S+) \| (\S*) \| (\S*) \|$", DOCS.read_text(), re.M
     )
-    said = {
+    documented = {
         name: Rates(title, family, *(float(figure or 0) for figure in figures))
         for name, title, family, *figures in lines
     }
-    assert said == dict(GPUS) and {gpu.family for gpu in GPUS.values()} <= set(FAMILIES)
+    assert documented == dict(GPUS) and {gpu.family for gpu in GPUS.values()} <= set(FAMILIES)
 
 
-def test_a_users_own_rates():
-    found = gpus_named("rx6800xt:clock=2, navi31:lanes=100:clock=1:memory=50:cache=8:cached=200")
-    (one, other) = found.values()
-    assert (one.clock, one.memory, one.cache) == (2, 512, 128)
+def test_users_can_give_their_own_rates():
+    gpus = gpus_named("rx6800xt:clock=2, navi31:lanes=100:clock=1:memory=50:cache=8:cached=200")
+    (first, other) = gpus.values()
+    assert (first.clock, first.memory, first.cache) == (2, 512, 128)
     assert other == Rates("Navi 3x", "navi31", 100, 1, 50, 8, 200)
     assert list(gpus_named("all")) == list(GPUS)
 
@@ -126,7 +126,7 @@ def test_a_users_own_rates():
         (" , ", "no GPU named"),
     ],
 )
-def test_what_is_no_gpu_is_refused_in_a_line(words, said):
+def test_invalid_gpu_is_refused_with_the_reason(words, said):
     with pytest.raises(UsageError, match=re.escape(said)):
         gpus_named(words)
 
@@ -144,7 +144,7 @@ def test_what_is_no_gpu_is_refused_in_a_line(words, said):
         (["--encoding", "xyz", "--storage", "rg8"], "3 components, but RG8 has 2 channels"),
     ],
 )
-def test_options_out_of_range_are_one_line(run, words, said):
+def test_options_out_of_range_are_refused(run, words, said):
     status, out, err = run("roofline", *words)
     assert (status, out) == (2, "") and said in err
 
@@ -160,12 +160,12 @@ def ranked_row(gpu: str, code: str, rank: int, reads: int = 1, size: str = "1920
     return {"gpu": gpu, "size": size, "reads": reads, "encoding": encoding, "storage": storage, "rank": rank}
 
 
-def test_the_first_sentences_say_the_fastest_codes_of_each_gpu():
-    one = [ranked_row("a", "spheremap rg8", 1), ranked_row("a", "octahedral rg8", 1), ranked_row("a", "xyz rgba8", 3)]
-    assert answers(one) == ("a: spheremap and octahedral in rg8 are equally fast.",)
+def test_the_first_sentences_name_the_fastest_encodings_of_each_gpu():
+    rows = [ranked_row("a", "spheremap rg8", 1), ranked_row("a", "octahedral rg8", 1), ranked_row("a", "xyz rgba8", 3)]
+    assert answers(rows) == ("a: spheremap and octahedral in rg8 are equally fast.",)
     other = [ranked_row("b", "xyz rgba8", 1), ranked_row("b", "xyz rgba8", 2, 4), ranked_row("b", "xy rg8", 1, 4)]
     same = [row | {"gpu": "c"} for row in other]
-    assert answers([*one, *other, *same, ranked_row("a", "spheremap rg8", 1, 4)]) == (
+    assert answers([*rows, *other, *same, ranked_row("a", "spheremap rg8", 1, 4)]) == (
         "The fastest encodings on each GPU:",
         "a: spheremap and octahedral in rg8 are equally fast with 1 read; "
         "spheremap in rg8 is the fastest with 4 reads.",
@@ -174,10 +174,10 @@ def test_the_first_sentences_say_the_fastest_codes_of_each_gpu():
     assert answers([ranked_row("a", "xyz rgba8", 0) | {"rank": None}]) == ()
 
 
-def test_no_read_at_all_is_not_a_g_buffer(run):
+def test_zero_reads_are_refused(run):
     status, out, err = run("roofline", "--reads", "0")
     assert (status, out) == (2, "") and err.count("\n") == 1 and "--reads 0: whole numbers from 1 to 1024" in err
 
 
-def test_an_unknown_gpu_is_suggested_one(run):
+def test_an_unknown_gpu_gets_a_suggestion(run):
     assert "did you mean rtx3080?" in run("roofline", "--gpu", "rtx3081")[2]

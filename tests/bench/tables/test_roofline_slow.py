@@ -1,4 +1,4 @@
-"""Bytes against instructions: the model by hand, from how many reads on a code is faster, and GPUs by their rates."""
+"""Bytes against instructions: the model by hand, the reads from which an encoding is faster, and GPU rates."""
 
 import json
 import re
@@ -13,7 +13,7 @@ from normalbench.bench.tables.roofline.measure import Work, from_reads
 
 @given(st.lists(st.integers(0, 200), min_size=4, max_size=4), st.integers(1, 8), st.integers(1, 8))
 def test_no_two_codes_are_each_faster_than_the_other(counts, one_bytes, other_bytes):
-    """And a code that is no better in anything is never faster."""
+    """An encoding that is worse in everything is never faster."""
     a, b = Work(one_bytes, *counts[:2]), Work(other_bytes, *counts[2:])
     answers = {from_reads(a, b, ONE, frame(1)), from_reads(b, a, ONE, frame(1))}
     assert answers not in ({"always"}, {"equal", "always"})
@@ -33,15 +33,15 @@ def test_a_texel_moves_as_a_whole_unless_something_else_uses_the_rest(run, words
     chosen = ["--encoding", "octahedral,xyz", "--storage", "rgb10a2,rgb8_12_12", "--gpu", "rx6800xt", "--size", "64x64"]
     status, out, _ = run("roofline", *chosen, "--reads", "1", "--format", "json", *words)
     rows = json.loads(out)
-    found = {(row["encoding"], row["storage"]): row["bytes_per_pixel"] for row in rows}
-    assert status == 0 and found == expected and {row["shared"] for row in rows} == {bool(words)}
+    sizes = {(row["encoding"], row["storage"]): row["bytes_per_pixel"] for row in rows}
+    assert status == 0 and sizes == expected and {row["shared"] for row in rows} == {bool(words)}
     # One byte is written and one read of each of 64 x 64 pixels.
     assert all(row["megabytes"] == pytest.approx(2 * 64**2 * row["bytes_per_pixel"] / 1e6) for row in rows)
     assert (" is faster than " in run("roofline", *chosen, *words)[1]) == bool(words)
 
 
 @pytest.mark.usefixtures("radv")
-def test_rows_are_the_counts_of_cost_and_the_answer_stands_below(run, tmp_path):
+def test_rows_have_the_counts_of_cost_and_the_table_has_the_answer(run, tmp_path):
     words = [
         "--encoding",
         "octahedral,xyz",

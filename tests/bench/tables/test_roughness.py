@@ -1,4 +1,4 @@
-"""From which roughness on a code carries reflections."""
+"""The roughness from which an encoding's reflections are acceptable."""
 
 from contextlib import ExitStack
 from dataclasses import replace
@@ -22,72 +22,72 @@ CODEC = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
 
 
 def half_lit() -> Environment:
-    """Small, and cheap to filter: bright where x is above 0."""
+    """Return a small environment that is cheap to filter: bright where x is above 0."""
     light = np.where(directions(32)[..., :1] > 0, 2.0, 0.1) * np.ones(3)
     return Environment("half lit", light.astype(np.float32))
 
 
 @pytest.mark.parametrize("codec", [None, CODEC], ids=["exact", "octahedral rg8"])
 @pytest.mark.parametrize("name", OBJECTS)
-def test_pictures_that_are_drawn_again_are_those_of_whole_frames(gl, name, codec):
-    """One target is overwritten in place of all passes: every pixel is the same to the bit."""
+def test_redrawn_images_equal_whole_frames(gl, name, codec):
+    """Only one target is overwritten, without running all passes; every pixel is the same to the bit."""
     case = RoughnessCase((CODEC,), name, half_lit(), (0.1,), (64, 64))
     with ExitStack() as stack:
         pictures = Pictures(gl, stack, case)
-        made = pictures.opened(stack, codec, Accumulation())
+        frames = pictures.opened(stack, codec, Accumulation())
         for roughness in (0.0, 0.37, 1.0):
-            again = pictures.image(made, roughness)
-            made.made[0].draw(pictures.what.scene(roughness))
-            whole = pictures.display.image(made.made[0].image())
-            whole = np.where(made.covered[..., None], whole, 0).astype(np.float32)
+            again = pictures.image(frames, roughness)
+            frames.made[0].draw(pictures.what.scene(roughness))
+            whole = pictures.display.image(frames.made[0].image())
+            whole = np.where(frames.covered[..., None], whole, 0).astype(np.float32)
             assert np.array_equal(again, whole), f"{np.abs(again - whole).max()} at roughness {roughness}"
-        assert made.covered.mean() > (0.98 if "panel" in name else 0.75), f"{made.covered.mean()} is covered"
+        assert frames.covered.mean() > (0.98 if "panel" in name else 0.75), f"{frames.covered.mean()} is covered"
 
 
 def test_a_picture_of_several_frames_is_their_mean(gl):
-    """Each is seen from its own place, and has its own noise; the mean is of light, before it is displayed."""
+    """Each frame has its own viewpoint and its own noise; the mean is of light, before it is displayed."""
     case = RoughnessCase((CODEC,), "sphere", half_lit(), (0.1,), (48, 48))
     with ExitStack() as stack:
         pictures = Pictures(gl, stack, case)
-        made = pictures.opened(stack, CODEC, Accumulation(MOVING, 3))
+        opened = pictures.opened(stack, CODEC, Accumulation(MOVING, 3))
         frames = []
-        for one in made.made:
-            draw_again(one, 0.3)
-            frames.append(np.where((one.gbuffer()[0][..., 2] != 0)[..., None], one.image(), 0.0))
-        assert np.allclose(made.light(0.3), np.mean(frames, axis=0), atol=1e-6)
+        for drawing in opened.made:
+            draw_again(drawing, 0.3)
+            frames.append(np.where((drawing.gbuffer()[0][..., 2] != 0)[..., None], drawing.image(), 0.0))
+        assert np.allclose(opened.light(0.3), np.mean(frames, axis=0), atol=1e-6)
         apart = [np.abs(a - b).max() for a, b in pairwise(frames)]
         assert min(apart) > 0.01, apart
 
 
 def test_a_picture_moves_by_as_many_pixels_as_its_view(gl):
-    """Two to the right and one up, but for the border: what was there before is there again."""
+    """The view moves two pixels to the right and one up; except at the border, the shifted image is the same."""
     case = RoughnessCase((CODEC,), "panel20", half_lit(), (0.1,), (64, 64))
     with ExitStack() as stack:
         pictures = Pictures(gl, stack, case)
         what, light = pictures.what, pictures.exact(1).light(0.3)
         there = replace(what, view=moved(what.view, case.size, 2.0, 1.0)).scene(0.3)
-        one = pictures.opened(stack, None, Accumulation()).made[0]
-        one.draw(there)
+        drawing = pictures.opened(stack, None, Accumulation()).made[0]
+        drawing.draw(there)
         # Row 0 is on top: through points above its own middles a row sees what the row before it saw.
-        expected, found = light[4:-5, 6:-4], one.image()[5:-4, 4:-6]
-        assert np.abs(found - expected).max() < 2e-4 * expected.max(), np.abs(found - expected).max()
+        expected, image = light[4:-5, 6:-4], drawing.image()[5:-4, 4:-6]
+        assert np.abs(image - expected).max() < 2e-4 * expected.max(), np.abs(image - expected).max()
         unmoved = np.abs(light[5:-4, 4:-6] - expected).max()
         assert unmoved > 2e-3 * expected.max(), unmoved
 
 
-def test_the_points_within_a_pixel_are_haltons():
+def test_the_points_within_a_pixel_are_a_halton_sequence():
     assert [halton(index, 2) for index in range(1, 5)] == [1 / 2, 1 / 4, 3 / 4, 1 / 8]
     assert [halton(index, 3) for index in range(1, 5)] == pytest.approx([1 / 3, 2 / 3, 1 / 9, 4 / 9])
 
 
-def test_objects_are_turned_to_where_an_environment_is_busiest():
-    """Where its halves meet: at x = 0, to half a window."""
+def test_objects_are_turned_to_the_busiest_part_of_an_environment():
+    """The two halves meet there, at x = 0, to half a window."""
     way = busiest(half_lit())
     assert abs(way[0]) < np.sin(np.radians(5)) and np.linalg.norm(way) == pytest.approx(1)
 
 
-def test_the_object_and_environment_that_need_most_decide():
-    """Of each code and threshold one; a row where no roughness is enough needs more than all others."""
+def test_the_object_and_environment_that_need_the_most_roughness_decide():
+    """One row decides for each encoding and threshold. A row for which no roughness is enough needs the most."""
     keys = {"encoding": "octahedral", "rounding": "nearest", "bits": 16, "object": "sphere", "environment": "sky"}
     keys |= {"dither": "none", "frames": 1}
     rows = [
@@ -100,8 +100,8 @@ def test_the_object_and_environment_that_need_most_decide():
     assert sorted(decides, key=str) == [("rg16", 0.1, 0.0), ("rg8", 0.05, None), ("rg8", 0.1, 0.3)]
 
 
-def test_a_code_without_noise_comes_before_it_with_noise():
-    """And one frame before several; each decides for itself."""
+def test_rows_without_noise_come_before_rows_with_noise():
+    """One frame comes before several, and each row decides for itself."""
     row = {"encoding": "octahedral", "storage": "rg8", "rounding": "nearest", "bits": 16, "threshold": 0.1}
     ways = [(MOVING, 1), (NONE, 8), (STILL, 1), (NONE, 1)]
     rows = in_order([row | {"dither": dither, "frames": frames, "roughness": 0.2} for dither, frames in ways])
@@ -123,6 +123,6 @@ def test_a_code_without_noise_comes_before_it_with_noise():
         (["--frames", "8,65"], "--frames 8,65"),
     ],
 )
-def test_bad_input_is_one_line(run, arguments, said):
+def test_bad_input_is_a_one_line_error(run, arguments, said):
     status, out, err = run("roughness", *arguments)
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err

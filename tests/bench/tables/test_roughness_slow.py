@@ -1,4 +1,4 @@
-"""From which roughness on a code carries reflections."""
+"""The roughness from which an encoding's reflections are acceptable."""
 
 import json
 from contextlib import ExitStack
@@ -42,25 +42,25 @@ def test_the_shaders_noise_is_that_of_the_emulation(gl, encoding, storage):
                 noise = np.pad(codec.dither(frame).added, ((0, 16), (0, 16), (0, 0)), mode="wrap")[::-1]
             stored = codec.store(type(code)(*(c + noise[..., i] for i, c in enumerate(code))))
             expected = np.stack([np.asarray(c) for c in codec.encoding.decode(stored, exact)], axis=-1) @ axes.T
-            found = pictures.opened(stack, codec, seen).made[0].gbuffer()[1][..., :3]
+            normals = pictures.opened(stack, codec, seen).made[0].gbuffer()[1][..., :3]
             # Near a tie the two languages may round apart: a step of 8 bits is 0.008.
-            is_same = np.abs(found - expected).max(axis=-1) < 1e-5
+            is_same = np.abs(normals - expected).max(axis=-1) < 1e-5
             assert is_same.mean() > 0.995, f"{1 - is_same.mean()} of pixels differ with {seen}"
 
 
-def test_noise_lowers_what_is_seen_of_steps(gl):
-    """On a panel, by FLIP: one frame, and more so the mean of eight. Without noise eight frames change little."""
+def test_noise_makes_steps_less_visible(gl):
+    """FLIP on a panel falls in one frame, and more in the mean of eight. Without noise eight frames change little."""
     case = RoughnessCase((CODEC,), "panel4", half_lit(), (0.1,), (64, 64))
     with ExitStack() as stack:
         pictures = Pictures(gl, stack, case)
-        opened = {one: pictures.opened(stack, CODEC, Accumulation(*one)) for one in product((NONE, MOVING), (1, 8))}
-        worst = {one: pictures.figures(made, 0.3, True)["flip_p99"] for one, made in opened.items()}
+        opened = {way: pictures.opened(stack, CODEC, Accumulation(*way)) for way in product((NONE, MOVING), (1, 8))}
+        worst = {way: pictures.figures(frames, 0.3, True)["flip_p99"] for way, frames in opened.items()}
     assert worst[MOVING, 8] < 0.6 * worst[MOVING, 1] and worst[MOVING, 1] < 0.6 * worst[NONE, 1], worst
     assert worst[NONE, 8] == pytest.approx(worst[NONE, 1], rel=0.1), worst
 
 
-def test_plaster_shows_the_steps_of_a_code_at_every_roughness(gl):
-    """By FLIP: 7:7 is above 0.05 wherever it is measured, 8:8 and 10:10 are not. A highlight depends on roughness."""
+def test_plaster_shows_the_steps_of_an_encoding_at_every_roughness(gl):
+    """FLIP is above 0.05 for 7:7 wherever it is measured, but not for 8:8 and 10:10. Roughness affects highlights."""
     codecs = [Codec(ENCODINGS["octahedral"], by_rule("unorm", (bits, bits))) for bits in (7, 8, 10)]
     case = RoughnessCase(tuple(codecs), "plaster", None, (0.05,), (256, 256))
     assert case.name == "plaster in sun"
@@ -87,7 +87,7 @@ def test_an_index_is_not_dithered_and_says_so_in_a_line(run):
     assert skipped == [("still", 1), ("still", 2)] and len(rows) == 2 + 2 * 25
 
 
-def test_the_least_roughness_keeps_its_threshold_and_a_step_less_does_not(run):
+def test_the_lowest_roughness_meets_its_threshold_and_a_step_less_does_not(run):
     status, out, err = run(
         "roughness", "--object", "panel20", "--size", "96x96", "--environment", "strips", "--storage", "rg8,rg16",
         "--format", "json",

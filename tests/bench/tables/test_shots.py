@@ -1,4 +1,4 @@
-"""Steps that draw a frame each: rows and pictures."""
+"""Steps that draw one frame each: rows and pictures."""
 
 from threading import Event
 
@@ -7,7 +7,7 @@ from normalbench.bench.tables.table import Step
 
 
 class Cases:
-    """Measures numbers, and says when the last one was."""
+    """Cases that measure numbers, and tell when the last was measured."""
 
     def __init__(self, count: int):
         self.count, self.all_measured = count, Event()
@@ -21,8 +21,8 @@ class Cases:
         return "exact"
 
 
-def test_pictures_are_written_while_the_next_frame_is_drawn_and_before_their_row_is_there(tmp_path):
-    """A row is kept for good: then nobody would draw its pictures any more."""
+def test_pictures_are_written_before_their_row_while_the_next_is_drawn(tmp_path):
+    """Once a row is kept, its pictures are never drawn again."""
     cases, written = Cases(2), []
 
     def write(folder, row, drawn, reference):

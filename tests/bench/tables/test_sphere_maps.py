@@ -1,4 +1,4 @@
-"""Errors over the sphere and their histograms: what rows and files keep agrees with what rows say."""
+"""Errors over the sphere and their histograms: rows and files agree."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def codec(name: str, storage: str = "rgba8") -> Codec:
     return Codec(ENCODINGS[name], STORAGES[storage])
 
 
-def test_cells_stand_for_equal_areas_and_the_first_half_faces_the_viewer():
+def test_cells_have_equal_areas_and_the_first_half_faces_the_viewer():
     halves, inside = sphere_maps._grid()
     directions = halves[:, inside].astype(np.float64)
     assert np.allclose(np.linalg.norm(directions, axis=-1), 1, atol=1e-6)
@@ -29,26 +29,26 @@ def test_cells_stand_for_equal_areas_and_the_first_half_faces_the_viewer():
 
 
 def test_the_spheremap_is_worst_straight_away_from_the_viewer():
-    found = sphere_maps.sphere_map(codec("spheremap")).mean_deg
+    means = sphere_maps.sphere_map(codec("spheremap")).mean_deg
     middle = slice(sphere_maps.CELLS // 2 - 4, sphere_maps.CELLS // 2 + 4)
-    towards, away = (half[middle, middle].mean() for half in found)
+    towards, away = (half[middle, middle].mean() for half in means)
     assert away > 10 * towards, f"{away:.2f} away, {towards:.2f} towards"
-    worst = np.unravel_index(np.nanargmax(found), found.shape)
+    worst = np.unravel_index(np.nanargmax(means), means.shape)
     assert worst[0] == 1 and abs(worst[1] - 47.5) < 5 > abs(worst[2] - 47.5), worst
 
 
-def test_what_a_code_cannot_hold_is_left_out():
+def test_normals_that_an_encoding_cannot_represent_are_left_out():
     assert np.isnan(sphere_maps.sphere_map(codec("xy")).mean_deg[1]).all()
     assert not np.isnan(sphere_maps.sphere_map(codec("octahedral")).mean_deg[1]).all()
 
 
-def test_maps_are_read_as_they_were_written_and_damaged_ones_are_none(tmp_path):
+def test_maps_are_read_as_written_and_damaged_maps_are_ignored(tmp_path):
     sphere_maps.write_maps([codec("octahedral")], tmp_path)
     path = tmp_path / sphere_maps.file_name("octahedral", "rgba8", "nearest")
     first, kept = path.read_bytes(), sphere_maps.read_map(path)
-    made = sphere_maps.sphere_map(codec("octahedral"))
-    assert kept and np.array_equal(kept.mean_deg, made.mean_deg, equal_nan=True)
-    assert kept.directions == made.directions == 25
+    sphere_map = sphere_maps.sphere_map(codec("octahedral"))
+    assert kept and np.array_equal(kept.mean_deg, sphere_map.mean_deg, equal_nan=True)
+    assert kept.directions == sphere_map.directions == 25
     sphere_maps.write_maps([codec("octahedral")], tmp_path)
     assert path.read_bytes() == first, "the same file whenever it is written"
     for data in (first[:-100], b"", b"PK", b"\x80\x04."):
@@ -61,7 +61,7 @@ def test_maps_are_read_as_they_were_written_and_damaged_ones_are_none(tmp_path):
 
 @pytest.mark.usefixtures("gl")
 def test_no_two_codecs_share_a_file():
-    """Not those either that differ by how they round."""
+    """Codecs that differ only in their rounding have separate files too."""
     names = {sphere_maps.file_name("xy", storage, way) for storage in ("rg8", "rgba8") for way in ROUNDINGS}
     assert len(names) == 2 * len(ROUNDINGS)
 
@@ -80,7 +80,7 @@ def test_a_rows_histogram_holds_every_normal_between_its_angles(backend):
     assert edges[tail >= 0.01][-1] <= measured["angle_p99_deg"] <= (edges + widths)[tail >= 0.01][-1]
 
 
-def test_no_error_at_all_is_in_the_first_bin():
+def test_zero_errors_are_in_the_first_bin():
     histogram = np.zeros(metrics.BINS + 1, np.int64)
     histogram[0] = 5
     assert metrics.counts_by_angle(histogram) == ((0.0, 5),)

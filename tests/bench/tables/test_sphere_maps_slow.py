@@ -1,4 +1,4 @@
-"""Errors over the sphere and their histograms: what rows and files keep agrees with what rows say."""
+"""Errors over the sphere and their histograms: rows and files agree."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from normalbench.encodings.storages.storage import STORAGES
 
 
 def test_a_codec_without_a_twin_in_jax_is_mapped_by_glsl(gl, monkeypatch):  # noqa: ARG001
-    """The same angles as by JAX, to float32's own error."""
+    """The angles are those of JAX, within the error of float32."""
     codec = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
     by_jax = sphere_maps.sphere_map(codec)
     monkeypatch.setattr(sphere_maps, "has_twin", lambda _: False)
@@ -28,11 +28,11 @@ def row(name: str, normals) -> dict:
 
 @pytest.mark.parametrize("name", ["octahedral", "xy", "spheremap", "spherical"])
 def test_a_map_agrees_with_the_hemisphere_row(name):
-    """Cells, each as often as directions lie in it, have the mean of the uniform set and nearly its largest angle."""
-    found = sphere_maps.sphere_map(codec(name))
+    """Weighted by their directions, the cells have the mean of the uniform set and nearly its largest angle."""
+    sphere_map = sphere_maps.sphere_map(codec(name))
     cells, fine = sphere_maps.CELLS, sphere_maps.FINE
     weights = sphere_maps._grid()[1].reshape(cells, fine, cells, fine).sum(axis=(1, 3))
     measured = row(name, hemisphere(2**20))
-    mean = np.nansum(found.mean_deg[0] * weights) / weights.sum()
+    mean = np.nansum(sphere_map.mean_deg[0] * weights) / weights.sum()
     assert mean == pytest.approx(measured["angle_mean_deg"], rel=0.01)
-    assert 0.85 * measured["angle_max_deg"] <= np.nanmax(found.max_deg[0]) <= 1.01 * measured["angle_max_deg"]
+    assert 0.85 * measured["angle_max_deg"] <= np.nanmax(sphere_map.max_deg[0]) <= 1.01 * measured["angle_max_deg"]

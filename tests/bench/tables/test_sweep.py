@@ -1,4 +1,4 @@
-"""What `normalbench sweep` prints, keeps and refuses."""
+"""`normalbench sweep`: its output, the rows that it keeps, and refused requests."""
 
 import queue
 import signal
@@ -21,21 +21,21 @@ SMALL = ["--size", "96x72", "--lights", "4", "--repeats", "1"]
 SWEEP = ["sweep", *SMALL, "--objects", "3,5", "--pipeline", "prepass,hybrid"]
 
 
-def test_a_bar_says_its_length_and_whether_it_is_too_noisy_to_compare():
+def test_a_bar_label_gives_the_time_and_whether_it_is_too_noisy():
     frame = {"pipeline": "hybrid", "clock": "wall", "ms_frame": 3.0, "ms_frame_spread": 0.5, "ms_lights": 2.0}
     assert frame_label(frame) == "2, too noisy to compare"
     assert frame_label(frame | {"ms_frame_spread": 0.2}) == "2"
 
 
-def test_pipelines_of_one_name_have_bars_of_their_own():
-    """With a shadow map and without; both stood at one name of the page's chart, one upon the other."""
+def test_pipelines_of_the_same_name_have_separate_bars():
+    """With and without a shadow map, pipelines once shared a name in the page's chart, and their bars overlapped."""
     frame = {"pipeline": "hybrid", "clock": "wall", "objects": 100, "ms_frame": 3.0, "ms_frame_spread": 0.5}
     (chart,) = charts([frame | {"shadow": shadow, "ms_lights": 2.0} for shadow in (True, False)])
     assert chart.y.names == ("hybrid with shadow map", "hybrid without shadow map")
 
 
-def test_rows_of_another_sweep_are_not_taken_and_not_thrown_away(run, tmp_path, monkeypatch):
-    """A layout that changed behind its name is another sweep."""
+def test_rows_of_another_sweep_are_neither_used_nor_deleted(run, tmp_path, monkeypatch):
+    """A layout that changes under the same name makes another sweep."""
     monkeypatch.chdir(tmp_path)
     layout = "encoding = 'octahedral'\n[[targets]]\nformat = '{}'\nholds = 'normal.x normal.y'\n"
     measure, rows = sweep.measure, []
@@ -97,15 +97,15 @@ def test_two_sweeps_do_not_share_an_output(run, tmp_path):
         (["--layout", "normal_depth", "--pipeline", "hybrid"], "hybrid needs"),
     ],
 )
-def test_a_bad_sweep_is_one_line_and_nothing_is_written(run, tmp_path, monkeypatch, arguments, said):
+def test_bad_sweep_is_a_one_line_error_and_nothing_is_written(run, tmp_path, monkeypatch, arguments, said):
     monkeypatch.chdir(tmp_path)
     status, out, err = run("sweep", *arguments)
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
     assert not list(tmp_path.iterdir())
 
 
-def test_what_was_put_off_does_not_end_the_program_twice(monkeypatch):
-    """An interruption during an import waits; once another one has ended the program, it does not come any more."""
+def test_a_delayed_interruption_does_not_end_the_program_twice(monkeypatch):
+    """An interruption during an import waits. If another one ends the program first, the delayed one is dropped."""
     monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
     monkeypatch.setattr(cli, "ending", [])
     before = signal.getsignal(signal.SIGALRM)
@@ -122,13 +122,13 @@ def test_what_was_put_off_does_not_end_the_program_twice(monkeypatch):
 
 
 class Interrupted:
-    """Is interrupted as it is freed, where Python swallows what is raised."""
+    """An object that is interrupted as it is freed, where Python swallows exceptions."""
 
     def __del__(self):
         cli._end(signal.SIGTERM, None)
 
 
-def test_what_a_callback_swallowed_ends_a_program_that_only_waits(monkeypatch):
+def test_an_interruption_swallowed_by_a_callback_ends_a_waiting_program(monkeypatch):
     """A worker that waits for its next job takes no step at which the interruption would be raised again."""
     monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
     monkeypatch.setattr(cli, "ending", [])

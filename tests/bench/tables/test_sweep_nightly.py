@@ -1,4 +1,4 @@
-"""What `normalbench sweep` prints, keeps and refuses."""
+"""`normalbench sweep`: its output, the rows that it keeps, and refused requests."""
 
 import csv
 

@@ -1,4 +1,4 @@
-"""What `normalbench sweep` prints, keeps and refuses."""
+"""`normalbench sweep`: its output, the rows that it keeps, and refused requests."""
 
 import json
 import os
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("gl")
 
 
 def test_a_sweep_counts_what_each_pass_draws(run):
-    """Light pre-pass draws everything twice, the hybrid its general surfaces once."""
+    """Light pre-pass draws all surfaces twice, the hybrid pipeline draws general surfaces once."""
     status, out, _ = run(*SWEEP, "--format", "json")
     rows = json.loads(out)
     assert status == 0 and all(tuple(row) == tuple(TABLES["sweep"].empty(STAGES)) for row in rows)
@@ -42,8 +42,8 @@ def test_a_sweep_counts_what_each_pass_draws(run):
         assert (row["triangles_shadow_map"] > 0) == row["shadow"]
 
 
-def test_a_sweep_goes_through_a_pipe(run, tmp_path):
-    """What is no file has no journal beside it."""
+def test_a_sweep_can_write_to_a_pipe(run, tmp_path):
+    """A pipe has no journal next to it."""
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     reader = subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE, text=True)
@@ -52,8 +52,8 @@ def test_a_sweep_goes_through_a_pipe(run, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
 
 
-def test_a_stopped_sweep_goes_on_where_it_was(run, tmp_path, monkeypatch):
-    """Rows that were measured before are kept to the last digit, a line that was cut off is measured again."""
+def test_a_stopped_sweep_resumes_where_it_was(run, tmp_path, monkeypatch):
+    """Rows that were measured before are kept to the last digit, and a truncated line is measured again."""
     output = tmp_path / "rows.json"
     measure, measured = sweep.measure, []
 
@@ -79,7 +79,7 @@ def test_a_stopped_sweep_goes_on_where_it_was(run, tmp_path, monkeypatch):
 
 
 def test_ctrl_c_in_a_callback_that_swallows_it_still_ends_the_program(tmp_path):
-    """As JAX's does in the garbage collector: no traceback, and the next step ends."""
+    """JAX has such a callback in the garbage collector: no traceback is shown, and the next step ends the program."""
     program = (
         "import gc, os, signal, sys\n"
         "from normalbench.bench.door.cli import app as cli\n"

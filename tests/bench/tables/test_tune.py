@@ -1,4 +1,4 @@
-"""Tuned encodings: what is fitted agrees with theory, and what is gained is of normals that were held out."""
+"""Tuned encodings: fits that agree with theory, and gains on held-out normals."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from normalbench.bench.tables.tune.halves import Normals, halves_of
 
 
 def all_of(chosen: NormalSet) -> Normals:
-    """Every normal of a set that counts."""
+    """Return every covered normal of a set."""
     chunks = [load() for load in chosen.loads()]
     n, view = (
         np.concatenate([np.stack([np.asarray(c) for c in planes], axis=1) for planes in kind])
@@ -18,7 +18,7 @@ def all_of(chosen: NormalSet) -> Normals:
     return Normals(n[covered], view[covered])
 
 
-def test_halves_are_the_set_and_share_nothing():
+def test_halves_make_up_the_set_and_share_nothing():
     for by_tiles in (True, False):
         chosen = halves_of(playground(), 0, by_tiles)
         whole = np.count_nonzero(np.concatenate([np.asarray(load().covered) for load in playground().loads()]))
@@ -58,7 +58,7 @@ def one_direction(tmp_path):
         (["stereographic", "--storage", "rg8_9_9"], "these bits are named rgb8_9_9"),
     ],
 )
-def test_what_cannot_be_tuned_is_one_line(run, arguments, said):
+def test_bad_input_is_a_one_line_error(run, arguments, said):
     status, out, err = run("tune", *arguments)
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
 
@@ -70,7 +70,7 @@ def test_what_cannot_be_tuned_is_one_line(run, arguments, said):
         (["best_fit", "--storage", "rgba8", "--table", "my,ta.npy"], "a name without : and comma"),
     ],
 )
-def test_names_that_could_not_be_given_back_are_refused(run, arguments, said, tmp_path, monkeypatch):
+def test_names_that_could_not_be_used_afterwards_are_refused(run, arguments, said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     status, out, err = run("tune", *arguments, "--normals", "hemisphere", "--count", "4096")
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
@@ -99,7 +99,7 @@ def test_a_set_of_one_normal_is_refused(run, tmp_path):
         ("best_fit:table=zero.npy", "scales above 0 and up to 1"),
     ],
 )
-def test_a_bad_name_is_one_line(run, name, said, tmp_path, monkeypatch):
+def test_bad_name_is_a_one_line_error(run, name, said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "text.npy").write_text("no array")
     np.save(tmp_path / "small.npy", np.ones((4, 4, 1), np.float32))
@@ -109,7 +109,7 @@ def test_a_bad_name_is_one_line(run, name, said, tmp_path, monkeypatch):
 
 
 def test_axes_are_enough_to_fit_to():
-    """384 normals, the least set there is."""
+    """The axes have 384 normals, the smallest set."""
     assert len(halves_of(axes(), 0, by_tiles=False).fitting) >= 128
     n = np.float32([[0, 0, 1], [1, 0, 0]] * 200)
     assert halves_of(from_arrays("two", "two", n, n, np.ones(400, bool)), 0, by_tiles=False).held_out.count == 200

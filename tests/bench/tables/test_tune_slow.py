@@ -1,4 +1,4 @@
-"""Tuned encodings: what is fitted agrees with theory, and what is gained is of normals that were held out."""
+"""Tuned encodings: fits that agree with theory, and gains on held-out normals."""
 
 import itertools
 import json
@@ -24,9 +24,9 @@ FINE = "rgb8_12_12"
 
 
 def codec_of(encoding: str, storage: str) -> Codec:
-    found = storage_of(storage)
-    assert found
-    return Codec(ENCODINGS[encoding], found)
+    named_storage = storage_of(storage)
+    assert named_storage
+    return Codec(ENCODINGS[encoding], named_storage)
 
 
 def tuned(codec: Codec, normals: Normals, goal: str) -> Values:
@@ -34,19 +34,19 @@ def tuned(codec: Codec, normals: Normals, goal: str) -> Values:
 
 
 def seen(n: np.ndarray, view: np.ndarray) -> Normals:
-    """Those of unit normals that face the eye along their rays."""
+    """Return the unit normals that face the eye along their rays, with these rays."""
     faces = np.sum(n * view, axis=1) < 0
     return Normals(n[faces].astype(np.float32), view[faces].astype(np.float32))
 
 
 def ball_that_fills_the_view(fov_deg: float, count: int) -> Normals:
-    """A sphere of radius 1 straight ahead whose outline touches a round view, as far as the eye sees it."""
+    """Return the visible normals of a sphere of radius 1 straight ahead whose outline touches a round view."""
     n = all_of(sphere(count)).n.astype(np.float64)
     return seen(n, n - [0, 0, 1 / math.sin(math.radians(fov_deg / 2))])
 
 
 def anything_in_the_view(fov_deg: float, count: int) -> Normals:
-    """Surfaces of every slope on rays all over a round view, half of them at its edge."""
+    """Return normals of surfaces of every slope on rays all over a round view, half of them at its edge."""
     random = np.random.default_rng(1)
     edge = math.cos(math.radians(fov_deg / 2))
     z = np.where(random.uniform(size=count) < 0.5, edge, random.uniform(edge, 1, count))
@@ -61,42 +61,42 @@ def anything_in_the_view(fov_deg: float, count: int) -> Normals:
     [(ball_that_fills_the_view, 90 - 30), pytest.param(anything_in_the_view, 90 + 30, marks=pytest.mark.drawn(3))],
 )
 def test_the_stereographic_scale_is_that_of_theory(view, farthest_deg):
-    """tan(t / 2) for normals up to t from the axis: 0.577 for a ball in a view of 60 degrees, 1.732 for anything in it.
+    """tan(t / 2) for normals up to t from the axis: 0.577 for a ball in a view of 60 degrees, 1.732 for anything.
 
-    What is found is below by no more than what clipping costs less than wider steps do: at the disk's edge a step is
-    cos^2(t / 2) of one at its centre, whose worst normal is off by sqrt(2) half steps.
+    The tuned scale is lower by at most as much as clipping costs less than wider steps: at the disk's edge a step is
+    cos^2(t / 2) of a step at its centre, whose worst normal is off by sqrt(2) half steps.
     """
     normals = view(60.0, 2**18)
     farthest = math.degrees(math.acos(normals.n[:, 2].min()))
     assert farthest == pytest.approx(farthest_deg, abs=0.5), "and no sample is farther than theory says"
     theory = math.tan(math.radians(farthest_deg / 2))
-    found = tuned(codec_of("stereographic", FINE), normals, "max")["scale"]
-    assert found == pytest.approx(theory, rel=0.01), (found, theory)
+    scale = tuned(codec_of("stereographic", FINE), normals, "max")["scale"]
+    assert scale == pytest.approx(theory, rel=0.01), (scale, theory)
     # With 8 bits that is up to 6 half steps of 1 / 255, and what the farthest sample is short of the edge.
     coarse = tuned(codec_of("stereographic", "rg8"), normals, "max")["scale"]
     assert theory * (1 - 7 / 255) <= coarse <= theory * (1 + 1 / 255), (coarse, theory)
 
 
-def test_no_mean_error_wants_a_scale_beyond_that_of_theory():
+def test_mean_errors_never_need_a_larger_scale_than_theory():
     """Every step of stereographic is as wide as the scale, so nothing is gained beyond the last normal."""
     for goal, view in itertools.product(("psnr", "mean"), (ball_that_fills_the_view, anything_in_the_view)):
         normals = view(60.0, 2**16)
         edge = math.tan(math.acos(normals.n[:, 2].min()) / 2)
-        found = tuned(codec_of("stereographic", "rg8"), normals, goal)["scale"]
-        assert 0.6 * edge < found < 1.005 * edge, (goal, found, edge)
+        scale = tuned(codec_of("stereographic", "rg8"), normals, goal)["scale"]
+        assert 0.6 * edge < scale < 1.005 * edge, (goal, scale, edge)
 
 
-def test_the_scale_of_2010_was_found_well():
-    """On the scene it was found on, with arms of ours, what is found is no worse than 1.7777, and better by less than a
-    decibel."""
+def test_the_scale_of_2010_is_nearly_the_best():
+    """On the scene of 2010, with arms that were added here, the tuned scale is no worse than 1.7777 and less than one
+    decibel better."""
     chosen = halves_of(playground(), 0, by_tiles=False)
     codec = codec_of("stereographic", "rg8")
-    found = tuned(codec, chosen.fitting, "psnr")
+    parameters = tuned(codec, chosen.fitting, "psnr")
     before, after = (
         quality.measure(quality.QualityCase(replace(codec, encoding=e), chosen.held_out, "jax"))["psnr_db"]
-        for e in (codec.encoding, codec.encoding.with_parameters(found))
+        for e in (codec.encoding, codec.encoding.with_parameters(parameters))
     )
-    assert before <= after < before + 1.0, found
+    assert before <= after < before + 1.0, parameters
 
 
 def rows_of(run, *arguments: str) -> tuple[dict[str, dict], str]:
@@ -105,8 +105,8 @@ def rows_of(run, *arguments: str) -> tuple[dict[str, dict], str]:
     return {row["quantity"]: row for row in json.loads(out)}, err
 
 
-def test_the_gain_is_of_the_held_out_half(run):
-    """The figures of both codecs measured anew on that half, by the names that the rows give them."""
+def test_the_gain_is_measured_on_the_held_out_half(run):
+    """Both codecs, by the names in the rows, have the same figures if they are measured again on that half."""
     rows, err = rows_of(run, "spherical", "--storage", "rg8", "--seed", "5")
     assert rows["psnr_db"]["gain"] > 2.5 and rows["psnr_db"]["unit"] == "dB", rows
     held = halves_of(playground(), 5, by_tiles=False).held_out
@@ -121,20 +121,20 @@ def test_the_gain_is_of_the_held_out_half(run):
     assert f"--encoding {rows['psnr_db']['tuned_encoding']}" in err
 
 
-def test_where_nothing_is_gained_that_is_said(run):
-    """The table that was published is the best for its storage."""
+def test_zero_gain_is_reported(run):
+    """The published table is the best for its storage."""
     rows, err = rows_of(run, "best_fit", "--normals", "sphere", "--count", "65536")
     assert rows["psnr_db"]["gain"] == 0
     assert "no gain on the held-out half" in err
 
 
-def test_the_same_is_found_again(run):
+def test_tuning_twice_finds_the_same(run):
     arguments = ("stereographic", "--normals", "hemisphere", "--count", "65536", "--storage", "rg8")
     assert rows_of(run, *arguments) == rows_of(run, *arguments)
 
 
-def test_the_scale_for_a_hemisphere_is_1_less_what_clipping_is_worth(run):
-    """A few half steps of 1 / 255, as everywhere: the last ring of normals is clipped for finer steps."""
+def test_the_scale_for_a_hemisphere_is_nearly_1(run):
+    """Clipping the last ring of normals for finer steps lowers the scale by at most a few half steps of 1 / 255."""
     rows, _ = rows_of(run, "stereographic", "--normals", "hemisphere", "--count", "65536", "--parameter", "scale")
     assert 1 - 9 / 255 < rows["scale"]["tuned"] <= 1 + 1 / 255, rows["scale"]
     assert rows["psnr_db"]["gain"] > 4
@@ -142,8 +142,8 @@ def test_the_scale_for_a_hemisphere_is_1_less_what_clipping_is_worth(run):
 
 
 @pytest.mark.parametrize("storage", ["rgba8", "rgba8_snorm"])
-def test_a_look_up_has_the_best_of_all_scales_for_its_normals(storage):
-    """Against every scale tried on the normals of one texel, rounded to the storage's numbers one by one."""
+def test_a_lookup_table_has_the_best_scale_for_its_normals(storage):
+    """Every scale is tried on the normals of one texel, each rounded to the storage's numbers."""
     numbers = STORAGES[storage].numbers(0)
     centre = np.float64([100.5 / 1024 * 700.5 / 1024, 700.5 / 1024, 1.0])
     n = centre + np.random.default_rng(2).uniform(-5e-5, 5e-5, (16, 3))
@@ -153,12 +153,13 @@ def test_a_look_up_has_the_best_of_all_scales_for_its_normals(storage):
         code = numbers[np.abs(n[:, :, None] / n[:, 2:, None] * scale - numbers).argmin(axis=2)]
         across = np.linalg.norm(np.cross(n, code), axis=1) / np.linalg.norm(code, axis=1)
         errors[np.float32(scale)] = np.mean(across**2)
-    found = best_fit.fit(n, len(numbers), 0.0)[100, 700, 0]
-    assert errors[found] <= min(errors.values()) * 1.001, (found, errors[found], min(errors.values()))
+    best = best_fit.fit(n, len(numbers), 0.0)[100, 700, 0]
+    assert errors[best] <= min(errors.values()) * 1.001, (best, errors[best], min(errors.values()))
 
 
-def test_a_look_up_is_fitted_to_other_storages(run, tmp_path):
-    """The published one is for UNORM8: in 10 bits another is worth 10 dB; it is written and read, and measured anew."""
+def test_a_lookup_table_is_fitted_to_other_storages(run, tmp_path):
+    """The published table is for UNORM8; for SNORM8 another gains more than 5 dB. It is written, read and measured
+    again."""
     path = tmp_path / "scales.npy"
     rows, err = rows_of(run, "best_fit", "--storage", "rgba8_snorm", "--table", str(path))
     assert rows["psnr_db"]["gain"] > 5, rows["psnr_db"]

@@ -1,4 +1,4 @@
-"""`normalbench vectors`: errors that theory gives, what is lost, drift, what it prints, what it says of bad input."""
+"""`normalbench vectors`: errors that theory predicts, lost motion, drift, output, and messages for bad input."""
 
 import json
 import math
@@ -29,12 +29,12 @@ QUICK = ["vectors", "--backend", "jax", "--count", "256", "--format", "json"]
 
 @cache
 def row(codec: str, speed: float, largest: float = 1.0, backend: str = "jax", rounding: str = "nearest") -> dict:
-    """The row of a code such as linear/rg16 at a speed."""
+    """Return the row of a codec such as linear/rg16 at a speed."""
     encoding, storage = codec.split("/")
-    made = MotionCodec(MOTION_ENCODINGS[encoding], MOTION_STORAGES[storage], rounding)
-    (found,) = vectors.measure(vectors.MotionVectorCase(made, backend, largest, (speed,), Paths(POINTS, 0, SIZE)))
-    assert found["skipped"] is None, found
-    return found
+    chosen = MotionCodec(MOTION_ENCODINGS[encoding], MOTION_STORAGES[storage], rounding)
+    (figures,) = vectors.measure(vectors.MotionVectorCase(chosen, backend, largest, (speed,), Paths(POINTS, 0, SIZE)))
+    assert figures["skipped"] is None, figures
+    return figures
 
 
 @pytest.mark.usefixtures("gl")
@@ -51,7 +51,7 @@ def test_both_languages_round_alike(storage, rounding):
 
 @pytest.mark.parametrize("storage", ["rg8", "rg8_snorm", "rg8_centred"])
 def test_the_mean_of_dithered_codes_is_the_number(storage):
-    """And each is off by a third of a step on average: by 1 - p for a share p of the pixels, by p for the others."""
+    """On average each code is off by a third of a step: by 1 - p for a share p of the pixels, by p for the others."""
     codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES[storage], "dithered")
     step = codec.storage.step(0)
     numbers = np.random.default_rng(3).uniform(-0.95, 0.95, (2, 64, 1)).astype(np.float32)
@@ -64,19 +64,19 @@ def test_the_mean_of_dithered_codes_is_the_number(storage):
 
 
 def test_noise_moves_from_frame_to_frame_so_that_errors_do_not_add_up():
-    """In steps, the errors e of a component have the density 1 - |e|, and each frame has its own."""
+    """In steps, the errors e of a component have the density 1 - |e|, independently in each frame."""
     x, y = (side / (65535 / 2) for side in SIZE)
     u, v = np.meshgrid(*[np.linspace(-1, 1, 402)[1:-1]] * 2)
     share = (1 - abs(u)) * (1 - abs(v))
-    found = row("linear/rg16", 16.0, rounding="dithered")
-    assert found["error_mean_px"] == pytest.approx((np.hypot(x * u, y * v) * share).sum() / share.sum(), rel=0.01)
-    assert found["error_max_px"] < math.hypot(x, y)
-    assert found["drift_px"] == pytest.approx(math.sqrt(FRAMES * (x * x + y * y) / 6), rel=0.03)
+    figures = row("linear/rg16", 16.0, rounding="dithered")
+    assert figures["error_mean_px"] == pytest.approx((np.hypot(x * u, y * v) * share).sum() / share.sum(), rel=0.01)
+    assert figures["error_max_px"] < math.hypot(x, y)
+    assert figures["drift_px"] == pytest.approx(math.sqrt(FRAMES * (x * x + y * y) / 6), rel=0.03)
 
 
 def test_slow_dithered_motion_does_not_drift_to_one_side():
-    """UNORM has a code half a step above rest and one half a step below, which dithered motions take in turn. What is
-    asked of single motions has no noise."""
+    """UNORM has codes half a step above and below rest, which dithered motions take in turn. The figures of single
+    motions have no noise."""
     dithered, nearest = (row("linear/rg8", 0.05, rounding=rounding) for rounding in ("dithered", "nearest"))
     half = math.hypot(*(side / 255 for side in SIZE))
     assert dithered["drift_px"] == pytest.approx(math.sqrt(FRAMES) * half, rel=0.03)
@@ -85,7 +85,7 @@ def test_slow_dithered_motion_does_not_drift_to_one_side():
 
 
 def test_few_points_have_the_noise_of_their_frames():
-    """Point by point as with more of them: the motions of a frame lie where that frame's noise does."""
+    """Each point gets the same noise as among more points, because a frame's motions use the noise of that frame."""
     codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rg8"], "dithered")
     case = vectors.MotionVectorCase(codec, "jax", 1.0, (1.0,), Paths(POINTS, 0, SIZE))
     motions = next(case.paths.chunks(1.0))
@@ -96,7 +96,7 @@ def test_few_points_have_the_noise_of_their_frames():
 
 
 def mean_in_a_rectangle(a: float, b: float) -> float:
-    """The mean distance from its middle of points spread evenly over a rectangle of sides 2a and 2b."""
+    """Return the mean distance from the middle of points spread evenly over a rectangle of sides 2a and 2b."""
     d = math.hypot(a, b)
     return (d + a * a / (2 * b) * math.log((b + d) / a) + b * b / (2 * a) * math.log((a + d) / b)) / 3
 
@@ -107,10 +107,10 @@ def test_fixed_point_is_off_by_half_a_step_evenly(codec, steps):
     they are independent, and their squares add up."""
     x, y = (side / steps for side in SIZE)
     for speed in (16.0, 64.0):
-        found = row(codec, speed)
-        assert found["error_mean_px"] == pytest.approx(mean_in_a_rectangle(x / 2, y / 2), rel=0.01)
-        assert found["error_max_px"] == pytest.approx(math.hypot(x, y) / 2, rel=0.02)
-        assert found["drift_px"] == pytest.approx(math.sqrt(FRAMES * (x * x + y * y) / 12), rel=0.02)
+        figures = row(codec, speed)
+        assert figures["error_mean_px"] == pytest.approx(mean_in_a_rectangle(x / 2, y / 2), rel=0.01)
+        assert figures["error_max_px"] == pytest.approx(math.hypot(x, y) / 2, rel=0.02)
+        assert figures["drift_px"] == pytest.approx(math.sqrt(FRAMES * (x * x + y * y) / 12), rel=0.02)
 
 
 def test_the_mean_in_a_square_is_the_known_one():
@@ -125,11 +125,11 @@ def test_steps_grow_with_the_range():
 
 @pytest.mark.parametrize("speed", [1.0, 4.0, 64.0])
 def test_half_floats_are_off_by_a_share_of_the_motion(speed):
-    """2^-11 of each component at most; the slowest of them are below a quarter of that of the fastest."""
-    found = row("linear/rg16f", speed)
+    """Errors are at most 2^-11 of the fastest component, and on average more than a quarter of 2^-11 of the speed."""
+    figures = row("linear/rg16f", speed)
     fastest = speed * 1.1 * 1.1
-    assert found["error_mean_px"] < found["error_max_px"] <= 2**-11 * fastest
-    assert found["error_mean_px"] > 0.25 * 2**-11 * speed
+    assert figures["error_mean_px"] < figures["error_max_px"] <= 2**-11 * fastest
+    assert figures["error_mean_px"] > 0.25 * 2**-11 * speed
 
 
 def test_the_square_roots_step_grows_with_the_root_of_the_motion():
@@ -139,34 +139,34 @@ def test_the_square_roots_step_grows_with_the_root_of_the_motion():
 
 
 def test_the_logarithms_error_is_a_share_of_fast_motion():
-    """Its step is |v| + range / k times ln(2048) / 32767; a component is a pixel at 1 / 2047 of the screen."""
-    found, step = row("log/rg16_snorm", 64.0), math.log(2048) / 32767
+    """A step is (|v| + range / k) ln(2048) / 32767, where range / k is 1 / 2047 of the screen."""
+    figures, step = row("log/rg16_snorm", 64.0), math.log(2048) / 32767
     angles = np.linspace(0, 2 * np.pi, 1001)
     halves = 0.5 * step * (64 * abs(np.stack([np.cos(angles), np.sin(angles)])) + np.array(SIZE)[:, None] / 2047)
     expected = np.mean([mean_in_a_rectangle(*half) for half in halves.T])
-    assert found["error_mean_px"] == pytest.approx(expected, rel=0.02)
+    assert figures["error_mean_px"] == pytest.approx(expected, rel=0.02)
 
 
 @pytest.mark.parametrize("storage", ["rg8_snorm", "rg8_centred"])
 def test_linear_8_8_loses_all_slow_motion(storage):
-    """A step is 15 pixels: what is lost is off by as much as it moves, and drifts by 16 times that."""
-    found = row(f"linear/{storage}", 0.05)
-    assert found["lost_percent"] == 100 and found["still_px"] == 0
-    assert found["error_mean_px"] == pytest.approx(0.05, rel=0.01)
-    assert found["drift_px"] == pytest.approx(16 * 0.05, rel=0.01)
+    """A step is 15 pixels: lost motion is off by its whole length, and drifts by 16 times that."""
+    figures = row(f"linear/{storage}", 0.05)
+    assert figures["lost_percent"] == 100 and figures["still_px"] == 0
+    assert figures["error_mean_px"] == pytest.approx(0.05, rel=0.01)
+    assert figures["drift_px"] == pytest.approx(16 * 0.05, rel=0.01)
 
 
-def test_unorm_moves_what_stands_still_by_half_a_step():
-    """No code is 0: rest is on a tie, and goes up. Only a quarter of the slow motions come back as rest does; the
-    others come back as the other middle codes, which are as far off."""
+def test_unorm_moves_still_points_by_half_a_step():
+    """No code is 0: rest is a tie, and rounds up. Only a quarter of the slow motions decode as rest does; the others
+    decode to the other middle codes, which are equally far off."""
     for storage, steps in (("rg8", 255), ("rg16", 65535)):
         speed = 0.01 if steps > 255 else 0.05
-        found, angles = row(f"linear/{storage}", speed), np.linspace(0, np.pi / 2, 1001)
-        assert found["still_px"] == pytest.approx(math.hypot(*SIZE) / steps, rel=1e-4)
-        assert found["lost_percent"] == pytest.approx(25, abs=1)
+        figures, angles = row(f"linear/{storage}", speed), np.linspace(0, np.pi / 2, 1001)
+        assert figures["still_px"] == pytest.approx(math.hypot(*SIZE) / steps, rel=1e-4)
+        assert figures["lost_percent"] == pytest.approx(25, abs=1)
         # Each goes to the middle code of its own quadrant.
         apart = np.hypot(WIDTH / steps - speed * np.cos(angles), HEIGHT / steps - speed * np.sin(angles))
-        assert found["error_mean_px"] == pytest.approx(apart.mean(), rel=0.01)
+        assert figures["error_mean_px"] == pytest.approx(apart.mean(), rel=0.01)
     assert row("linear/rg16_centred", 0.01)["still_px"] == 0
 
 
@@ -183,14 +183,14 @@ LEAST = {
 
 
 @pytest.mark.parametrize("codec", LEAST)
-def test_the_slowest_motion_that_is_told_from_rest_is_half_a_step_from_it(codec):
+def test_the_slowest_motion_that_differs_from_rest_is_half_a_step_from_it(codec):
     assert row(codec, 1.0)["least_px"] == pytest.approx(LEAST[codec], rel=2e-3)
 
 
 def test_the_drift_of_an_exact_storage_is_0():
-    found = row("linear/rgba32f", 4.0)
-    assert found["drift_px"] == found["error_max_px"] == found["lost_percent"] == found["still_px"] == 0
-    assert found["range"] is None
+    figures = row("linear/rgba32f", 4.0)
+    assert figures["drift_px"] == figures["error_max_px"] == figures["lost_percent"] == figures["still_px"] == 0
+    assert figures["range"] is None
 
 
 def test_drift_is_the_distance_after_16_frames():
@@ -199,19 +199,19 @@ def test_drift_is_the_distance_after_16_frames():
         MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rgba32f"]), "jax", 1.0, (4.0,), PATHS
     )
     rest = np.zeros((1, 2), np.float32)
-    found = vectors._figures(case, 4.0, lambda given: given + np.float32([0.5 / WIDTH, 0]), rest)
-    assert found["drift_px"] == pytest.approx(8, rel=1e-4) and found["error_mean_px"] == pytest.approx(0.5, rel=1e-4)
+    errors = vectors._figures(case, 4.0, lambda given: given + np.float32([0.5 / WIDTH, 0]), rest)
+    assert errors["drift_px"] == pytest.approx(8, rel=1e-4) and errors["error_mean_px"] == pytest.approx(0.5, rel=1e-4)
 
 
 PATHS = Paths(1000, 0, SIZE)
 
 
-def test_what_is_beyond_the_range_is_counted():
-    """Half the range of a pixel more: 0.02 screens are 38.4 pixels along x and 21.6 along y."""
-    found = row("linear/rg16", 64.0, 0.02)
+def test_motion_beyond_the_range_is_counted():
+    """A range of 0.02 screens is 38.4 pixels along x and 21.6 along y."""
+    figures = row("linear/rg16", 64.0, 0.02)
     angles = np.linspace(0, 2 * np.pi, 10**5)
     beyond = (abs(64 * np.cos(angles)) > 0.02 * WIDTH) | (abs(64 * np.sin(angles)) > 0.02 * HEIGHT)
-    assert found["clipped_percent"] == pytest.approx(100 * beyond.mean(), abs=1.0) and beyond.all()
+    assert figures["clipped_percent"] == pytest.approx(100 * beyond.mean(), abs=1.0) and beyond.all()
     assert row("linear/rg16", 16.0, 0.02)["clipped_percent"] == 0
     half = row("linear/rg16", 32.0, 0.02)["clipped_percent"]
     assert half == pytest.approx(100 * np.mean(abs(32 * np.sin(angles)) > 0.02 * HEIGHT), abs=2)
@@ -219,7 +219,7 @@ def test_what_is_beyond_the_range_is_counted():
 
 
 def test_paths_turn_slowly_in_every_direction():
-    """Directions are even, speeds are within a tenth and a tenth of what was asked for, and turns within 2 degrees."""
+    """Directions are even, speeds within two factors of 1.1 of the requested speed, and turns within 2 degrees."""
     (motions,) = PATHS.chunks(4.0)
     pixels = motions.astype(np.float64) * SIZE
     length, angle = np.hypot(*np.moveaxis(pixels, -1, 0)), np.arctan2(pixels[..., 1], pixels[..., 0])
@@ -233,10 +233,10 @@ def test_paths_turn_slowly_in_every_direction():
 
 
 def test_paths_are_seeded_and_come_in_blocks():
-    made = list(Paths(2 * POINTS + 10, 1, SIZE).chunks(1.0))
-    assert [block.shape[1] for block in made] == [POINTS, POINTS, 10]
+    blocks = list(Paths(2 * POINTS + 10, 1, SIZE).chunks(1.0))
+    assert [block.shape[1] for block in blocks] == [POINTS, POINTS, 10]
     again, other = (next(Paths(2 * POINTS + 10, seed, SIZE).chunks(1.0)) for seed in (1, 2))
-    assert np.array_equal(made[0], again) and not np.array_equal(made[0], other)
+    assert np.array_equal(blocks[0], again) and not np.array_equal(blocks[0], other)
 
 
 @pytest.mark.usefixtures("gl")
@@ -250,20 +250,20 @@ def test_a_real_target_gives_the_same_figures(codec):
 
 
 @pytest.mark.usefixtures("rows_are_shared")
-def test_json_is_flat_rows_by_code_and_speed(run):
+def test_json_has_flat_rows_by_encoding_and_speed(run):
     names = ["--encoding", "linear,sqrt", "--storage", "rg16f,rg8", "--speed", "1,4", "--range", "1,0.5"]
     status, out, err = run(*QUICK, *names)
     rows = json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
     assert (status, err) == (0, "")
-    assert all(tuple(found) == tuple(TABLES["vectors"].empty()) for found in rows)
-    found = [(r["encoding"], r["storage"], r["range"]) for r in rows if r["speed"] == 1]
-    assert sorted(found, key=str) == sorted(
+    assert all(tuple(row) == tuple(TABLES["vectors"].empty()) for row in rows)
+    codes = [(r["encoding"], r["storage"], r["range"]) for r in rows if r["speed"] == 1]
+    assert sorted(codes, key=str) == sorted(
         [("linear", "rg16f", None)]
         + [(name, "rg8", largest) for name in ("linear", "sqrt") for largest in (0.5, 1.0)]
         + [("sqrt", "rg16f", largest) for largest in (0.5, 1.0)],
         key=str,
     )
-    assert len(rows) == 2 * len(found) and [r["bits"] for r in rows] == sorted(r["bits"] for r in rows)
+    assert len(rows) == 2 * len(codes) and [r["bits"] for r in rows] == sorted(r["bits"] for r in rows)
 
 
 @pytest.mark.usefixtures("rows_are_shared")
@@ -301,17 +301,17 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_bad_input_is_one_line_that_says_what_would_be_right(run, what, tmp_path, monkeypatch):
-    arguments, said = BAD[what]
+def test_bad_input_is_a_one_line_error_that_says_what_would_be_right(run, what, tmp_path, monkeypatch):
+    arguments, parts = BAD[what]
     monkeypatch.chdir(tmp_path)
     status, out, err = run("vectors", *arguments)
     assert status == 2 and out == ""
     assert err.count("\n") == 1 and err.startswith("normalbench: "), err
-    assert all(part in err for part in said), err
+    assert all(part in err for part in parts), err
     assert not list(tmp_path.iterdir()), "something was left behind"
 
 
-def test_without_a_gl_driver_the_jax_rows_are_there(run, monkeypatch):
+def test_jax_rows_are_measured_without_an_opengl_driver(run, monkeypatch):
     def no_device():
         raise NoDeviceError("no OpenGL 4.3 device: gone; install an OpenGL driver")
 
@@ -331,7 +331,7 @@ def test_without_a_gl_driver_the_jax_rows_are_there(run, monkeypatch):
         "json",
     ]
     status, out, err = run(*command)
-    rows = {found["backend"]: found for found in json.loads(out)}
+    rows = {row["backend"]: row for row in json.loads(out)}
     assert status == 0 and err.count("\n") == 1 and "install an OpenGL driver" in err
     assert rows["jax"]["error_mean_px"] < 1 and rows["glsl"]["error_mean_px"] is None
     status, _, err = run(*command, "--backend", "glsl")

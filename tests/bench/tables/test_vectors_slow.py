@@ -1,4 +1,4 @@
-"""`normalbench vectors`: errors that theory gives, what is lost, drift, what it prints, what it says of bad input."""
+"""`normalbench vectors`: errors that theory predicts, lost motion, drift, output, and messages for bad input."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -11,14 +11,14 @@ from normalbench.encodings.storages.storage import MOTION_STORAGES
 from normalbench.encodings.vec import Vec2
 
 
-def test_half_floats_that_are_cut_off_are_short_by_up_to_a_unit():
-    """Toward zero: no motion comes back longer, and points lag. The mean error is twice that of the nearest, since a
-    rectangle's points are twice as far from its corner, on average, as from its middle."""
+def test_truncated_half_floats_are_short_by_up_to_a_unit():
+    """Toward zero: no motion comes back longer, and points lag. The mean error is twice that of nearest, because a
+    rectangle's points are on average twice as far from its corner as from its middle."""
     motions = np.random.default_rng(5).uniform(-0.1, 0.1, (2, 2**14)).astype(np.float32)
     codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rg16f"], "truncate")
-    found = np.array(codec.round_trip(Vec2(*map(jnp.asarray, motions)), np.float32(1)))
+    decoded = np.array(codec.round_trip(Vec2(*map(jnp.asarray, motions)), np.float32(1)))
     unit = np.spacing(np.abs(motions).astype(np.float16)).astype(np.float32)
-    short = np.abs(motions) - np.abs(found)
+    short = np.abs(motions) - np.abs(decoded)
     assert (short >= 0).all() and (short < unit * 1.001).all()
     assert float((short / unit).mean()) == pytest.approx(0.5, abs=0.02)
     nearest, cut = (row("linear/rg16f", 16, rounding=rounding) for rounding in ("nearest", "truncate"))

@@ -1,4 +1,4 @@
-"""Verdicts of tables: ties, bit counts that gain nothing, names, and that every table of a run has one."""
+"""Verdicts of tables: ties, bit counts that gain nothing, names, and one verdict for every table of a run."""
 
 import pytest
 
@@ -21,25 +21,25 @@ ROWS = [
 ]
 
 
-def test_half_a_decibel_ties_and_more_bits_for_nothing_are_left_out():
+def test_half_a_decibel_ties_and_useless_extra_bits_are_left_out():
     names = [[tied["encoding"] for tied in group] for group in best_by_bits(ROWS, "error")]
     assert names == [["octahedral_precise", "octahedral"], ["octahedral"]]
 
 
 def test_a_sentence_names_each_bit_count_once():
-    said = by_bits(ROWS, "error", lambda row: f"{row['error']:.2g}°")
-    assert said == "16 bits: octahedral_precise or octahedral in rg8 (0.3°); 20 bits: octahedral in rgb10a2 (0.1°)"
+    text = by_bits(ROWS, "error", lambda row: f"{row['error']:.2g}°")
+    assert text == "16 bits: octahedral_precise or octahedral in rg8 (0.3°); 20 bits: octahedral in rgb10a2 (0.1°)"
 
 
 @pytest.mark.parametrize(
     ("names", "said"),
     [(["a"], "a"), (["a", "b", "a"], "a or b"), (["a", "b", "c"], "a, b or c"), ([*"abcd"], "a or 3 others that tie")],
 )
-def test_names_of_a_tie(names, said):
+def test_a_tie_lists_its_names(names, said):
     assert alternatives(names) == said
 
 
-def test_codecs_of_several_storages_each_name_theirs():
+def test_codecs_of_several_storages_each_name_their_storage():
     rows = [row("xyz", "rgba8", 24, 0.1), row("octahedral", "rg16", 32, 0.1) | {"rounding": "truncate"}]
     assert codecs(rows, listed) == "xyz in rgba8 and octahedral in rg16 (truncate)"
 
@@ -47,7 +47,7 @@ def test_codecs_of_several_storages_each_name_theirs():
 @pytest.mark.parametrize(
     "name", [name for name, table in TABLES.items() if table.in_all and table.group != Group.ANSWER]
 )
-def test_every_table_of_a_run_has_a_verdict_and_none_of_no_rows(name):
+def test_every_table_of_a_run_has_a_verdict_unless_it_has_no_rows(name):
     work = TABLES[name].work
     assert work.verdict.__name__ == "_verdict", f"{name} has no verdict, which run prints"
     assert list(work.verdict([])) == []

@@ -1,4 +1,4 @@
-"""The split sum's table against figures, and against sums over directions by the formulas as glTF 2.0 prints them."""
+"""The split-sum table against known figures, and against sums over directions by the formulas of glTF 2.0."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def correlated(n_l, n_v, a):
 
 
 def summed(n_v, roughness, visibility, side=1200):
-    """The integral over the directions of light, by the middle of `side` x `side` pieces of equal area."""
+    """Return scale and bias, summed over light directions at the centres of `side` x `side` cells of equal area."""
     a = roughness**2
     n_l, p = np.meshgrid((np.arange(side) + 0.5) / side, (np.arange(side) + 0.5) / side * np.pi, indexing="ij")
     v, light = (np.sqrt(1 - n_v**2), n_v), (np.sqrt(1 - n_l**2) * np.cos(p), n_l)
@@ -37,29 +37,29 @@ def summed(n_v, roughness, visibility, side=1200):
 
 
 @pytest.mark.parametrize("roughness", CORRELATED)
-def test_scale_and_bias_are_the_figures_known(roughness):
-    found = np.stack(dfg(np.array(N_V), np.array(roughness)), -1)
-    worst = np.abs(found - CORRELATED[roughness]).max()
-    assert worst < 2e-4, f"{worst}: {found}"
+def test_scale_and_bias_match_the_known_figures(roughness):
+    factors = np.stack(dfg(np.array(N_V), np.array(roughness)), -1)
+    worst = np.abs(factors - CORRELATED[roughness]).max()
+    assert worst < 2e-4, f"{worst}: {factors}"
 
 
 @pytest.mark.parametrize("roughness", [0.3, 0.5, 0.8, 1])
 @pytest.mark.parametrize("n_v", [1, 0.6, 0.1])
-def test_the_sum_over_directions_is_the_same(n_v, roughness):
+def test_scale_and_bias_match_a_sum_over_directions(n_v, roughness):
     direct = summed(n_v, roughness, correlated)
-    found = dfg(np.array(n_v), np.array(roughness))
-    assert np.abs(np.subtract(found, direct)).max() < 3e-4, f"{found} against {direct}"
+    factors = dfg(np.array(n_v), np.array(roughness))
+    assert np.abs(np.subtract(factors, direct)).max() < 3e-4, f"{factors} against {direct}"
 
 
-def test_a_mirror_has_fresnels_term_alone():
+def test_mirror_has_only_the_fresnel_term():
     n_v = np.linspace(0, 1, SIZE) ** 2
-    found = dfg_table()[0]
+    mirror = dfg_table()[0]
     expected = np.stack([1 - (1 - n_v) ** 5, (1 - n_v) ** 5], -1)
-    assert np.abs(found - expected).max() < 1e-5
+    assert np.abs(mirror - expected).max() < 1e-5
 
 
-def test_grazing_views_are_finite_and_lose_no_light_that_a_smooth_surface_keeps():
-    """At n.v = 0 every microfacet that is seen is seen edge on: a smooth one reflects all by Fresnel's term."""
+def test_grazing_views_are_finite_and_conserve_energy():
+    """At n.v = 0 every visible microfacet is edge-on: a smooth surface reflects all light by its Fresnel term."""
     table = dfg_table()
     assert np.isfinite(table).all() and table.min() >= 0
     assert np.abs(table[1, 0].sum() - 1) < 1e-3
@@ -67,7 +67,7 @@ def test_grazing_views_are_finite_and_lose_no_light_that_a_smooth_surface_keeps(
 
 
 def looked_up(table, n_v, roughness):
-    """Bilinearly in roughness and the root of n.v, with nodes at the corners."""
+    """Return values of the table, bilinear in roughness and the root of n.v, with nodes at the corners."""
     last = len(table) - 1
     x, y = np.sqrt(n_v) * last, roughness * last
     column, row = np.minimum(x.astype(int), last - 1), np.minimum(y.astype(int), last - 1)
@@ -77,7 +77,7 @@ def looked_up(table, n_v, roughness):
     return upper * (1 - v) + lower * v
 
 
-def test_a_look_up_between_nodes_is_the_integral():
+def test_lookup_between_nodes_matches_the_integral():
     """Half of the samples are where the table changes fastest."""
     rng = np.random.default_rng(4)
     n_v = np.concatenate([rng.uniform(0.01, 1, 2000), rng.uniform(0.01, 0.15, 2000)])

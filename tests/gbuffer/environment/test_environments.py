@@ -18,7 +18,7 @@ def environment(request):
     return ENVIRONMENTS[request.param].make()
 
 
-def test_texels_lie_in_the_directions_that_the_class_says():
+def test_texel_directions_follow_the_documented_layout():
     """The first row is up, the middle is -z, and to the right of it is +x."""
     towards = directions(64)
     assert towards.shape == (64, 128, 3)
@@ -30,12 +30,12 @@ def test_texels_lie_in_the_directions_that_the_class_says():
 
 
 @pytest.mark.parametrize("height", [8, 256])
-def test_solid_angles_make_the_sphere(height):
+def test_solid_angles_add_up_to_the_sphere(height):
     assert solid_angles(height).shape == (height, 1)
     assert solid_angles(height).sum() * 2 * height == pytest.approx(4 * np.pi, rel=1e-12)
 
 
-def test_it_is_a_picture_of_512_x_256_and_the_same_each_time(environment):
+def test_environment_is_512_x_256_and_reproducible(environment):
     again = ENVIRONMENTS[environment.name].make()
     assert environment.radiance.shape == (256, 512, 3) and environment.radiance.dtype == np.float32
     assert np.isfinite(environment.radiance).all() and environment.radiance.min() >= 0.02
@@ -44,7 +44,7 @@ def test_it_is_a_picture_of_512_x_256_and_the_same_each_time(environment):
         environment.radiance[0, 0] = 0
 
 
-def test_the_studio_has_no_sun_and_contrasts_of_hundreds():
+def test_the_studio_has_no_sun_and_a_contrast_of_hundreds():
     studio = ENVIRONMENTS["studio"].make()
     assert without_sun(studio) is studio
     assert 10 < studio.radiance.max() <= 20 and np.median(studio.radiance) < 0.1
@@ -52,7 +52,7 @@ def test_the_studio_has_no_sun_and_contrasts_of_hundreds():
 
 
 def test_the_studios_grid_is_fine_lines_with_soft_edges():
-    """Along a row of the wall towards +z, radiance rises and falls with each line, by many values."""
+    """Along a row of the wall towards +z, radiance rises and falls with each line, through many values."""
     studio = ENVIRONMENTS["studio"].make().radiance[..., 1]
     row = np.roll(studio, 256, axis=1)[124, 226:286]
     peaks = (row[1:-1] > row[:-2]) & (row[1:-1] >= row[2:]) & (row[1:-1] > 0.3)
@@ -60,8 +60,8 @@ def test_the_studios_grid_is_fine_lines_with_soft_edges():
     assert len(np.unique(row.round(3))) > 6
 
 
-def test_mirrors_of_the_scene_studio_show_the_room_that_they_stand_in():
-    """Below its floor, ahead its back wall, each of one light; above and behind what the environment has."""
+def test_mirrors_in_the_studio_scene_show_its_room():
+    """The floor is below and the back wall ahead, each of uniform light; the environment is above and behind."""
     scene, whole = SCENES["studio"].make(Setting()), ENVIRONMENTS["studio"].make().radiance
     assert scene.environment is not None
     seen, towards = scene.environment.radiance, directions(256)
@@ -74,14 +74,14 @@ def test_mirrors_of_the_scene_studio_show_the_room_that_they_stand_in():
     assert np.array_equal(seen[unseen], whole[unseen])
 
 
-def test_the_sun_of_the_sky_is_taken_out_whole():
+def test_the_sun_is_removed_from_the_sky_completely():
     sky = ENVIRONMENTS["sky"].make()
     assert sky.radiance.max() > 1e4
-    found = without_sun(sky)
-    towards, irradiance = np.negative(found.sun[0]), np.array(found.sun[1])
+    sunless = without_sun(sky)
+    towards, irradiance = np.negative(sunless.sun[0]), np.array(sunless.sun[1])
     assert np.degrees(np.arccos(towards @ SUN)) < 0.1
     assert irradiance == pytest.approx(SUN_IRRADIANCE, rel=0.02)
-    assert found.radiance.max() <= 30
+    assert sunless.radiance.max() <= 30
 
 
 def test_the_sky_is_brighter_than_the_ground():
@@ -90,7 +90,7 @@ def test_the_sky_is_brighter_than_the_ground():
 
 
 def test_a_texel_is_the_mean_over_its_area():
-    """Half of it lit is half the light, and each row is averaged by area."""
+    """A half-lit texel has half the light, and each row is averaged by area."""
     assert drawn(lambda towards: np.ones_like(towards), 8) == pytest.approx(np.ones((8, 16, 3)))
     half = drawn(lambda towards: (towards[..., :1] > 0) * np.ones(3), 8)
     assert half[:, 8:].min() == 1 and half[:, :8].max() == 0

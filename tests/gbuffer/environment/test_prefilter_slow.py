@@ -1,4 +1,4 @@
-"""Levels of roughness against the integral of radiance, D and n.l, by sums of another kind."""
+"""Levels of roughness against the integral of radiance, D and n.l, by independent sums."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from normalbench.gbuffer.environment.prefilter import prefiltered
 
 
 def by_shares(radiance, r, alpha, shares=3000, turns=600):
-    """Directions around r that stand for equal shares of D, each with the radiance of its texel."""
+    """Return the cosine-weighted mean radiance over directions around r that have equal shares of D."""
     u = ((np.arange(shares) + 0.5) / shares)[:, None]
     sine_squared = alpha**2 * u / (1 - u * (1 - alpha**2))  # of half the angle between r and l
     cosine = 1 - 2 * sine_squared
@@ -22,13 +22,13 @@ def by_shares(radiance, r, alpha, shares=3000, turns=600):
     height, width = radiance.shape[:2]
     row = np.arccos(np.clip(light[..., 1], -1, 1)) / np.pi * height
     column = (np.arctan2(light[..., 0], -light[..., 2]) / (2 * np.pi) + 0.5) * width
-    found = radiance[np.minimum(row.astype(int), height - 1), column.astype(int) % width]
-    weight = np.broadcast_to(np.maximum(cosine, 0), found.shape[:2])[..., None]
-    return (found * weight).sum((0, 1)) / weight.sum()
+    texels = radiance[np.minimum(row.astype(int), height - 1), column.astype(int) % width]
+    weight = np.broadcast_to(np.maximum(cosine, 0), texels.shape[:2])[..., None]
+    return (texels * weight).sum((0, 1)) / weight.sum()
 
 
 @pytest.mark.parametrize("roughness", [0.05, 0.1, 0.2])
-def test_near_the_poles_directions_that_share_the_lobe_see_the_same(roughness):
+def test_levels_near_the_poles_match_sampled_directions(roughness):
     radiance = np.minimum(picture(), 10)
     level = seen_through_lobe(radiance, roughness**2)
     for row, column in ((0, 23), (1, 40), (HEIGHT - 1, 5)):
@@ -37,7 +37,7 @@ def test_near_the_poles_directions_that_share_the_lobe_see_the_same(roughness):
 
 
 def test_the_two_sums_agree_where_one_takes_over():
-    """Within 1 %, on a picture of contrasts of a hundred between areas of four texels."""
+    """Both sums agree to 1% on an image with contrasts of a hundred between areas of 4 x 4 texels."""
     radiance = np.minimum(picture(16), 30).repeat(4, axis=0).repeat(4, axis=1)
     for roughness in (0.27, 0.275):
         level = seen_through_lobe(radiance, roughness**2)
@@ -50,6 +50,6 @@ def test_a_gradient_along_y_has_two_thirds_of_its_slope_in_the_irradiance():
     height = 64
     y = np.cos((np.arange(height) + 0.5) * np.pi / height)
     radiance = np.broadcast_to((1 + 0.5 * y)[:, None, None], (height, 2 * height, 3)).astype(np.float32)
-    found = prefiltered(Environment("gradient", radiance)).irradiance
-    n_y = np.cos((np.arange(len(found)) + 0.5) * np.pi / len(found))
-    assert np.abs(found - (1 + n_y / 3)[:, None, None]).max() < 2e-4
+    irradiance = prefiltered(Environment("gradient", radiance)).irradiance
+    n_y = np.cos((np.arange(len(irradiance)) + 0.5) * np.pi / len(irradiance))
+    assert np.abs(irradiance - (1 + n_y / 3)[:, None, None]).max() < 2e-4

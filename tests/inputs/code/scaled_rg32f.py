@@ -1,4 +1,4 @@
-"""By hand, for tests of the runners: a code with a view, a table, a sign and two words. Every step is exact."""
+"""A hand-written encoding with a view, a table, a sign and two words, for the runners' tests. Every step is exact."""
 
 import numpy as np
 

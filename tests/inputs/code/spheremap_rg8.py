@@ -1,4 +1,4 @@
-"""Spheremap in RG8, by hand: what tests of the runners run, and what the other languages are compared with."""
+"""Spheremap in RG8, written by hand: input for tests of the runners, and the reference for the other languages."""
 
 import numpy as np
 

@@ -1,1 +1,1 @@
-"""What the parity test gives to the two languages, and how it compares what they make of it: a module for each kind."""
+"""The parity test's inputs for the two languages, and its comparison of their results: a module for each kind."""

@@ -1,4 +1,4 @@
-"""What the two languages made of the same inputs, and how each kind of encoding is compared."""
+"""The results of the two languages for the same inputs, and the comparison of each kind of encoding."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ ULP = 2.0**-23
 
 @dataclass(frozen=True, repr=False)
 class Comparison:
-    """What the two languages made of the same inputs.
+    """The results of the two languages for the same inputs.
 
     Attributes:
         what: the function or the codec.
         given, by_jax, by_gl: a row for each input.
         apart: how far apart the results are, in the kind's units; float64 of shape (count,).
-        allowed: the most units.
-        reason: why it is that many.
-        same: which results are the same, of shape (count,); without it those that are no more than `allowed` apart.
-        share: the least share of results that are the same.
-        details: what else to say of each input, by name.
+        allowed: maximum number of units.
+        reason: reason for this maximum.
+        same: which results are the same, of shape (count,); by default those at most `allowed` apart.
+        share: minimum share of results that are the same.
+        details: other values of each input to report, by name.
     """
 
     what: str
@@ -57,18 +57,18 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Parity:
-    """How encodings of a kind are compared.
+    """The comparison of encodings of a kind.
 
     Attributes:
         compared: (device, case) -> encoder and decoder before storage.
-        cases: what an encoding is compared as; itself, or itself with each camera or format. A swap of two arguments
-            is tried in the first case.
-        guarded: (device, case) -> the encoder of inputs that mean nothing, such as NaN; None where the kind has none.
-        codecs: what the quick test compares after storage.
-        more_codecs: what the slow test compares, those of `codecs` aside.
+        cases: cases of an encoding: the encoding itself, or with each camera or format. A swap of two arguments is
+            tried in the first case.
+        guarded: (device, case) -> the encoder of invalid inputs, such as NaN; None if the kind has no such test.
+        codecs: codecs that the quick test compares after storage.
+        more_codecs: other codecs, which the slow test compares.
         stored: (device, codec, whether the slow test asks) -> codes after storage.
-        shared: by encoding, files of functions that several share, or FILE:FUNCTION, whose swaps that encoding notices.
-        same: swaps of two arguments that make no other function.
+        shared: by encoding, files of shared functions, or FILE:FUNCTION, whose swaps that encoding notices.
+        same: swaps of two arguments that leave the function the same.
     """
 
     compared: Callable[[Any, Any], list[Comparison]]
@@ -82,27 +82,27 @@ class Parity:
 
 
 def planes(kind, array: np.ndarray):
-    """Rows of an array as a Vec2, Vec3 or Vec4 of JAX."""
+    """Return rows of an array as a Vec2, Vec3 or Vec4 of JAX."""
     return kind(*(jnp.asarray(np.ascontiguousarray(c)) for c in array.T))
 
 
 def rows(planes) -> np.ndarray:
-    """Vectors of JAX as an array with a row for each."""
+    """Return vectors of JAX as an array with a row for each."""
     return np.stack([np.asarray(c) for c in planes], axis=1)
 
 
 def widened(array: np.ndarray) -> np.ndarray:
-    """Rows of four numbers, as buffers of GLSL have them."""
+    """Return rows of four numbers, as in buffers of GLSL."""
     return np.concatenate([array, np.zeros((len(array), 4 - array.shape[1]), np.float32)], axis=1)
 
 
 def in_ulps(one: np.ndarray, other: np.ndarray, of: float | np.ndarray = 1.0) -> np.ndarray:
-    """The largest difference of each row, in 2^-23 of `of`; infinite where the other is not finite."""
+    """Return the largest difference of each row, in 2^-23 of `of`; infinite where `other` is not finite."""
     apart = np.abs(one.astype(np.float64) - other).max(axis=1) / of / ULP
     return np.where(np.isfinite(other).all(axis=1), apart, np.inf)
 
 
 def is_finite(what: str, given: np.ndarray, by_jax: np.ndarray, by_gl: np.ndarray) -> Comparison:
-    """Whether results are numbers, in both languages."""
+    """Compare whether results are finite in both languages."""
     finite = np.isfinite(by_jax).all(axis=1) & np.isfinite(by_gl).all(axis=1)
     return Comparison(what, given, by_jax, by_gl, np.where(finite, 0.0, np.inf), 0.0, "all are finite")

@@ -1,4 +1,4 @@
-"""Curves: every magnitude up to the range, the range's ends, 0, and what lies around a curve's knee."""
+"""Curves: every magnitude up to the range, the range's ends, 0, and values around a curve's knee."""
 
 from functools import cache
 
@@ -14,7 +14,7 @@ from .comparison import ULP, Comparison, Parity, in_ulps
 
 
 def range_of(encoding: CurveEncoding) -> float:
-    """Neither 1 nor a power of two, so that a range that is forgotten or exchanged is seen."""
+    """Return a range other than 1 or a power of two, so that a forgotten or exchanged range is noticed."""
     return 0.3 * encoding.usual_range
 
 
@@ -23,7 +23,8 @@ CODECS = [CurveCodec(e, s, range_of(e)) for e in CURVE_ENCODINGS.values() for s 
 
 @cache
 def shares() -> np.ndarray:
-    """Numbers from 0 to 1: both ends, every magnitude down to 2^-60, around the knee of sRGB, evenly spread ones."""
+    """Return numbers from 0 to 1: both ends, every magnitude down to 2^-60, around the knee of sRGB, evenly spread
+    and random numbers."""
     rng = np.random.default_rng(0)
     knee = 0.0031308 + np.linspace(-1e-4, 1e-4, 256)
     line = np.concatenate([[0.0, 1.0], 2.0 ** -np.arange(0, 61), knee, knee * 12.92, np.linspace(0, 1, 4096)])
@@ -31,42 +32,42 @@ def shares() -> np.ndarray:
 
 
 def quantities(encoding: CurveEncoding) -> np.ndarray:
-    """From 0 to the range."""
+    """Return quantities from 0 to the range."""
     largest = np.float32(range_of(encoding))
     return np.minimum(shares() * largest, largest)
 
 
 @cache
 def expected(encoding: CurveEncoding) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers of quantities and quantities of numbers by JAX."""
+    """Return the numbers of quantities and the quantities of numbers by JAX."""
     largest = np.float32(range_of(encoding))
-    found = jax.jit(encoding.encode)(quantities(encoding), largest), jax.jit(encoding.decode)(shares(), largest)
-    return np.asarray(found[0]), np.asarray(found[1])
+    by_jax = jax.jit(encoding.encode)(quantities(encoding), largest), jax.jit(encoding.decode)(shares(), largest)
+    return np.asarray(by_jax[0]), np.asarray(by_jax[1])
 
 
 def compared(gl, encoding: CurveEncoding) -> list[Comparison]:
-    """Numbers in 2^-23, quantities in 2^-23 of the range."""
+    """Compare numbers in 2^-23, and quantities in 2^-23 of the range."""
     largest, x = range_of(encoding), quantities(encoding)
     numbers, back = expected(encoding)
-    found = exact_curves(gl, encoding, largest, np.stack([x, x, shares(), shares()], axis=1))
+    by_gl = exact_curves(gl, encoding, largest, np.stack([x, x, shares(), shares()], axis=1))
     name, ulps, reason = encoding.name, encoding.ulps, encoding.ulps_reason
-    encode = in_ulps(numbers[:, None], found[:, :1])
-    decode = in_ulps(back[:, None], found[:, 2:3], largest)
+    encode = in_ulps(numbers[:, None], by_gl[:, :1])
+    decode = in_ulps(back[:, None], by_gl[:, 2:3], largest)
     return [
-        Comparison(f"{name}_encode", x, numbers, found[:, 0], encode, ulps[0], reason),
-        Comparison(f"{name}_decode", shares(), back, found[:, 2], decode, ulps[1], reason),
+        Comparison(f"{name}_encode", x, numbers, by_gl[:, 0], encode, ulps[0], reason),
+        Comparison(f"{name}_decode", shares(), back, by_gl[:, 2], decode, ulps[1], reason),
     ]
 
 
 def stored(gl, codec: CurveCodec, _: bool) -> list[Comparison]:
-    """99.5 % come back as they do by JAX, and the largest error is the same to a hundredth."""
+    """Compare round trips: 99.5% give the same as JAX, and the largest error agrees to 1%."""
     given = quantities(codec.encoding)[:8448]
     by_jax = np.asarray(jax.jit(codec.round_trip)(given))
     with CurvePasses(gl, codec) as passes:
         by_gl = passes.round_trip(np.stack([given, 0 * given], axis=1).reshape(-1, 256, 2)).ravel()
     apart = np.abs(by_jax.astype(np.float64) - by_gl)
     same = apart <= ULP * codec.range * codec.encoding.ulps[1] * 2
-    errors = [np.abs(found.astype(np.float64) - given).max(keepdims=True) for found in (by_jax, by_gl)]
+    errors = [np.abs(back.astype(np.float64) - given).max(keepdims=True) for back in (by_jax, by_gl)]
     off = np.abs(errors[0] - errors[1]) / np.maximum(0.01 * errors[1], 8 * ULP * codec.range)
     return [
         Comparison(codec.name, given, by_jax, by_gl, apart / (ULP * codec.range), np.inf, same=same, share=0.995),

@@ -1,4 +1,4 @@
-"""Codes of depth: both planes and what is near them and beyond, compared with each other and with the exact maps."""
+"""Depth encodings: both planes and values near and beyond them, compared with each other and with the exact maps."""
 
 from functools import cache
 from typing import NamedTuple
@@ -37,8 +37,8 @@ class Case(NamedTuple):
 
 
 def hard_depths(camera: Camera, is_signed: bool, count: int = 2**14) -> np.ndarray:
-    """Both planes and three ulps around each, every power of two between, random depths spread evenly by their
-    logarithm, and what is beyond; every second one under the other sign where there is one; float32."""
+    """Return both planes with three ulps around each, every power of two between, random depths with evenly spread
+    logarithms, and depths beyond the planes; with signs, every second depth is negative; float32."""
     powers = 2.0 ** np.arange(np.ceil(np.log2(camera.near)), np.log2(camera.far))
     random = np.exp(np.random.default_rng(0).uniform(np.log(camera.near), np.log(camera.far), count))
     beyond = np.repeat([2 * camera.far, 100 * camera.far], 2)
@@ -47,7 +47,7 @@ def hard_depths(camera: Camera, is_signed: bool, count: int = 2**14) -> np.ndarr
 
 
 def hard_numbers(is_signed: bool, count: int) -> np.ndarray:
-    """0, 1, halves and quarters, the least steps of each storage from both ends, and random numbers; float32."""
+    """Return 0, 1, a half, a quarter, the smallest steps of each storage from both ends, random numbers; float32."""
     steps = np.array([1 / storage.scale for storage in DEPTH_STORAGES.values()] + [2.0**-24])
     chosen = np.concatenate([[0, 0.25, 0.5, 1], steps, 1 - steps, np.random.default_rng(1).uniform(0, 1, count)])
     return alternating(np.resize(chosen, count).astype(np.float32), is_signed)
@@ -58,8 +58,8 @@ def alternating(numbers: np.ndarray, is_signed: bool) -> np.ndarray:
 
 
 def exact_and_units(function, inputs: np.ndarray, camera: Camera):
-    """The exact map of inputs, in float64, and for each what a unit is: 2^-23 of the result and what 2^-23 of the input
-    moves the result by."""
+    """Return the exact map of inputs in float64, and for each a unit: 2^-23 of the result plus the change of the
+    result for 2^-23 of the input."""
     with jax.enable_x64(True):
         wide = jnp.asarray(inputs, jnp.float64)
         near, far = (jnp.float64(np.float32(plane)) for plane in (camera.near, camera.far))
@@ -70,7 +70,7 @@ def exact_and_units(function, inputs: np.ndarray, camera: Camera):
 
 @cache
 def expected(case: Case):
-    """Points for a shader, and what encoder and decoder make of them by JAX and exactly."""
+    """Return points for a shader, and the results of encoder and decoder, by JAX and exactly."""
     encoding, camera = case
     depths = hard_depths(camera, encoding.signed)
     numbers = hard_numbers(encoding.signed, len(depths))
@@ -90,15 +90,15 @@ def expected(case: Case):
 
 
 def compared(gl, case: Case) -> list[Comparison]:
-    """Encoder and decoder; positions too where the number is a depth buffer's."""
+    """Compare encoder and decoder, and also positions if the number is that of a depth buffer."""
     points, by_jax, exact = expected(case)
     values, *positions = exact_values(gl, case.encoding, case.camera, points)
-    found = [one_side(case, side, points[:, 2 + side], by_jax[side], values[:, side], *exact[side]) for side in (0, 1)]
-    return found + (positions_compared(case, points, positions) if case.encoding.projection else [])
+    sides = [one_side(case, side, points[:, 2 + side], by_jax[side], values[:, side], *exact[side]) for side in (0, 1)]
+    return sides + (positions_compared(case, points, positions) if case.encoding.projection else [])
 
 
 def one_side(case: Case, side: int, given, by_jax, by_gl, exact, units) -> Comparison:
-    """The most units that either language is from the exact map, and one from the other."""
+    """Compare in units the distance of either language from the exact map, and from each other."""
     with np.errstate(invalid="ignore"):
         off = [abs(by_gl - exact), abs(by_jax - exact), abs(by_gl.astype(np.float64) - by_jax)]
         apart = np.max(off, axis=0) / np.maximum(units, 2.0**-126)
@@ -111,17 +111,17 @@ def one_side(case: Case, side: int, given, by_jax, by_gl, exact, units) -> Compa
 
 def positions_by_jax(case: Case, points: np.ndarray) -> list[np.ndarray]:
     seen, place = case.camera.seen(case.encoding.projection), planes(Vec2, points[:, :2])
-    found = (
+    positions = (
         position_from_window_depth(place, jnp.asarray(points[:, 3]), seen.clip, seen.clip_to_view),
         position_from_projection_terms(place, jnp.asarray(points[:, 3]), seen.clip, seen.terms, seen.rays),
         position_from_linear_depth(place, jnp.asarray(points[:, 2]), seen.rays),
     )
-    return [rows(position) for position in found]
+    return [rows(position) for position in positions]
 
 
 def positions_compared(case: Case, points: np.ndarray, by_gl) -> list[Comparison]:
-    """Positions by the inverse projection, its two terms and the ray, in units in the last place of the position, and
-    for the projection times how far its sum cancels."""
+    """Compare positions by the inverse projection, its two terms and the ray, in units in the last place of the
+    position, for the projection times the cancellation of its sum."""
     encoding, camera = case
     row, (scale, offset) = camera.clip_to_view(encoding.projection)[3], encoding.projection.clip
     ndc = scale * points[:, 3].astype(np.float64) + offset
@@ -129,19 +129,20 @@ def positions_compared(case: Case, points: np.ndarray, by_gl) -> list[Comparison
     cancels = [(abs(a) + abs(b)) / np.maximum(abs(a + b), 1e-300) for a, b in sums] + [np.ones(len(ndc))]
     names = ("inverse projection", "projection terms", "eye ray")
     ways = zip(names, positions_by_jax(case, points), by_gl, cancels, strict=True)
-    found = []
+    comparisons = []
     for (what, ours, theirs, times), allowed in zip(ways, POSITION_ULPS, strict=True):
         with np.errstate(invalid="ignore"):
             off = np.linalg.norm(ours.astype(np.float64) - theirs, axis=1) / np.linalg.norm(ours, axis=1) / times / ULP
         # Where the sum cancels to nothing that float32 keeps, neither language says anything.
         off = np.where(times * POSITION_ULPS[0] * ULP < 0.5, np.where(np.isfinite(off), off, np.inf), 0)
-        found.append(Comparison(f"{encoding.name} by {what}", points, ours, theirs, off, allowed))
-    return found
+        comparisons.append(Comparison(f"{encoding.name} by {what}", points, ours, theirs, off, allowed))
+    return comparisons
 
 
 def hard_codes(storage) -> np.ndarray:
-    """Numbers of [0, 1]: of 16 bits every code and every tie, of 24 those around each carry and random ones, with their
-    neighbours; of floats random ones of every exponent, and each half float with the tie behind it."""
+    """Return numbers in [0, 1] with their neighbours. For 16 bits: every code and every tie; for 24: those around
+    each carry and random ones; for floats: random numbers of every exponent, and each half float with the tie after
+    it."""
     random = np.random.default_rng(3)
     if storage.format.kind == "float":
         halves = np.arange(2**16, dtype=np.uint16).view(np.float16).astype(np.float32)
@@ -172,14 +173,14 @@ def numbers_by_jax(codec: DepthCodec, camera: Camera, depths: np.ndarray) -> np.
 
 def same_bits(what: str, given, by_jax, by_gl) -> Comparison:
     # Either side may flush what is below the smallest normal float32, and does or does not by what ran before.
-    one, other = (np.where(np.abs(a) < 2.0**-126, np.copysign(np.float32(0), a), a) for a in (by_jax, by_gl))
-    different = one.view(np.uint32) != other.view(np.uint32)
+    ours, other = (np.where(np.abs(a) < 2.0**-126, np.copysign(np.float32(0), a), a) for a in (by_jax, by_gl))
+    different = ours.view(np.uint32) != other.view(np.uint32)
     return Comparison(what, given, by_jax, by_gl, np.where(different, np.inf, 0.0), 0.0, "bit for bit")
 
 
 def handed_on(gl, codec: DepthCodec, given, by_jax, by_gl) -> Comparison:
-    """Numbers that a storage was given as they are: bit for bit in software. What a GPU holds is the nearest whole
-    number, of two that are as near either one, and comes back to two units in the last place."""
+    """Compare numbers that a storage keeps unchanged: bit for bit in software. A GPU stores the nearest whole number,
+    either one in a tie, and returns it to two units in the last place."""
     if gl.is_software or codec.storage.format.kind == "float":
         return same_bits(codec.name, given, by_jax, by_gl)
     step, exact = step_of(codec, by_jax), np.clip(abs(given.astype(np.float64)), 0, 1)
@@ -188,8 +189,9 @@ def handed_on(gl, codec: DepthCodec, given, by_jax, by_gl) -> Comparison:
 
 
 def stored(gl, codec: DepthCodec, is_slow: bool) -> list[Comparison]:
-    """Codes of 16 bits are the same of 99.9 % of the hard depths (99.8 % by a GPU's quotients), and nowhere more than a
-    step apart; the slow test compares numbers that linear depth at a far plane of 1 hands on as they are."""
+    """Compare codes of 16 bits: 99.9% of the hard depths have the same code (99.8% with a GPU's quotients), and no
+    two are more than a step apart. The slow test compares numbers that linear depth with a far plane of 1 keeps
+    unchanged."""
     if is_slow:
         depths = hard_codes(codec.storage)
         depths = np.concatenate([depths, -depths]) if codec.encoding.signed else depths
@@ -202,12 +204,12 @@ def stored(gl, codec: DepthCodec, is_slow: bool) -> list[Comparison]:
 
 
 def both(gl):
-    """The numbers by JAX and by GLSL, of codec, camera and depths."""
+    """Return the functions that give the numbers of a codec, a camera and depths, by JAX and by GLSL."""
     return numbers_by_jax, lambda *asked: numbers_by_gl(gl, *asked)
 
 
 def step_of(codec: DepthCodec, numbers: np.ndarray):
-    """The distance between neighbouring codes of 16 bits."""
+    """Return the distance between neighbouring codes of 16 bits."""
     if codec.storage.format.kind == "float":
         return np.spacing(abs(numbers).astype(np.float16)).astype(np.float64)
     return 1 / (codec.storage.scale // 2 if codec.encoding.signed else codec.storage.scale)

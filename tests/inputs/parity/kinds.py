@@ -1,4 +1,4 @@
-"""How each kind of encoding is compared in the two languages."""
+"""The comparison of each kind of encoding in the two languages."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Codes of light: from below what a float holds to beyond what a half does, and steps of exponents and multipliers."""
+"""Light encodings: values from below the range of floats to beyond halves, and steps of exponents and multipliers."""
 
 import itertools
 from functools import cache
@@ -25,8 +25,9 @@ def planes(array: np.ndarray) -> Vec4:
 
 
 def lights(count: int = 2**15) -> np.ndarray:
-    """Light from below what a float holds to beyond what a half does, special numbers in every channel, and numbers at
-    and beside powers of two, shared exponents' ties and the steps of RGBM's multiplier; float32 (count, 4)."""
+    """Return light from below the range of floats to above that of halves, special numbers in every channel, and
+    numbers at and next to powers of two, shared exponents' ties and the steps of RGBM's multiplier; float32 (count,
+    4)."""
     rng = np.random.default_rng(0)
     wide = np.exp2(rng.uniform(-150, 127, (count, 1)) * rng.uniform(0, 1, (count, 1)) + rng.uniform(-9, 0, (count, 4)))
     edges = np.concatenate([2.0 ** np.arange(-26, 17), 511.5 * 2.0 ** np.arange(-24, 7), np.arange(256) * 6 / 255])
@@ -40,7 +41,7 @@ def lights(count: int = 2**15) -> np.ndarray:
 
 
 def given_texels(encoding, texels: np.ndarray) -> np.ndarray:
-    """Texels to decode, as the format gives them back: any bytes, or floats that were stored."""
+    """Return texels to decode, as the format returns them: any bytes, or floats that were stored."""
     if encoding.storage.kind == "float":
         return texels
     channels = range(encoding.storage.channels)
@@ -62,7 +63,7 @@ def decoded(codec: LightCodec, texels: np.ndarray) -> np.ndarray:
 
 @cache
 def expected(codec: LightCodec):
-    """Light, its texels, texels to decode, and the light of both, by JAX."""
+    """Return light, its texels, texels to decode, and the light of both, by JAX."""
     light = lights()
     texels = rows(jax.jit(lambda light: codec.encode(light_or_none(light)))(planes(light)))
     given = given_texels(codec, texels)
@@ -70,16 +71,16 @@ def expected(codec: LightCodec):
 
 
 def apart(one: np.ndarray, other: np.ndarray, least: float = 2.0**-100) -> np.ndarray:
-    """How far light is apart, in units in the last place of the brightest channel. What is below 2^-126 may be 0 in
-    either language."""
+    """Return how far light is apart, in units in the last place of the brightest channel. Differences below 2^-126
+    count as 0, because either language may flush them."""
     difference = np.abs(one.astype(np.float64) - other).max(axis=1)
     ulps = np.where(difference < 2.0**-126, 0, difference) / np.maximum(np.abs(one).max(axis=1), least) / ULP
     return np.where(np.all(np.isfinite(other), axis=1), ulps, np.inf)
 
 
 def compared(gl, codec: LightCodec) -> list[Comparison]:
-    """Texels of an encoder agree if they are near each other, or stand for light that is: beside a step of a shared
-    multiplier or exponent two codes far apart do."""
+    """Compare an encoder's texels, which agree if they or their light are near: next to a step of a shared multiplier
+    or exponent, codes far apart stand for similar light."""
     light, texels, given, light_of_given, light_of_texels = expected(codec)
     gl_texels, gl_light = exact_light(gl, codec, light, given)
     encode = np.minimum(apart(texels, gl_texels, 1.0), apart(light_of_texels, decoded(codec, gl_texels)))
@@ -93,7 +94,7 @@ def compared(gl, codec: LightCodec) -> list[Comparison]:
 
 
 def guarded(gl, codec: LightCodec) -> list[Comparison]:
-    """Denormals, infinities, NaN and negative light; what their texels stand for is finite as well."""
+    """Compare denormals, infinities, NaN and negative light; their texels must also decode to finite light."""
     light, texels, _, _, light_of_texels = expected(codec)
     gl_texels, gl_light = exact_light(gl, codec, light, texels)
     return [
@@ -103,8 +104,8 @@ def guarded(gl, codec: LightCodec) -> list[Comparison]:
 
 
 def stored(gl, codec: LightCodec, _: bool) -> list[Comparison]:
-    """One light in an empty buffer: the same texel of 99.9 % of 2^14 lights, and nowhere more than a step apart. Where
-    the device converts to a format in a way of its own, which it may for sRGB, less than a step and a half."""
+    """Compare a single light in an empty buffer: 99.9% of 2^14 lights give the same texel, and none is more than a
+    step off. The limit is 1.5 steps if the device converts to a format in its own way, which sRGB allows."""
     rng, count = np.random.default_rng(0), 2**14
     light = rng.uniform(0, 1, (count, 1)) * rng.uniform(0, 1, (count, 4)) * min(codec.limit, 64)
     light = light.astype(np.float32)

@@ -1,4 +1,4 @@
-"""Codes of motion: every magnitude up to the range, the range's ends, both zeros, and motions beyond it."""
+"""Motion encodings: every magnitude up to the range, the range's ends, both zeros, and motions beyond the range."""
 
 from functools import cache
 
@@ -22,7 +22,8 @@ MOVING, STILL, BEYOND = slice(0, 16384), slice(16384, 16640), slice(16640, 16896
 
 @cache
 def motions() -> np.ndarray:
-    """Motions up to the range: both zeros, its ends, every magnitude down to 2^-40 of it, and random ones."""
+    """Return motions up to the range: both zeros, both ends, every magnitude down to 2^-40 of the range, random
+    ones."""
     rng = np.random.default_rng(0)
     powers = RANGE * 2.0 ** -np.arange(0, 41)
     line = np.concatenate([[0.0, -0.0], powers, -powers])
@@ -34,7 +35,7 @@ def motions() -> np.ndarray:
 
 @cache
 def expected(encoding: MotionEncoding) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Codes of the motions by JAX; codes to decode, and what JAX makes of them."""
+    """Return codes of the motions by JAX, codes to decode, and the motions that JAX decodes."""
     largest = np.float32(RANGE)
     codes = rows(jax.jit(encoding.encode)(planes(Vec2, motions()), largest))
     given = np.random.default_rng(1).permutation(codes.ravel()).reshape(-1, 2)
@@ -42,20 +43,20 @@ def expected(encoding: MotionEncoding) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def compared(gl, encoding: MotionEncoding) -> list[Comparison]:
-    """Codes in 2^-23, motions in 2^-23 of the range."""
+    """Compare codes in 2^-23, and motions in 2^-23 of the range."""
     codes, given, decoded = expected(encoding)
-    found = exact_motions(gl, encoding, RANGE, np.concatenate([motions(), given], axis=1))
+    by_gl = exact_motions(gl, encoding, RANGE, np.concatenate([motions(), given], axis=1))
     name, ulps, reason = encoding.name, encoding.ulps, encoding.ulps_reason
-    encode, decode = in_ulps(codes, found[:, :2]), in_ulps(decoded, found[:, 2:], RANGE)
+    encode, decode = in_ulps(codes, by_gl[:, :2]), in_ulps(decoded, by_gl[:, 2:], RANGE)
     return [
-        Comparison(f"{name}_encode", motions(), codes, found[:, :2], encode, ulps[0], reason),
-        Comparison(f"{name}_decode", given, decoded, found[:, 2:], decode, ulps[1], reason),
+        Comparison(f"{name}_encode", motions(), codes, by_gl[:, :2], encode, ulps[0], reason),
+        Comparison(f"{name}_decode", given, decoded, by_gl[:, 2:], decode, ulps[1], reason),
     ]
 
 
 @cache
 def pixels() -> np.ndarray:
-    """What goes through a codec; see MOVING, STILL and BEYOND."""
+    """Return the motions that go through a codec; see MOVING, STILL and BEYOND."""
     beyond = np.tile(np.float32([[2 * RANGE, -2 * RANGE]]), (256, 1))
     return np.concatenate([motions()[-MOVING.stop :], np.zeros((256, 2), np.float32), beyond])
 
@@ -72,12 +73,12 @@ def through_gl(gl, codec: MotionCodec) -> np.ndarray:
 
 
 def stored(gl, codec: MotionCodec, _: bool) -> list[Comparison]:
-    """99.5 % come back as they do by JAX, and the largest error of each number is the same to a hundredth."""
-    given, by_jax, by_gl = (found[MOVING] for found in (pixels(), through_jax(codec), through_gl(gl, codec)))
+    """Compare round trips: 99.5% give the same as JAX, and each component's largest error agrees to 1%."""
+    given, by_jax, by_gl = (vectors[MOVING] for vectors in (pixels(), through_jax(codec), through_gl(gl, codec)))
     apart = np.abs(by_jax.astype(np.float64) - by_gl).max(axis=1)
     same = apart <= ULP * RANGE * codec.encoding.ulps[1] * 2
     # One row for each number, in shares of what is allowed.
-    errors = [np.abs(found.astype(np.float64) - given).max(axis=0) for found in (by_jax, by_gl)]
+    errors = [np.abs(back.astype(np.float64) - given).max(axis=0) for back in (by_jax, by_gl)]
     off = np.abs(errors[0] - errors[1]) / np.maximum(0.01 * errors[1], 4 * ULP)
     return [
         Comparison(codec.name, given, by_jax, by_gl, apart / (ULP * RANGE), np.inf, same=same, share=0.995),

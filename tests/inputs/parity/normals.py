@@ -1,4 +1,4 @@
-"""Codes of normals: hard directions and random ones, compared in units that the condition of the map excuses."""
+"""Normal encodings: hard directions and random ones, compared in units scaled by the condition of the map."""
 
 import itertools
 from functools import cache
@@ -38,7 +38,7 @@ def codes_by_jax(encoding: Encoding, n: np.ndarray, view: np.ndarray) -> np.ndar
 
 
 def given_codes(encoding: Encoding, codes: np.ndarray) -> np.ndarray:
-    """Codes to decode: those of the directions, the first replaced by corners, edges and centre of the code space."""
+    """Return the directions' codes, the first of them replaced by corners, edges and centre of the code space."""
     corners = np.array(list(itertools.product((-1.0, 0.0, 0.5, 1.0), repeat=codes.shape[1])), np.float32)
     if encoding.sign_bits:
         corners[:, -1] = np.where(corners[:, -1] > 0, 1, -1)
@@ -48,9 +48,9 @@ def given_codes(encoding: Encoding, codes: np.ndarray) -> np.ndarray:
 
 
 def condition(function, inputs: np.ndarray) -> np.ndarray:
-    """How many units the exact map's result moves for a unit of its input: 1 to 4096, by differences in float64.
+    """Return how many units the exact map's result moves per unit of its input: 1 to 4096, by differences in float64.
 
-    Where a root cancels, at a horizon or a rim, two right float32 results lie that far apart.
+    Where a root cancels, at a horizon or a rim, two correct float32 results may be that far apart.
     """
     with jax.enable_x64(True):
 
@@ -70,7 +70,7 @@ def condition(function, inputs: np.ndarray) -> np.ndarray:
 
 @cache
 def expected(encoding: Encoding):
-    """Inputs, what JAX makes of them, and the conditions there; the same for every mutant of the GLSL."""
+    """Return inputs, their results by JAX and the conditions there, the same for every mutant of the GLSL."""
     n = np.concatenate([hard_directions(), random_directions(2**16)])
     view = view_positions(len(n))
     codes = codes_by_jax(encoding, n, view)
@@ -85,7 +85,7 @@ def expected(encoding: Encoding):
 
 
 def misses(encoding: Encoding, n: np.ndarray, codes: np.ndarray, view: np.ndarray) -> np.ndarray:
-    """How far each direction is from what its code decodes to, in float64; of shape (count, 1)."""
+    """Return how far each direction is from its decoded code, in float64; shape (count, 1)."""
     with jax.enable_x64(True):
         given = vector([jnp.asarray(c, jnp.float64) for c in codes.T])
         decoded = jax.jit(encoding.decode)(given, vec.Vec3(*jnp.asarray(view.T, jnp.float64)))
@@ -93,8 +93,7 @@ def misses(encoding: Encoding, n: np.ndarray, codes: np.ndarray, view: np.ndarra
 
 
 def one_side(encoding: Encoding, side: int, given, by_jax, by_gl, conditions) -> Comparison:
-    """Apart in units in the last place (of 1, or of the value where it is larger), less what the map's condition
-    excuses."""
+    """Compare in units in the last place (of 1, or of the value if it is larger), divided by the map's condition."""
     ulps = np.abs(by_jax.astype(np.float64) - by_gl) / np.maximum(1.0, np.abs(by_jax)) / ULP
     apart = np.where(np.isfinite(ulps), ulps, np.inf).max(axis=1) / conditions
     what, details = f"{encoding.name}_{('encode', 'decode')[side]}", {"condition": conditions}
@@ -109,7 +108,7 @@ def compared(gl, encoding: Encoding) -> list[Comparison]:
     gl_codes = gl_codes[:, : codes.shape[1]]
     if encoding.searches:
         # Where two codes are as near, the languages may differ in which, but not in how near it is.
-        codes, gl_codes = (misses(encoding, n, found, view) for found in (codes, gl_codes))
+        codes, gl_codes = (misses(encoding, n, code, view) for code in (codes, gl_codes))
         encode_condition = np.ones(len(n))
     return [
         one_side(encoding, 0, n, codes, gl_codes, encode_condition),
@@ -118,7 +117,7 @@ def compared(gl, encoding: Encoding) -> list[Comparison]:
 
 
 def guarded(gl, encoding: Encoding) -> list[Comparison]:
-    """Zero, NaN and infinite vectors have the code of (0, 0, 1)."""
+    """Check that zero, NaN and infinite vectors have the code of (0, 0, 1)."""
     n = np.concatenate([NOT_DIRECTIONS, [[0, 0, 1]]]).astype(np.float32)
     view = np.broadcast_to(np.float32([0.3, -0.2, -1.0]), n.shape)
     by_jax = codes_by_jax(encoding, n, view)
@@ -130,8 +129,8 @@ def guarded(gl, encoding: Encoding) -> list[Comparison]:
 
 
 def step_of(codec: Codec, component: int, values: np.ndarray):
-    """The distance between neighbouring codes. Half floats are finer near zero than the languages agree before storage:
-    there the step is what the encoding says they may differ by."""
+    """Return the distance between neighbouring codes. Near zero, half floats are finer than the languages' agreement
+    before storage: there the step is the difference that the encoding allows."""
     storage, levels = codec.storage, codec.encoding.levels_of(component)
     if levels:
         return 2 / (levels - 1)
@@ -145,11 +144,11 @@ def step_of(codec: Codec, component: int, values: np.ndarray):
 
 
 def stored(gl, codec: Codec, is_slow: bool) -> list[Comparison]:
-    """Codes of 2^16 directions, or 2^18, equal for 99.9 % at up to 12 bits, for 97 % at 16, nowhere more than a step
-    apart.
+    """Compare codes of 2^16 directions, or 2^18: 99.9% are equal at up to 12 bits, 97% at 16, and no two are more
+    than a step apart.
 
-    Where precise rounding takes another code that one must be as good; an encoder that searches is held to that before
-    storage.
+    If precise rounding chooses another code, that code must be as good; an encoder that searches is tested for this
+    before storage.
     """
     encoding, side = codec.encoding, 512 if is_slow else 256
     n, view = random_directions(side**2), view_positions(side**2)

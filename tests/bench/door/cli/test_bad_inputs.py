@@ -1,4 +1,4 @@
-"""Every bad input there is an answer to, the tests that try it, and those that have no place elsewhere."""
+"""All bad input that has an answer, the tests that try it, and tests that fit no other file."""
 
 import ast
 import json
@@ -25,7 +25,7 @@ TESTS = Path(__file__).parents[3]
 ANSWERS = {
     "NaN or infinite normal in a file: masked and counted, over a share refused": {
         "test_captures": ["test_nan_is_refused_or_masked_and_counted_as_is_asked_for"],
-        "test_bad_scene_files": ["test_a_bad_gltf_is_one_line", "test_a_bad_text_is_one_line"],
+        "test_bad_scene_files": ["test_bad_gltf_is_a_one_line_error", "test_bad_text_is_a_one_line_error"],
     },
     "zero-length normal: background, counted, never NaN": {
         "test_captures": ["test_normals_of_no_length_are_background"],
@@ -34,34 +34,37 @@ ANSWERS = {
         "test_captures": [
             "test_packed_floats_are_read_with_unpack",
             "test_floats_that_are_not_packed_are_not_read_with_unpack",
-            "test_what_is_not_unit_is_refused_with_what_it_is",
+            "test_normals_that_are_not_unit_length_are_refused_with_their_lengths",
         ],
     },
     "truncated or corrupt EXR, glTF, OBJ, PLY: refused with file, place, remedy": {
         "test_bad_captures": [
-            "test_a_truncated_exr_is_one_line",
+            "test_truncated_exr_is_a_one_line_error",
         ],
-        "test_attack": ["test_what_is_damaged_is_measured_or_refused_in_a_line"],
+        "test_attack": ["test_damaged_input_is_measured_or_refused_in_a_line"],
         "test_bad_scene_files": [
-            "test_a_truncated_glb_is_one_line",
-            "test_a_bad_text_is_one_line",
+            "test_truncated_glb_is_a_one_line_error",
+            "test_bad_text_is_a_one_line_error",
         ],
-        "test_packed_scenes": ["test_a_bad_meshopt_view_is_one_line", "test_a_bad_draco_primitive_is_one_line"],
+        "test_packed_scenes": [
+            "test_bad_meshopt_view_is_a_one_line_error",
+            "test_bad_draco_primitive_is_a_one_line_error",
+        ],
     },
     "index out of range, node cycle: refused": {
-        "test_bad_scene_files": ["test_a_bad_gltf_is_one_line", "test_a_bad_text_is_one_line"],
+        "test_bad_scene_files": ["test_bad_gltf_is_a_one_line_error", "test_bad_text_is_a_one_line_error"],
     },
     "path that leaves the folder, network address: refused, nothing is downloaded": {
         "test_bad_scene_files": ["test_nothing_is_read_outside_the_folder_or_from_the_network"],
     },
     "image or texture larger than the device or a budget: refused before allocation": {
         "test_bad_captures": [
-            "test_an_exr_that_is_too_large_or_of_another_kind_is_one_line",
-            "test_a_bad_file_is_one_line",
+            "test_exr_of_wrong_size_or_sampling_is_a_one_line_error",
+            "test_bad_file_is_a_one_line_error",
         ],
-        "test_bad_scene_files": ["test_what_is_too_large_is_refused_before_it_is_read"],
-        "test_scene_textures": ["test_a_bad_picture_is_one_line", "test_all_pictures_of_a_file_have_a_bound_together"],
-        "test_render": ["test_bad_input_is_one_line_and_nothing_is_written"],
+        "test_bad_scene_files": ["test_large_files_are_refused_before_they_are_read"],
+        "test_scene_textures": ["test_bad_image_is_a_one_line_error", "test_images_of_a_file_share_one_pixel_limit"],
+        "test_render": ["test_bad_input_is_a_one_line_error_and_nothing_is_written"],
     },
     "a user's shader that does not compile: its file and line, other cases go on": {
         "test_user_encodings": ["test_what_is_wrong_with_one_spares_the_others"],
@@ -69,35 +72,35 @@ ANSWERS = {
     },
     "a user's shader that does not end: a process of its own, a time limit, loops counted": {
         "test_user_encodings": ["test_a_shader_that_does_not_end_or_kills_the_process_is_named"],
-        "test_bad_inputs": ["test_a_loop_that_does_not_end_spares_the_others"],
+        "test_bad_inputs": ["test_an_endless_loop_does_not_affect_other_encodings"],
     },
     "identical images: inf in tables, null and exact in JSON": {
-        "test_bad_inputs": ["test_identical_images_are_infinitely_good"],
+        "test_bad_inputs": ["test_identical_normals_have_infinite_psnr"],
     },
     "no GL driver: JAX measures, GL rows skipped with the reason, what needs GL exits 3": {
         "test_cli": [
-            "test_without_a_gl_driver_jax_measures_all_the_same",
-            "test_glsl_alone_without_a_gl_driver_exits_3_and_says_what_to_install",
+            "test_jax_measures_without_an_opengl_driver",
+            "test_glsl_without_an_opengl_driver_exits_with_3_and_says_what_to_install",
         ],
-        "test_plugin": ["test_without_a_gl_driver_rows_of_jax_are_held_and_the_others_skipped"],
+        "test_plugin": ["test_without_an_opengl_driver_jax_rows_are_checked_and_others_skipped"],
     },
     "damaged, hostile or enormous device file: its place in one line, nothing is added, markup stays text": {
         "test_device_file": [
-            "test_a_bad_file_is_one_line_with_its_name_and_the_place",
+            "test_bad_file_is_a_one_line_error_with_its_name_and_the_place",
             "test_an_enormous_file_is_refused_before_it_is_read",
-            "test_whatever_is_damaged_is_read_or_refused_in_one_line",
+            "test_damaged_file_is_read_or_refused_in_one_line",
         ],
         "test_import": ["test_one_bad_file_of_several_leaves_the_run_as_it_was"],
-        "test_devices_site": ["test_damaged_files_are_named_and_left_out", "test_markup_of_a_device_stays_text"],
+        "test_devices_site": ["test_damaged_files_are_named_and_left_out", "test_markup_in_a_device_file_stays_text"],
     },
     "interrupted run, full disk: finished rows are kept, running again resumes": {
         "test_killed_writers": ["test_a_writer_killed_before_any_of_its_changes_leaves_whole_files"],
-        "test_cli": ["test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table"],
+        "test_cli": ["test_a_run_that_fails_at_the_end_keeps_its_rows_and_no_partial_table"],
     },
     "fuzzed TOML and gate expressions: one line, soon, nothing else opened": {
-        "test_attack": ["test_what_is_damaged_is_measured_or_refused_in_a_line"],
-        "test_bad_inputs": ["test_limits_are_read_or_refused"],
-        "test_check": ["test_no_gates_give_a_traceback"],
+        "test_attack": ["test_damaged_input_is_measured_or_refused_in_a_line"],
+        "test_bad_inputs": ["test_thresholds_are_read_or_refused"],
+        "test_check": ["test_no_gate_causes_a_traceback"],
     },
 }
 
@@ -155,21 +158,21 @@ float inner(float s) { int left = 300; do { s *= 0.999; left--; } while (left > 
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("what", TOO_LONG)
-def test_a_loop_that_the_device_ends_is_named(gl, tmp_path, what):
-    """A software driver ends all loops of a shader together and says nothing; its rows would be of something else."""
+def test_a_loop_that_the_device_stops_is_reported(gl, tmp_path, what):
+    """A software driver silently stops all loops of a shader at once, so its rows would be wrong."""
     path = tmp_path / "mine.glsl"
     path.write_text(BEFORE + LOOPS % TOO_LONG[what])
     most = loop_limit(gl)
     if not most:
         pytest.skip("this device makes all turns")
-    found = first_look(path)["broken"]
-    assert found.startswith("the loops of encode for [")
-    assert f"this device silently ends a shader's loops after {most} iterations" in found
+    message = first_look(path)["broken"]
+    assert message.startswith("the loops of encode for [")
+    assert f"this device silently ends a shader's loops after {most} iterations" in message
 
 
 @pytest.mark.usefixtures("gl")
 def test_loops_that_end_are_measured(tmp_path):
-    """62500 turns, by loops of every form."""
+    """The loops make 62,500 turns in total and have several forms."""
     path = tmp_path / "mine.glsl"
     path.write_text(
         LOOPS % "for (int i = 0; i < 250; i++) { int j = 0; while (true) { s += 1e-9; if (++j >= 250) break; } }"
@@ -177,7 +180,7 @@ def test_loops_that_end_are_measured(tmp_path):
     assert "broken" not in first_look(path)
 
 
-def test_identical_images_are_infinitely_good(run):
+def test_identical_normals_have_infinite_psnr(run):
     command = ("quality", "--encoding", "xyz", "--storage", "rgba32f", "--normals", "axes", "--backend", "jax")
     (row,) = json.loads(run(*command, "--format", "json")[1])
     assert row["psnr_db"] is None and row["exact"] is True
@@ -185,7 +188,7 @@ def test_identical_images_are_infinitely_good(run):
 
 
 @pytest.mark.usefixtures("gl")
-def test_identical_frames_are_too(run):
+def test_identical_frames_have_infinite_psnr(run):
     command = ("render", "--layout", "fp32", "--size", "64x48", "--lights", "2", "--repeats", "1")
     (row,) = json.loads(run(*command, "--format", "json")[1])
     assert row["psnr_db"] is None and row["exact"] is True and " inf " in run(*command)[1]
@@ -195,7 +198,7 @@ def test_identical_frames_are_too(run):
     "command", [("depth", "--near"), ("depth", "--distance"), ("lights", "--sum"), ("lights", "--counts")]
 )
 @pytest.mark.parametrize("text", ["", ",", "1,x", "nan", "-1", "0", "1e99", "9" * 5000])
-def test_numbers_in_a_row_are_read_by_one_rule(run, command, text):
+def test_bad_lists_of_numbers_have_the_same_error_form(run, command, text):
     status, out, err = run(*command, text)
     assert (status, out) == (2, "") and err.count("\n") == 1
     shown = text.strip(",") if len(text) < 10 else f"{text[:6]}... ({len(text)} digits)"
@@ -203,7 +206,7 @@ def test_numbers_in_a_row_are_read_by_one_rule(run, command, text):
     assert err.startswith(begin) and err.endswith(", comma-separated\n") and len(err) < 2000, err[-200:]
 
 
-def test_numbers_in_a_row_are_each_there_once():
+def test_repeated_numbers_in_a_list_are_kept_once():
     assert checked_numbers("--x", " 2,1,, 2 ,", int, 1, 2) == (2, 1)
     assert checked_numbers("--x", "0.5,1e0", float, 0.5, 1.0) == (0.5, 1.0)
 
@@ -220,20 +223,20 @@ TEXTS = st.one_of(
 
 @settings(max_examples=500, deadline=None, derandomize=True)
 @given(TEXTS)
-def test_limits_are_read_or_refused(text):
-    """A limit is what it says, or there is one line; what is not a limit is None."""
+def test_thresholds_are_read_or_refused(text):
+    """A threshold is read exactly or refused in one line; any other text is None."""
     try:
-        found = limit("psnr_db", text)
+        bound = limit("psnr_db", text)
     except UsageError as error:
         assert str(error).startswith("psnr_db: ") and "is not a " in str(error)
         return
-    if found:
-        assert found.side in ("at least", "at most") and not math.isnan(found.value)
-        assert limit("psnr_db", str(found)).value == pytest.approx(found.value, rel=1e-8)
+    if bound:
+        assert bound.side in ("at least", "at most") and not math.isnan(bound.value)
+        assert limit("psnr_db", str(bound)).value == pytest.approx(bound.value, rel=1e-8)
 
 
 @pytest.mark.parametrize("text", ["1" * 10**6, " " * 10**6, "1." * 10**6, "x" + " " * 10**6 + "y", "e" * 10**6])
-def test_a_long_limit_takes_no_time(text):
+def test_a_very_long_threshold_is_read_quickly(text):
     with soon():
         for side in ("at least ", "at most\n"):
             try:
@@ -270,8 +273,8 @@ POINTS = {
         ("a", "", f"history {LONG} {LONG}"),
     ],
 )
-def test_a_name_that_is_too_long_is_said_to_be(run, tmp_path, monkeypatch, name, text, command):
-    """And not that something could not be written; the end of the line is not cut off."""
+def test_a_name_that_is_too_long_is_reported(run, tmp_path, monkeypatch, name, text, command):
+    """The message does not mention writing, and its end is not truncated."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / name).write_text(text)
     status, out, err = run(*command.split())

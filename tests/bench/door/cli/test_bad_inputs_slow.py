@@ -1,4 +1,4 @@
-"""Every bad input there is an answer to, the tests that try it, and those that have no place elsewhere."""
+"""All bad input that has an answer, the tests that try it, and tests that fit no other file."""
 
 import json
 
@@ -9,7 +9,7 @@ QUICK = ("--backend", "glsl", "--normals", "hemisphere", "--count", "4096", "--f
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_loop_that_does_not_end_spares_the_others(run, tmp_path):
+def test_an_endless_loop_does_not_affect_other_encodings(run, tmp_path):
     path = tmp_path / "mine.glsl"
     path.write_text(LOOPS % TOO_LONG["while"])
     status, out, err = run("quality", "--encoding", f"{path},xy", *QUICK)

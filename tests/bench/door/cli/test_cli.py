@@ -1,4 +1,4 @@
-"""The command line: what it prints, what it writes, and what it says of bad input."""
+"""The command line: its output, the files it writes, and its messages about bad input."""
 
 import json
 import os
@@ -20,8 +20,8 @@ from normalbench.reports import tables
 QUICK = ["quality", "--encoding", "xy,octahedral", "--storage", "rg8", "--normals", "axes"]
 
 
-def test_the_front_page_fits_a_screen_and_groups_commands_by_what_they_are_for(run):
-    """All of it, with every option that commands share, is a word further."""
+def test_the_front_page_fits_a_screen_and_groups_commands_by_purpose(run):
+    """`--help-all` shows the complete help, with every option that commands share."""
     _, out, _ = run("--help")
     lines = out.splitlines()
     groups = ["The answer", "Measure", "Your own", "Keep and compare", "This program and this machine"]
@@ -33,8 +33,8 @@ def test_the_front_page_fits_a_screen_and_groups_commands_by_what_they_are_for(r
     assert all(f"--{flag}" in out for flag in ("output", "format", "report", "on", "define", "channels", "anew"))
 
 
-def test_no_help_shows_more_than_twelve_options_at_first(run):
-    """There are at most 320, and none twice: what commands share is the program's, and may stand anywhere."""
+def test_help_shows_at_most_twelve_options_at_first(run):
+    """The program has at most 320 options; options that commands share belong to the program and are listed once."""
     program = command_line()
     options = [option for command in program.commands.values() for option in command.params]
     options = [option for option in (*options, *program.params) if option.param_type_name == "option"]
@@ -48,7 +48,7 @@ def test_no_help_shows_more_than_twelve_options_at_first(run):
         assert f"normalbench {name} --help-all" in " ".join(short.split()) and "--output" in short
 
 
-def test_an_option_that_commands_share_may_stand_anywhere_and_is_refused_where_it_means_nothing(run):
+def test_a_shared_option_may_come_anywhere_and_is_refused_if_meaningless(run):
     words = ("--encoding", "xyz", "--storage", "rg16,rgba8", "--count", "4096", "--backend", "jax")
     _, before, _ = run("--format", "csv", "quality", *words)
     _, behind, _ = run("quality", *words, "--format=csv")
@@ -66,7 +66,7 @@ def test_the_list_names_every_encoding(run):
 
 
 @pytest.mark.usefixtures("gl")
-def test_json_is_a_list_of_flat_rows_with_nothing_that_json_lacks(run):
+def test_json_is_a_list_of_flat_rows_with_valid_values(run):
     status, out, _ = run(
         "quality", "--encoding", "xyz", "--storage", "rgba32f", "--normals", "axes", "--format", "json"
     )
@@ -76,7 +76,7 @@ def test_json_is_a_list_of_flat_rows_with_nothing_that_json_lacks(run):
     assert all(row["psnr_db"] is None and row["exact"] is True for row in rows), "identical normals"
 
 
-def test_rows_go_to_a_file_whole(run, tmp_path):
+def test_rows_are_written_to_a_file_completely(run, tmp_path):
     path = tmp_path / "new" / "rows.json"
     path.parent.mkdir()
     status, out, _ = run(*QUICK, "--backend", "jax", "--format", "json", "-o", str(path))
@@ -86,7 +86,7 @@ def test_rows_go_to_a_file_whole(run, tmp_path):
 
 
 @pytest.mark.parametrize("width", [60, 80, 120, 200])
-def test_a_narrow_terminal_breaks_no_number(run, monkeypatch, width):
+def test_a_narrow_terminal_does_not_break_numbers(run, monkeypatch, width):
     monkeypatch.setenv("COLUMNS", str(width))
     rows = json.loads(run(*QUICK, "--backend", "jax", "--format", "json")[1])
     out = run(*QUICK, "--backend", "jax")[1]
@@ -94,7 +94,7 @@ def test_a_narrow_terminal_breaks_no_number(run, monkeypatch, width):
     assert all(f"{row['angle_max_deg']:.4g}" in out and f"{row['psnr_db']:.4g}" in out for row in rows), out
 
 
-def test_a_file_that_fails_keeps_the_old_one(run, tmp_path, monkeypatch):
+def test_a_failed_write_keeps_the_old_file(run, tmp_path, monkeypatch):
     path = tmp_path / "rows.csv"
     path.write_text("encoding,storage\nprecious,rg8\n")
     before = path.read_text()
@@ -107,7 +107,7 @@ def test_a_file_that_fails_keeps_the_old_one(run, tmp_path, monkeypatch):
 
 
 def test_a_link_is_written_through_and_a_pipe_stays_a_pipe(run, tmp_path):
-    """What is not a plain file keeps its nature: the target of a link is replaced, a pipe is written to."""
+    """The target of a link is replaced; a pipe is written to."""
     target, link, pipe = tmp_path / "target.csv", tmp_path / "link.csv", tmp_path / "pipe"
     target.write_text("kind,name\nold,old\n")
     link.symlink_to(target)
@@ -121,41 +121,41 @@ def test_a_link_is_written_through_and_a_pipe_stays_a_pipe(run, tmp_path):
 
 
 @pytest.mark.parametrize("output", ["-o a.json", "-o a.json/below.json", "--plot a.png", "--report a.html"])
-def test_links_that_go_round_are_one_line(run, tmp_path, monkeypatch, output):
+def test_links_in_a_loop_are_a_one_line_error(run, tmp_path, monkeypatch, output):
     monkeypatch.chdir(tmp_path)
     option, name = output.split()
-    for one, other in (("a", "b"), ("b", "a")):
+    for link, other in (("a", "b"), ("b", "a")):
         for suffix in (".json", ".png", ".html"):
-            Path(one + suffix).symlink_to(other + suffix)
+            Path(link + suffix).symlink_to(other + suffix)
     status, out, err = run("depth", option, name)
     why = "its links form a loop; name another file"
     assert (status, out, err) == (2, "", f"normalbench: cannot write to {name}: {why}\n")
 
 
-def test_no_command_is_help_and_no_error(run):
+def test_no_command_prints_help_without_an_error(run):
     status, out, err = run()
     assert status == 0 and "quality" in out and err == ""
 
 
 def measured_instead(monkeypatch, encoding: Encoding) -> None:
-    """From here on the encoding's name stands for it on the command line."""
+    """Make the encoding's name stand for this encoding on the command line."""
     monkeypatch.setattr(encoding_names, "ENCODINGS", {**ENCODINGS, encoding.name: encoding})
 
 
-def test_a_users_broken_encoding_is_one_line_with_its_file(run, monkeypatch):
-    """A Python half that raises or has another size; a GLSL half that does not compile loses its own rows only."""
+def test_a_users_broken_encoding_is_a_one_line_error_that_names_its_file(run, monkeypatch):
+    """The Python twin raises an error or returns another number of components."""
 
     def raises(*_):
         raise ValueError("what is this?")
 
     original = ENCODINGS["xy"]
-    for changed, said in (
+    for changed, parts in (
         ({"encode": raises}, ["xy.py", "ValueError", "what is this?"]),
         ({"components": 3}, ["xy.py", "encode gives 2 numbers"]),
     ):
         measured_instead(monkeypatch, replace(original, **changed))
         status, _, err = run("quality", "--encoding", "xy", "--normals", "axes")
-        assert status == 2 and err.count("\n") == 1 and all(part in err for part in said), err
+        assert status == 2 and err.count("\n") == 1 and all(part in err for part in parts), err
 
 
 @pytest.mark.usefixtures("gl")
@@ -173,7 +173,7 @@ def test_a_users_broken_shader_loses_its_own_rows_and_is_an_error_alone(run, mon
     assert status == 2 and out == "" and err.count("\n") == 1 and "xy.glsl:3" in err
 
 
-def test_decodes_that_are_no_number_are_counted_and_said(run, monkeypatch):
+def test_decoded_values_that_are_not_numbers_are_counted_and_reported(run, monkeypatch):
     original = ENCODINGS["xy"]
 
     def decode(e, view):
@@ -186,7 +186,7 @@ def test_decodes_that_are_no_number_are_counted_and_said(run, monkeypatch):
     assert err == "normalbench: xy rgba8 nearest axes jax: 64 results are NaN or infinite\n"
 
 
-def test_what_does_not_fit_is_named_and_the_rest_measured(run):
+def test_an_encoding_that_does_not_fit_is_named_and_the_rest_is_measured(run):
     status, out, err = run(
         "quality", "--encoding", "xyz,xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax"
     )

@@ -1,4 +1,4 @@
-"""The command line: what it prints, what it writes, and what it says of bad input."""
+"""The command line: its output, the files it writes, and its messages about bad input."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""The command line: what it prints, what it writes, and what it says of bad input."""
+"""The command line: its output, the files it writes, and its messages about bad input."""
 
 import csv
 import io
@@ -48,7 +48,7 @@ def test_help_and_list_import_nothing_heavy():
     assert done.returncode == 0 and done.stdout.count("Usage: ") == len(LIGHT) - 2, done.stderr[-200:]
 
 
-def test_a_command_imports_its_own_table_alone():
+def test_a_command_imports_only_its_own_table():
     program = (
         "import sys; from normalbench.bench.door.cli import app; sys.argv[0] = 'normalbench'; app.main()\n"
         "print(sorted(name.split('.')[3] for name in sys.modules if name.startswith('normalbench.bench.tables.')"
@@ -60,7 +60,7 @@ def test_a_command_imports_its_own_table_alone():
 
 
 @pytest.mark.usefixtures("gl")
-def test_the_formats_carry_the_same_figures(run):
+def test_all_formats_have_the_same_figures(run):
     rows = json.loads(run(*QUICK, "--format", "json")[1])
     as_csv = list(csv.DictReader(io.StringIO(run(*QUICK, "--format", "csv")[1])))
     assert [float(r["psnr_db"]) for r in as_csv] == [r["psnr_db"] for r in rows]
@@ -99,19 +99,19 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_bad_input_is_one_line_that_says_what_would_be_right(run, what, tmp_path, monkeypatch):
-    arguments, said = BAD[what]
+def test_bad_input_is_a_one_line_error_that_suggests_a_fix(run, what, tmp_path, monkeypatch):
+    arguments, parts = BAD[what]
     monkeypatch.chdir(tmp_path)
     status, out, err = run(*arguments)
     assert status == 2 and out == ""
     assert err.startswith("normalbench: ") and err.count("\n") == 1, err
-    assert all(part in err for part in said), err
+    assert all(part in err for part in parts), err
     assert not list(tmp_path.iterdir()), "something was left behind"
 
 
 @pytest.mark.parametrize("target", ["nowhere", "link"], ids=["to nothing", "to itself"])
 @pytest.mark.parametrize("output", ["link", "link/below"])
-def test_a_link_that_leads_to_no_folder_is_one_line(run, tmp_path, monkeypatch, target, output):
+def test_a_link_to_a_missing_folder_is_a_one_line_error(run, tmp_path, monkeypatch, target, output):
     monkeypatch.chdir(tmp_path)
     Path("link").symlink_to(target)
     status, out, err = run("run", "--tables", "depth", "-o", output)
@@ -120,7 +120,7 @@ def test_a_link_that_leads_to_no_folder_is_one_line(run, tmp_path, monkeypatch, 
     assert [path.name for path in tmp_path.iterdir()] == ["link"]
 
 
-def test_output_that_cannot_be_written_is_one_line():
+def test_output_that_cannot_be_written_is_a_one_line_error():
     if not Path("/dev/full").is_char_device():
         pytest.skip("no /dev/full here")
     with Path("/dev/full").open("w") as full:
@@ -129,13 +129,13 @@ def test_output_that_cannot_be_written_is_one_line():
     assert done.returncode == 2 and done.stderr == "normalbench: cannot write: No space left on device\n"
 
 
-def test_a_reader_that_has_seen_enough_is_no_error():
+def test_a_pipe_closed_by_its_reader_is_not_an_error():
     command = f"{sys.executable} -m normalbench list | true; exit ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
     assert done.returncode == 0 and done.stderr == ""
 
 
-def test_glsl_alone_without_a_gl_driver_exits_3_and_says_what_to_install():
+def test_glsl_without_an_opengl_driver_exits_with_3_and_says_what_to_install():
     done = in_a_process(*QUICK, "--backend", "glsl", **NO_GL)
     assert done.returncode == 3 and done.stdout == ""
     assert done.stderr.count("\n") == 1 and "apt-get install libegl1" in done.stderr
@@ -156,7 +156,7 @@ USUAL_CODECS = len(COMMON) + len(TWO) + 3 * len(WIDE) + 2
 
 @pytest.mark.usefixtures("gl")
 def test_the_pictures_show_the_scene(run, tmp_path):
-    """Not black, not all alike: the decoded picture is the scene, the error picture of XY is blue where z was lost."""
+    """The pictures are neither black nor all alike. The error picture of `xy` is blue where z was lost."""
     status, _, err = run("quality", "--encoding", "xy,xyz", "--images", str(tmp_path))
     assert status == 0, err
     names = {f"playground-{e}-rgba8-{k}.png" for e in ("xy", "xyz") for k in ("encoded", "decoded", "error", "power")}
@@ -177,7 +177,7 @@ def pixels_of(path) -> np.ndarray:
         return np.asarray(image)
 
 
-def test_run_prints_a_verdict_and_show_the_articles_figures_beside_its_own(run, results):
+def test_run_prints_a_verdict_and_show_adds_the_figures_of_the_article(run, results):
     folder, out, err = results
     assert err == "" and out.startswith(
         "quality: Most accurate on playground, mean error: 16 bits: octahedral_precise"
@@ -228,7 +228,7 @@ def test_run_leaves_a_results_folder(results):
 
 
 def test_a_run_measures_the_usual_codecs():
-    """In rgba8, rg16f, rgb10a2, rg16 and 12:12, on two sets by both back ends."""
+    """The storages are rgba8, rg16f, rgb10a2, rg16 and 12:12; each is measured on two sets by both backends."""
     two = [
         name for name in COMMON if ENCODINGS[name].components == 2 and Codec(ENCODINGS[name], STORAGES["rg16f"]).fits
     ]
@@ -239,8 +239,8 @@ def test_a_run_measures_the_usual_codecs():
     assert {step.key["normals"] for step in steps} == {"playground", "hemisphere"}
 
 
-def test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table(run, tmp_path, monkeypatch):
-    """A full disk where the tables are written: one line; run again, nothing is measured a second time."""
+def test_a_run_that_fails_at_the_end_keeps_its_rows_and_no_partial_table(run, tmp_path, monkeypatch):
+    """A full disk is a one-line error when tables are written; a second run measures nothing again."""
     folder = tmp_path / "results"
     words = ("--encoding", "octahedral,xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
     command = ("run", "--tables", "quality", *words, "-o", str(folder))
@@ -259,8 +259,8 @@ def test_a_run_that_fails_in_the_end_keeps_its_rows_and_no_half_of_a_table(run, 
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_cache_folder_that_cannot_be_made_goes_without_saying(tmp_path, monkeypatch):
-    """Mesa would print a line of its own; JAX keeps its programs there."""
+def test_a_cache_folder_that_cannot_be_made_causes_no_message(tmp_path, monkeypatch):
+    """Mesa would print a line of its own; JAX keeps its programs in this folder."""
     for name in ("MESA_SHADER_CACHE_DIR", "MESA_SHADER_CACHE_DISABLE", "JAX_COMPILATION_CACHE_DIR"):
         monkeypatch.delenv(name, raising=False)
     (tmp_path / "file").touch()
@@ -268,8 +268,8 @@ def test_a_cache_folder_that_cannot_be_made_goes_without_saying(tmp_path, monkey
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_a_platform_jax_does_not_know_is_one_line_whatever_the_command():
-    """One command after the other in one process: JAX asks for its platforms again each time."""
+def test_an_unknown_jax_platform_is_a_one_line_error_in_every_command():
+    """All commands run in one process, because JAX looks up its platforms again each time."""
     commands = (QUICK, *([name] for name in ("run", "lights", "depth", "frames", "render", "sweep")))
     program = (
         "import json, sys\n"
@@ -286,7 +286,7 @@ def test_a_platform_jax_does_not_know_is_one_line_whatever_the_command():
         assert "JAX_PLATFORMS" in line and end == "ends with 3", (command, line, end)
 
 
-def test_without_a_gl_driver_jax_measures_all_the_same():
+def test_jax_measures_without_an_opengl_driver():
     done = in_a_process(*QUICK, "--format", "json", **NO_GL)
     rows = json.loads(done.stdout)
     assert done.returncode == 0

@@ -1,4 +1,4 @@
-"""Standard input, output or error may be closed when the program starts: nothing else takes their places."""
+"""Standard input, output or error may be closed when the program starts: no other file takes its place."""
 
 import itertools
 import subprocess
@@ -10,26 +10,26 @@ CLOSED = [closed for count in (1, 2, 3) for closed in itertools.combinations((0,
 
 
 def started(closed, *words, **more):
-    """A finished process of the program, which starts with some of its standard streams closed."""
+    """Run the program with some of its standard streams closed; return the finished process."""
     return without_streams(closed, [sys.executable, "-m", "normalbench", *words], **more)
 
 
 def without_streams(closed, command, **more):
-    """A finished process. A shell closes its streams: JAX warns of a fork of this process."""
+    """Run a command with streams closed by a shell, because JAX warns about forks; return the finished process."""
     closing = " ".join(f"{number}>&-" for number in closed)
     words = ["sh", "-c", f'exec "$@" {closing}', "sh", *command]
     return subprocess.run(words, capture_output=True, text=True, timeout=300, **more)
 
 
 @pytest.mark.parametrize("closed", [closed for closed in CLOSED if 1 in closed])
-def test_a_closed_output_is_refused_where_something_would_be_printed(closed):
+def test_a_closed_output_is_refused_if_something_would_be_printed(closed):
     done = started(closed, "list")
-    said = "" if 2 in closed else "normalbench: standard output is closed; name a file with -o\n"
-    assert (done.returncode, done.stdout, done.stderr) == (2, "", said)
+    message = "" if 2 in closed else "normalbench: standard output is closed; name a file with -o\n"
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", message)
 
 
 def test_children_have_the_three_streams(tmp_path):
-    """A compiler's messages would go into the first file that it opens."""
+    """Otherwise a compiler's messages would go into the first file that it opens."""
     program = (
         "import os, subprocess, sys\n"
         "from normalbench.bench.door.cli.start import open_missing_streams\n"

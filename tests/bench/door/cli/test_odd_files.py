@@ -1,4 +1,4 @@
-"""Files of odd kinds and names, and places that go away: a line each, soon, and nothing is lost."""
+"""Files of odd kinds and names, and folders that disappear: one line each, soon, and nothing is lost."""
 
 import os
 import subprocess
@@ -40,7 +40,7 @@ PIPED = {
 
 
 @pytest.mark.parametrize("name", PIPED)
-def test_a_pipe_is_not_waited_for(run, tmp_path, monkeypatch, name):
+def test_a_pipe_is_refused_without_waiting(run, tmp_path, monkeypatch, name):
     monkeypatch.chdir(tmp_path)
     np.save("list.npy", some_normals())
     os.mkfifo(name)
@@ -51,7 +51,7 @@ def test_a_pipe_is_not_waited_for(run, tmp_path, monkeypatch, name):
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_comma_in_a_files_name_is_a_part_of_it(run, tmp_path, monkeypatch):
+def test_a_file_name_may_contain_a_comma(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     np.save("a,b.npy", some_normals())
     Path("a,b.glsl").write_text(SHADER)
@@ -61,7 +61,7 @@ def test_a_comma_in_a_files_name_is_a_part_of_it(run, tmp_path, monkeypatch):
 
 
 def test_far_too_many_channels_are_refused_at_once(run, tmp_path, monkeypatch):
-    """A row of 2^25 pixels that was saved without its last axis."""
+    """The file is a row of 2^25 pixels that was saved without its last axis."""
     monkeypatch.chdir(tmp_path)
     np.save("row.npy", np.zeros((1, 2**25), np.uint8))
     began = time.process_time()
@@ -71,7 +71,7 @@ def test_far_too_many_channels_are_refused_at_once(run, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name, option", [("page.html", "--report"), ("chart.PNG", "--plot")])
-def test_a_name_that_promises_a_page_or_a_chart_gets_no_text(run, tmp_path, name, option):
+def test_rows_are_not_written_to_the_name_of_a_page_or_a_chart(run, tmp_path, name, option):
     path = tmp_path / name
     status, out, err = run(*QUICK, "-o", str(path))
     assert (status, out, path.exists()) == (2, "", False)
@@ -88,7 +88,7 @@ def test_a_folder_that_is_deleted_meanwhile_is_noticed_at_the_next_row(tmp_path)
             kept.add({"a": 2})
 
 
-def test_what_a_killed_process_left_half_written_goes(tmp_path):
+def test_partial_files_of_a_killed_process_are_deleted(tmp_path):
     ended = subprocess.Popen([sys.executable, "-c", ""])
     ended.wait()
     gone, others = tmp_path / f".rows.csv.{ended.pid}.partial", tmp_path / f".rows.csv.{os.getppid()}.partial"

@@ -1,4 +1,4 @@
-"""Files of odd kinds and names, and places that go away: a line each, soon, and nothing is lost."""
+"""Files of odd kinds and names, and folders that disappear: one line each, soon, and nothing is lost."""
 
 import json
 import os
@@ -13,7 +13,7 @@ from written import some_normals
 GATE = '[[gate]]\nencoding = "octahedral"\nnormals = "axes"\nbackend = "jax"\npsnr_db = "at least 1"\n'
 
 
-def test_a_byte_order_mark_is_no_part_of_a_text(run, tmp_path, monkeypatch):
+def test_a_byte_order_mark_is_ignored(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("gates.toml").write_text(GATE, encoding="utf-8-sig")
     assert run("check", "gates.toml")[0] == 0
@@ -29,7 +29,7 @@ def test_a_terminal_without_a_degree_sign_gets_the_table(tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (0, "0.9\\xb0\n", "")
 
 
-def test_a_name_that_is_no_utf_8_is_measured_and_written(run, tmp_path, monkeypatch):
+def test_a_file_name_that_is_not_utf_8_is_measured_and_written(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     name = os.fsdecode(b"n\xff.npy")
     with Path(name).open("wb") as file:

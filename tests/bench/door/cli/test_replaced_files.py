@@ -1,4 +1,4 @@
-"""No command writes over a file that it reads, or over a file that it would not have written."""
+"""No command overwrites a file that it reads, or a file that it could not have written."""
 
 import json
 from pathlib import Path
@@ -33,7 +33,7 @@ LAYOUT = 'title = "mine"\nencoding = "octahedral"\ntargets = [{ format = "rg8", 
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    """Files of a user; commands run among them."""
+    """A folder with a user's files, in which commands run."""
     monkeypatch.chdir(tmp_path)
     Path("mine.glsl").write_text(SHADER)
     Path("other.glsl").write_text("// Another encoder.\n" + SHADER)
@@ -120,7 +120,7 @@ def test_a_file_of_another_kind_is_not_replaced(run, folder, case):
 
 @pytest.mark.parametrize("is_run", [True, False])
 def test_an_input_in_a_folder_is_not_replaced(folder, is_run):
-    """In the folder of a run everything else may be."""
+    """In the folder of a run every other file may be replaced."""
     if is_run:
         (folder / "run.json").write_text("{}")
     keep_inputs(["--encoding", "other.glsl,mine.glsl"], command_line().commands["quality"].params)
@@ -199,8 +199,8 @@ WRITTEN = {
 }
 
 
-def test_options_that_take_a_path_are_written():
-    """What is read is an argument or a text: the gate takes every other value for an input."""
+def test_options_that_take_a_path_are_outputs():
+    """The check treats every other value, an argument or a text, as an input."""
     program = command_line()
     every = [*program.params, *(option for command in program.commands.values() for option in command.params)]
     options = [option for option in every if option.param_type_name == "option"]

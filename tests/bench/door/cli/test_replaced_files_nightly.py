@@ -1,4 +1,4 @@
-"""No command writes over a file that it reads, or over a file that it would not have written."""
+"""No command overwrites a file that it reads, or a file that it could not have written."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""No command writes over a file that it reads, or over a file that it would not have written."""
+"""No command overwrites a file that it reads, or a file that it could not have written."""
 
 import pytest
 import test_replaced_files
@@ -17,7 +17,7 @@ def test_code_does_not_replace_a_users_shader_in_its_folder(run, folder):
 
 
 @pytest.mark.parametrize("words", [(*ONE, "--report", "p.html"), ("renderdoc", "--script", "s.py")])
-def test_a_page_and_a_script_replace_themselves(run, words):
+def test_a_page_and_a_script_may_be_written_twice(run, words):
     assert [run(*words)[0] for _ in range(2)] == [0, 0]
 
 

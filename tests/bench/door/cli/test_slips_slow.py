@@ -1,4 +1,4 @@
-"""What people's hands do: each slip is one line that says what would be right, exit status 2, or is understood."""
+"""Slips in what users type: each is understood, or is a one-line error with exit status 2 that suggests a fix."""
 
 import json
 import os
@@ -12,18 +12,18 @@ from test_slips import ONE, ROW, rows_of
 from normalbench.bench.keep import capabilities
 
 
-def test_what_is_said_twice_alike_is_said_once(run):
+def test_a_repeated_option_without_conflict_is_accepted(run):
     assert rows_of(run, *ONE, "--count", "1000", "--codes", "--codes")[0]["count"] == 1000
 
 
-def test_what_is_left_out_for_one_reason_is_one_line(run):
+def test_encodings_left_out_for_the_same_reason_are_one_line(run):
     status, _, err = run(*ROW, "--encoding", "octahedral,xyz,xyz_largest")
     assert status == 0 and err.count("\n") == 1, err
     assert err.startswith("normalbench: left out: xyz/rg8, xyz_largest/rg8: ")
     assert "3 components, but RG8 has 2 channels" in err
 
 
-def test_doctor_ends_in_what_can_be_measured(run, monkeypatch):
+def test_doctor_reports_which_tables_can_be_measured(run, monkeypatch):
     monkeypatch.setattr(capabilities, "find_spec", lambda _: None)
     status, out, _ = run("doctor", "--format", "json")
     rows = {row["name"]: row["value"] for row in json.loads(out)}

@@ -1,4 +1,4 @@
-"""Names of every kind are matched without capitals, hyphens and underscores."""
+"""Names of every kind are matched regardless of capitals, hyphens and underscores."""
 
 import json
 
@@ -45,7 +45,7 @@ READ = {
     "environment": (lambda word: environment_named(word).name, "Studio", "studio"),
     "layout": (lambda word: names(layouts_named(word)), "Unreal-4", ["unreal4"]),
     "light buffer": (lambda word: names(light_buffers_named(word)), "RGBA-16F", names(light_buffers_named("rgba16f"))),
-    "effect": (lambda word: [one.name for one in effects_named(word)], "GTAO", ["gtao"]),
+    "effect": (lambda word: [effect.name for effect in effects_named(word)], "GTAO", ["gtao"]),
     "pipeline": (lambda word: names(choose("pipeline", word, PIPELINES)), "For-Ward", ["forward"]),
     "family": (families_named, "NAVI_21", ["navi21"]),
     "GPU": (lambda word: [*gpus_named(word)], next(iter(gpus_named("all"))).upper(), [next(iter(gpus_named("all")))]),
@@ -65,25 +65,25 @@ READ = {
 
 
 @pytest.mark.parametrize("kind", READ)
-def test_a_name_is_known_however_it_is_spelled(kind):
+def test_a_name_is_recognised_in_any_spelling(kind):
     read, typed, known = READ[kind]
     assert read(typed) == known, f"{typed}: {read(typed)}, not {known}"
 
 
 @pytest.mark.parametrize("key", ["basecolor", "base_color", "base-color", "BaseColor", "base_colour"])
-def test_a_captured_frame_has_a_base_colour_however_it_is_spelled(tmp_path, key):
+def test_a_captured_frame_has_a_base_colour_in_any_spelling(tmp_path, key):
     entry = {"file": "a.npy"}
     (tmp_path / "a.npy").touch()
-    said = {"fov": 60, "near": 0.1, "far": 100, "depth": entry, "normal": entry, "roughness": 0.5, key: [1, 1, 1]}
-    (tmp_path / "gbuffer.json").write_text(json.dumps(said))
+    facts = {"fov": 60, "near": 0.1, "far": 100, "depth": entry, "normal": entry, "roughness": 0.5, key: [1, 1, 1]}
+    (tmp_path / "gbuffer.json").write_text(json.dumps(facts))
     assert read_frame_file(tmp_path / "gbuffer.json").entries["base_color"] == [1, 1, 1]
 
 
 @pytest.mark.parametrize("option", ["--hold", "--blend", "--read-alone", "--readers"])
 def test_options_of_attributes_take_base_color(run, option):
-    """What is wrong is said after the names were read."""
+    """Names are read before errors are reported."""
     words = {"--hold": "normal,base_color,Base-Color", "--readers": "base_color+tangent"}
     status, _, err = run("budget", option, words.get(option, "base_color,tangent"))
-    said = {"--hold": "--hold: base_color is named twice", "--readers": "--readers base_color+tangent: unknown"}
-    wanted = said.get(option, f"{option} tangent: not in --hold")
+    messages = {"--hold": "--hold: base_color is named twice", "--readers": "--readers base_color+tangent: unknown"}
+    wanted = messages.get(option, f"{option} tangent: not in --hold")
     assert status == 2 and wanted in err, err

@@ -1,10 +1,10 @@
-"""Names of every kind are matched without capitals, hyphens and underscores."""
+"""Names of every kind are matched regardless of capitals, hyphens and underscores."""
 
 import pytest
 
 
 @pytest.mark.parametrize("file", ["spheres.html", "out/spheres.html"])
-def test_a_page_is_called_after_its_file(run, tmp_path, monkeypatch, file):
+def test_a_page_is_named_after_its_file(run, tmp_path, monkeypatch, file):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "out").mkdir()
     words = ("--storage", "rg8", "--backend", "jax", "--count", "1000", "--encoding", "octahedral")

@@ -1,4 +1,4 @@
-"""`normalbench check`: gates that pass, fail, and say what is wrong with them."""
+"""`normalbench check`: gates that pass or fail, and messages about errors in gates."""
 
 import json
 
@@ -14,7 +14,7 @@ from normalbench.bench.tables.table import Step
 PASSES = '[[gate]]\nencoding = "spheremap"\nstorage = "rgba8"\nnormals = "playground"\npsnr_db = "at least 47.5"\n'
 
 
-def test_a_gate_that_holds_passes_and_one_that_does_not_fails(run, tmp_path):
+def test_a_gate_passes_if_its_threshold_holds_and_fails_otherwise(run, tmp_path):
     path = tmp_path / "gates.toml"
     path.write_text(PASSES)
     status, out, err = run("check", str(path), "--format", "json")
@@ -44,7 +44,7 @@ def test_a_shader_without_a_twin_is_measured_by_glsl(run, tmp_path):
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_gate_does_not_pass_over_a_few_nan(run, tmp_path):
+def test_a_gate_does_not_ignore_a_few_nan(run, tmp_path):
     (tmp_path / "hole.glsl").write_text(
         "vec2 hole_encode(vec3 n, vec3 view) { return n.xy; }\n"
         "vec3 hole_decode(vec2 e, vec3 view) {\n"
@@ -66,8 +66,8 @@ def test_a_gate_does_not_pass_over_a_few_nan(run, tmp_path):
 def test_figures_may_come_from_a_run(run, tmp_path):
     folder, path = tmp_path / "run", tmp_path / "gates.toml"
     rows = [{"depth": name, "distance": 10.0, "error_max": error} for name, error in (("a", 0.5), ("b", float("inf")))]
-    with opened(folder, {}) as made:
-        made.keep("depth", Step({}, None, ""), rows)
+    with opened(folder, {}) as open_run:
+        open_run.keep("depth", Step({}, None, ""), rows)
     gate = '[[gate]]\ntable = "depth"\ndepth = "{}"\ndistance = 10\nerror_max = "at most 0.5"\n'
     path.write_text(gate.format("a") + gate.format("a, b"))
     status, out, _ = run("check", str(path), "--run", str(folder), "--format", "json")
@@ -80,42 +80,42 @@ def rendered(encoding: str, db: float) -> dict:
 
 
 def test_a_rank_of_a_run_is_its_place_among_all_rows_of_the_run(run, tmp_path):
-    """As its files for others have it, whichever rows a gate names."""
+    """The rank is the same as in the run's exported files, whichever rows a gate names."""
     folder, path = tmp_path / "run", tmp_path / "gates.toml"
-    with opened(folder, {}) as made:
-        made.keep("render", Step({}, None, ""), [rendered("xy", 40.0), rendered("octahedral", 50.0)])
+    with opened(folder, {}) as open_run:
+        open_run.keep("render", Step({}, None, ""), [rendered("xy", 40.0), rendered("octahedral", 50.0)])
     path.write_text('[[gate]]\ntable = "render"\nencoding = "xy"\nrank = "at most 1"\n')
     status, out, _ = run("check", str(path), "--run", str(folder), "--format", "json")
     assert status == 1 and [row["figure"] for row in json.loads(out)] == [2]
 
 
-def test_rows_of_another_version_are_no_bug_of_a_gate(run, tmp_path):
+def test_rows_of_another_version_are_not_blamed_on_the_gate(run, tmp_path):
     folder, path = tmp_path / "run", tmp_path / "gates.toml"
-    with opened(folder, {}) as made:
-        made.keep("quality", Step({}, None, ""), [{"encoding": "xy", "psnr": 40.0}])
+    with opened(folder, {}) as open_run:
+        open_run.keep("quality", Step({}, None, ""), [{"encoding": "xy", "psnr": 40.0}])
     path.write_text('[[gate]]\nencoding = "xy"\npsnr_db = "at least 1"\n')
     status, _, err = run("check", str(path), "--run", str(folder))
     assert status == 2 and "do not match this version; measure them again: " in err, err
 
 
-def test_an_identity_that_rows_of_a_run_do_not_have_is_one_line(run, tmp_path):
+def test_an_identity_that_no_row_of_a_run_has_is_a_one_line_error(run, tmp_path):
     folder, path = tmp_path / "run", tmp_path / "gates.toml"
-    with opened(folder, {}) as made:
+    with opened(folder, {}) as open_run:
         rows = [{"depth": "linear", "far": 1.0, "error_max": 1.0}, {"depth": "log", "far": 10.0, "error_max": 1.0}]
-        made.keep("depth", Step({}, None, ""), rows)
+        open_run.keep("depth", Step({}, None, ""), rows)
     path.write_text('[[gate]]\ntable = "depth"\ndepht = "linear"\nerror_max = "at most 2"\n')
     status, out, err = run("check", str(path), "--run", str(folder))
     assert (status, out) == (2, "") and err.count("\n") == 1 and "have no 'depht'; their keys are depth" in err, err
-    for asked, said in (
+    for asked, message in (
         ('depth = "linaer"', "no row of depth in {} has depth 'linaer'; values there: linear, log"),
         ('depth = "linear"\nfar = 10', "combines depth 'linear', far 10"),
     ):
         path.write_text(f'[[gate]]\ntable = "depth"\n{asked}\nerror_max = "at most 2"\n')
         status, out, err = run("check", str(path), "--run", str(folder))
-        assert (status, out, err.count("\n")) == (2, "", 1) and said.format(folder) in err, err
+        assert (status, out, err.count("\n")) == (2, "", 1) and message.format(folder) in err, err
 
 
-def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
+def test_thresholds_include_their_value_and_reject_what_is_not_a_number():
     least, most = Limit("x", "at least", 2.0), Limit("x", "at most", 2.0)
     assert least.holds(2) and most.holds(2.0) and least.holds(float("inf")) and not most.holds(float("inf"))
     assert not any(limit.holds(figure) for limit in (least, most) for figure in (None, float("nan"), "2"))
@@ -155,14 +155,14 @@ def test_limits_hold_at_their_very_value_and_not_for_what_is_no_number():
         ('[[gate]]\ndevice = "at least 3"', "quality: device is not a figure"),
     ],
 )
-def test_bad_gates_are_one_line_with_their_place(run, tmp_path, text, said):
+def test_bad_gates_are_a_one_line_error_with_their_position(run, tmp_path, text, said):
     path = tmp_path / "gates.toml"
     path.write_text(text)
     status, out, err = run("check", str(path))
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err and "gates.toml" in err, err
 
 
-def test_a_missing_file_and_a_folder_that_is_no_run_are_one_line(run, tmp_path):
+def test_a_missing_file_and_a_folder_that_is_not_a_run_are_one_line_errors(run, tmp_path):
     assert "none.toml: there is no such file" in run("check", str(tmp_path / "none.toml"))[2]
     (tmp_path / "gates.toml").write_text(PASSES)
     status, _, err = run("check", str(tmp_path / "gates.toml"), "--run", str(tmp_path))
@@ -187,8 +187,8 @@ def test_a_gate_judges_the_rows_that_it_names(given, expected):
         {"encoding": "xy", "storage": None, "operation": "decode", "family": "vega10"},
         {"encoding": None, "storage": "12:12", "operation": "unpack", "family": "vega10"},
     ]
-    found = named_rows(TABLES["cost"], given, rows)
-    assert [f"{row['encoding'] or row['storage']} {row['operation']}" for row in found] == expected
+    matches = named_rows(TABLES["cost"], given, rows)
+    assert [f"{row['encoding'] or row['storage']} {row['operation']}" for row in matches] == expected
 
 
 @pytest.mark.parametrize(
@@ -199,7 +199,7 @@ def test_a_gate_judges_the_rows_that_it_names(given, expected):
         ('psnr_db = "at least 3"', 'no gate names a baseline; add matches_baseline = "costs.json" to one'),
     ],
 )
-def test_what_is_no_baseline_is_said_in_a_line(run, tmp_path, words, said):
+def test_an_invalid_baseline_is_a_one_line_error(run, tmp_path, words, said):
     path = tmp_path / "gates.toml"
     path.write_text(f'[[gate]]\nencoding = "xy"\nstorage = "rg8"\nnormals = "axes"\n{words}\n')
     for more in ([], ["--write-baseline"]) if "no gate" not in said else (["--write-baseline"],):
@@ -223,13 +223,13 @@ def test_figures_of_any_table_are_compared_with_a_baseline(run, tmp_path):
     assert status == 1 and f"psnr_db is {measured:.2f}"[:-1] in err and "1 of 2 thresholds failed" in err
 
 
-def test_registers_alone_are_no_difference_between_listings():
+def test_listings_that_differ_only_in_registers_are_the_same():
     before = ["v_mul_f32 v1, v2, s[2:3]", "mul(16) g2<1>F -g13<8,8,1>F", "s_endpgm"]
     after = ["v_mul_f32 v7, v9, s[4:5]", "mul(16) g18<1>F -g12<8,8,1>F", "v_add_f32 v1, v2, v3", "s_endpgm"]
     assert list(listings.differences(before, after)) == ["+ v_add_f32 v1, v2, v3"]
     assert list(listings.differences(after, before)) == ["- v_add_f32 v1, v2, v3"]
     nvidia = ["        /*{:04x}*/    FMUL R3, R2, R4 ;   /* 0x0000000402037220 */", "   /* 0x000fe20000410000 */"]
-    lines = [listings.lines_of("\n".join([nvidia[0].format(at), nvidia[1], "/*0200*/ NOP;"])) for at in (16, 48)]
+    lines = [listings.lines_of("\n".join([nvidia[0].format(pc), nvidia[1], "/*0200*/ NOP;"])) for pc in (16, 48)]
     assert lines == [["FMUL R3, R2, R4"]] * 2
-    long = list(listings.differences([], [f"v_op{at}" for at in range(100)]))
+    long = list(listings.differences([], [f"v_op{number}" for number in range(100)]))
     assert len(long) == listings.MOST_LINES + 1 and long[-1] == "... and 60 lines more"

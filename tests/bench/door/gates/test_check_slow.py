@@ -1,4 +1,4 @@
-"""`normalbench check`: gates that pass, fail, and say what is wrong with them."""
+"""`normalbench check`: gates that pass or fail, and messages about errors in gates."""
 
 import json
 import os
@@ -22,8 +22,8 @@ def test_a_figure_that_a_run_did_not_measure_is_named_with_its_option(run, tmp_p
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_layout_alone_is_held_to_as_it_is(run, tmp_path):
-    """The codec that is usual for a gate is not put into it."""
+def test_a_layout_without_a_codec_is_measured_unchanged(run, tmp_path):
+    """The default codec of gates does not replace the layout's own."""
     path = tmp_path / "gates.toml"
     path.write_text(
         '[[gate]]\ntable = "render"\nlayout = "cryengine3"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 1"\n'
@@ -43,8 +43,8 @@ NAMES = st.sampled_from(["encoding", "storage", "table", "count", "seed", "psnr_
 
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(st.one_of(st.text(max_size=200), st.lists(st.dictionaries(NAMES, VALUES, max_size=5), max_size=3)))
-def test_no_gates_give_a_traceback(tmp_path_factory, content):
-    """Text of every kind, and gates of every value: they are read and refused, or measured."""
+def test_no_gate_causes_a_traceback(tmp_path_factory, content):
+    """Any text, and gates with any values, are measured or refused."""
     path = tmp_path_factory.mktemp("gates") / "gates.toml"
     if not isinstance(content, str):
         lines = (f"{name} = {json.dumps(value)}" for gate in content for name, value in [("", None), *gate.items()])
@@ -57,8 +57,8 @@ def test_no_gates_give_a_traceback(tmp_path_factory, content):
         assert "\n" not in str(error) or "gates" in str(error)
 
 
-def test_files_of_a_gate_lie_next_to_the_file_of_gates(run, tmp_path, monkeypatch):
-    """Wherever the command runs; a file that only the shell's folder has is an error of one line."""
+def test_paths_in_a_gate_are_relative_to_the_file_of_gates(run, tmp_path, monkeypatch):
+    """The shell's folder does not matter; a file that exists only there is a one-line error."""
     folder, shell = tmp_path / "gates", tmp_path / "shell"
     folder.mkdir()
     shell.mkdir()
@@ -73,12 +73,12 @@ def test_files_of_a_gate_lie_next_to_the_file_of_gates(run, tmp_path, monkeypatc
     (folder / "bumps.npy").rename(shell / "bumps.npy")
     path.write_text(asked)
     status, out, err = run("check", str(path))
-    said = "gate 1: normals: bumps.npy is in the current folder, but paths are relative to the gates file; write "
-    assert (status, out, err.count("\n")) == (2, "", 1) and said + os.path.relpath("bumps.npy", folder) in err, err
+    message = "gate 1: normals: bumps.npy is in the current folder, but paths are relative to the gates file; write "
+    assert (status, out, err.count("\n")) == (2, "", 1) and message + os.path.relpath("bumps.npy", folder) in err, err
 
 
-def test_a_gate_on_a_distance_judges_no_other(run, tmp_path):
-    """The whole range is measured beside it, and its error is another one."""
+def test_a_gate_on_a_distance_judges_only_that_distance(run, tmp_path):
+    """The whole range, which has another error, is measured too."""
     path = tmp_path / "gates.toml"
     asked = 'table = "depth"\ndepth = "linear"\nstorage = "r32f"\nbackend = "jax"\ncount = 16\ndistance = "10"\n'
     path.write_text(f'[[gate]]\n{asked}error_max = "at most 1"\n')
@@ -92,8 +92,8 @@ def test_a_gate_on_a_distance_judges_no_other(run, tmp_path):
     "encoding, said",
     [("xyz,octahedral", "xyz/rg8: 3 components, but RG8 has 2 channels"), ("{}/broken.glsl,octahedral", "broken.glsl")],
 )
-def test_a_gate_does_not_pass_without_a_row_that_it_names(run, tmp_path, encoding, said):
-    """One that does not fit or compile next to one that does: the others would pass for it."""
+def test_a_gate_fails_if_a_requested_row_is_missing(run, tmp_path, encoding, said):
+    """An encoding that does not fit or compile is an error, although the other encoding would pass."""
     (tmp_path / "broken.glsl").write_text("vec2 broken_encode(vec3 n, vec3 view) { return n.xyz; }")
     path = tmp_path / "gates.toml"
     words = f'encoding = "{encoding.format(tmp_path)}"\nstorage = "rg8"\nnormals = "sphere"\ncount = 1000\n'
@@ -135,8 +135,8 @@ def test_every_table_may_be_a_gate(run, tmp_path, table):
     path = tmp_path / "gates.toml"
     for most, status, holds in ((1e6, 0, "pass"), (1e-9, 1, "FAIL")):
         path.write_text(f'[[gate]]\ntable = "{table}"\n{TABLES_GATED[table].format(most)}\n')
-        found, out, err = run("check", str(path), "--format", "json")
-        assert found == status and {row["table"] for row in json.loads(out)} == {table}, err
+        exit_status, out, err = run("check", str(path), "--format", "json")
+        assert exit_status == status and {row["table"] for row in json.loads(out)} == {table}, err
         assert holds in {row["holds"] for row in json.loads(out)}
 
 
@@ -150,7 +150,7 @@ PLAIN = "vec3(e, sqrt(max(1.0 - dot(e, e), 0.0)))"
 
 
 def golden_gate(tmp_path, decoded: str) -> str:
-    """A gate that compares what an encoder's decode costs with a file; the encoder's decode as given."""
+    """Write a gate that compares the cost of an encoder's decode with a baseline; return the gate's path."""
     (tmp_path / "mine.glsl").write_text(MINE.replace("DECODED", decoded))
     path = tmp_path / "gates.toml"
     asked = f'encoding = "{tmp_path}/mine.glsl"\nfamily = "navi21"\noperation = "decode"\nstage = "fragment"\n'
@@ -165,7 +165,7 @@ def test_a_gate_on_decoding_does_not_judge_unpacking(run, tmp_path):
 
 
 @pytest.mark.usefixtures("radv")
-def test_a_cost_that_grew_is_shown_with_the_instructions_that_came_to_it(run, tmp_path):
+def test_a_cost_increase_is_shown_with_the_added_instructions(run, tmp_path):
     gates = golden_gate(tmp_path, PLAIN)
     assert run("check", gates, "--write-baseline")[0] == 0
     status, out, _ = run("check", gates, "--format", "json")

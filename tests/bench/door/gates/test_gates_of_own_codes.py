@@ -1,4 +1,4 @@
-"""Gates, tests and Python take users' codes of every kind by the words of the commands."""
+"""Gates, tests and Python accept users' codes of every kind, in the form that commands use."""
 
 import pytest
 from manual import ROOT
@@ -20,8 +20,8 @@ def test_python_takes_a_path():
     assert list(table["encoding"]) == ["velocity.slang"] and table["error_mean_px"][0] > 0
 
 
-def test_every_table_of_another_kind_takes_files_and_how_they_are_read():
-    """An option whose words may be files is fingerprinted, travels to workers, and is found from a gate's folder."""
+def test_tables_of_all_kinds_accept_files_and_options_for_reading_them():
+    """An option that may name files is fingerprinted, sent to workers, and resolved from the folder of a gate."""
     taken = {"vectors": "encoding", "depth": "depth", "frames": "encoding", "lights": "light_buffer"}
     for table, name in taken.items():
         options = TABLES[table].options

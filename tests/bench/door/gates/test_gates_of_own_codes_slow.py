@@ -1,4 +1,4 @@
-"""Gates, tests and Python take users' codes of every kind by the words of the commands."""
+"""Gates, tests and Python accept users' codes of every kind, in the form that commands use."""
 
 import csv
 import io
@@ -40,8 +40,8 @@ gl_error = "at most 0.01"
 """
 
 
-def test_a_gate_finds_the_files_beside_it(run, tmp_path):
-    """Rows are by GLSL, as there is no twin. Of the four limits the third is too low."""
+def test_a_gate_finds_the_files_next_to_it(run, tmp_path):
+    """Rows are measured in GLSL, because no twin exists. The third of the four thresholds is too low."""
     (tmp_path / "gates.toml").write_text(GATES)
     for name in ("velocity.hlsl", "depth.wgsl", "frame.slang", "light.frag"):
         shutil.copy(INPUTS / name, tmp_path)

@@ -1,4 +1,4 @@
-"""The pytest plugin, by pytest inside pytest: gates that hold and fail, no GL driver, xdist, baselines, misuse."""
+"""The pytest plugin, by pytest inside pytest: gates that pass or fail, no OpenGL driver, xdist, baselines, misuse."""
 
 import pytest
 
@@ -6,8 +6,8 @@ from normalbench.bench.door.gates import baseline
 
 
 @pytest.mark.parametrize("figure", [47.5, 48.5])
-def test_a_tolerance_is_to_either_side(figure):
+def test_a_tolerance_applies_in_both_directions(figure):
     before, after = {"psnr_db": 48.0}, {"psnr_db": figure}
     assert list(baseline.changes(before, after, {"psnr_db": 0.5})) == []
-    (said,) = baseline.changes(before, after, {"psnr_db": 0.25})
-    assert said.startswith(f"psnr_db is {figure}, but 48.0") and "tolerance 0.25" in said
+    (change,) = baseline.changes(before, after, {"psnr_db": 0.25})
+    assert change.startswith(f"psnr_db is {figure}, but 48.0") and "tolerance 0.25" in change

@@ -1,4 +1,4 @@
-"""The pytest plugin, by pytest inside pytest: gates that hold and fail, no GL driver, xdist, baselines, misuse."""
+"""The pytest plugin, by pytest inside pytest: gates that pass or fail, no OpenGL driver, xdist, baselines, misuse."""
 
 import json
 import re
@@ -33,15 +33,15 @@ PASSES = f"""
 
 @pytest.fixture(scope="session")
 def loaded():
-    """Everything that is imported on first use is: pytest inside pytest forgets what it imports itself."""
+    """Modules imported before first use, because pytest inside pytest forgets what it imports itself."""
     assert baseline
-    for one in measured.measured(TABLES["quality"], {"encoding": "xy", "normals": "sphere", "count": 4096}):
-        assert one.worst
+    for measurement in measured.measured(TABLES["quality"], {"encoding": "xy", "normals": "sphere", "count": 4096}):
+        assert measurement.worst
 
 
 @pytest.fixture
 def inside(pytester, loaded):  # noqa: ARG001 # for what it does
-    """Runs pytest inside on files of tests, each by its name; gives the outcomes and the text."""
+    """A function that runs pytest inside pytest on test files, each given by name, and returns the result."""
 
     def run(*arguments: str, **tests: str) -> pytest.RunResult:
         if tests:
@@ -55,9 +55,9 @@ def test_a_gate_that_holds_passes(inside):
     inside(test_a=PASSES).assert_outcomes(passed=1)
 
 
-def test_one_that_does_not_says_value_limit_and_worst_normal(inside):
-    """Of xy on the sphere a normal that faces away comes back with the other z; figures as the row has them."""
-    (one,) = measured.measured(TABLES["quality"], {"encoding": "xy", "normals": "sphere", "count": 4096})
+def test_a_failure_shows_value_threshold_and_worst_normal(inside):
+    """In `xy` on the sphere, a normal that faces away comes back with z reversed. Figures are those of the row."""
+    (measurement,) = measured.measured(TABLES["quality"], {"encoding": "xy", "normals": "sphere", "count": 4096})
     result = inside(
         test_a=f"""
         def test_it(normalbench):
@@ -66,21 +66,21 @@ def test_one_that_does_not_says_value_limit_and_worst_normal(inside):
         """
     )
     result.assert_outcomes(failed=1)
-    said = "xy rgba8 nearest sphere jax"
+    name = "xy rgba8 nearest sphere jax"
     result.stdout.fnmatch_lines(
         [
             '>*row.assert_that(psnr_db="at least 5", angle_max_deg="at most 0.5", mse="at most 1e-3")',
-            f"E*{said}: angle_max_deg is {one.row['angle_max_deg']:.9g}, not at most 0.5",
-            f"E*{said}: mse is {one.row['mse']:.9g}, not at most 0.001",
-            f"E*worst normal: {one.worst}",
+            f"E*{name}: angle_max_deg is {measurement.row['angle_max_deg']:.9g}, not at most 0.5",
+            f"E*{name}: mse is {measurement.row['mse']:.9g}, not at most 0.001",
+            f"E*worst normal: {measurement.worst}",
         ]
     )
-    assert one.worst.angle_deg == pytest.approx(one.row["angle_max_deg"], rel=1e-6)
-    assert one.worst.normal[2] < -0.9 and one.worst.decoded[2] > 0.9
+    assert measurement.worst.angle_deg == pytest.approx(measurement.row["angle_max_deg"], rel=1e-6)
+    assert measurement.worst.normal[2] < -0.9 and measurement.worst.decoded[2] > 0.9
     assert "session.py" not in result.stdout.str(), "the traceback is the test's own"
 
 
-def test_a_marker_holds_before_the_test(inside):
+def test_a_marker_is_checked_before_the_test(inside):
     result = inside(
         test_a=f"""
         import pytest
@@ -137,18 +137,18 @@ MISUSE = {
 }
 
 
-def test_misuse_is_one_line(inside):
+def test_misuse_is_a_one_line_error(inside):
     tests = "\n".join(f"def test_{i}(normalbench):\n    normalbench.{call}" for i, call in enumerate(MISUSE))
     result = inside(test_a=tests)
     result.assert_outcomes(failed=len(MISUSE))
     lines = [line for line in result.stdout.lines if line.startswith("E ")]
-    for line, said in zip(lines, MISUSE.values(), strict=True):
-        assert "UsageError" in line and said in line, line
+    for line, message in zip(lines, MISUSE.values(), strict=True):
+        assert "UsageError" in line and message in line, line
     assert "session.py" not in result.stdout.str(), "the traceback is the test's own"
 
 
-def test_a_row_is_measured_once_a_session(inside):
-    """Two files, a marker and the command line's option ask for one row; another seed is another row."""
+def test_a_row_is_measured_once_per_session(inside):
+    """Two files, a marker and a command-line option request the same row; another seed makes another row."""
     counting = f"""
         import pytest
         from normalbench.bench.tables.quality import measure as quality
@@ -185,7 +185,7 @@ def test_every_option_of_the_tables_is_an_option_of_the_plugin(pytester):
 
 
 @pytest.mark.usefixtures("gl")
-def test_an_image_may_be_held_to_limits(inside):
+def test_an_image_may_have_thresholds(inside):
     result = inside(
         test_a="""
         def test_it(normalbench):
@@ -217,7 +217,7 @@ BOTH = """
 """
 
 
-def test_where_it_is_required_they_fail(inside, monkeypatch):
+def test_tests_fail_without_opengl_if_it_is_required(inside, monkeypatch):
     def missing():
         raise NoDeviceError("no OpenGL 4.3 device: none is here")
 
@@ -241,23 +241,23 @@ BASELINE = ("--normalbench-baseline", "kept/rows.json")
 
 @pytest.fixture
 def written(inside, pytester):
-    """A baseline of three rows."""
+    """The path of a baseline with three rows."""
     inside(*BASELINE, "--normalbench-write-baseline", test_a=STORED).assert_outcomes(passed=2)
     return pytester.path / "kept/rows.json"
 
 
 def test_a_baseline_is_written_on_request_and_holds(inside, written):
     entries = json.loads(written.read_text())
-    keys = [(one["key"]["seed"], one["key"]["storage"]) for one in entries]
+    keys = [(entry["key"]["seed"], entry["key"]["storage"]) for entry in entries]
     assert keys == [(0, "rgba8"), (1, "rg16f"), (1, "rgba8")]
-    assert not any(name.startswith("ms_") for one in entries for name in one["row"])
+    assert not any(name.startswith("ms_") for entry in entries for name in entry["row"])
     assert [path.name for path in written.parent.iterdir()] == ["rows.json"]
     before = written.read_bytes()
     inside(*BASELINE).assert_outcomes(passed=2)
     assert written.read_bytes() == before
 
 
-def test_a_figure_that_changed_fails_unless_it_is_tolerated(inside, written):
+def test_a_changed_figure_fails_unless_it_is_within_a_tolerance(inside, written):
     entries = json.loads(written.read_text())
     entries[2]["row"]["psnr_db"] += 1e-9
     written.write_text(json.dumps(entries))
@@ -273,7 +273,7 @@ def test_a_figure_that_changed_fails_unless_it_is_tolerated(inside, written):
     assert written.read_bytes() == before, "reading does not write"
 
 
-def test_a_row_that_is_not_there_says_what_writes_it(inside, written):
+def test_a_missing_row_names_the_option_that_writes_it(inside, written):
     before = written.read_bytes()
     result = inside(*BASELINE, test_a=STORED.replace("count=4096", "count=4097"))
     result.assert_outcomes(failed=2)
@@ -282,10 +282,10 @@ def test_a_row_that_is_not_there_says_what_writes_it(inside, written):
     assert inside("--normalbench-baseline", "none.json").ret == 1 and not Path("none.json").exists()
 
 
-def test_writing_keeps_the_other_rows_and_what_is_no_baseline(inside, written, pytester):
+def test_writing_keeps_other_rows_and_files_that_are_not_baselines(inside, written, pytester):
     inside(*BASELINE, "--normalbench-write-baseline", test_a=STORED.replace("4096", "4097").replace("seed=1", "seed=2"))
     entries = json.loads(written.read_text())
-    assert sorted((one["key"]["count"], one["key"]["seed"]) for one in entries) == [
+    assert sorted((entry["key"]["count"], entry["key"]["seed"]) for entry in entries) == [
         *((4096, seed) for seed in (0, 1, 1)),
         *((4097, seed) for seed in (0, 2, 2)),
     ]
@@ -293,16 +293,16 @@ def test_writing_keeps_the_other_rows_and_what_is_no_baseline(inside, written, p
     result = inside("--normalbench-baseline", "other.json", "--normalbench-write-baseline")
     assert result.ret == 2 and other.read_text() == '{"mine": 1}'
     assert "other.json is not a baseline" in result.stdout.str() + result.stderr.str()
-    for arguments, said in (
+    for arguments, message in (
         (["--normalbench-write-baseline"], "--normalbench-write-baseline requires --normalbench-baseline FILE"),
         (["--normalbench-write-baseline", "--normalbench-baseline", "/proc/no/a.json"], "cannot write to /proc/no"),
     ):
         result = inside(*arguments)
-        assert result.ret == 4 and said in result.stderr.str(), "before anything is measured"
+        assert result.ret == 4 and message in result.stderr.str(), "before anything is measured"
 
 
-def test_a_run_that_does_not_use_it_imports_nothing_of_it_but_its_options(pytester):
-    """Neither JAX nor NumPy nor the command line; and it can be left out altogether."""
+def test_a_run_that_does_not_use_the_plugin_imports_only_its_options(pytester):
+    """JAX, NumPy and the command line are not imported, and the plugin can be disabled completely."""
     pytester.makepyfile(
         """
         import sys
@@ -328,7 +328,7 @@ def test_a_run_that_does_not_use_it_imports_nothing_of_it_but_its_options(pytest
 
 
 def test_importing_the_plugin_is_cheap():
-    """A few milliseconds of importing beside pytest's own; the limit is far above that and far below JAX's second."""
+    """The import adds a few milliseconds; the limit is far above that and far below the second that JAX takes."""
     code = "import sys, time, pytest; began = time.process_time(); import normalbench.bench.door.pytest_plugin.plugin; "
     code += "print(time.process_time() - began, *{'jax', 'pandas', 'matplotlib', 'moderngl'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -343,8 +343,8 @@ NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "VIRTUAL_DISPLAY": ""
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_users_own_encoding_lies_beside_the_test(inside, pytester):
-    """In a folder that is not the one pytest was started in; what is typed lies where it is typed."""
+def test_a_users_encoding_is_found_next_to_the_test(inside, pytester):
+    """The test is not in the folder where pytest started; paths in command-line options start from that folder."""
     folder = pytester.mkdir("deep")
     (folder / "mine.glsl").write_text(MINE)
     test = """
@@ -363,8 +363,8 @@ HLSL = Path(__file__).parents[3] / "inputs/hlsl/octahedral.hlsl"
 
 
 @pytest.mark.usefixtures("gl", "hlsl")
-def test_a_users_file_in_hlsl_lies_beside_the_test(inside, pytester):
-    """With the names of its functions or without."""
+def test_a_users_hlsl_file_is_found_next_to_the_test(inside, pytester):
+    """The functions may be named or not."""
     (pytester.path / "mine.hlsl").write_text(HLSL.read_text())
     result = inside(
         test_a="""
@@ -377,15 +377,15 @@ def test_a_users_file_in_hlsl_lies_beside_the_test(inside, pytester):
     result.assert_outcomes(passed=1)
 
 
-def test_a_test_holds_devices(inside, pytester):
-    """By the marker, with a file beside the test."""
+def test_a_test_checks_devices(inside, pytester):
+    """A marker names a file next to the test."""
     devices.write(pytester.path / "a.json")
     limits = 'further="at most 0", same_percent="at least 99.9"'
     marked = f'@pytest.mark.normalbench(table="devices", devices="a.json", {limits})\ndef test_it(): pass\n'
     inside(test_it=f"import pytest\n{marked}").assert_outcomes(passed=1)
 
 
-def test_without_a_gl_driver_rows_of_jax_are_held_and_the_others_skipped(pytester, monkeypatch):
+def test_without_an_opengl_driver_jax_rows_are_checked_and_others_skipped(pytester, monkeypatch):
     for name, value in NO_GL.items():
         monkeypatch.setenv(name, value)
     pytester.makepyfile(BOTH)
@@ -396,7 +396,7 @@ def test_without_a_gl_driver_rows_of_jax_are_held_and_the_others_skipped(pyteste
 
 @pytest.mark.usefixtures("loaded")
 def test_two_workers_measure_and_write_one_baseline(pytester):
-    """Rows of both are in the file, which the process that started them writes once."""
+    """The file has the rows of both workers; the process that started them writes it once."""
     pytest.importorskip("xdist")
     test = f"""
         from pathlib import Path
@@ -410,7 +410,7 @@ def test_two_workers_measure_and_write_one_baseline(pytester):
     pytester.runpytest_subprocess(*arguments, "--normalbench-write-baseline").assert_outcomes(passed=4)
     assert (pytester.path / "gw0").exists() and (pytester.path / "gw1").exists(), "both had work"
     entries = json.loads((pytester.path / "kept/rows.json").read_text())
-    assert [one["key"]["seed"] for one in entries] == [0, 1, 2, 3]
+    assert [entry["key"]["seed"] for entry in entries] == [0, 1, 2, 3]
     for name in ("test_0", "test_1", "test_2", "test_3"):
         path = pytester.path / f"{name}.py"
         path.write_text(path.read_text().replace(", worker_id", "").replace("Path(worker_id)", "Path('alone')"))

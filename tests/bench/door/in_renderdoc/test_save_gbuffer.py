@@ -1,4 +1,4 @@
-"""`normalbench renderdoc`: the script saves a G-buffer as it is, and names commands that measure it."""
+"""`normalbench renderdoc`: the script saves a G-buffer unchanged, and prints commands that measure it."""
 
 import ast
 import math
@@ -15,7 +15,7 @@ from normalbench.bench.door.in_renderdoc import save_gbuffer as script
 TEXT = Path(script.__file__).read_text()
 
 
-def test_it_is_written_as_it_is(run, tmp_path):
+def test_the_script_is_written_unchanged(run, tmp_path):
     target = tmp_path / "save.py"
     assert run("renderdoc", "--script", str(target)) == (0, "", "")
     assert target.read_text() == TEXT and run("renderdoc")[:2] == (0, TEXT)
@@ -23,9 +23,9 @@ def test_it_is_written_as_it_is(run, tmp_path):
     assert status == 2 and len(err.splitlines()) == 1
 
 
-def test_it_is_python_3_6_and_needs_nothing():
+def test_the_script_is_python_3_6_and_needs_only_renderdoc():
     tree = ast.parse(TEXT, feature_version=(3, 6))
-    names = {one.name for node in ast.walk(tree) if isinstance(node, ast.Import) for one in node.names}
+    names = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
     names |= {str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
     assert names - {"renderdoc"} <= sys.stdlib_module_names and "__future__" not in names
 
@@ -45,19 +45,19 @@ RNG = np.random.default_rng(7)
         ("SInt", np.int8, lambda n: n),
     ],
 )
-def test_integers_are_read_as_the_format_means_them(kind, stored, shown):
+def test_integers_are_read_as_the_format_defines(kind, stored, shown):
     limits = np.iinfo(stored)
     numbers = RNG.integers(limits.min, limits.max, (50, 3), stored, endpoint=True)
     numbers[0] = limits.min
-    found = script.planes(numbers.tobytes(), "Regular", kind, stored().itemsize, 3)
-    assert np.array_equal(np.transpose(found), shown(numbers.astype(np.float64)))
+    planes = script.planes(numbers.tobytes(), "Regular", kind, stored().itemsize, 3)
+    assert np.array_equal(np.transpose(planes), shown(numbers.astype(np.float64)))
 
 
-def test_floats_are_read_as_they_are():
+def test_floats_are_read_exactly():
     for stored in (np.float16, np.float32):
         numbers = RNG.normal(size=(50, 2)).astype(stored)
-        found = script.planes(numbers.tobytes(), "Regular", "Float", numbers.itemsize, 2)
-        assert np.array_equal(np.transpose(found), numbers)
+        planes = script.planes(numbers.tobytes(), "Regular", "Float", numbers.itemsize, 2)
+        assert np.array_equal(np.transpose(planes), numbers)
 
 
 def test_packed_formats_are_read_by_their_bits():
@@ -71,8 +71,8 @@ def test_packed_formats_are_read_by_their_bits():
     red, green, blue = script.planes(words.tobytes(), "R11G11B10", "Float", 0, 3)
     assert red == [1.0, 65024.0, math.inf] and green[0] == 0.5 and blue[0] == 2.0**-19
     blue, green, red, _ = (np.full(1, n, np.uint8) for n in (1, 2, 3, 4))
-    found = script.planes(bytes((1, 2, 3, 4)), "Regular", "UNorm", 1, 4, bgra=True)
-    assert [plane[0] * 255 for plane in found] == pytest.approx([3, 2, 1, 4])
+    planes = script.planes(bytes((1, 2, 3, 4)), "Regular", "UNorm", 1, 4, bgra=True)
+    assert [plane[0] * 255 for plane in planes] == pytest.approx([3, 2, 1, 4])
     with pytest.raises(ValueError, match="BC7"):
         script.planes(b"", "BC7", "UNorm", 1, 4)
 
@@ -89,21 +89,21 @@ def test_depths_are_read_without_their_stencil():
     assert script.covered([1.0, 1.0, 0.5, 0.0]) == [0, 0, 1, 1] and script.covered([0.0, 0.0, 1.0]) == [0, 0, 1]
 
 
-def test_a_file_has_its_numbers_to_the_bit(tmp_path):
+def test_a_file_has_the_exact_numbers(tmp_path):
     numbers = {name: RNG.normal(size=(5, 7)).astype(np.float32) for name in ("R", "G", "covered")}
     script.write_exr(tmp_path / "a.exr", 7, 5, {name: list(map(float, n.ravel())) for name, n in numbers.items()})
     image = oiio.ImageBuf(str(tmp_path / "a.exr"))
     pixels = image.get_pixels(oiio.FLOAT)
-    for at, name in enumerate(image.spec().channelnames):
-        assert np.array_equal(pixels[..., at], numbers[name]), name
+    for index, name in enumerate(image.spec().channelnames):
+        assert np.array_equal(pixels[..., index], numbers[name]), name
     assert str(image.spec().format) == "float"
 
 
 @pytest.mark.parametrize("lowest", [-1.0, 0.0])
 @pytest.mark.parametrize("towards", [-1.0, 1.0])
 @pytest.mark.parametrize(("near", "far"), [(0.1, 100.0), (100.0, 0.1), (0.5, math.inf), (math.inf, 0.5)])
-def test_planes_are_those_of_the_projection(lowest, towards, near, far):
-    """Right- and left-handed, with depth in [-1, 1] and [0, 1], reversed, and without a far plane."""
+def test_near_and_far_are_found_from_the_projection(lowest, towards, near, far):
+    """Projections are right- or left-handed, with depth in [-1, 1] or [0, 1], reversed, or without a far plane."""
     # (slope * d + offset) / d is `lowest` at the near plane and 1 at the far one.
     a, b = (0.0 if math.isinf(d) else 1 / d for d in (near, far))
     offset = (1 - lowest) / (b - a)
@@ -112,14 +112,14 @@ def test_planes_are_those_of_the_projection(lowest, towards, near, far):
     assert script.planes_of_projection(rows, lowest) == pytest.approx((near, far))
 
 
-def test_other_matrices_are_no_projections():
+def test_other_matrices_are_not_projections():
     assert script.planes_of_projection(np.eye(4).tolist(), 0.0) is None
     assert script.is_rotation(captured_program.view().tolist())
     assert not script.is_rotation((captured_program.view() * 2).tolist())
 
 
-def test_normals_are_in_the_space_in_which_they_face_the_camera():
-    """In view space of either hand and in world space, with the camera's matrix of either hand."""
+def test_the_space_of_normals_is_the_space_in_which_they_face_the_camera():
+    """View space of either handedness and world space are tested, with a camera matrix of either handedness."""
     rng = np.random.default_rng(3)
     rays = np.stack(
         [*(p.ravel() for p in np.meshgrid(np.linspace(-1, 1, 32), np.linspace(1, -1, 32))), np.full(1024, -1)]
@@ -128,26 +128,26 @@ def test_normals_are_in_the_space_in_which_they_face_the_camera():
     n *= -np.sign((n * rays).sum(axis=0)) / np.linalg.norm(n, axis=0)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     mirror = np.diag([1.0, 1.0, -1.0])
-    for to_view, at in ((turn, "world_to_view.txt"), (mirror @ turn, (mirror @ turn).tolist())):
+    for to_view, matrix in ((turn, "world_to_view.txt"), (mirror @ turn, (mirror @ turn).tolist())):
         rows = np.eye(4)
         rows[:3, :3] = turn
-        for said, held in (
+        for facts, held in (
             ({"space": "view", "view_matrix": "world_to_view.txt"}, n),
             ({"space": "view-left-handed", "view_matrix": (mirror @ turn).tolist()}, mirror @ n),
-            ({"space": "world", "view_matrix": at}, to_view.T @ n),
+            ({"space": "world", "view_matrix": matrix}, to_view.T @ n),
         ):
             for option, stored in (("--no-unpack", held), ("--unpack", held / 2 + 0.5)):
                 matrices = {"world to view": rows.tolist()}
-                found = script.space_of(stored.tolist(), option, [1.0] * 1024, 32, 90.0, matrices)
-                assert found["space"] == said["space"] and np.array_equal(found["view_matrix"], said["view_matrix"])
+                guess = script.space_of(stored.tolist(), option, [1.0] * 1024, 32, 90.0, matrices)
+                assert guess["space"] == facts["space"] and np.array_equal(guess["view_matrix"], facts["view_matrix"])
 
 
-def test_names_of_a_capture_leave_the_terminal_as_it_is(capsys):
+def test_names_in_a_capture_cannot_control_the_terminal(capsys):
     script.say("lit \x1b[2J\r\u202e.exr\nübrig")
     assert capsys.readouterr().out == "lit \\x1b[2J\\r\\u202e.exr\nübrig\n"
 
 
-def test_what_targets_hold_is_guessed_by_names_that_leave_no_doubt():
+def test_contents_of_targets_are_guessed_only_from_unambiguous_names():
     def target(form="R8G8B8A8_UNORM", channels="RGBA", file="a.exr"):
         return {"file": file, "format": form, "channels": channels, "normals": ""}
 
@@ -166,7 +166,7 @@ def test_what_targets_hold_is_guessed_by_names_that_leave_no_doubt():
         "ao": {"file": "d.exr", "channel": "R"},
     }
     unreal = {f"GBuffer{letter}": target(file=f"{letter}.exr") for letter in "ABC"}
-    found = script.guessed(unreal)
-    assert found["f0"] == {"file": "B.exr", "channel": "G", "scale": 0.08} and "ao" not in found
-    assert found["base_color"] == {"file": "C.exr", "channels": "R,G,B", "curve": "srgb"}
+    guess = script.guessed(unreal)
+    assert guess["f0"] == {"file": "B.exr", "channel": "G", "scale": 0.08} and "ao" not in guess
+    assert guess["base_color"] == {"file": "C.exr", "channels": "R,G,B", "curve": "srgb"}
     assert not script.guessed({"GBufferA": target(), "GBufferB": target()})

@@ -1,4 +1,4 @@
-"""`normalbench renderdoc`: the script saves a G-buffer as it is, and names commands that measure it."""
+"""`normalbench renderdoc`: the script saves a G-buffer unchanged, and prints commands that measure it."""
 
 import json
 import os
@@ -22,7 +22,7 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 
 def lacking():
-    """Why no capture can be made here; empty where it can."""
+    """Return the reason why this machine cannot make a capture; an empty text if it can."""
     if not Path("/usr/bin/python3").exists() or not shutil.which("Xvfb"):
         return "no Xvfb; install it (Debian: apt-get install xvfb)"
     has = subprocess.run(["/usr/bin/python3", "-c", "import renderdoc"], capture_output=True).returncode == 0
@@ -31,7 +31,7 @@ def lacking():
 
 @pytest.fixture
 def display():
-    """A display of an X server of its own, which RenderDoc replays OpenGL on."""
+    """A display of a separate X server, on which RenderDoc replays OpenGL."""
     if why := lacking():
         pytest.skip(why)
     with screen() as name:
@@ -40,8 +40,8 @@ def display():
 
 @pytest.mark.usefixtures("gl")
 def test_a_captured_program_is_measured(display, run, tmp_path, monkeypatch):
-    """Captured and replayed by RenderDoc: its normals are those of its sphere, its camera's planes and angle are found,
-    and the commands that the script prints run."""
+    """RenderDoc captures and replays the program. The normals match its sphere, the camera's planes and angle are
+    found, and the printed commands run."""
     monkeypatch.chdir(tmp_path)
     shown = {**os.environ, "DISPLAY": display}
     program = [sys.executable, captured_program.__file__, str(tmp_path / "frame")]
@@ -53,11 +53,11 @@ def test_a_captured_program_is_measured(display, run, tmp_path, monkeypatch):
     assert done.returncode == 0, done.stderr
     frame = json.loads(Path("gbuffer/gbuffer.json").read_text())
     kept = frame["capture"]
-    formats = {name: one["format"] for name, one in kept["targets"].items()}
+    formats = {name: target["format"] for name, target in kept["targets"].items()}
     assert (
         list(formats.values()) == ["R8G8B8A8_UNORM", "R10G10B10A2_UNORM", "R16_FLOAT"] and "GBuffer normal" in formats
     )
-    assert [bool(one["normals"]) for one in kept["targets"].values()] == [False, True, False]
+    assert [bool(target["normals"]) for target in kept["targets"].values()] == [False, True, False]
     assert np.allclose(np.loadtxt("gbuffer/view_matrix.txt"), captured_program.view())
     check_pixels()
     quality, world, depth = kept["commands"]
@@ -74,7 +74,7 @@ def test_a_captured_program_is_measured(display, run, tmp_path, monkeypatch):
 
 
 def check_scene():
-    """The captured sphere as a scene: its roughness, and its normals where the camera sees it."""
+    """Check the captured sphere as a scene: its roughness, its base colour, and its normal at the centre."""
     (maker,) = scene_makers_named("gbuffer/gbuffer.json")
     assert maker.sides == captured_program.SIZE
     with ExitStack() as stack:
@@ -93,7 +93,7 @@ def rows_of(run, command):
 
 
 def check_pixels():
-    """Upright, to a step of RGB10 A2, and where the depth says that the sphere is."""
+    """Check that normals are upright, exact to a step of RGB10A2, and covered where the sphere is."""
     image = oiio.ImageBuf("gbuffer/gbuffer_normal.exr")
     names = list(image.spec().channelnames)
     pixels = image.get_pixels(oiio.FLOAT)

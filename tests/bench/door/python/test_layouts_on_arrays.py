@@ -1,4 +1,4 @@
-"""`nb.pack` and `nb.unpack` give what the renderer's own GLSL and the formats make of surfaces and targets."""
+"""`nb.pack` and `nb.unpack` match the results of the renderer's own GLSL and of the formats."""
 
 import numpy as np
 import pytest
@@ -32,29 +32,29 @@ SURFACE = {"normal": [0, 0, 1], "base_color": [1, 1, 1], "roughness": 0.5, "meta
 
 
 def fields_of(contents, rows) -> dict:
-    """Rows of surfaces by the names of their fields."""
-    found, at = {}, 0
+    """Return rows of surfaces as arrays by field name."""
+    columns, start = {}, 0
     for field in contents.fields:
         size = len(field.components) or 3
-        part = rows[:, at : at + size] if size > 1 else rows[:, at]
-        found[field.name] = part if field.kind == "uint" else part.copy().view(np.float32)
-        at += size
-    return found
+        part = rows[:, start : start + size] if size > 1 else rows[:, start]
+        columns[field.name] = part if field.kind == "uint" else part.copy().view(np.float32)
+        start += size
+    return columns
 
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("name", ["granite", "nrd", "planes"])
-def test_targets_hold_what_the_renderer_writes_and_come_back_as_it_reads(name, tmp_path):
-    """Floats, integers and bits across bytes; a sign in a roughness, and a depth between planes."""
+def test_arrays_are_packed_and_unpacked_as_the_renderer_does(name, tmp_path):
+    """Layouts have floats, integers, bits across bytes, a sign stored with roughness, and depth between planes."""
     (tmp_path / "planes.toml").write_text(PLANES)
     layout = LAYOUTS[name] if name in LAYOUTS else layouts_named(str(tmp_path / "planes.toml"))[0]
     contents, besides = Contents(layout), settings(COUNT)
     expected = Expected(contents, surfaces(contents, COUNT), besides)
     planes = {"near": 0.125, "far": 1024.0} if name == "planes" else {}
     targets = nb.pack(layout, fields_of(contents, surfaces(contents, COUNT)), **planes)
-    for at, held in enumerate(targets):
-        assert held.shape == (COUNT, layout.targets[at].storage.channels if held.dtype == np.uint32 else 4)
-        wanted = expected.stored[:, at, : held.shape[1]]
+    for index, held in enumerate(targets):
+        assert held.shape == (COUNT, layout.targets[index].storage.channels if held.dtype == np.uint32 else 4)
+        wanted = expected.stored[:, index, : held.shape[1]]
         np.testing.assert_array_equal(held, wanted if held.dtype == np.uint32 else wanted.view(np.float32))
     back = nb.unpack(layout, targets, **planes)
     for field, wanted in fields_of(contents, expected.surfaces).items():
@@ -71,7 +71,7 @@ def test_targets_hold_what_the_renderer_writes_and_come_back_as_it_reads(name, t
         (lambda: nb.pack("granit", SURFACE), "did you mean granite?"),
     ],
 )
-def test_what_is_wrong_is_one_line(call, said):
-    with pytest.raises(UsageError, match=said.replace("?", r"\?")) as found:
+def test_misuse_is_a_one_line_error(call, said):
+    with pytest.raises(UsageError, match=said.replace("?", r"\?")) as raised:
         call()
-    assert "\n" not in str(found.value)
+    assert "\n" not in str(raised.value)

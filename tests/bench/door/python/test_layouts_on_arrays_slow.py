@@ -1,4 +1,4 @@
-"""`nb.pack` and `nb.unpack` give what the renderer's own GLSL and the formats make of surfaces and targets."""
+"""`nb.pack` and `nb.unpack` match the results of the renderer's own GLSL and of the formats."""
 
 import numpy as np
 from test_layouts_on_arrays import SURFACE

@@ -1,4 +1,4 @@
-"""`import normalbench`: tables as functions, and codecs on arrays, held to what GLSL stores bit for bit."""
+"""`import normalbench`: tables as functions, and codecs on arrays, compared bit for bit with what GLSL stores."""
 
 import ast
 import inspect
@@ -21,7 +21,7 @@ def directions(count: int) -> np.ndarray:
     return (n / np.linalg.norm(n, axis=-1, keepdims=True)).astype(np.float32)
 
 
-def test_any_shape_goes_through_and_back_under_jit():
+def test_arrays_of_any_shape_round_trip_under_jit():
     n = directions(60).reshape(3, 20, 3)
     codes = jax.jit(lambda n: nb.encode("octahedral/rg16", n))(n)
     decoded = nb.decode("octahedral/rg16", codes)
@@ -30,7 +30,7 @@ def test_any_shape_goes_through_and_back_under_jit():
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_every_table_is_a_function_that_says_its_options(name):
+def test_every_table_is_a_function_that_documents_its_options(name):
     function = getattr(nb, name)
     assert list(inspect.signature(function).parameters) and "Args:" in inspect.getdoc(function)
     assert name in dir(nb)
@@ -49,7 +49,7 @@ def test_every_table_is_a_function_that_says_its_options(name):
         (lambda: nb.encoding("octahedral", None, None), "encoding 'octahedral' already exists in the catalogue"),
     ],
 )
-def test_misuse_is_one_line(call, said):
+def test_misuse_is_a_one_line_error(call, said):
     with pytest.raises(UsageError, match=said) as error:
         call()
     assert "\n" not in str(error.value)
@@ -78,19 +78,19 @@ UNIT = np.eye(3, dtype=np.float32)
         ("sphere", UNIT, "sphere is a built-in set"),
     ],
 )
-def test_what_are_not_normals_is_refused_as_a_file_of_them_is(name, array, said):
+def test_arrays_that_are_not_normals_are_refused(name, array, said):
     with pytest.raises(UsageError, match=re.escape(said)) as error:
         nb.quality(encoding="octahedral", storage="rg8", backend="jax", normals={name: array})
     assert "\n" not in str(error.value)
 
 
-def test_type_checkers_are_told_of_every_table_and_option():
+def test_the_type_stub_has_every_table_and_option():
     functions = {node.name: node for node in ast.parse(stub.stub()).body if isinstance(node, ast.FunctionDef)}
     assert set(functions) == set(TABLES)
     for name, function in functions.items():
         assert [argument.arg for argument in function.args.kwonlyargs] == [*fields_of(TABLES[name].options), "on"]
 
 
-def test_there_is_nothing_else():
+def test_an_unknown_attribute_lists_the_known_ones():
     with pytest.raises(AttributeError, match="normalbench has no 'colours'; it has Codec"):
         _ = nb.colours

@@ -1,4 +1,4 @@
-"""`import normalbench`: tables as functions, and codecs on arrays, held to what GLSL stores bit for bit."""
+"""`import normalbench`: tables as functions, and codecs on arrays, compared bit for bit with what GLSL stores."""
 
 import jax
 import numpy as np
@@ -20,8 +20,8 @@ CODECS = (
 
 
 @pytest.mark.parametrize("name", CODECS)
-def test_what_is_stored_is_what_glsl_stores(gl, name):
-    """Of 2^20 normals every number in the texel, and so every integer; where the two languages' maths agree, all."""
+def test_stored_values_match_glsl(gl, name):
+    """Every number in the texel matches for 2^20 normals, except for a few next to a rounding tie."""
     n = directions(2**20)
     (codec,) = codecs_named(*name.split("/"), "nearest")
     pixels = np.concatenate([n, np.zeros((len(n), 1), np.float32)], axis=-1).reshape(1024, 1024, 4)
@@ -37,8 +37,8 @@ def test_what_is_stored_is_what_glsl_stores(gl, name):
     assert np.asarray(codes.integers).dtype == np.uint32
 
 
-def test_integers_are_those_of_the_format():
-    """UNORM by its definition, SNORM in two's complement, floats by their bits."""
+def test_integers_match_the_format():
+    """UNORM by its definition, SNORM in two's complement, floats as bits."""
     up = np.array([[0.0, 0.0, 1.0]], np.float32)
     assert np.asarray(nb.encode("xyz/rgba8", up).integers).tolist() == [[128, 128, 255]]
     assert np.asarray(nb.encode("xyz/rgba8_snorm", -up).integers).tolist() == [[0, 0, 2**32 - 127]]
@@ -48,7 +48,7 @@ def test_integers_are_those_of_the_format():
 
 @pytest.mark.usefixtures("gl", "slang")
 def test_a_shader_file_without_a_twin_is_run_by_opengl():
-    """A path has slashes of its own; numbers and normals are those of the same code of the catalogue."""
+    """The path contains slashes; codes and normals match the same encoding of the catalogue."""
     n = directions(60).reshape(20, 3, 3)
     mine = str(ROOT / "tests" / "inputs" / "encoders" / "mine.ush")
     for storage in ("rgb10a2", "rg8_snorm/truncate"):

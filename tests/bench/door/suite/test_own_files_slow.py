@@ -1,4 +1,4 @@
-"""A run with an encoder, a capture, a scene and a layout of one's own: its rows, its page and what `compare` says."""
+"""A run with a user's encoder, capture, scene and layout: its rows, its page and the output of `compare`."""
 
 import json
 
@@ -43,7 +43,7 @@ WORDS = {
 
 @pytest.fixture
 def runs(run, tmp_path, monkeypatch):
-    """`before` and `after`: a constant of the encoder is another, nothing else."""
+    """Two runs, `before` and `after`, that differ only in a constant of the encoder."""
     monkeypatch.chdir(tmp_path)
     write_exr(tmp_path / "frame.exr", planes_of(some_normals()))
     as_document([sphere(1.0, 16, 8)]).write(tmp_path / "scene.glb")
@@ -57,8 +57,8 @@ def runs(run, tmp_path, monkeypatch):
 
 
 @pytest.mark.usefixtures("gl", "radv")
-def test_all_of_it_is_measured_shown_and_compared(run, runs):
-    """Every row is on the page; what changed with the constant is the encoder's rows and no others, worst first."""
+def test_all_files_are_measured_shown_and_compared(run, runs):
+    """Every row is on the page. The constant changes only the rows of the encoder; the worst row comes first."""
     tables = {name: json.loads((runs / f"before/{name}.json").read_text()) for name in ("quality", "render", "cost")}
     page = (runs / "before/report.html").read_text()
     for name, rows in tables.items():
@@ -75,5 +75,5 @@ def test_all_of_it_is_measured_shown_and_compared(run, runs):
     changes = json.loads(out)
     assert status == 0 and changes and all("mine" in change["row"].split() for change in changes), changes
     assert changes[0]["verdict"] == "worse", "worst first"
-    status, said, _ = run("compare", "before", "after", "--fail-on", "worse")
-    assert status == 1 and len(said.splitlines()) <= 20 and "mine" in said and "worse" in said
+    status, printed, _ = run("compare", "before", "after", "--fail-on", "worse")
+    assert status == 1 and len(printed.splitlines()) <= 20 and "mine" in printed and "worse" in printed

@@ -1,4 +1,4 @@
-"""A run of two processes: the answer first, the same rows and files, and nothing left of it when it is ended."""
+"""A run with two processes: the answer comes first, rows and files are the same, and no process outlives the run."""
 
 from types import SimpleNamespace
 
@@ -14,12 +14,12 @@ from normalbench.bench.tables.table import Measured
 
 @pytest.fixture
 def cores(monkeypatch):
-    """Says how many cores there are."""
+    """A function that sets the number of cores."""
     return lambda count: monkeypatch.setattr(second, "cores", lambda: count)
 
 
 def test_the_answer_comes_first(cores, monkeypatch):
-    """The table that leads the page is measured and printed before another one begins, wherever it was named."""
+    """The first table of the page is measured and printed before any other begins, wherever the request names it."""
     cores(1)
     seen = []
     monkeypatch.setattr(
@@ -32,8 +32,8 @@ def test_the_answer_comes_first(cores, monkeypatch):
 
 
 @pytest.mark.parametrize("rows", [[{"psnr_db": 47.5}], None])
-def test_the_second_process_writes_what_the_first_has_measured(monkeypatch, rows):
-    """The files of the answer; where a row of it is still missing they are left to the first process."""
+def test_the_second_process_writes_the_measurements_of_the_first(monkeypatch, rows):
+    """If a row of the answer is still missing, the first process writes the files."""
     written, sent = [], []
     work = SimpleNamespace(write=lambda done, _: written.append(done))
     ask = SimpleNamespace(table=SimpleNamespace(name="pick", work=work), steps=["a step"])

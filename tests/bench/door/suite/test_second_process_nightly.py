@@ -1,4 +1,4 @@
-"""A run of two processes: charts that cannot be written, and programs that JAX is told not to keep."""
+"""A run with two processes: charts that cannot be written, and compiled programs that JAX must not keep."""
 
 import shutil
 
@@ -10,8 +10,8 @@ cores = test_second_process.cores
 
 
 @pytest.mark.usefixtures("gl")
-def test_charts_that_cannot_be_written_are_one_line(run, tmp_path, cores):
-    """Where their folder is a file."""
+def test_charts_that_cannot_be_written_are_a_one_line_error(run, tmp_path, cores):
+    """A file has the name of the chart folder."""
     cores(2)
     folder = tmp_path / "run"
     assert run("run", "--tables", "mix", *CODE, "-o", str(folder))[0] == 0
@@ -22,6 +22,6 @@ def test_charts_that_cannot_be_written_are_one_line(run, tmp_path, cores):
     assert status == 2 and len(lines) == 2 and "goes on" in lines[0] and "charts" in lines[1], err
 
 
-def test_programs_are_not_kept_where_jax_is_told_so(tmp_path):
+def test_programs_are_not_kept_if_jax_is_told_not_to(tmp_path):
     measured(tmp_path, JAX_ENABLE_COMPILATION_CACHE="0")
     assert not programs(tmp_path)

@@ -1,4 +1,4 @@
-"""A run of two processes: the answer first, the same rows and files, and nothing left of it when it is ended."""
+"""A run with two processes: the answer comes first, rows and files are the same, and no process outlives the run."""
 
 import signal
 import subprocess
@@ -26,25 +26,25 @@ SMALL = ("run", "--tables", "mix,effects,quality", "--effect", "water", *CODE)
 
 
 @pytest.mark.usefixtures("gl")
-def test_two_processes_leave_what_one_does(run, tmp_path, cores):
-    """Rows and files are those of a run in one process, and tables are printed in their order."""
-    said = {}
+def test_two_processes_give_the_results_of_one(run, tmp_path, cores):
+    """Rows and files match a run in one process, and tables are printed in order."""
+    printed = {}
     for count in (1, 2):
         cores(count)
-        status, said[count], err = run(*SMALL, "-o", str(tmp_path / str(count)))
+        status, printed[count], err = run(*SMALL, "-o", str(tmp_path / str(count)))
         assert status == 0 and err == "", err
-    one, two = (read_run(tmp_path / str(count)).tables for count in (1, 2))
-    assert {name: one[name] for name in sorted(one)} == {name: two[name] for name in sorted(two)}
+    alone, two = (read_run(tmp_path / str(count)).tables for count in (1, 2))
+    assert {name: alone[name] for name in sorted(alone)} == {name: two[name] for name in sorted(two)}
     files = [{str(p.relative_to(tmp_path / n)) for p in (tmp_path / n).rglob("*")} for n in ("1", "2")]
     assert files[0] == files[1] and "report.html" in files[1]
     assert len(list((tmp_path / "1/charts").glob("*.svg"))) == report.CHARTS_OF_A_RUN
     assert (tmp_path / "1/charts/mix.png").read_bytes() == (tmp_path / "2/charts/mix.png").read_bytes()
-    assert said[1].replace(f"{tmp_path}/1", "") == said[2].replace(f"{tmp_path}/2", "")
+    assert printed[1].replace(f"{tmp_path}/1", "") == printed[2].replace(f"{tmp_path}/2", "")
 
 
 @pytest.mark.usefixtures("gl")
-def test_what_a_dead_process_did_not_measure_is_measured_here(run, tmp_path, cores, monkeypatch):
-    """A second process that dies costs time and no rows; what it said last is told."""
+def test_the_first_process_measures_what_a_dead_process_did_not(run, tmp_path, cores, monkeypatch):
+    """A dead second process costs time but no rows; its last message is shown."""
     cores(2)
     monkeypatch.setattr(piped, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
     status, _, err = run(*SMALL, "-o", str(tmp_path / "run"))
@@ -54,8 +54,8 @@ def test_what_a_dead_process_did_not_measure_is_measured_here(run, tmp_path, cor
 
 
 @pytest.mark.usefixtures("gl")
-def test_an_error_there_is_an_error_here(run, tmp_path, cores):
-    """One line, the same exit status, and what was measured is kept: here a folder has the name of a file."""
+def test_an_error_of_the_second_process_is_an_error_of_the_run(run, tmp_path, cores):
+    """The error is one line with the same status, and measured rows are kept; here a folder has a file's name."""
     cores(2)
     folder = tmp_path / "run"
     assert run("run", "--tables", "mix", *CODE, "-o", str(folder))[0] == 0
@@ -67,7 +67,7 @@ def test_an_error_there_is_an_error_here(run, tmp_path, cores):
 
 
 def children_of(process: int) -> set[int]:
-    """The processes that a process has started."""
+    """Return the processes that a process has started."""
     return {int(word) for path in Path(f"/proc/{process}/task").glob("*/children") for word in path.read_text().split()}
 
 
@@ -82,7 +82,7 @@ def is_there(process: int) -> bool:
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_process_outlives_a_run(tmp_path, ended):
-    """However the first process ends, the second one ends too, and the same command goes on with the rows of both."""
+    """The second process ends with the first, however that ends; the same command resumes with the rows of both."""
     signalled = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGKILL: -signal.SIGKILL}
     words = ("run", "--tables", "effects,depth", "-o", "ended")
     command = [sys.executable, "-m", "normalbench", *words]
@@ -109,7 +109,7 @@ def test_no_process_outlives_a_run(tmp_path, ended):
 
 
 def test_each_chart_is_drawn_once(run, tmp_path, monkeypatch):
-    """A chart's two files come of one drawing."""
+    """A chart's two files come from one drawing."""
     drawn = []
     kept = report._write_chart
     monkeypatch.setattr(report, "_write_chart", lambda one, folder: drawn.append(one.name) or kept(one, folder))
@@ -118,7 +118,7 @@ def test_each_chart_is_drawn_once(run, tmp_path, monkeypatch):
 
 
 def measured(folder: Path, *more: str, **variables: str) -> str:
-    """What a process says of one code whose caches lie in a folder."""
+    """Measure one codec in another process, with its caches in a folder; return the output."""
     words = ("quality", "--encoding", "octahedral", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
     own = {name: value for name, value in environment().items() if not name.startswith("JAX_")}
     command = [sys.executable, "-m", "normalbench", *words, *more, "--format", "json"]
@@ -134,10 +134,10 @@ def programs(folder: Path) -> dict[str, int]:
 
 
 def test_a_second_process_compiles_nothing(tmp_path):
-    """It finds every program in the cache, and says the same."""
-    first, made = measured(tmp_path), programs(tmp_path)
-    assert made, "nothing was kept"
-    assert measured(tmp_path) == first and programs(tmp_path) == made
+    """The second process finds every program in the cache, and prints the same output."""
+    first, files = measured(tmp_path), programs(tmp_path)
+    assert files, "nothing was kept"
+    assert measured(tmp_path) == first and programs(tmp_path) == files
     damaged = next(tmp_path.glob("normalbench/programs/*/*-cache"))
     damaged.write_bytes(damaged.read_bytes()[:100])
     assert measured(tmp_path) == first, "a damaged program"

@@ -1,4 +1,4 @@
-"""Which texts compilers are given."""
+"""The texts that compilers may be given."""
 
 import re
 import time
@@ -37,14 +37,14 @@ REFUSED = {
 
 @pytest.mark.parametrize("language", [name for name in texts.RULES if name != "wgsl"])
 @pytest.mark.parametrize("name", REFUSED)
-def test_what_a_preprocessor_could_read_otherwise_is_refused_with_its_line(name, language):
+def test_ambiguous_preprocessor_input_is_refused_with_its_line(name, language):
     text, line = REFUSED[name]
     with pytest.raises(RefusedError) as refused:
         judged(text, language, lambda plain: plain.content)
     assert refused.value.line == line, refused.value
 
 
-def test_macros_branches_and_messages_stay():
+def test_macros_conditionals_and_messages_are_kept():
     text = (
         "#define A(x) x\n#if A(1) == 1 && !defined(B)\n# error no\n#elif 0\n\t#\twarning w\n#else\n#endif\n#undef A\n"
     )
@@ -61,8 +61,8 @@ def test_words_that_read_or_write_other_text_are_refused(word):
         judged(f"float x;\n{word} y;", "slang")
 
 
-def test_a_word_that_macros_spell_is_refused_where_they_join_words():
-    """What the preprocessor makes says so; what letters could spell does not."""
+def test_a_refused_word_is_also_refused_if_macros_join_it():
+    """The preprocessor's output decides; without it, joining words is refused."""
     text = "float x;\n#define P(a, b) a##b\nP(im, port) y;"
     with pytest.raises(RefusedError, match="line 2: import is not supported"):
         judged(text, "slang", lambda _: "float x ; import y ;")
@@ -71,8 +71,8 @@ def test_a_word_that_macros_spell_is_refused_where_they_join_words():
         judged(text, "slang")
 
 
-def test_names_of_the_users_may_begin_with_two_underscores():
-    """The compiler knows none of them; the words that it does know stay refused."""
+def test_users_names_may_begin_with_two_underscores():
+    """Words that the compiler knows are still refused."""
     assert judged("float __OctWrap(float __x) { return __x; }", "slang", knows={"__include"}.__contains__)
     with pytest.raises(RefusedError, match="line 1: __include is not supported"):
         judged("float __x; __include y;", "slang", knows={"__include"}.__contains__)
@@ -80,7 +80,7 @@ def test_names_of_the_users_may_begin_with_two_underscores():
 
 @pytest.mark.usefixtures("slang")
 def test_slangs_compiler_knows_the_words_that_are_refused():
-    """And no name of this test's."""
+    """The compiler does not know a made-up name."""
     for word in (*texts.OTHER_FILES, *WORDS, *texts.RULES["slang"].refused):
         assert not word.startswith("__") or slang.knows(word), word
     assert not slang.knows("__OctWrap") and not slang.knows("__unused")
@@ -106,13 +106,13 @@ def test_words_of_generics_are_read():
     ],
 )
 @pytest.mark.parametrize("language", ["c", "cuda"])
-def test_native_code_has_no_strings_and_no_words_of_its_compiler(text, language):
+def test_native_code_may_not_have_strings_or_words_of_its_compiler(text, language):
     with pytest.raises(RefusedError):
         judged(text, language)
 
 
 @pytest.mark.parametrize("head", ["#include <math.h>", '#include "code.h"', "#pragma STDC FP_CONTRACT OFF"])
-def test_a_head_is_one_of_a_list_of_its_own_language(head):
+def test_a_listed_head_is_accepted_only_in_its_own_language(head):
     assert judged(head, "c")
     for language in set(texts.RULES) - {"c"}:
         with pytest.raises(RefusedError):
@@ -122,7 +122,7 @@ def test_a_head_is_one_of_a_list_of_its_own_language(head):
 @pytest.mark.parametrize(
     "head", ['#include "stdlib.h"', "#include <stdio.h>", '#include "../code.h"', '#include "/etc/passwd"', "#pragma x"]
 )
-def test_no_other_head_is_read(head):
+def test_other_heads_are_refused(head):
     for language in texts.RULES:
         with pytest.raises(RefusedError):
             judged(head, language)
@@ -140,13 +140,13 @@ def test_only_files_of_this_program_are_its_own(tmp_path):
     file = ENCODINGS["octahedral"].glsl
     with pytest.raises(ValueError, match="is neither a number nor a name"):
         own(file, A='1\n#include "x"')
-    made = own(file, A=1)
-    assert made.is_own and made.content == f"#define A 1\n{file.read_text()}"
-    assert not (made + judged("x", "c")).is_own
+    source = own(file, A=1)
+    assert source.is_own and source.content == f"#define A 1\n{file.read_text()}"
+    assert not (source + judged("x", "c")).is_own
 
 
 @pytest.mark.parametrize("text", ["/* " * 10**6, "\\ " * 10**6, "\\\n" * 10**6, "# " * 10**6, "#\n" * 10**5])
-def test_looking_takes_as_long_as_the_text(text):
+def test_judging_takes_linear_time(text):
     began = time.process_time()
     for language in ("slang", "c"):
         with pytest.raises(RefusedError):
@@ -156,14 +156,14 @@ def test_looking_takes_as_long_as_the_text(text):
 
 
 def test_a_string_hides_no_comment():
-    """What it says is no matter."""
+    """Comment marks in a string are removed as well."""
     assert bare('string a = "http://x /* y */"; // z') == 'string a = "http:  x    y   ";     '
     assert judged(bare('#define Q "\n//" x\n'), "slang").content == '#define Q "\n' + " " * 5 + "\n"
 
 
-def test_each_line_stays_where_it_was():
+def test_each_line_keeps_its_number():
     text = "a \\\nb // c \\\nd\n/* e\n*/ f\n#line 3\n#foo x\ng"
-    made = with_known_directives(without_comments(joined(text)))
-    assert [re.sub(" +", " ", line).strip() for line in made.split("\n")] == [
+    cleaned = with_known_directives(without_comments(joined(text)))
+    assert [re.sub(" +", " ", line).strip() for line in cleaned.split("\n")] == [
         *("a b", "", "", "", "f", "", "#error #foo is not supported", "g")
     ]

@@ -1,4 +1,4 @@
-"""Work shared among threads: the same ones from call to call, and others where one was interrupted."""
+"""Work shared among threads: calls reuse the same threads, and get new ones after an interruption."""
 
 import threading
 
@@ -8,7 +8,7 @@ from normalbench.bench.ground.machine.cores import cores, on_all_cores
 
 
 def threads_used() -> set[int]:
-    """All of a pool's: each waits for the others."""
+    """Return the identifiers of all threads of a pool; each thread waits for the others."""
     barrier = threading.Barrier(2 * cores(), timeout=10)
     return {*on_all_cores(lambda _: (barrier.wait(), threading.get_ident())[1], range(2 * cores()))}
 
@@ -28,8 +28,8 @@ def failing(_: int) -> int:
 
 
 @pytest.mark.parametrize("interrupted", [failing, None])
-def test_after_an_interruption_others_are_asked(interrupted):
-    """One of the function, and one of whoever takes the results."""
+def test_new_threads_work_after_an_interruption(interrupted):
+    """The function is interrupted, or the caller stops taking results."""
     if interrupted:
         with pytest.raises(ValueError, match="wrong"):
             list(on_all_cores(interrupted, range(20)))

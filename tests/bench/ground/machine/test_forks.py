@@ -1,4 +1,4 @@
-"""Processes that are forked from one that has imported what they need behave as processes of their own."""
+"""Processes that are forked from a process with the needed imports behave like separate processes."""
 
 import os
 import signal
@@ -27,7 +27,7 @@ def main(words):
 
 @pytest.fixture
 def ended(monkeypatch, tmp_path):
-    """How a process that runs a line of Python ended."""
+    """A function that runs a line of Python in a forked process, and returns the finished process."""
     (tmp_path / "tried.py").write_text(MODULE)
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH")))))
     yield lambda line, seconds=30.0: forks.finished("tried", [line], seconds)
@@ -42,8 +42,8 @@ def is_there(process: int) -> bool:
     return True
 
 
-def test_each_has_its_own_status_output_folder_and_variables(ended, monkeypatch, tmp_path):
-    """As they are when it is asked for, whenever the process that forks was started; that one imports once."""
+def test_each_fork_has_its_own_status_output_folder_and_variables(ended, monkeypatch, tmp_path):
+    """The folder and variables are those at the time of the request; the forking process imports only once."""
     first = ended("print(made, os.getpid()); print('e', file=sys.stderr); sys.exit(3)")
     assert (first.returncode, first.stderr) == (3, "e\n")
     (tmp_path / "here").mkdir()
@@ -51,18 +51,18 @@ def test_each_has_its_own_status_output_folder_and_variables(ended, monkeypatch,
     monkeypatch.setenv("OWN", "1")
     second = ended("print(made, os.getpid()); print(os.getcwd(), os.environ['OWN'])")
     assert second.returncode == 0 and second.stdout.splitlines()[1] == f"{tmp_path}/here 1"
-    (made, one), (again, other) = (done.stdout.split()[:2] for done in (first, second))
-    assert made == again and len({made, one, other}) == 3
+    (importer, pid), (again, other) = (done.stdout.split()[:2] for done in (first, second))
+    assert importer == again and len({importer, pid, other}) == 3
 
 
-def test_an_error_is_told_and_changes_nothing_for_the_next(ended):
+def test_an_error_is_reported_and_does_not_affect_the_next_fork(ended):
     done = ended("sys.made = 1; 1 / 0")
     assert done.returncode == 1 and done.stderr.endswith("ZeroDivisionError: division by zero\n")
     assert ended("print(hasattr(sys, 'made'))").stdout == "False\n"
 
 
-def test_what_it_started_ends_with_it(ended):
-    """After its time, or when it is done."""
+def test_children_of_a_fork_end_with_it(ended):
+    """The fork ends by itself or at its time limit."""
     line = "print(subprocess.Popen(['sleep', '60']).pid, flush=True)"
     with pytest.raises(subprocess.TimeoutExpired) as late:
         ended(f"{line}; time.sleep(60)", 0.5)
@@ -74,32 +74,32 @@ def test_what_it_started_ends_with_it(ended):
 
 
 @pytest.mark.parametrize("who", ["made", "os.getppid()", "os.getpid()"])
-def test_whatever_it_kills_the_next_one_is_run(ended, who):
-    """The process that forks, the one that waits, or itself."""
+def test_the_next_fork_runs_whatever_process_the_last_one_killed(ended, who):
+    """The killed process is the forking one, the waiting one, or the fork itself."""
     ended("pass")
     done = ended(f"print(1, flush=True); os.kill({who}, signal.SIGKILL); time.sleep(0 if made == {who} else 0.2)")
     assert done.stdout == "1\n" and done.returncode == (0 if who == "made" else -signal.SIGKILL)
     assert ended("print(2)").stdout == "2\n"
 
 
-def test_who_waits_in_another_thread_can_be_told_to_stop(ended):
-    """As at Ctrl-C: the process is ended and nobody waits for its time."""
+def test_another_threads_wait_for_a_fork_can_be_stopped(ended):
+    """As after Ctrl-C, the fork is ended and its time limit is not waited for."""
 
     def interrupted():
         yield "time.sleep(60)"
         time.sleep(2)
         raise KeyboardInterrupt
 
-    found, began = [], time.monotonic()
+    outcomes, began = [], time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        list(on_all_cores(lambda line: found.append(ended(line)), interrupted(), forks.stop))
+        list(on_all_cores(lambda line: outcomes.append(ended(line)), interrupted(), forks.stop))
     assert time.monotonic() - began < 20
-    assert [done.returncode for done in found] == [-signal.SIGKILL]
+    assert [done.returncode for done in outcomes] == [-signal.SIGKILL]
 
 
 @pytest.mark.usefixtures("ended")
-def test_it_ends_where_whoever_asked_is_killed(tmp_path):
-    """Nobody is left to end it after its time."""
+def test_a_fork_ends_if_its_requester_is_killed(tmp_path):
+    """The requester can no longer end the fork at its time limit."""
     line = f"open({str(tmp_path / 'number')!r}, 'w').write(str(os.getpid())); time.sleep(60)"
     asking = f"from normalbench.bench.ground.machine.systems import forks; forks.finished('tried', [{line!r}], 60)"
     asks = subprocess.Popen([sys.executable, "-c", asking])
@@ -116,8 +116,8 @@ def test_it_ends_where_whoever_asked_is_killed(tmp_path):
     assert not is_there(number)
 
 
-def test_other_variables_of_jax_are_read_anew(ended, monkeypatch):
-    """They are read when it is imported, by the process that forks."""
+def test_changed_variables_of_jax_start_a_new_forking_process(ended, monkeypatch):
+    """JAX reads its variables when the forking process imports it."""
     first = ended("print(made)").stdout
     monkeypatch.setenv("JAX_ENABLE_X64", "1")
     assert ended("print(made)").stdout != first

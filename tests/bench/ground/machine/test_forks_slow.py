@@ -1,4 +1,4 @@
-"""Processes that are forked from one that has imported what they need behave as processes of their own."""
+"""Processes that are forked from a process with the needed imports behave like separate processes."""
 
 import sys
 
@@ -9,8 +9,8 @@ from normalbench.bench.ground.machine.systems import forks, linux_forks
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere each process imports for itself")
 
 
-def test_one_that_does_not_stay_is_done_without(monkeypatch):
-    """Each process then imports for itself."""
+def test_work_continues_without_a_forking_process_that_ends(monkeypatch):
+    """Each process then does its own imports."""
     linux_forks._forking.end()
     monkeypatch.setattr(linux_forks, "_command", lambda _: ["false"])
     done = forks.finished("normalbench.bench.subjects.codecs.first_look", ["gone.glsl"], 60.0)

@@ -1,5 +1,5 @@
-"""The devices that tables are measured on."""
+"""The devices that measure tables."""
 
 
-def test_a_device_that_draws_says_so(gl):
+def test_a_working_device_answers(gl):
     assert all(gl.answers for _ in range(20))

@@ -1,12 +1,12 @@
-"""The devices that tables are measured on."""
+"""The devices that measure tables."""
 
 from normalbench.gbuffer.gl.device import Device
 
 MEASURED = ("quality", "--encoding", "octahedral", "--storage", "rgba8", "--normals", "sphere", "--count", "4096")
 
 
-def test_what_a_lost_device_gives_is_no_row(run, gl, monkeypatch):
-    """A driver that loses its GPU raises nothing: rows of one that did had 6 dB in place of 61."""
+def test_results_of_a_lost_device_are_not_rows(run, gl, monkeypatch):
+    """A driver that loses its GPU raises no error: rows of a lost device had 6 dB instead of 61."""
     monkeypatch.setattr(Device, "answers", False)
     status, out, err = run(*MEASURED, "--backend", "glsl")
     assert (status, out) == (3, "") and err.count("\n") == 1, err

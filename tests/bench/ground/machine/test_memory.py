@@ -1,4 +1,4 @@
-"""How a process keeps memory."""
+"""The memory that a process keeps and needs."""
 
 import subprocess
 import sys
@@ -19,7 +19,7 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="glibc's heap")
-def test_what_is_freed_is_not_cleared_anew_by_the_system():
-    """100 times 10 MB would be 244 000 pages."""
+def test_freed_memory_is_not_cleared_again_by_the_system():
+    """Clearing 10 MB 100 times would cause 244,000 page faults."""
     done = subprocess.run([sys.executable, "-c", ALLOCATE], capture_output=True, text=True, check=True)
     assert int(done.stdout) < 5000

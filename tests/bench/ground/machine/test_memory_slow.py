@@ -1,4 +1,4 @@
-"""How a process keeps memory."""
+"""The memory that a process keeps and needs."""
 
 import subprocess
 import sys
@@ -18,17 +18,17 @@ sys.exit(main())
 @pytest.mark.parametrize(
     "words", ["quality --encoding octahedral --storage rg8 --normals axes", "code octahedral --storage rg8", "doctor"]
 )
-def test_a_process_without_addresses_enough_is_one_line(words):
-    """With 1 GB the libraries that JAX is written in ended it: terminate called, status 134."""
+def test_too_little_address_space_is_a_one_line_error(words):
+    """With 1 GB, JAX's C++ libraries would terminate the process with status 134."""
     done = subprocess.run([sys.executable, "-c", COMMAND, *words.split()], capture_output=True, text=True)
-    said = (
+    message = (
         "normalbench: not enough memory: this process is limited to 1 GB of addresses, but JAX and OpenGL need 2.5 GB"
     )
     assert (done.returncode, done.stdout) == (3, ""), done.stderr
-    assert done.stderr == f"{said}; raise the limit: ulimit -v 2500000\n", done.stderr
+    assert done.stderr == f"{message}; raise the limit: ulimit -v 2500000\n", done.stderr
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the limit of addresses")
-def test_what_starts_no_jax_needs_little():
+def test_commands_without_jax_need_little_address_space():
     done = subprocess.run([sys.executable, "-c", COMMAND, "list", "encodings"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

@@ -1,7 +1,7 @@
-"""Commands on macOS, as on Windows by day."""
+"""Commands on macOS; the daily tests cover Windows."""
 
 import test_other_systems_slow
 
 
-def test_commands_end_well_on_macos_and_a_users_encoder_is_measured(tmp_path):
-    test_other_systems_slow.test_commands_end_well_and_a_users_encoder_is_measured(tmp_path, "darwin")
+def test_commands_succeed_on_macos_and_a_users_encoder_is_measured(tmp_path):
+    test_other_systems_slow.test_commands_succeed_and_a_users_encoder_is_measured(tmp_path, "darwin")

@@ -1,4 +1,4 @@
-"""What the command line does where Python lacks what it lacks on Windows and on macOS."""
+"""The command line on a Python without the parts that Windows or macOS lacks."""
 
 import json
 
@@ -19,7 +19,7 @@ COMMANDS = (
 )
 
 
-def test_commands_end_well_and_a_users_encoder_is_measured(tmp_path, system="win32"):
+def test_commands_succeed_and_a_users_encoder_is_measured(tmp_path, system="win32"):
     write_examples(tmp_path)
     done = on(system, tmp_path, *COMMANDS)
     ended = [line for line in done.stderr.splitlines() if " ended with " in line]
@@ -28,8 +28,8 @@ def test_commands_end_well_and_a_users_encoder_is_measured(tmp_path, system="win
     assert [row["bits"] for row in json.loads((tmp_path / "mine.json").read_text())] == [16]
 
 
-def test_shaders_run_as_wgsl_where_opengl_ends_early(tmp_path):
-    """By the interface of that system, which is not here; of functions of any names, and with their twin."""
+def test_shaders_run_as_wgsl_if_the_opengl_version_is_too_old(tmp_path):
+    """The system's interface, Metal, is missing here. Functions may have any names, and their twin is measured."""
     write_examples(tmp_path)
     (tmp_path / "mine.glsl").write_text(ENCODER.replace("mine_", ""))
     done = on("darwin", tmp_path, ("quality", "--encoding", "mine.glsl", "--storage", "rg8", "--format", "json"))
@@ -41,7 +41,7 @@ def test_shaders_run_as_wgsl_where_opengl_ends_early(tmp_path):
     ), by_wgsl
 
 
-def test_several_pairs_of_a_file_are_named_where_no_device_tries_them(tmp_path):
+def test_several_pairs_of_a_file_are_listed_if_no_device_can_try_them(tmp_path):
     (tmp_path / "two.glsl").write_text(ENCODER.replace("mine_", "first_") + ENCODER.replace("mine_", "second_"))
     done = on("darwin", tmp_path, ("doctor", "two.glsl:language=glsl"))
     assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr
@@ -49,8 +49,8 @@ def test_several_pairs_of_a_file_are_named_where_no_device_tries_them(tmp_path):
 
 
 @pytest.mark.parametrize("system", SYSTEMS)
-def test_a_users_encoder_that_does_not_end_is_ended(system, tmp_path):
-    """One that sleeps: the limit of processor time, which Windows does not have, does not end it."""
+def test_a_users_encoder_that_does_not_end_is_stopped(system, tmp_path):
+    """The encoder sleeps, so a limit of processor time, which Windows lacks, would not stop it."""
     write_examples(tmp_path)
     (tmp_path / "mine.py").write_text("import time\n\ntime.sleep(1000)\n")
     words = ("quality", "--encoding", "mine.glsl", "--storage", "rg8", "--backend", "jax")

@@ -1,4 +1,4 @@
-"""What the program needs of a user before anything else is used."""
+"""The user's home folder, which the program needs before anything else."""
 
 import os
 import subprocess
@@ -15,13 +15,13 @@ pwd.getpwuid = unknown
 
 
 def as_nobody(code: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """What a program does for a user whom the system does not know, with a folder for temporary files."""
+    """Run code as a user whom the system does not know, with a folder for temporary files."""
     ours = {name: value for name, value in os.environ.items() if not name.startswith("JAX_")}
     variables = ours | {"TMPDIR": str(folder)}
     return subprocess.run([sys.executable, "-c", NOBODY + code], capture_output=True, text=True, env=variables)
 
 
-def test_a_home_that_somebody_else_made_is_not_used(tmp_path):
+def test_a_home_folder_made_by_another_user_is_not_used(tmp_path):
     planted = tmp_path / f"normalbench-home-{os.geteuid()}"
     planted.mkdir()
     planted.chmod(0o777)

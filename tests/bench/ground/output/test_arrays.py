@@ -1,4 +1,4 @@
-"""Archives and NumPy files that are damaged are refused, and nothing is unpacked that is larger than it may be."""
+"""Damaged archives and NumPy files are refused, and nothing beyond the size limit is unpacked."""
 
 import io
 
@@ -22,10 +22,10 @@ def npy(array) -> bytes:
 
 
 @pytest.mark.parametrize("order", ["C", "F"])
-def test_what_was_written_is_read(tmp_path, order):
+def test_written_arrays_are_read_back(tmp_path, order):
     path = tmp_path / "a.npz"
     path.write_bytes(npz(**{name: np.asarray(array, order=order) for name, array in ARRAYS.items()}))
-    for found, array in zip(read_npz(path, list(ARRAYS)), ARRAYS.values(), strict=True):
-        assert np.array_equal(found, array) and found.dtype == array.dtype
+    for loaded, array in zip(read_npz(path, list(ARRAYS)), ARRAYS.values(), strict=True):
+        assert np.array_equal(loaded, array) and loaded.dtype == array.dtype
     (tmp_path / "a.npy").write_bytes(npy(ARRAYS["mean"]))
     assert np.array_equal(read_npy(tmp_path / "a.npy", 4096), ARRAYS["mean"])

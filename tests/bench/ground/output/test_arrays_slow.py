@@ -1,4 +1,4 @@
-"""Archives and NumPy files that are damaged are refused, and nothing is unpacked that is larger than it may be."""
+"""Damaged archives and NumPy files are refused, and nothing beyond the size limit is unpacked."""
 
 import tracemalloc
 import zipfile
@@ -10,8 +10,8 @@ from test_arrays import npy
 from normalbench.bench.ground.output.arrays import MOST_BYTES, DamagedError, array_of, read_npz
 
 
-def test_what_would_grow_is_not_unpacked(tmp_path):
-    """2 MB of zeros packed from 2 GB, and an array whose header says 8 TB."""
+def test_files_that_unpack_to_too_much_are_not_unpacked(tmp_path):
+    """One file packs 2 GB of zeros into 2 MB; the header of an array claims 8 TB."""
     path = tmp_path / "bomb.npz"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("mean.npy", "w") as file:
         for _ in range(2 * MOST_BYTES >> 20):

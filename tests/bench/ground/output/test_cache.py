@@ -1,4 +1,4 @@
-"""Nothing of the cache is read that another user may have written."""
+"""The cache ignores anything that another user could have written."""
 
 import grp
 import os
@@ -30,8 +30,8 @@ def folder(own_cache, monkeypatch):
     return own_cache / "normalbench"
 
 
-def test_a_key_differs_wherever_one_of_its_parts_does():
-    """Also where the parts put together are the same text."""
+def test_a_key_differs_if_any_of_its_parts_differs():
+    """Keys differ even if the joined parts are the same text."""
     parts = [("ab", "c"), ("a", "bc"), ("abc",), ("abc", ""), ("", "abc"), ("1:a", "b"), ("1", ":ab")]
     assert len({cache.key_of(*several) for several in parts}) == len(parts)
 
@@ -52,8 +52,8 @@ KEY = "ab" + "0" * 62
 
 @pytest.mark.parametrize("done_to", WAYS)
 @pytest.mark.parametrize("part", ["", "native", "file"])
-def test_a_poisoned_library_is_compiled_anew(folder, done_to, part):
-    """The file itself, its folder or the whole cache is another user's, or others may write into it."""
+def test_a_poisoned_library_is_compiled_again(folder, done_to, part):
+    """The file, its folder or the whole cache belongs to another user, or others may write to it."""
     if not native.compiler():
         pytest.skip("no C compiler")
     native._made.cache_clear()
@@ -90,7 +90,7 @@ ABOVE = [
 
 @pytest.fixture
 def deep(monkeypatch, tmp_path):
-    """A cache within two folders of this user's; the outer one."""
+    """The outer of two folders of this user; the cache is in the inner folder."""
     monkeypatch.delenv(cache.OFF, raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "outer" / "inner"))
     (tmp_path / "outer" / "inner").mkdir(mode=0o700, parents=True)
@@ -101,7 +101,7 @@ def deep(monkeypatch, tmp_path):
 @pytest.mark.parametrize("part", ["outer", "inner"])
 @pytest.mark.parametrize("done_to", ABOVE)
 def test_a_library_planted_in_a_folder_above_the_cache_is_not_loaded(deep, done_to, part):
-    """All of the cache itself is this user's; who writes above it puts another one in its place. Nothing is kept."""
+    """Anyone who may write to a folder above this user's cache could replace the cache, so nothing is kept."""
     if not native.compiler():
         pytest.skip("no C compiler")
     native._made.cache_clear()
@@ -118,7 +118,7 @@ def test_a_library_planted_in_a_folder_above_the_cache_is_not_loaded(deep, done_
 
 @pytest.mark.parametrize("done_to", ABOVE)
 def test_a_device_planted_above_the_cache_is_not_loaded(deep, done_to):
-    """It is built for this process, in a folder of its own."""
+    """The device is built for this process, in a separate folder."""
     there = null_device.library()
     assert there.is_relative_to(deep) and null_device.library() == there
     done_to(deep)
@@ -126,8 +126,8 @@ def test_a_device_planted_above_the_cache_is_not_loaded(deep, done_to):
 
 
 @as_root
-def test_folders_that_let_nobody_else_in_keep_libraries(deep):
-    """A sticky folder of root's, as /tmp is; and one that this user's own group may write, with nobody else in it."""
+def test_folders_that_keep_others_out_store_libraries(deep):
+    """Safe folders are a sticky folder of root, like /tmp, and a folder whose group has no other members."""
     (deep / "inner" / "file").touch()
     deep.chmod(0o1777)
     assert is_guarded(deep / "inner" / "file") and cache.keeps_code()
@@ -139,7 +139,7 @@ def test_folders_that_let_nobody_else_in_keep_libraries(deep):
 
 
 @pytest.mark.parametrize("done_to", WAYS)
-def test_a_value_of_anothers_is_made_anew(folder, done_to):
+def test_another_users_value_is_computed_again(folder, done_to):
     cache.write(KEY, {"bits": 8})
     assert cache.read(KEY) == {"bits": 8}
     done_to(folder / KEY[:2] / f"{KEY}.json")
@@ -159,7 +159,7 @@ def endless(path):
 
 @pytest.mark.parametrize("put", [pipe, endless])
 def test_a_pipe_or_a_device_in_place_of_a_file_is_not_read(folder, put):
-    """Neither values nor libraries nor JAX's programs: what is there is made anew, or taken out."""
+    """Values and libraries are made again; among JAX's programs, anything other than a file is removed."""
     cache.write(KEY, {"bits": 8})
     put(folder / KEY[:2] / f"{KEY}.json")
     assert cache.read(KEY) is None
@@ -181,8 +181,8 @@ def test_a_pipe_or_a_device_in_place_of_a_file_is_not_read(folder, put):
 
 @pytest.mark.parametrize("nowhere", ["normalbench", "tmp"])
 @pytest.mark.usefixtures("folder")
-def test_a_library_is_loaded_whichever_folder_nothing_is_executed_from(monkeypatch, tmp_path, nowhere):
-    """The cache, or the folder for temporary files: a row is measured by C the second time as the first."""
+def test_a_library_is_loaded_if_one_folder_forbids_execution(monkeypatch, tmp_path, nowhere):
+    """The folder is the cache or the one for temporary files; the library is loaded the second time as well."""
     if not native.compiler():
         pytest.skip("no C compiler")
     (tmp_path / "tmp").mkdir()
@@ -200,8 +200,8 @@ def test_a_library_is_loaded_whichever_folder_nothing_is_executed_from(monkeypat
         assert native.library(judged("int answer(void) { return 5; }", "c"), "answer").answer() == 5
 
 
-def test_a_device_is_built_elsewhere_where_nothing_is_executed_from_the_cache(folder, monkeypatch):
-    """The loader passes over a library that it cannot map, and then there is no device."""
+def test_a_device_is_built_elsewhere_if_the_cache_forbids_execution(folder, monkeypatch):
+    """The loader skips a library that it cannot map, and then no device is found."""
     flags = SimpleNamespace(f_flag=os.ST_NOEXEC)
     monkeypatch.setattr(cache.os, "statvfs", lambda _: flags)
     there = null_device.library()
@@ -223,7 +223,7 @@ def test_folders_are_for_their_user_alone(folder):
 
 
 @as_root
-def test_a_folder_that_was_open_is_closed_and_rid_of_what_others_put_there(folder):
+def test_an_open_folder_is_made_private_and_files_of_others_are_removed(folder):
     programs = folder / "programs"
     cache.make_folder(programs)
     (programs / "mine").write_text("mine")
@@ -237,7 +237,7 @@ def test_a_folder_that_was_open_is_closed_and_rid_of_what_others_put_there(folde
 
 
 @pytest.mark.parametrize("put", [lambda path: path.write_text("mine"), os.mkfifo, lambda path: path.symlink_to("none")])
-def test_what_is_no_folder_keeps_nothing_and_is_left_as_it_is(folder, put):
+def test_a_cache_path_that_is_not_a_folder_is_left_unchanged(folder, put):
     folder.parent.mkdir(parents=True)
     put(folder)
     before = folder.lstat()

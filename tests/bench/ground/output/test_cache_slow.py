@@ -1,4 +1,4 @@
-"""Nothing of the cache is read that another user may have written."""
+"""The cache ignores anything that another user could have written."""
 
 import os
 
@@ -13,7 +13,7 @@ folder = test_cache.folder
 
 
 @as_root
-def test_a_cache_of_another_user_is_not_used_and_doctor_says_so(run, folder):
+def test_a_cache_of_another_user_is_not_used_and_doctor_reports_it(run, folder):
     folder.mkdir(parents=True)
     os.chown(folder, ELSE, ELSE)
     cache.write(KEY, {})

@@ -1,4 +1,4 @@
-"""Arrays are made once for a key, and anew where what was kept is damaged, another user's or not to be used."""
+"""Arrays are computed once per key, and again if the kept file is damaged, open to other users or unusable."""
 
 import io
 
@@ -13,7 +13,7 @@ KEY = "cd" + "0" * 62
 
 @pytest.fixture
 def made(own_cache, monkeypatch):
-    """How often they were made, by a function that keeps them; and where they lie."""
+    """A list with an item per computation, a function that returns the kept arrays, and the path of their file."""
     monkeypatch.delenv(cache.OFF, raising=False)
     times = []
 
@@ -24,7 +24,7 @@ def made(own_cache, monkeypatch):
     return times, lambda: kept_arrays(KEY, make), own_cache / "normalbench" / "arrays" / f"{KEY}.npz"
 
 
-def test_they_are_made_once_and_are_the_same_to_the_bit(made):
+def test_arrays_are_computed_once_and_are_bit_identical(made):
     times, ask, path = made
     first, second = ask(), ask()
     assert len(times) == 1 and path.is_file() and cache.is_private(path)
@@ -51,7 +51,7 @@ def another_kind(data):
 
 
 @pytest.mark.parametrize("damage", [emptied, cut_off, changed, another_kind])
-def test_a_damaged_file_is_made_anew(made, damage):
+def test_a_damaged_file_is_computed_again(made, damage):
     times, ask, path = made
     ask()
     whole = path.read_bytes()
@@ -61,7 +61,7 @@ def test_a_damaged_file_is_made_anew(made, damage):
     assert len(times) == 2, "what was made anew is kept"
 
 
-def test_what_others_may_write_is_not_read(made):
+def test_a_file_that_others_may_write_is_not_read(made):
     times, ask, path = made
     ask()
     path.chmod(0o666)
@@ -69,7 +69,7 @@ def test_what_others_may_write_is_not_read(made):
     assert len(times) == 2
 
 
-def test_a_cache_that_is_off_or_cannot_be_written_is_no_error(made, monkeypatch):
+def test_a_cache_that_is_off_or_not_writable_is_not_an_error(made, monkeypatch):
     times, ask, path = made
     path.parent.parent.mkdir(parents=True)
     path.parent.write_text("a file where the folder would be")

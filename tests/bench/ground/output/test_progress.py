@@ -1,4 +1,4 @@
-"""One bar for a run: which table of how many, and the steps of all."""
+"""One progress bar for a run, with the number of the table and the steps of all tables."""
 
 import re
 import sys
@@ -12,7 +12,7 @@ from normalbench.bench.ground.output.progress import PAGE, progress, progress_of
 
 @pytest.fixture
 def bars(monkeypatch):
-    """What every bar is told: its steps in all, then each advance and what is under way."""
+    """The calls of every bar: its total number of steps, then each advance and its description."""
     told: list[tuple[int, str]] = []
 
     class Recorded:
@@ -36,8 +36,8 @@ def bars(monkeypatch):
     return told
 
 
-def test_the_bars_of_tables_are_part_of_the_one_of_their_run(bars):
-    """Steps count by how long they take, those that are there not at all; a bar of something else is its own."""
+def test_bars_of_tables_are_part_of_the_bar_of_their_run(bars):
+    """Steps are weighted by duration, and finished steps do not count; work other than tables has a separate bar."""
     with progress_of_all({"quality": (1, 5.0), "render": (9, 0.5), PAGE: (1, 12.0)}):
         with progress(1, "quality") as tick:
             tick("octahedral/rg8")
@@ -55,14 +55,14 @@ def test_the_bars_of_tables_are_part_of_the_one_of_their_run(bars):
     ]
 
 
-def test_a_table_alone_has_a_bar_of_its_own(bars):
+def test_a_single_table_has_its_own_bar(bars):
     with progress(1, "cost") as tick:
         tick("navi21")
     assert bars == [(1, "in all"), (1, "navi21")]
 
 
-def test_the_time_that_is_left_goes_by_what_was_expected_and_by_what_was_measured(monkeypatch):
-    """At first as expected; a machine that takes twice as long is believed as it goes on."""
+def test_the_remaining_time_combines_expected_and_measured_times(monkeypatch):
+    """The first estimate is the expected time; on a machine half as fast, measured times gradually correct it."""
     now = [0.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
     left = []
@@ -76,7 +76,7 @@ def test_the_time_that_is_left_goes_by_what_was_expected_and_by_what_was_measure
     assert left[10].startswith("100%, about 0:00 left")
 
 
-def test_a_run_without_a_terminal_says_how_far_it_is(capsys, monkeypatch):
+def test_a_run_without_a_terminal_prints_its_progress(capsys, monkeypatch):
     monkeypatch.setattr(module, "EVERY", 0.05)
     monkeypatch.delenv(module.OFF)
     # The bar first: it imports what draws it, which may take longer than a line is away.
@@ -84,11 +84,11 @@ def test_a_run_without_a_terminal_says_how_far_it_is(capsys, monkeypatch):
         tick("octahedral/rg8")
         time.sleep(0.5)
     time.sleep(0.1)
-    said = capsys.readouterr().err
+    stderr = capsys.readouterr().err
     assert re.search(
-        r"^normalbench: 0.05 s, 33%, about \d:\d\d left, table 1 of 1, quality: octahedral/rg8$", said, re.M
+        r"^normalbench: 0.05 s, 33%, about \d:\d\d left, table 1 of 1, quality: octahedral/rg8$", stderr, re.M
     )
-    assert len(said.splitlines()) >= 3
+    assert len(stderr.splitlines()) >= 3
     time.sleep(0.2)
     assert not capsys.readouterr().err, "it goes on after the run"
     monkeypatch.setenv(module.OFF, "1")
@@ -97,7 +97,7 @@ def test_a_run_without_a_terminal_says_how_far_it_is(capsys, monkeypatch):
     assert not capsys.readouterr().err, "it speaks though it is not to"
 
 
-def test_a_run_with_a_terminal_shows_its_bar_alone(capsys, monkeypatch):
+def test_a_run_in_a_terminal_shows_only_its_bar(capsys, monkeypatch):
     monkeypatch.setattr(module, "EVERY", 0.05)
     monkeypatch.delenv(module.OFF)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)

@@ -1,4 +1,4 @@
-"""Image errors over sampled pixels: those of the whole frame, as far as their own standard error says."""
+"""Image errors over sampled pixels match the errors of the whole frame, as far as their standard errors allow."""
 
 from contextlib import ExitStack
 
@@ -19,7 +19,7 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 @pytest.fixture
 def image_of(monkeypatch, gl):
-    """From a scene and a specular power to its whole image, 160 pixels wide, and pixels sampled from it."""
+    """A function from a scene and a power to the whole image, 160 pixels wide, and to pixels sampled from it."""
     monkeypatch.setattr(whole, "SIZE", (160, 120))
     with ExitStack() as stack:
 
@@ -32,20 +32,20 @@ def image_of(monkeypatch, gl):
 
 
 @pytest.mark.parametrize("scene, power", [("playground", 200.0), ("ramps", None)])
-def test_the_error_of_samples_is_that_of_the_frame(image_of, scene, power):
-    """Of the frame and of each class, within three standard errors, which are below a tenth of it."""
+def test_the_error_of_samples_matches_the_frame(image_of, scene, power):
+    """The frame's error is within three standard errors, each below a tenth of it; classes are within 35%."""
     codec = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
     trip, turns = (lambda n, p: round_trip(codec, n, p)), [POLES["y"] @ yaws(0, 1, 0)[0]]
     image, sampled = image_of(scene, power)
-    frame, found = (part.by_class(trip, turns, "sphere") for part in (image, sampled))
+    frame, samples = (part.by_class(trip, turns, "sphere") for part in (image, sampled))
     spread = sampled.pixel_error(sampled.errors(trip, turns)[0])
-    assert abs(found[""][0] - frame[""][0]) < 3 * spread and spread < 0.1 * frame[""][0], (found, frame, spread)
-    assert found.keys() == frame.keys()
-    assert all(found[name][0] == pytest.approx(frame[name][0], rel=0.35) for name in found), (found, frame)
+    assert abs(samples[""][0] - frame[""][0]) < 3 * spread and spread < 0.1 * frame[""][0], (samples, frame, spread)
+    assert samples.keys() == frame.keys()
+    assert all(samples[name][0] == pytest.approx(frame[name][0], rel=0.35) for name in samples), (samples, frame)
 
 
 def test_classes_are_by_direction_and_roughness(image_of):
-    """A floor is a class of its own, whatever it is made of; the shares of all classes are the whole."""
+    """Axis-aligned surfaces such as floors are one class for all materials; the shares of all classes add up to 1."""
     image, sampled = image_of("studio", None)
     floors, *others = sampled.classes
     assert floors.name == whole.AXIS_ALIGNED and [sample.name for sample in others] == list(whole.UP_TO)
@@ -56,7 +56,7 @@ def test_classes_are_by_direction_and_roughness(image_of):
 
 
 def test_exact_normals_have_no_error(image_of):
-    """In view space, and by the frame's axes to the rounding of the rotation; glass is left out of the classes."""
+    """The error is 0 in view space, and only rounding error in the frame's axes; glass is not part of any class."""
     image, sampled = image_of("room", 50.0)
     errors = sampled.errors(lambda normals, _: normals, [None, np.eye(3)])
     assert (errors[0] == 0).all() and errors[1].max() < 1e-9

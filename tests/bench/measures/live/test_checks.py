@@ -1,4 +1,4 @@
-"""The normals that browsers encode, and the checksums of a codec's codes of them."""
+"""The normals that browsers encode, and the checksums of a codec's codes for these normals."""
 
 import base64
 import json
@@ -20,12 +20,12 @@ SUMS = {"sphere": [3911770442, 2656752413], "hemisphere": [1654182782, 265675241
 
 @pytest.mark.parametrize("domain", SUMS)
 def test_normals_are_the_same_bits_on_every_machine(domain):
-    """Pages are read for years: what their checksums are of must not change with a library."""
+    """Pages are read for years, so a new version of a library must not change the checksums."""
     assert checks.sums(domain) == SUMS[domain]
 
 
 @pytest.mark.parametrize("domain", SUMS)
-def test_normals_are_of_their_domain_and_of_unit_length(domain):
+def test_normals_are_in_their_domain_and_have_unit_length(domain):
     n, view = normals.normals(domain)
     assert n.shape == view.shape == (2**16, 3) and n.dtype == view.dtype == np.float32
     assert abs(np.linalg.norm(n.astype(float), axis=1) - 1).max() < 4e-7
@@ -52,11 +52,11 @@ def test_hard_normals_have_both_zeros_and_neighbours():
 
 
 def test_a_sign_changes_a_checksum():
-    """A sum of weighted words sees of signs only whether their number is odd."""
-    one = np.ones(64, np.float32)
-    other = one.copy()
+    """A plain sum of weighted words would reveal only whether an odd number of signs changed."""
+    array = np.ones(64, np.float32)
+    other = array.copy()
     other[[3, 5]] = -1
-    assert checks.checksum(one) != checks.checksum(other)
+    assert checks.checksum(array) != checks.checksum(other)
 
 
 def test_a_step_changes_its_group_by_its_weight():
@@ -67,16 +67,16 @@ def test_a_step_changes_its_group_by_its_weight():
     assert apart.tolist() == [0, checks.weights()[7, 1]]
 
 
-def test_codes_are_counted_in_the_order_of_their_numbers():
-    """The float below the least positive one is 0, and the next is the largest negative one: one step each."""
+def test_codes_are_numbered_in_the_order_of_their_values():
+    """From the smallest positive float to 0 is one step, and from 0 to the largest negative float another."""
     codec = Codec(ENCODINGS["xy"], STORAGES["rg16f"])
     n = np.array([[2.0**-24, -(2.0**-24), 1], [0, 0, 1]], np.float32)
-    made = checks.reference_of(codec, n, np.zeros_like(n), compiled=False)
-    assert checks.ordered(codec, made).tolist() == [[1, -1], [0, 0]]
+    reference = checks.reference_of(codec, n, np.zeros_like(n), compiled=False)
+    assert checks.ordered(codec, reference).tolist() == [[1, -1], [0, 0]]
 
 
 def test_checks_of_a_file_are_whole_or_left_out(tmp_path):
-    """A run's folder may be edited, and its normals may be another version's."""
+    """A run's folder may be edited, and its normals may come from another version."""
     kept.write_live([OCTAHEDRAL], tmp_path)
     (path,) = tmp_path.iterdir()
     (whole,), left_out = kept.read_live(tmp_path)

@@ -1,4 +1,4 @@
-"""The normals that browsers encode, and the checksums of a codec's codes of them."""
+"""The normals that browsers encode, and the checksums of a codec's codes for these normals."""
 
 import json
 
@@ -8,11 +8,11 @@ from test_checks import OCTAHEDRAL
 from normalbench.bench.measures.live import checks
 
 
-def test_what_is_kept_of_a_codec_is_small_and_made_once(own_cache, monkeypatch):
-    found = checks.checks(OCTAHEDRAL)
-    assert len(json.dumps(found)) < 3500
+def test_checks_of_a_codec_are_small_and_computed_once(own_cache, monkeypatch):
+    figures = checks.checks(OCTAHEDRAL)
+    assert len(json.dumps(figures)) < 3500
     # JAX, step by step, 2026; 0.0833 degrees is what the quality table has on uniform directions.
-    assert (found["mean_deg"], found["max_deg"]) == pytest.approx((0.0832865, 0.2376264), abs=1e-6)
+    assert (figures["mean_deg"], figures["max_deg"]) == pytest.approx((0.0832865, 0.2376264), abs=1e-6)
     monkeypatch.setattr(checks, "reference_of", None)
-    assert checks.checks(OCTAHEDRAL) == found
+    assert checks.checks(OCTAHEDRAL) == figures
     assert any(own_cache.rglob("*.json"))

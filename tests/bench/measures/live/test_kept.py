@@ -1,4 +1,4 @@
-"""What a page's laboratory is given of a run: programs of codecs, their files, scenes, and damaged files."""
+"""The data of a run for a page's laboratory: programs of codecs, their files, scenes, and damaged files."""
 
 import json
 
@@ -15,9 +15,9 @@ from normalbench.encodings.vec import Vec2
 def test_files_are_read_as_they_were_written(tmp_path):
     codecs = codecs_named("octahedral,best_fit", "rgba8", "nearest")
     kept.write_live(codecs, tmp_path)
-    found, left_out = kept.read_live(tmp_path)
-    (checks,) = (one.pop("checks") for one in found)
-    assert checks and found == [programs.program(codecs[0])]
+    records, left_out = kept.read_live(tmp_path)
+    (checks,) = (record.pop("checks") for record in records)
+    assert checks and records == [programs.program(codecs[0])]
     assert left_out == {"best_fit rgba8": programs.TABLES_TOO_LARGE}
 
 
@@ -40,21 +40,21 @@ def test_a_damaged_file_is_left_out_by_name(tmp_path, damage):
 
 
 @pytest.mark.parametrize(("field", "value"), [("size", 5), ("words", 3), ("source", 1), ("more", 1), ("channels", [])])
-def test_a_field_that_is_not_what_it_should_be_is_refused(tmp_path, field, value):
+def test_an_invalid_field_is_refused(tmp_path, field, value):
     (codec,) = codecs_named("octahedral", "rgba8", "nearest")
     (tmp_path / "a.json").write_text(json.dumps(programs.program(codec) | {field: value}))
     assert kept.read_live(tmp_path)[1] == {"a.json": "its file is damaged"}
 
 
 def unpacked(pixels: np.ndarray) -> np.ndarray:
-    """The normals of pixels, as a page reads them."""
+    """Return the normals of pixels, decoded as a page does."""
     first, second, third = (pixels[..., i].astype(np.int64) for i in range(3))
     numbers = (first << 4 | second >> 4, (second & 15) << 8 | third)
     e = Vec2(*(number / scenes.LEVELS * 2.0 - 1.0 for number in numbers))
     return np.stack([np.asarray(plane) for plane in decode(e, None)], axis=-1) @ scenes.ROTATION
 
 
-def test_a_scene_comes_back_within_the_steps_of_its_numbers(tmp_path):
+def test_a_scene_round_trips_within_the_precision_of_its_codes(tmp_path):
     n = hard_directions().reshape(1, -1, 3)[:, :300].repeat(2, axis=0).astype(np.float32)
     covered = np.ones(n.shape[:2], bool)
     covered[0, :5] = False

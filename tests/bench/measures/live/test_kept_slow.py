@@ -1,4 +1,4 @@
-"""What a page's laboratory is given of a run: programs of codecs, their files, scenes, and damaged files."""
+"""The data of a run for a page's laboratory: programs of codecs, their files, scenes, and damaged files."""
 
 import re
 
@@ -16,21 +16,21 @@ LATER = re.compile(r"\b(bitfield\w+|fma|frexp|ldexp|(un)?pack[US]norm4x8|findMSB
 MINE = "vec2 mine_encode(vec3 n) { return n.xy; }\nvec3 mine_decode(vec2 e) { return vec3(e, 0.5); }\n"
 
 
-def test_every_codec_is_written_in_what_browsers_know():
-    found = {}
+def test_every_codec_uses_only_functions_that_browsers_support():
+    records = {}
     for encoding in ENCODINGS.values():
         codec = Codec(encoding, STORAGES["rgba8"], "nearest")
         try:
-            found[encoding.name] = programs.program(codec)
+            records[encoding.name] = programs.program(codec)
         except programs.NotLiveError as error:
             assert str(error) == programs.TABLES_TOO_LARGE, encoding.name
-    assert set(ENCODINGS) - set(found) == {"best_fit", "spherical_lut"}
-    for name, record in found.items():
+    assert set(ENCODINGS) - set(records) == {"best_fit", "spherical_lut"}
+    for name, record in records.items():
         assert not LATER.search(record["source"]), name
         kept.KEPT.validate_python({**record, "checks": None})
 
 
-def test_a_users_encoding_brings_its_text(tmp_path):
+def test_a_users_encoding_includes_its_text(tmp_path):
     (tmp_path / "mine.glsl").write_text(MINE)
     (codec,) = codecs_named(str(tmp_path / "mine.glsl"), "rg16f", "nearest")
     record = programs.program(codec)
@@ -39,7 +39,7 @@ def test_a_users_encoding_brings_its_text(tmp_path):
 
 
 def test_a_page_has_its_laboratory_wherever_its_files_are_written(run, tmp_path):
-    """With --live, too, which writes them elsewhere."""
+    """Here --live writes the files to another folder."""
     page, folder = tmp_path / "page.html", tmp_path / "there"
     words = ("--encoding", "octahedral", "--backend", "jax", "--normals", "sphere", "--count", "4096")
     status, _, err = run("quality", *words, "--live", str(folder), "--report", str(page))

@@ -1,4 +1,4 @@
-"""The limit of N codes: its figures, that nothing measured is below it, and that a wrong measure is."""
+"""The bound for N codes: its figures; correct measurements respect it, and a wrong measure is noticed."""
 
 import math
 import re
@@ -27,35 +27,35 @@ def row_of(codec: Codec, normals) -> dict:
 @pytest.mark.parametrize(
     "bits, mean, rms, largest", [(16, 0.29926, 0.31773, 0.49222), (24, 0.018704, 0.019858, 0.030764)]
 )
-def test_the_limits_figures(bits, mean, rms, largest):
-    """Fejes Toth's covering and the hexagon's moments, as independently computed."""
+def test_the_bound_has_the_expected_figures(bits, mean, rms, largest):
+    """Fejes Toth's covering and the hexagon's moments, computed independently."""
     least = code_limit(2**bits)
     assert [least.mean_deg, least.rms_deg, least.max_deg] == pytest.approx([mean, rms, largest], rel=5e-5)
 
 
 def test_the_covering_bound_is_exact_for_triangular_polyhedra_and_does_not_cancel():
-    """Vertices of the tetrahedron, octahedron and icosahedron: circumradii of their faces. And 2^62 codes."""
+    """Tetrahedron, octahedron and icosahedron give the circumradii of their faces; 2^62 codes do not cancel."""
     circumradii = {4: math.acos(1 / 3), 6: math.acos(1 / math.sqrt(3)), 12: math.acos(math.sqrt((5 + 2 * 5**0.5) / 15))}
     for count, radius in circumradii.items():
         assert code_limit(count).max_deg == pytest.approx(math.degrees(radius), rel=1e-12)
     assert code_limit(2**62).max_deg / code_limit(2**20).max_deg == pytest.approx(2.0**-21, rel=1e-5)
 
 
-def test_half_the_sphere_is_held_to_half_the_area():
+def test_the_bound_for_a_hemisphere_uses_half_the_area():
     whole, half = code_limit(2**16, SPHERE), code_limit(2**16, HEMISPHERE)
     assert half.rms_deg == pytest.approx(whole.rms_deg / math.sqrt(2))
     assert half.max_deg == pytest.approx(whole.max_deg / math.sqrt(2), rel=1e-4)
 
 
 @pytest.mark.parametrize("count", [999_999, 1_000_003, 1_100_000, 1_200_000])
-def test_two_lattices_that_meet_are_no_wrong_measurement(count):
-    """Directions of a million and codes of latitude and longitude: the nearest lie nearer than chance would have it."""
+def test_two_lattices_that_coincide_are_not_a_wrong_measurement(count):
+    """The nearest directions and codes of latitude and longitude are closer than by chance."""
     row = row_of(Codec(ENCODINGS["latitude_longitude"], STORAGES["rg8"]), sphere(count))
     assert row["below_limit"] == "", row
 
 
-def test_codes_that_a_format_cannot_tell_apart_do_not_count():
-    """SNORM8 has 255 numbers, a half float 30721 from -1 to 1; a sign is a bit more."""
+def test_codes_that_a_format_cannot_distinguish_are_not_counted():
+    """SNORM8 has 255 values and a half float 30,721 from -1 to 1; a sign is one more bit."""
     pairs = {"rg8_snorm": 255**2, "rg8": 2**16, "rg16f": 30721**2, "rg16": 2**32}
     for name, codes in pairs.items():
         assert Codec(ENCODINGS["octahedral"], STORAGES[name]).codes == codes
@@ -63,7 +63,7 @@ def test_codes_that_a_format_cannot_tell_apart_do_not_count():
 
 
 def broken(monkeypatch, angle_between) -> None:
-    """Another angle in place of the measure's own, compiled anew."""
+    """Replace the measure's angle function, and compile again."""
     monkeypatch.setattr(metrics, "angle_between", angle_between)
     monkeypatch.setattr(metrics, "_scan", jax.jit(lambda chunk: metrics._traced_scan(chunk)))
     monkeypatch.setattr(native, "_row_library", native._row_library.__wrapped__)
@@ -71,15 +71,15 @@ def broken(monkeypatch, angle_between) -> None:
 
 
 def test_an_arc_cosine_in_float32_is_caught(monkeypatch):
-    """Its first step is 0.02 degrees: far more angles are 0 than so many codes can be near to. The mean and the RMS
-    would not do: what is not 0 is too large."""
+    """Its first step is 0.02 degrees, so too many angles are 0 for this number of codes. The mean and the RMS would
+    not show the error, because all other angles are too large."""
     broken(monkeypatch, lambda a, b: jnp.degrees(jnp.arccos(jnp.minimum(dot(a, b), 1.0))))
     for name in ("rg8", "rgb10a2", "rg16", "rg16f"):
         below = row_of(Codec(ENCODINGS["octahedral"], STORAGES[name]), sphere(COUNT))["below_limit"]
         assert re.match(r"\d+ angles below .* degrees", below), name
 
 
-def test_radians_are_caught_and_said_with_exit_status_1(monkeypatch, run):
+def test_radians_are_caught_with_exit_status_1(monkeypatch, run):
     right = metrics.angle_between
     broken(monkeypatch, lambda a, b: jnp.radians(right(a, b)))
     words = ["--encoding", "octahedral", "--storage", "rg8", "--normals", "sphere", "--backend", "jax"]
@@ -88,7 +88,7 @@ def test_radians_are_caught_and_said_with_exit_status_1(monkeypatch, run):
     assert err.count("\n") == 1 and "below the bound of 0.31773; 65536 codes cannot be that accurate" in err
 
 
-def test_a_set_that_meets_a_codes_lattice_is_not_taken_for_a_broken_measure():
-    """Fewer directions than codes: 153 of spherical 10:10 are within 0.0039 degrees, where chance has 80."""
+def test_a_set_that_coincides_with_a_lattice_of_codes_is_accepted():
+    """Of 65,536 directions, 153 are within 0.0039 degrees of a spherical 10:10 code; by chance it would be 80."""
     for name in ("rgb8_10_10_2", "rgb8_10_10_3"):
         assert row_of(Codec(ENCODINGS["spherical"], STORAGES[name]), sphere(2**16))["below_limit"] == ""

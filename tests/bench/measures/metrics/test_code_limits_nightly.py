@@ -1,4 +1,4 @@
-"""The limit of N codes: its figures, that nothing measured is below it, and that a wrong measure is."""
+"""The bound for N codes: its figures; correct measurements respect it, and a wrong measure is noticed."""
 
 import pytest
 import test_code_limits_slow
@@ -8,5 +8,5 @@ from normalbench.encodings.storages.storage import STORAGES
 
 
 @pytest.mark.parametrize("name", [name for name in STORAGES if name not in SOME])
-def test_no_row_is_below_its_limit_in_any_storage(name):
-    test_code_limits_slow.test_no_row_is_below_its_limit(name)
+def test_no_row_is_below_its_bound_in_any_storage(name):
+    test_code_limits_slow.test_no_row_is_below_its_bound(name)

@@ -1,4 +1,4 @@
-"""The limit of N codes: its figures, that nothing measured is below it, and that a wrong measure is."""
+"""The bound for N codes: its figures; correct measurements respect it, and a wrong measure is noticed."""
 
 import math
 
@@ -19,8 +19,8 @@ SOME = ("rg8", "rgb10a2", "rg16f", "rgba8_snorm")
 
 
 @pytest.mark.parametrize("name", SOME)
-def test_no_row_is_below_its_limit(name):
-    """The whole catalogue: every encoding that fits, on the sphere and on half of it."""
+def test_no_row_is_below_its_bound(name):
+    """The whole catalogue is measured: every encoding that fits, on the sphere and on a hemisphere."""
     codecs = [Codec(encoding, STORAGES[name]) for encoding in ENCODINGS.values()]
     cases = quality.cases([c for c in codecs if c.fits], [sphere(COUNT), hemisphere(COUNT)], ["jax"])
     for row in quality.rows(cases, lambda _: None):
@@ -32,13 +32,13 @@ def test_no_row_is_below_its_limit(name):
 
 
 def polar_directions(count: int, seed: int) -> np.ndarray:
-    """Uniform angles, which crowd the poles: the commonest wrong way to a uniform sphere."""
+    """Return directions with uniform angles, which crowd the poles: the most common mistake for a uniform sphere."""
     polar, azimuth = np.random.default_rng(seed).uniform(0, [[np.pi], [2 * np.pi]], (2, count))
     return np.stack([np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)], axis=1)
 
 
 def settled(directions: np.ndarray, count: int) -> np.ndarray:
-    """Points that are the means of the directions nearest to them (S. Lloyd's iteration)."""
+    """Return points that are the means of their nearest directions (S. Lloyd's iteration)."""
     from scipy.spatial import cKDTree
 
     points = directions[:count]
@@ -50,7 +50,7 @@ def settled(directions: np.ndarray, count: int) -> np.ndarray:
 
 
 def test_directions_that_are_not_uniform_are_caught():
-    """A code made for a set that crowds the poles beats there what is possible on a uniform one, and there does not."""
+    """A code fitted to a set that crowds the poles beats the bound on that set, but not on a uniform set."""
     side = 24
     codec = Codec(nearest_of(settled(polar_directions(2**16, 0), side**2), side), storage("unorm", 5, 5))
     n = polar_directions(COUNT, 1).astype(np.float32)

@@ -1,4 +1,4 @@
-"""FLIP: that of its authors' program, and facts that hold of any difference."""
+"""FLIP: it matches its authors' program, and obeys general facts about differences."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from normalbench.bench.measures.metrics.flip import Flip
 
 
 def pictures():
-    """A smooth picture and one that is off by noise, by few steps, by a shift, and by everything; (96, 128, 3)."""
+    """Return pairs of a picture and a version with noise, few steps, a shift or other pixels; shape (96, 128, 3)."""
     rng = np.random.default_rng(0)
     y, x = np.mgrid[0:96, 0:128] / 96
     smooth = np.stack([0.5 + 0.4 * np.sin(9 * x + 3 * y), 0.5 + 0.4 * np.cos(7 * y), np.clip(x * y, 0, 1)], axis=-1)
@@ -22,14 +22,14 @@ def pictures():
 
 
 @pytest.mark.parametrize("name, pair", pictures().items())
-def test_it_is_that_of_the_authors_program(name, pair):
-    """flip-evaluator 1.7, at its usual 67 pixels per degree."""
+def test_flip_matches_its_authors_program(name, pair):
+    """The program is flip-evaluator 1.7, at its default of 67 pixels per degree."""
     evaluator = pytest.importorskip("flip_evaluator")
     reference, image = pair
     expected = evaluator.evaluate(reference, image, "LDR", applyMagma=False)[0][..., 0]
-    found = Flip(reference).of(image)
-    assert abs(found - expected).max() < 1e-4, name
-    assert np.percentile(found, 99) == pytest.approx(np.percentile(expected, 99), abs=1e-5)
+    errors = Flip(reference).of(image)
+    assert abs(errors - expected).max() < 1e-4, name
+    assert np.percentile(errors, 99) == pytest.approx(np.percentile(expected, 99), abs=1e-5)
 
 
 def test_equal_images_do_not_differ_and_black_and_white_differ_most():
@@ -39,8 +39,8 @@ def test_equal_images_do_not_differ_and_black_and_white_differ_most():
     assert Flip(black).of(white) == pytest.approx(np.full((8, 8), 0.9674), abs=1e-4)
 
 
-def test_two_greys_of_the_manual():
-    """A grey off by 2 of 255 is near 0.05, one off by 5 to 6 near 0.1, as the column says."""
+def test_two_greys_match_the_manual():
+    """The column's description states that a grey off by 2/255 has a FLIP near 0.05, and by 5 to 6 near 0.1."""
     grey = np.full((32, 32, 3), 0.5, np.float32)
-    found = [float(Flip(grey).of(grey + np.float32(step / 255)).mean()) for step in (2, 5.5)]
-    assert found == pytest.approx([0.05, 0.1], abs=0.012)
+    means = [float(Flip(grey).of(grey + np.float32(step / 255)).mean()) for step in (2, 5.5)]
+    assert means == pytest.approx([0.05, 0.1], abs=0.012)

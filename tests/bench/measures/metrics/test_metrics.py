@@ -1,4 +1,4 @@
-"""The statistics of a row, against NumPy in float64 and against the laws they obey."""
+"""The statistics of a row, compared with NumPy in float64 and with mathematical laws."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ from normalbench.encodings.storages.storage import STORAGES
 
 
 def turned(n: np.ndarray, degrees: np.ndarray, seed: int = 3) -> np.ndarray:
-    """Each direction turned by an angle about a random axis across it; float64."""
+    """Return each direction rotated by an angle about a random perpendicular axis; float64."""
     across = np.cross(n, random_directions(len(n), seed)).astype(np.float64)
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     angle = np.radians(degrees)[:, None]
@@ -39,7 +39,7 @@ def measured_angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def test_small_angles_keep_six_digits_in_float32():
-    """From 1e-5 to 180 degrees the angle equals the float64 one of the same float32 vectors within 1e-6 of it."""
+    """From 1e-5 to 180 degrees the angle matches float64 for the same float32 vectors, to a relative 2e-6."""
     n = random_directions(2**16)
     degrees = np.geomspace(1e-5, 179.9, len(n))
     other = turned(n, degrees).astype(np.float32)
@@ -54,7 +54,7 @@ def test_the_angle_does_not_depend_on_the_decodes_length():
     assert np.allclose(measured_angles(n, other), measured_angles(n, other * np.float32(0.9)), rtol=1e-5)
 
 
-def test_a_decode_that_is_no_direction_is_as_wrong_as_can_be():
+def test_a_decoded_value_that_is_not_a_direction_has_the_largest_error():
     n = random_directions(8)
     assert np.all(measured_angles(n, np.zeros_like(n)) == 180)
     broken = measured(Meter(jax.jit(lambda block: block.n * jnp.nan)), from_arrays("", "", n, n, np.ones(8, bool)))
@@ -64,7 +64,7 @@ def test_a_decode_that_is_no_direction_is_as_wrong_as_can_be():
 DECODED = Meter(jax.jit(lambda block: block.view))
 
 
-def test_the_background_counts_for_the_articles_measure_alone():
+def test_the_background_counts_only_for_the_articles_measure():
     n = random_directions(1000)
     other = turned(n, np.full(1000, 2.0)).astype(np.float32)
     covered = np.arange(1000) < 500
@@ -76,24 +76,24 @@ def test_the_background_counts_for_the_articles_measure_alone():
 
 
 def test_the_worst_normal_is_the_one_that_was_turned_most():
-    """Of several chunks, among background that is farther off, and of decodes that are not numbers."""
+    """The set has several chunks, a background with larger errors, and decoded values that are not numbers."""
     n, degrees = random_directions(CHUNK + 5000), np.full(CHUNK + 5000, 1.0)
     degrees[[77, CHUNK + 3]] = 2.0, 2.5
     covered = np.arange(len(n)) != 5
     other = turned(n, degrees).astype(np.float32)
     other[5] = -n[5]
-    found = measured(DECODED, from_arrays("", "", n, other, covered))
-    assert found.worst.angle_deg == pytest.approx(2.5, abs=1e-4) == pytest.approx(found.angle_max_deg, abs=1e-4)
-    assert np.array_equal(found.worst.normal, n[CHUNK + 3]) and np.array_equal(found.worst.decoded, other[CHUNK + 3])
+    stats = measured(DECODED, from_arrays("", "", n, other, covered))
+    assert stats.worst.angle_deg == pytest.approx(2.5, abs=1e-4) == pytest.approx(stats.angle_max_deg, abs=1e-4)
+    assert np.array_equal(stats.worst.normal, n[CHUNK + 3]) and np.array_equal(stats.worst.decoded, other[CHUNK + 3])
     other[9] = np.nan
-    found = measured(DECODED, from_arrays("", "", n, other, covered))
-    assert found.worst.angle_deg == 180 and np.array_equal(found.worst.normal, n[9])
+    stats = measured(DECODED, from_arrays("", "", n, other, covered))
+    assert stats.worst.angle_deg == 180 and np.array_equal(stats.worst.normal, n[9])
     assert measured(DECODED, from_arrays("", "", n[:9], n[:9], covered[:9])).worst.angle_deg == 0
 
 
 @pytest.mark.usefixtures("gl")
-def test_both_back_ends_name_the_worst_normal():
-    """A row's own columns, GLSL's too: the angle between the two is the largest that was met."""
+def test_both_backends_name_the_worst_normal():
+    """In the row's own columns, the angle between the normal and its decoded value is the largest sampled error."""
     for backend in ("jax", "glsl"):
         row = quality.measure(
             quality.QualityCase(Codec(ENCODINGS["spheremap"], STORAGES["rg8"]), sphere(5000), backend)
@@ -105,7 +105,7 @@ def test_both_back_ends_name_the_worst_normal():
         assert np.degrees(np.arctan2(across, normal @ decode)) == pytest.approx(row["angle_max_deg"], rel=1e-5), backend
 
 
-def test_psnr_is_scikit_images():
+def test_psnr_matches_scikit_image():
     # Its import takes a second, which collecting these tests does without.
     from skimage.metrics import peak_signal_noise_ratio
 
@@ -121,7 +121,7 @@ def test_identical_normals_have_infinite_psnr():
 
 @pytest.mark.parametrize("make, z_mean, z2_mean", [(sphere, 0, 1 / 3), (hemisphere, 1 / 2, 1 / 3)])
 def test_uniform_sets_are_uniform(make, z_mean, z2_mean):
-    """Moments of a uniform sphere (Archimedes: z is uniform), unit lengths, and every octant alike."""
+    """Moments of a uniform sphere (Archimedes: z is uniform), unit lengths, and equally filled octants."""
     chunk = make(CHUNK).chunk(0)
     n = np.stack([np.asarray(c, np.float64) for c in chunk.n], axis=1)
     assert np.allclose(np.linalg.norm(n, axis=1), 1, atol=3e-7)
@@ -134,7 +134,7 @@ def test_uniform_sets_are_uniform(make, z_mean, z2_mean):
 
 
 def test_a_uniform_sets_rounding_errors_are_independent():
-    """The lengths of its float32 vectors scatter as those of any rounded unit vectors do: z is not privileged."""
+    """The lengths of its float32 vectors scatter like those of any rounded unit vectors; z is not special."""
     chunk = sphere(CHUNK).chunk(0)
     n = np.stack([np.asarray(c, np.float64) for c in chunk.n], axis=1)
     any_unit = random_directions(CHUNK).astype(np.float64)
@@ -145,7 +145,7 @@ def test_a_uniform_sets_rounding_errors_are_independent():
     assert row["psnr_db"] == pytest.approx(73.1, abs=1) and row["angle_max_deg"] > 10
 
 
-def test_a_seed_moves_the_set_and_little_else():
+def test_a_seed_moves_the_set_but_hardly_changes_the_error():
     a, b, again = (sphere(2**18, seed) for seed in (0, 1, 0))
     x = [np.asarray(s.chunk(0).n.x) for s in (a, b, again)]
     assert np.array_equal(x[0], x[2]) and not np.array_equal(x[0], x[1])
@@ -154,26 +154,26 @@ def test_a_seed_moves_the_set_and_little_else():
     assert psnr[0] == pytest.approx(psnr[1], abs=0.01)
 
 
-def test_counting_stops_where_it_is_told_to():
+def test_a_partial_chunk_is_counted_exactly():
     row = quality.measure(quality.QualityCase(Codec(ENCODINGS["xy"], STORAGES["rgba8"]), sphere(CHUNK + 7), "jax"))
     assert row["count"] == CHUNK + 7
 
 
 def test_the_largest_count_can_be_addressed():
-    """The last chunk of the largest set is as good as the first."""
+    """The last chunk of the largest set is complete and finite."""
     last = sphere(counts.MAX_COUNT).chunk(counts.MAX_COUNT - CHUNK)
     assert np.asarray(last.covered).all()
     assert np.all(np.isfinite(np.asarray(last.n.z)))
 
 
-def test_nothing_is_simplified_across_a_storage_that_rounds_nothing():
-    """Encoding and decoding as one program are what they are as two: what is measured is float32's own error."""
+def test_nothing_is_simplified_across_a_storage_without_rounding():
+    """Encoding and decoding in one program equal two programs, so the row measures the error of float32 itself."""
     (codec,) = codecs_named("spherical:scale=0.3", "rgba32f", "nearest")
     chunk = hemisphere(CHUNK).chunk(0)
-    one = jax.jit(codec.round_trip)(chunk.n, chunk.view)
+    fused = jax.jit(codec.round_trip)(chunk.n, chunk.view)
     stored = jax.jit(codec.stored)(chunk.n, chunk.view)
     two = jax.jit(codec.encoding.decode)(stored, chunk.view)
-    worst = max(float(np.abs(np.asarray(a) - np.asarray(b)).max()) for a, b in zip(one, two, strict=True))
+    worst = max(float(np.abs(np.asarray(a) - np.asarray(b)).max()) for a, b in zip(fused, two, strict=True))
     assert worst <= 2.0**-23, worst
 
 
@@ -191,14 +191,14 @@ def rows_of(normals, names=("octahedral", "spherical", "xyz")) -> list[dict]:
 
 
 def test_a_chunk_is_made_once_for_all_codecs():
-    made, normals = [], sphere(2 * CHUNK)
-    counted = replace(normals, chunk=lambda start: (made.append(start), normals.chunk(start))[1])
+    starts, normals = [], sphere(2 * CHUNK)
+    counted = replace(normals, chunk=lambda start: (starts.append(start), normals.chunk(start))[1])
     rows_of(counted)
-    assert sorted(made) == [0, CHUNK]
+    assert sorted(starts) == [0, CHUNK]
 
 
 def test_uniform_sets_are_float64_rounded_once():
-    """NumPy's float64 sines of the same sequence, rounded: one in a million differs."""
+    """NumPy's float64 sines of the same sequence, rounded, differ in about one value per million."""
     n = sphere(CHUNK, 3).chunk(0).n
     offsets = np.random.default_rng(3).integers(0, 2**32, 2, dtype=np.uint32)
     index = np.arange(CHUNK, dtype=np.uint64)

@@ -1,4 +1,4 @@
-"""The statistics of a row, against NumPy in float64 and against the laws they obey."""
+"""The statistics of a row, compared with NumPy in float64 and with mathematical laws."""
 
 import os
 import subprocess
@@ -25,8 +25,8 @@ from normalbench.encodings.storages.storage import STORAGES
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(1, 3 * CHUNK // 2), st.floats(0.01, 60))
-def test_a_row_equals_numpys(count, degrees):
-    """Sums and largest to float32's precision, the percentile to 0.1 %; for any count, whole chunks or not."""
+def test_a_row_matches_numpy(count, degrees):
+    """Sums and the largest angle match to float32's precision, the percentile to 0.1%, for any count."""
     count = min(count, 40_000) if count % 2 else count
     n = random_directions(count, seed=count)
     spread = np.random.default_rng(count).uniform(0.1, 1, count) * degrees
@@ -44,8 +44,8 @@ def test_a_row_equals_numpys(count, degrees):
 
 
 @pytest.mark.parametrize("at", [7, CHUNK + 7])
-def test_the_largest_angle_is_that_of_all_chunks(at):
-    """Whichever of two chunks has it."""
+def test_the_largest_angle_is_found_in_any_chunk(at):
+    """The largest angle is in the first or the second of two chunks."""
     n = random_directions(CHUNK + 99)
     degrees = np.where(np.arange(len(n)) == at, 20.0, 1.0)
     got = measured(DECODED, from_arrays("", "", n, turned(n, degrees).astype(np.float32), np.ones(len(n), bool)))
@@ -53,8 +53,8 @@ def test_the_largest_angle_is_that_of_all_chunks(at):
     np.testing.assert_array_equal(got.worst.normal, n[at])
 
 
-def test_codecs_measured_together_are_as_measured_alone():
-    """Each chunk is made once for all of them; nothing else changes, in whatever order and company."""
+def test_codecs_measured_together_match_codecs_measured_alone():
+    """Each chunk is made once for all codecs; their order and number do not change the results."""
     normals = sphere(3 * CHUNK + 5)
     alone = [
         quality.measure(case)
@@ -68,8 +68,8 @@ def test_codecs_measured_together_are_as_measured_alone():
     assert list(reversed(rows_of(normals, ("xyz", "spherical", "octahedral")))) == alone
 
 
-def test_any_count_is_constant_memory():
-    """Of a million chunks of a set none is kept: those that are done are gone."""
+def test_any_count_uses_constant_memory():
+    """Chunks are released as soon as they are measured."""
     import gc
     import weakref
 
@@ -102,7 +102,7 @@ def test_any_count_is_constant_memory():
 
 
 def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
-    """One core or four, and blocks of any size: the same bits. Other lanes: the last digits of the sums alone."""
+    """Threads and block sizes do not change a bit; another number of lanes changes only the last digits of sums."""
     normals = sphere(5 * CHUNK + 99)
     usual = rows_of(normals)
     for threads in (1, 4):
@@ -137,8 +137,8 @@ print(len(used), len(jax.local_devices()))
 
 
 def test_chunks_are_dealt_to_all_devices_and_rows_are_the_same():
-    """One device of JAX or three: each measures some of the chunks, and no digit of the statistics differs."""
-    found = {}
+    """With one or three JAX devices, each measures some of the chunks, and the statistics match to the last digit."""
+    by_count = {}
     for count in (1, 3):
         flags = {"XLA_FLAGS": f"--xla_force_host_platform_device_count={count}"}
         done = subprocess.run(
@@ -146,5 +146,5 @@ def test_chunks_are_dealt_to_all_devices_and_rows_are_the_same():
         )
         *statistics, devices = done.stdout.splitlines()
         assert devices == f"{count} {count}", done.stderr
-        found[count] = statistics
-    assert found[1] == found[3]
+        by_count[count] = statistics
+    assert by_count[1] == by_count[3]

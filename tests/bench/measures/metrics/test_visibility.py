@@ -1,4 +1,4 @@
-"""Rays that judge ambient occlusion, against closed forms."""
+"""The reference rays for ambient occlusion, compared with closed forms."""
 
 from __future__ import annotations
 
@@ -26,34 +26,34 @@ def anything(distance: np.ndarray) -> np.ndarray:
 
 
 def seen(meshes, lost=anything, rays=RAYS):
-    """From just over the middle of the floor."""
+    """Return the visibility from just above the middle of the floor."""
     return RayCaster(triangles_of(scene_of_meshes(*meshes))).visible(1e-4 * UP, UP, rays, lost)
 
 
 @pytest.mark.parametrize("name", CLOSED)
-def test_rays_see_what_the_closed_form_says(name):
-    """Within three standard errors, which are below 0.002. 128 sides of a circle have 0.0004 of its area less."""
+def test_rays_match_the_closed_form(name):
+    """The standard error is below 0.002, and three are allowed. A circle of 128 sides lacks 0.0004 of its area."""
     meshes, expected = CLOSED[name]
-    found = seen(meshes)
-    off, error = abs(found.visibility[0] - expected), found.error[0]
+    visible = seen(meshes)
+    off, error = abs(visible.visibility[0] - expected), visible.error[0]
     assert error < 0.002
     assert off <= 3 * error + 5e-4 * (1 - expected), (
-        f"{name}: {found.visibility[0]:.5f}, not {expected:.5f}; {error:.1g}"
+        f"{name}: {visible.visibility[0]:.5f}, not {expected:.5f}; {error:.1g}"
     )
 
 
-def test_the_standard_error_is_what_other_seeds_scatter_by():
-    """Over 200 seeds, within 20 %: four standard deviations of such an estimate."""
+def test_the_standard_error_matches_the_scatter_over_seeds():
+    """200 seeds agree within 20%, which is four standard deviations of such an estimate."""
     caster = RayCaster(triangles_of(scene_of_meshes(*CLOSED["deep pit"][0])))
     each = [caster.visible(1e-4 * UP, UP, 256, anything, seed) for seed in range(200)]
-    scatter = np.std([one.visibility[0] for one in each])
-    said = np.mean([one.error[0] for one in each])
-    assert scatter == pytest.approx(said, rel=0.2)
+    scatter = np.std([estimate.visibility[0] for estimate in each])
+    error = np.mean([estimate.error[0] for estimate in each])
+    assert scatter == pytest.approx(error, rel=0.2)
 
 
-def test_a_fall_off_weighs_by_distance():
-    """At the bottom of a pit all that is missed is far: with w = 1 up to 0.3 m nothing is lost, and with w = 0.25 a
-    quarter is."""
+def test_occlusion_is_weighted_by_distance():
+    """From the bottom of a pit all occluders are far: a limit of 0.3 m removes the occlusion, and a weight of 0.25
+    leaves a quarter of it."""
     meshes, expected = CLOSED["deep pit"]
     near = seen(meshes, lambda t: (t < 0.3).astype(float)).visibility[0]
     quarter = seen(meshes, lambda t: 0.25 * anything(t))
@@ -61,15 +61,15 @@ def test_a_fall_off_weighs_by_distance():
     assert abs(quarter.visibility[0] - (1 - 0.25 * (1 - expected))) <= 3 * quarter.error[0]
 
 
-def test_light_comes_from_where_it_is_open():
-    """Beside a ball on the floor it comes from the other side; in the open from 2/3 of the normal, the mean cosine."""
+def test_the_bent_normal_points_to_the_open_side():
+    """Next to a ball it points away from the ball; in the open it is 2/3 of the normal, the mean cosine."""
     open_floor, beside = seen(CLOSED["dome"][0][:1]), seen(CLOSED["near dome"][0])
     assert np.abs(open_floor.bent[0] - [0, 2 / 3, 0]).max() < 0.005
     assert beside.bent[0, 0] < -0.05
 
 
-def test_directions_are_as_dense_as_the_cosine():
-    """Mean of cos and of cos squared over tilted normals: 2/3 and 1/2, to 0.005 of 60 000 directions."""
+def test_directions_are_cosine_distributed():
+    """Over tilted normals the means of cos and cos squared are 2/3 and 1/2, to 0.005."""
     normals = np.array([(1.0, 0, 0), (0, 0, -1.0), (0.6, 0.0, 0.8)])
     cosine = np.einsum("nri,ni->nr", cosine_directions(normals, 20000, np.random.default_rng(1)), normals)
     assert cosine.min() >= 0
@@ -77,14 +77,14 @@ def test_directions_are_as_dense_as_the_cosine():
 
 
 def test_glass_stops_no_ray():
-    """The room's triangles are those of its opaque surfaces: all 11 822 but the three panes' 36."""
+    """Rays use all triangles of the room except the 36 of its three panes."""
     room = scene_of("room")
     total = sum(len(part.mesh.triangles) * len(part.models) for part in room.parts)
     assert len(triangles_of(room)) == total - 3 * 12
 
 
 def test_noise_of_the_rays_is_not_the_methods_error():
-    """Judged by few rays: a method without error has an RMS of 0, one off by 0.1 of 0.1, to four standard errors."""
+    """With noisy rays, an exact method has an RMS near 0 and a method off by 0.1 has 0.1, to four standard errors."""
     rng = np.random.default_rng(0)
     noise = np.full(4000, 0.02)
     exact = 0.5 + rng.normal(0, 0.02, 4000)
@@ -100,7 +100,7 @@ def test_without_embree_one_line_says_what_to_install(monkeypatch):
         RayCaster(np.zeros((1, 3, 3)))
 
 
-def test_another_effect_has_no_such_error(gl):
+def test_another_effect_has_no_occlusion_error(gl):
     other = ChosenEffect(Effect("fog", "fog", "a test", Resource("fog", "r32f"), lambda **_: ()), ())
     with pytest.raises(EffectError, match=r"^effect fog is not a method of ambient occlusion$"):
         method_error(gl, other, scene_of("room"), (16, 12))

@@ -1,4 +1,4 @@
-"""JAX functions in C: what each operation gives, bit for bit, and what cannot be written so."""
+"""JAX functions in C: the results of each operation, bit for bit, and functions that cannot be written in C."""
 
 import ctypes
 import shutil
@@ -45,10 +45,10 @@ def by_c(function, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     kind = jax.eval_shape(function, a, b).dtype
     written = c_function("function", function, a.dtype, b.dtype) + LOOP
     text = own(HEAD, FROM=c_type(a.dtype), TO=c_type(kind)) + judged(written, "c")
-    made = library(text, "each")
-    found = np.empty(len(a), kind)
-    made.each(ctypes.c_size_t(len(a)), *map(address, (a, b, found)))
-    return found
+    compiled = library(text, "each")
+    output = np.empty(len(a), kind)
+    compiled.each(ctypes.c_size_t(len(a)), *map(address, (a, b, output)))
+    return output
 
 
 def all_pairs(values: np.ndarray) -> list[np.ndarray]:
@@ -81,18 +81,18 @@ FUNCTIONS = {
 
 @needs_c
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_floats_are_those_of_jax_to_the_bit(name):
-    """Of zeros, ties, what is too large for an integer or a half float, infinities and NaN, all pairs of them."""
+def test_floats_match_jax_bit_for_bit(name):
+    """All pairs of zeros, ties, values too large for an integer or a half float, infinities and NaN are compared."""
     function = FUNCTIONS[name]
     a, b = all_pairs(FLOATS)
     with jax.numpy_dtype_promotion("standard"):
-        expected, found = np.asarray(jax.jit(function)(a, b)), by_c(function, a, b)
-    same = (expected == found) | ((expected != expected) & (found != found))
+        expected, output = np.asarray(jax.jit(function)(a, b)), by_c(function, a, b)
+    same = (expected == output) | ((expected != expected) & (output != output))
     if expected.dtype.kind == "f":
-        same &= (np.signbit(expected) == np.signbit(found)) | np.isnan(expected)
+        same &= (np.signbit(expected) == np.signbit(output)) | np.isnan(expected)
         # JAX takes numbers below the normal ones for 0.
-        same |= (expected == 0) & (abs(found) < TINY)
-    assert same.all(), f"{name} of {a[~same][0]}, {b[~same][0]}: {found[~same][0]}, JAX {expected[~same][0]}"
+        same |= (expected == 0) & (abs(output) < TINY)
+    assert same.all(), f"{name} of {a[~same][0]}, {b[~same][0]}: {output[~same][0]}, JAX {expected[~same][0]}"
 
 
 @needs_c
@@ -109,11 +109,11 @@ def test_floats_are_those_of_jax_to_the_bit(name):
     ],
     ids=["products wrap", "signed products wrap", "limits", "bits", "shifts", "unsigned to float", "signed to float"],
 )
-def test_integers_are_those_of_jax(function):
+def test_integers_match_jax(function):
     a, b = all_pairs(WORDS)
-    expected, found = np.asarray(jax.jit(function)(a, b)), by_c(function, a, b)
-    differ = np.flatnonzero(expected != found)
-    assert not differ.size, f"of {a[differ[0]]}, {b[differ[0]]}: {found[differ[0]]}, JAX {expected[differ[0]]}"
+    expected, output = np.asarray(jax.jit(function)(a, b)), by_c(function, a, b)
+    differ = np.flatnonzero(expected != output)
+    assert not differ.size, f"of {a[differ[0]]}, {b[differ[0]]}: {output[differ[0]]}, JAX {expected[differ[0]]}"
 
 
 @pytest.mark.parametrize(
@@ -136,7 +136,7 @@ def test_integers_are_those_of_jax(function):
         (lambda a: a[:, None], "a result of another shape"),
     ],
 )
-def test_what_has_no_line_of_c_is_named(function, said):
-    """An operation that mixes elements, that C rounds otherwise, or that nobody has written."""
+def test_operations_that_c_cannot_express_are_named(function, said):
+    """The operation mixes elements, is rounded differently in C, or is not implemented."""
     with pytest.raises(NotElementwiseError, match=said):
         c_function("function", function, FLOAT)

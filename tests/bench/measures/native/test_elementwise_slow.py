@@ -1,4 +1,4 @@
-"""JAX functions in C: what each operation gives, bit for bit, and what cannot be written so."""
+"""JAX functions in C: the results of each operation, bit for bit, and functions that cannot be written in C."""
 
 import jax
 import jax.numpy as jnp
@@ -7,8 +7,8 @@ from normalbench.bench.ground.native.elementwise import INFIX, OTHERS
 from normalbench.encodings.catalogue import ENCODINGS
 
 
-def test_every_operation_is_one_that_something_uses():
-    """Each line that can be written is written by a codec of the catalogue, by the errors or by a set of normals."""
+def test_every_operation_but_two_is_used():
+    """An encoding of the catalogue, the errors or a set of normals uses each operation."""
     from normalbench.bench.measures.native import meter
     from normalbench.bench.subjects.normals import normal_sets
 

@@ -1,4 +1,4 @@
-"""Compiled C is kept, read back whole or made anew, and missing without harm."""
+"""Compiled C is kept, is read back complete or compiled again, and is optional."""
 
 import ctypes
 
@@ -21,7 +21,7 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture(autouse=True)
 def forgotten(monkeypatch):
-    """What another test compiled, and whether a compiler was found."""
+    """A state without compiled libraries or compilers from other tests."""
     native._made.cache_clear()
     native.tools.version_text.cache_clear()
     monkeypatch.setattr(native, "_hangs", [])
@@ -36,7 +36,7 @@ def made(text: str = SOURCE) -> ctypes.CDLL:
 
 
 @needs_c
-def test_what_is_compiled_is_kept(folder, monkeypatch):
+def test_a_compiled_library_is_kept(folder, monkeypatch):
     assert made().answer() == 42
     (kept,) = folder.iterdir()
     monkeypatch.setattr(native, "_compiled", lambda *_: pytest.fail("compiled again"))
@@ -46,7 +46,7 @@ def test_what_is_compiled_is_kept(folder, monkeypatch):
 @needs_c
 @pytest.mark.parametrize("damage", [lambda d: d[:-100], lambda _: b"", lambda d: d[:300] + b"x" + d[301:]])
 def test_a_damaged_library_is_compiled_again(folder, damage):
-    """Cut off, empty, or with another byte: it is never loaded."""
+    """A library that is truncated, empty or has another byte is never loaded."""
     made()
     (kept,) = folder.iterdir()
     whole = kept.read_bytes()
@@ -62,19 +62,19 @@ def test_without_the_cache_nothing_is_kept(folder, monkeypatch):
 
 
 @needs_c
-def test_a_folder_that_cannot_be_written_is_no_obstacle(folder):
+def test_a_library_is_compiled_without_a_writable_folder(folder):
     folder.parent.mkdir(parents=True)
     folder.write_text("a file")
     assert made().answer() == 42
 
 
 @needs_c
-def test_what_does_not_compile_says_why():
+def test_code_that_does_not_compile_shows_the_error():
     with pytest.raises(native.NoCompilerError, match=r"^cc: .*error"):
         made("int answer(void) { return }")
 
 
-def test_without_a_compiler_there_is_none(monkeypatch):
+def test_a_missing_compiler_is_reported(monkeypatch):
     monkeypatch.setattr(native.tools.shutil, "which", lambda _: None)
     with pytest.raises(native.NoCompilerError, match=r"^no C compiler: .*install"):
         made()
@@ -94,9 +94,9 @@ ODD = {
 
 @needs_c
 @pytest.mark.parametrize("name", ODD)
-def test_an_odd_compiler_is_as_none(folder, tmp_path, monkeypatch, name):
-    """Its failure is one line, nothing is kept, and a compiler that does not end is not asked again."""
-    script, said = ODD[name]
+def test_an_odd_compiler_counts_as_missing(folder, tmp_path, monkeypatch, name):
+    """Its failure is one line, nothing is kept, and a compiler that hangs is not started again."""
+    script, message = ODD[name]
     real, calls = native.tools.shutil.which("cc"), tmp_path / "calls"
     (tmp_path / "bin").mkdir()
     body = f'echo >> {calls}; [ "$1" = --version ] && echo odd && exit; {script.format(real=real)}'
@@ -104,7 +104,7 @@ def test_an_odd_compiler_is_as_none(folder, tmp_path, monkeypatch, name):
     (tmp_path / "bin" / "cc").chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:/usr/bin:/bin")
     monkeypatch.setattr(native, "COMPILING_S", 1)
-    with pytest.raises(native.NoCompilerError, match=said):
+    with pytest.raises(native.NoCompilerError, match=message):
         made()
     asked = calls.read_text().count("\n")
     for text in (SOURCE, SOURCE + "\n"):

@@ -1,4 +1,4 @@
-"""Rows that compiled C measures: those of XLA, whatever the set and the decodes are like."""
+"""Rows that compiled C measures match those of XLA for all kinds of sets and decoded values."""
 
 from contextlib import contextmanager
 from dataclasses import replace
@@ -34,7 +34,7 @@ UNIT_DEG = float(np.degrees(2.0**-23))
 
 
 def both(function, normals: NormalSet, given=()):
-    """The statistics of a decoder of (n, view), by C and by XLA."""
+    """Return the statistics of a decoder of (n, view), by C and by XLA."""
     native = NativeMeter(decoder(function, given), given)
     usual = Meter(jax.jit(lambda chunk: function(chunk.n, chunk.view, *given)))
     totals = (measure_together([meter], normals.loads(), lambda _: None)[0] for meter in (native, usual))
@@ -42,20 +42,20 @@ def both(function, normals: NormalSet, given=()):
 
 
 def assert_same(found, expected, relative=2e-6, largest_deg=UNIT_DEG):
-    """Figures of two compilers, which round a product before it is added, or not: a few normals get another code, and
-    angles differ by a unit in the last place of a component."""
+    """Check figures of two compilers, which may round a product before it is added: a few normals get another code,
+    and angles differ by a unit in the last place of a component."""
     exact = ("count", "pixels", "invalid")
     assert [getattr(found, name) for name in exact] == [getattr(expected, name) for name in exact]
     assert found.mse == pytest.approx(expected.mse, rel=relative, abs=1e-13)
     assert found.article_mse == pytest.approx(expected.article_mse, rel=max(relative, 1e-3), abs=1e-9)
     unit = UNIT_DEG
     for name, least, apart in (("mean", 0, unit), ("rms", 0, unit), ("p99", 2e-4, unit), ("max", 2e-5, largest_deg)):
-        here, there = (getattr(one, f"angle_{name}_deg") for one in (found, expected))
+        here, there = (getattr(figures, f"angle_{name}_deg") for figures in (found, expected))
         assert here == pytest.approx(there, rel=max(relative, least), abs=apart), f"angle_{name}_deg"
 
 
 def first_meter(name: str):
-    """What measures an encoding in its first storage."""
+    """Return the meter of an encoding in its first storage."""
     codecs = (Codec(ENCODINGS[name], storage) for storage in STORAGES.values())
     return quality.meter_of(next(codec for codec in codecs if codec.fits))
 
@@ -72,7 +72,7 @@ def test_encodings_without_c_are_named(capsys):
     assert capsys.readouterr().err == f"normalbench: {line}\n"
 
 
-def test_without_a_c_compiler_xla_measures_and_a_line_says_so(monkeypatch, capsys):
+def test_xla_measures_without_a_c_compiler_and_reports_it(monkeypatch, capsys):
     codec = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
     usual = quality.measure(*quality.cases([codec], [sphere(64)], ["jax"]))
     monkeypatch.setattr(library, "compiler", lambda: "")
@@ -97,61 +97,61 @@ def forget_what_is_compiled():
 
 @contextmanager
 def told():
-    """Lines that were told before are told again."""
+    """Print lines again that were printed before."""
     before = {*errors.told}
     errors.told.clear()
     yield
     errors.told.update(before)
 
 
-def test_decodes_that_are_not_numbers_count_as_the_opposite_direction():
-    """A tenth of them, NaN and infinite; and all."""
+def test_decoded_values_that_are_not_numbers_count_as_the_opposite_direction():
+    """A tenth each are NaN and infinite; then all are NaN."""
     n = random_directions(5000)
 
     def some(n: Vec3, _: Vec3) -> Vec3:
         return select(n.x > 0.8, n * jnp.nan, select(n.x < -0.8, n * jnp.inf, n * 0.999))
 
     for decode in (some, lambda n, _: n * jnp.nan):
-        found, expected = both(decode, from_arrays("", "", n, n, np.ones(len(n), bool)))
-        assert expected.invalid > 400 and found.worst.angle_deg == 180.0
-        assert_same(found, expected)
+        stats, expected = both(decode, from_arrays("", "", n, n, np.ones(len(n), bool)))
+        assert expected.invalid > 400 and stats.worst.angle_deg == 180.0
+        assert_same(stats, expected)
 
 
-def test_squared_errors_of_which_four_are_too_large_for_a_float_add_up():
-    found, expected = both(lambda n, _: n * 1.5e19, sphere(CHUNK))
-    assert found.mse == pytest.approx(expected.mse, rel=1e-6) and 7e37 < found.mse < 8e37
-    assert found.invalid == expected.invalid == 0
+def test_huge_squared_errors_are_summed_without_overflow():
+    stats, expected = both(lambda n, _: n * 1.5e19, sphere(CHUNK))
+    assert stats.mse == pytest.approx(expected.mse, rel=1e-6) and 7e37 < stats.mse < 8e37
+    assert stats.invalid == expected.invalid == 0
 
 
 def test_the_background_does_not_count():
-    """Of several chunks, with whole blocks of it, and a part of a block; the worst normal is not among it."""
+    """The background fills blocks completely and partly, in several chunks; it never has the worst normal."""
     n = random_directions(CHUNK + 5000)
     covered = (np.arange(len(n)) // 700) % 2 == 0
     view = np.where(covered[:, None], n + np.float32(0.01), -n).astype(np.float32)
-    found, expected = both(lambda _, view: view, from_arrays("", "", n, view, covered))
-    assert_same(found, expected)
-    assert found.worst.angle_deg < 2 and found.pixels == len(n) > found.count
+    stats, expected = both(lambda _, view: view, from_arrays("", "", n, view, covered))
+    assert_same(stats, expected)
+    assert stats.worst.angle_deg < 2 and stats.pixels == len(n) > stats.count
     nothing = from_arrays("", "", n, view, np.zeros(len(n), bool))
     for load in nothing.loads():
         figures, counts, worst = NativeMeter(decoder(lambda _, view: view)).one(load)
         assert not any(figures) and counts.sum() == counts[-1] == CHUNK and worst is None
 
 
-def test_the_worst_normal_is_that_of_xla():
-    """Ties are settled in float64; normals that come back as they were are one."""
+def test_the_worst_normal_matches_xla():
+    """Ties are resolved in float64; unchanged normals are such a tie."""
     n = random_directions(3000)
-    at = 1234
-    turned = np.where(np.arange(len(n))[:, None] == at, n[:, [1, 2, 0]], n).astype(np.float32)
+    index = 1234
+    turned = np.where(np.arange(len(n))[:, None] == index, n[:, [1, 2, 0]], n).astype(np.float32)
     for view in (turned, n):
-        found, expected = both(lambda _, view: view, from_arrays("", "", n, view, np.ones(len(n), bool)))
-        np.testing.assert_array_equal(found.worst.normal, expected.worst.normal)
-        assert found.worst.angle_deg == expected.worst.angle_deg
-    assert found.worst.angle_deg == 0.0
+        stats, expected = both(lambda _, view: view, from_arrays("", "", n, view, np.ones(len(n), bool)))
+        np.testing.assert_array_equal(stats.worst.normal, expected.worst.normal)
+        assert stats.worst.angle_deg == expected.worst.angle_deg
+    assert stats.worst.angle_deg == 0.0
 
 
 @pytest.mark.parametrize("at", [7, CHUNK + 7])
-def test_the_worst_normal_is_that_of_all_chunks(at):
-    """Whichever of two chunks has it."""
+def test_the_worst_normal_is_found_in_any_chunk(at):
+    """The worst normal is in the first or the second of two chunks."""
     n = random_directions(CHUNK + 99)
     turned = np.where(np.arange(len(n))[:, None] == at, n[:, [1, 2, 0]], n * np.float32([1, 1, 0.99]))
     normals = from_arrays("", "", n, turned.astype(np.float32), np.ones(len(n), bool))
@@ -162,8 +162,8 @@ def test_the_worst_normal_is_that_of_all_chunks(at):
 
 @pytest.mark.parametrize("make", [sphere, hemisphere])
 @pytest.mark.parametrize("start", [0, 7 * CHUNK, TURN - CHUNK, TURN, 5 * TURN + CHUNK])
-def test_compiled_sets_have_the_normals_of_xla(make, start, monkeypatch):
-    """To the last bit, in the first turn of 2^32 and in later ones; what is beyond the set's end does not count."""
+def test_compiled_sets_have_the_same_normals_as_xla(make, start, monkeypatch):
+    """Normals match to the last bit, in the first and later turns of 2^32; those beyond the end do not count."""
     count = start + CHUNK - 99
     filled = make(count, seed=3).chunk(start)
     monkeypatch.setattr(normal_sets, "_fill", lambda _: None)
@@ -174,18 +174,18 @@ def test_compiled_sets_have_the_normals_of_xla(make, start, monkeypatch):
     assert np.count_nonzero(filled.covered) == CHUNK - 99
 
 
-def test_numbers_below_the_normal_ones_are_0():
-    """As XLA has them; and the processor is left as it was."""
+def test_subnormal_numbers_are_zero():
+    """XLA does the same; the processor's mode does not change."""
     n = random_directions(3000)
     normals = from_arrays("", "", n, n, np.ones(len(n), bool))
-    found, expected = both(lambda n, _: n * 1e-38 * 1e-3 * 1e38 * 1e3, normals)
-    assert found.angle_mean_deg == expected.angle_mean_deg == 180.0
+    stats, expected = both(lambda n, _: n * 1e-38 * 1e-3 * 1e38 * 1e3, normals)
+    assert stats.angle_mean_deg == expected.angle_mean_deg == 180.0
     assert np.float32(1e-45) * np.float32(1) > 0
 
 
 @pytest.mark.parametrize("kind", [jnp.float16, jnp.float64, jnp.int32, None])
-def test_decodes_become_numbers_of_one_type(kind):
-    """A decode with a component of another type, or one for all normals, is measured by both compilers."""
+def test_decoded_components_become_numbers_of_one_type(kind):
+    """Both compilers measure a component of another type, or one constant for all normals."""
 
     def decode(e, _):
         return Vec3(e.x, e.y, 1 if kind is None else (e.z * 0.0 + 1.0).astype(kind))
@@ -194,6 +194,6 @@ def test_decodes_become_numbers_of_one_type(kind):
     meters = [quality.meter_of(codec), quality.meter_by_xla(codec)]
     assert isinstance(meters[0], NativeMeter)
     totals = measure_together(meters, sphere(CHUNK).loads(), lambda _: None)
-    found, expected = (statistics(CHUNK, total) for total in totals)
-    assert_same(found, expected)
-    assert found.invalid == 0 and 30 < found.angle_mean_deg < 60
+    stats, expected = (statistics(CHUNK, total) for total in totals)
+    assert_same(stats, expected)
+    assert stats.invalid == 0 and 30 < stats.angle_mean_deg < 60

@@ -1,4 +1,4 @@
-"""Every codec whose rows compiled C measures: XLA, where it does what is written, decodes to the same bits."""
+"""Every codec measured by compiled C decodes to the same bits by XLA, if XLA compiles exactly what is written."""
 
 import pytest
 from slowly import drawn_of

@@ -1,4 +1,4 @@
-"""Which steps need the same C compiler wherever they are measured."""
+"""The steps that need the same C compiler on every machine that measures them."""
 
 from normalbench.bench.run.workers.about import CAN
 from normalbench.bench.tables.quality.work import WORK

@@ -1,4 +1,4 @@
-"""Codes that are wasted or come back as others, against what can be counted otherwise."""
+"""Codes that are unused, duplicate or unstable, compared with independent counts."""
 
 import itertools
 import math
@@ -13,8 +13,8 @@ from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import R11G11B10F, STORAGES
 
 
-def test_x_and_y_leave_the_corners_of_the_square_unused():
-    """Unused are the cells that do not meet the unit disk: whose point nearest the centre is beyond it."""
+def test_xy_leaves_the_corners_of_the_square_unused():
+    """A cell is unused if its point nearest to the centre is outside the unit disk."""
     numbers = np.arange(256) / 255 * 2 - 1
     nearest = np.maximum(np.abs(numbers) - 1 / 255, 0)
     beyond = int((nearest[:, None] ** 2 + nearest[None, :] ** 2 > 1).sum())
@@ -22,9 +22,9 @@ def test_x_and_y_leave_the_corners_of_the_square_unused():
     assert odd and odd.unused == beyond == 13924
 
 
-def test_most_codes_of_three_numbers_are_no_directions_of_their_own():
-    """SNORM of 5 bits: cubes that the unit sphere meets, and points of the lattice seen from its centre. The code 0,
-    which is none, is counted with +z."""
+def test_most_codes_of_three_numbers_are_unused_or_duplicate():
+    """In SNORM of 5 bits, cells that the unit sphere crosses are used, and lattice points hidden behind another point
+    are duplicates. The code 0, which is not a direction, counts as +z."""
     scale = 15
     lattice = np.array(list(itertools.product(range(-scale, scale + 1), repeat=3)))
     # The outermost cells end at 1 and have no outside.
@@ -38,8 +38,8 @@ def test_most_codes_of_three_numbers_are_no_directions_of_their_own():
     assert odd.unstable <= int(met.sum()), "what nothing makes does not come back as another"
 
 
-def test_a_pole_is_a_row_of_codes():
-    """spherical: 256 angles at each pole are one direction, and the seam is there twice in the other 254 rows."""
+def test_a_pole_takes_a_whole_row_of_codes():
+    """In `spherical`, the 256 angles at each pole are one direction, and the other 254 rows have the seam twice."""
     odd = odd_codes(Codec(ENCODINGS["spherical"], STORAGES["rg8"]))
     assert odd and (odd.unused, odd.duplicate) == (0, 2 * 255 + 254)
 
@@ -49,15 +49,15 @@ def test_a_lattice_wastes_nothing():
     assert odd and (odd.unused, odd.duplicate, odd.unstable) == (0, 0, 0)
 
 
-def test_truncation_does_not_give_back_what_it_was_given():
-    """A number that was cut off is a hair below itself in float32 as often as not, and is cut off again."""
+def test_truncation_does_not_reproduce_its_own_codes():
+    """In float32 a truncated number is often slightly below its exact value, and is truncated again."""
     odd = odd_codes(Codec(ENCODINGS["octahedral"], STORAGES["rg8"], "truncate"))
     assert odd and odd.unstable > 20000
 
 
-def test_the_octahedrons_border_is_there_twice():
-    """Each border code but the middles of SNORM's sides has a mirror image; the four corners are -z. Of two that mean
-    the same one comes back."""
+def test_the_border_of_the_octahedron_has_duplicate_codes():
+    """Each border code has a mirror image, except the middles of SNORM's sides; the four corners are all -z. A round
+    trip gives one code of each pair."""
     unorm, snorm = (odd_codes(Codec(ENCODINGS["octahedral"], STORAGES[name])) for name in ("rg8", "rg8_snorm"))
     assert unorm and snorm and unorm.unused == snorm.unused == 0
     assert unorm.duplicate == (4 * 255 - 4) // 2 + 3 and snorm.duplicate == (4 * 254 - 4 - 4) // 2 + 3
@@ -66,8 +66,8 @@ def test_the_octahedrons_border_is_there_twice():
 
 @pytest.mark.drawn(3)
 @pytest.mark.parametrize("storage", [*STORAGES.values(), R11G11B10F], ids=lambda s: s.name)
-def test_a_storages_numbers_are_what_it_gives_back(storage):
-    """Each is stored as itself in float32 and in float64, and there are as many as are said to be."""
+def test_numbers_of_a_storage_are_stored_unchanged(storage):
+    """Each number is stored unchanged in float32 and float64, and their count is as stated."""
     import jax
     import jax.numpy as jnp
 

@@ -1,4 +1,4 @@
-"""Suprema by search: against geometry, against samples, and found in time."""
+"""Suprema by search: compared with geometry and with samples, and found within a time limit."""
 
 import jax
 import numpy as np
@@ -23,16 +23,16 @@ def codec_of(encoding: str, where: str, rounding: str = "nearest") -> Codec:
 
 @pytest.mark.parametrize("axis", range(3))
 def test_near_an_axis_the_short_components_follow_the_long_one(axis):
-    """a^2 + b^2 = (1 - c)(1 + c), where 1 - c is a whole number of 2^-53."""
+    """a^2 + b^2 = (1 - c)(1 + c), where 1 - c is an integer multiple of 2^-53."""
     turn = np.linspace(0, 2 * np.pi, 100)
     off = np.geomspace(1e-8, 0.3, 100)
     n = np.roll([np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn), -np.cos(off)], axis, axis=0)
     with jax.enable_x64(True):
-        found = np.roll(np.stack([np.asarray(c) for c in unit(Vec3(*n))]), -axis, axis=0)
-    np.testing.assert_array_equal(found[2], -np.cos(off))
-    squared = found[0] ** 2 + found[1] ** 2
-    np.testing.assert_allclose(squared, (1 + found[2]) * (1 - found[2]), rtol=1e-15)
-    assert np.abs(found - np.roll(n, -axis, axis=0)).max() < 2e-8
+        units = np.roll(np.stack([np.asarray(c) for c in unit(Vec3(*n))]), -axis, axis=0)
+    np.testing.assert_array_equal(units[2], -np.cos(off))
+    squared = units[0] ** 2 + units[1] ** 2
+    np.testing.assert_allclose(squared, (1 + units[2]) * (1 - units[2]), rtol=1e-15)
+    assert np.abs(units - np.roll(n, -axis, axis=0)).max() < 2e-8
 
 
 def test_away_from_the_axes_a_normal_stays_as_it_is():
@@ -42,22 +42,22 @@ def test_away_from_the_axes_a_normal_stays_as_it_is():
         np.testing.assert_array_equal(np.stack([np.asarray(c) for c in unit(Vec3(*n))]), n)
 
 
-def test_directions_that_are_there_twice_are_taken_once():
+def test_duplicate_directions_are_removed():
     random = np.random.default_rng(2)
     directions = random.integers(-2, 3, (3, 500)).astype(float)
-    found, expected = cells._distinct(directions), np.unique(directions, axis=1)
-    assert found.shape == expected.shape and {*map(tuple, found.T)} == {*map(tuple, expected.T)}
+    distinct, expected = cells._distinct(directions), np.unique(directions, axis=1)
+    assert distinct.shape == expected.shape and {*map(tuple, distinct.T)} == {*map(tuple, expected.T)}
 
 
 def uneven(count: int) -> np.ndarray:
-    """Directions that no z is left out of, all but one in a sector of 20 degrees."""
+    """Return directions at all heights z, within a sector of 20 degrees."""
     z, turn = np.random.default_rng(4).uniform([[-1], [0]], [[1], [np.pi / 9]], (2, count))
     r = np.sqrt(1 - z * z)
     return np.stack([*(r * [np.cos(turn), np.sin(turn)]), z])[:, np.argsort(z)]
 
 
 def three_rings(count: int) -> np.ndarray:
-    """Directions on three circles around z, the bands between them empty."""
+    """Return directions on three circles around z, with empty bands between the circles."""
     z = np.repeat([-0.97, 0.0, 0.97], count)
     turn = np.random.default_rng(5).uniform(0, 2 * np.pi, 3 * count)
     r = np.sqrt(1 - z * z)
@@ -69,15 +69,15 @@ GIVEN = {"even": fibonacci(2000).T, "uneven": uneven(2000), "rings": three_rings
 
 @pytest.mark.parametrize("directions", GIVEN.values(), ids=GIVEN)
 def test_a_hull_in_bands_has_every_face(directions):
-    """Where directions lie far apart no band sees all corners of a face; then there is one hull."""
-    found, whole = cells.across_faces(directions), cells._hull(directions)[:3]
-    assert found.shape == whole.shape
-    found, whole = (side[:, np.lexsort(side.round(9))] for side in (found, whole))
-    assert found == pytest.approx(whole, abs=1e-9)
+    """If directions are far apart, no band contains all corners of a face; then a single hull is used."""
+    banded, whole = cells.across_faces(directions), cells._hull(directions)[:3]
+    assert banded.shape == whole.shape
+    banded, whole = (side[:, np.lexsort(side.round(9))] for side in (banded, whole))
+    assert banded == pytest.approx(whole, abs=1e-9)
 
 
-def test_faces_are_found_in_bands_where_directions_are_even(monkeypatch):
-    """16 hulls of a part each, and none of the whole."""
+def test_faces_of_evenly_spread_directions_are_found_in_bands(monkeypatch):
+    """Each band has one hull, and the whole set has none."""
     seen, hull = [], cells._hull
     monkeypatch.setattr(cells, "_hull", lambda directions: seen.append(directions.shape[1]) or hull(directions))
     cells.across_faces(fibonacci(20000).T)
@@ -85,7 +85,7 @@ def test_faces_are_found_in_bands_where_directions_are_even(monkeypatch):
 
 
 def test_a_second_round_climbs_from_each_place_once(monkeypatch):
-    """A second block of the same starts would climb as the first one does."""
+    """A second block of the same starting points would climb like the first."""
     counts, climb_from = [], climb._climb_from
     monkeypatch.setattr(climb, "_climb_from", lambda *args: counts.append(len(args[1].chords)) or climb_from(*args))
     ways = np.geomspace(1e-3, 1.0, WAYS)[:, None] * (-1.0) ** np.arange(WAYS)[:, None]
@@ -96,14 +96,14 @@ def test_a_second_round_climbs_from_each_place_once(monkeypatch):
         degrees=float,
         lanes=KEPT,
     )
-    found, _ = highest(ground, Starts(np.full(4 * KEPT, -1.0), np.zeros((1, 4 * KEPT))), 4 * KEPT, (1.0, 0.1))
-    assert found.places[0] == pytest.approx(1.0) and set(counts) == {KEPT}
+    peaks, _ = highest(ground, Starts(np.full(4 * KEPT, -1.0), np.zeros((1, 4 * KEPT))), 4 * KEPT, (1.0, 0.1))
+    assert peaks.places[0] == pytest.approx(1.0) and set(counts) == {KEPT}
     assert len(counts) < 4 + 4, f"{len(counts)} blocks were climbed over"
 
 
 @pytest.mark.parametrize("is_half", [False, True])
-def test_what_is_tried_around_a_normal_lies_across_it_at_four_distances(is_half):
-    """Unit normals at the tangents of the sizes, in sixteen directions; on z >= 0 where that is the domain."""
+def test_candidates_around_a_normal_are_at_four_distances(is_half):
+    """Candidates are unit normals at the tangents of the sizes, in sixteen directions around the normal."""
     random = np.random.default_rng(3)
     n = random.normal(size=(3, 64))
     n /= np.linalg.norm(n, axis=0)
@@ -117,14 +117,14 @@ def test_what_is_tried_around_a_normal_lies_across_it_at_four_distances(is_half)
     assert (around - n[:, None])[:, ::4].mean(axis=1) == pytest.approx(0, abs=1e-4)
 
 
-def test_directions_to_look_at_are_spread_evenly_and_in_the_domain():
+def test_starting_directions_are_evenly_spread_and_in_the_domain():
     n = np.concatenate([make() for make in spread(2**18, False)], axis=1)
     assert n.mean(axis=1) == pytest.approx([0, 0, 0], abs=1e-4)
     assert (n * n).mean(axis=1) == pytest.approx([1 / 3] * 3, abs=1e-4)
     assert min(make()[2].min() for make in spread(2**18, True)) >= 0
 
 
-def test_a_set_that_is_finite_has_its_maximum():
+def test_the_supremum_of_a_finite_set_is_its_maximum():
     row = quality.measure(quality.QualityCase(codec_of("octahedral", "rg8"), axes(), "jax", True))
     assert row["angle_sup_deg"] == row["angle_max_deg"] and row["sup_found_by"] == "every normal"
     assert row["sup_x"] is None and row["domain"] is None

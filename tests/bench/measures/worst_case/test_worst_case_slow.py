@@ -1,4 +1,4 @@
-"""Suprema by search: against geometry, against samples, and found in time."""
+"""Suprema by search: compared with geometry and with samples, and found within a time limit."""
 
 import json
 import time
@@ -18,7 +18,7 @@ from normalbench.encodings.vec import Vec3
 
 
 def octahedral_unorm8(n: np.ndarray) -> np.ndarray:
-    """NumPy's own float64 octahedral map through UNORM8 and back, of normals of shape (3,)."""
+    """Return a normal of shape (3,) after NumPy's own float64 octahedral map through UNORM8 and back."""
     e = n[:2] / np.abs(n).sum()
     if n[2] < 0:
         e = (1 - np.abs(e[::-1])) * np.where(e < 0, -1, 1)
@@ -28,7 +28,7 @@ def octahedral_unorm8(n: np.ndarray) -> np.ndarray:
     return v / np.linalg.norm(v)
 
 
-def test_the_normal_makes_the_error_that_is_said():
+def test_the_named_normal_has_the_stated_error():
     worst = worst_case(codec_of("octahedral", "rg8"))
     n = np.array(worst.normal)
     other = octahedral_unorm8(n)
@@ -39,8 +39,8 @@ def test_the_normal_makes_the_error_that_is_said():
 
 
 def sphere_and_grid(scale: int) -> float:
-    """The worst of a cubic grid of 1 / scale, rounded to nearest, on the sphere: every point where the sphere meets an
-    edge of a cell, and each of the four cells there."""
+    """Return the largest error on the sphere of a cubic grid of 1 / scale, rounded to nearest: every point where the
+    sphere crosses an edge of a cell, and each of the four cells at that edge."""
     half = (np.arange(-scale, scale) + 0.5) / scale
     a, b = (c.ravel() for c in np.meshgrid(half, half))
     inside = a * a + b * b < 1
@@ -58,8 +58,8 @@ def sphere_and_grid(scale: int) -> float:
 
 
 @pytest.mark.parametrize("bits", [5])
-def test_three_numbers_are_worst_where_the_sphere_meets_an_edge(bits):
-    """Climbing, which knows nothing of it, finds the exact geometry's worst."""
+def test_three_numbers_are_worst_at_an_edge_of_a_cell(bits):
+    """The climbing search does not use this geometry, but finds its exact worst case."""
     codec = Codec(ENCODINGS["xyz_renormalised"], storage("snorm", bits, bits, bits))
     worst = worst_case(codec)
     assert worst.angle_deg == pytest.approx(sphere_and_grid(2 ** (bits - 1) - 1), rel=1e-7)
@@ -67,8 +67,8 @@ def test_three_numbers_are_worst_where_the_sphere_meets_an_edge(bits):
 
 
 @pytest.mark.parametrize("bits", [3])
-def test_a_lattices_worst_is_its_covering_radius(bits):
-    """Of points that are looked up, the largest circle between them (by SciPy's Voronoi diagram of the sphere)."""
+def test_the_worst_error_of_a_lattice_is_its_covering_radius(bits):
+    """For tabulated points the radius is the largest empty circle, by SciPy's Voronoi diagram of the sphere."""
     from scipy.spatial import SphericalVoronoi
 
     points = fibonacci(4**bits)
@@ -87,14 +87,14 @@ SUPREMA = [
 
 
 @pytest.mark.parametrize(("encoding", "where", "sup"), SUPREMA)
-def test_precise_rounding_is_worst_where_another_search_finds_it(encoding, where, sup):
-    """By climbing from 6 million directions in NumPy's float64, written by somebody else."""
+def test_precise_rounding_matches_an_independent_search(encoding, where, sup):
+    """Another author's search in NumPy's float64 climbed from 6 million directions."""
     assert worst_case(codec_of(encoding, where)).angle_deg == pytest.approx(sup, rel=1e-6)
 
 
 @pytest.mark.parametrize("where", ["rg8", "rg8_snorm"])
 def test_precise_codes_are_searched_as_the_codec_rounds_them(where):
-    """The search decodes all codes around as one array; the codec decodes one after the other."""
+    """The search decodes all neighbouring codes as one array; the codec decodes them one at a time."""
     codec = codec_of("octahedral_precise", where)
     n = np.random.default_rng(11).normal(size=(3, 4096))
     n /= np.linalg.norm(n, axis=0)
@@ -105,8 +105,8 @@ def test_precise_codes_are_searched_as_the_codec_rounds_them(where):
     assert ExactCodec(codec, False).chords(n) == pytest.approx(expected, rel=1e-9)
 
 
-def test_a_hemisphere_is_searched_for_its_code_and_the_sphere_where_z_has_its_sign():
-    """The sign of z makes the sphere two hemispheres: the same worst case."""
+def test_a_hemisphere_and_the_sphere_with_the_sign_of_z_share_a_supremum():
+    """The sign of z divides the sphere into two hemispheres with the same worst case."""
     half, whole = worst_case(codec_of("xy", "rg8"), True), worst_case(codec_of("xy_sign", "rg8"))
     assert half.angle_deg == pytest.approx(whole.angle_deg, rel=1e-8) and half.normal[2] >= 0
     assert worst_case(codec_of("xy", "rg8")).angle_deg > 179
@@ -124,7 +124,7 @@ SEARCHED = [
 
 @pytest.mark.parametrize("codec", SEARCHED, ids=lambda codec: codec.name)
 def test_no_sample_is_worse(codec):
-    """Of two million random directions; 10^8 have been tried by hand, on these and fifty others."""
+    """The test samples two million random directions; by hand, 10^8 were tried on these and fifty other codecs."""
     exact, worst = ExactCodec(codec, False), worst_case(codec)
     random = np.random.default_rng(7)
     largest = 0.0
@@ -135,8 +135,8 @@ def test_no_sample_is_worse(codec):
 
 
 @pytest.mark.parametrize("encoding", ["octahedral", "spherical"])
-def test_24_bits_take_less_than_five_seconds_on_two_cores(encoding):
-    """Processor time, for other work may be going on; what was searched before is not kept."""
+def test_24_bits_take_less_than_ten_seconds_of_processor_time(encoding):
+    """Processor time ignores other work on the machine; the search does not use a cached result."""
     codec = Codec(ENCODINGS[encoding], storage("snorm", 12, 12))
     assert codec.codes > 2**23
     begin = time.process_time()
@@ -145,15 +145,15 @@ def test_24_bits_take_less_than_five_seconds_on_two_cores(encoding):
     assert time.process_time() - begin < 10
 
 
-def test_the_command_says_where_and_how(run):
+def test_the_command_states_where_and_how_the_supremum_was_found(run):
     words = ["--encoding", "octahedral,xy", "--storage", "rg8", "--normals", "sphere,hemisphere", "--backend", "jax"]
     status, out, _ = run("quality", *words, "--count", "100000", "--worst-case", "--codes", "--format", "json")
     rows = {(row["encoding"], row["normals"]): row for row in json.loads(out)}
     assert status == 0
-    one, half, lost = rows["octahedral", "sphere"], rows["xy", "hemisphere"], rows["xy", "sphere"]
-    assert one["angle_sup_deg"] == pytest.approx(0.953188, abs=1e-6) and one["angle_sup_deg"] > one["angle_max_deg"]
-    assert one["sup_x"] ** 2 + one["sup_y"] ** 2 + one["sup_z"] ** 2 == pytest.approx(1)
-    assert (one["domain"], half["domain"]) == ("sphere", "hemisphere") and half["sup_z"] >= 0
-    assert one["reached_max_percent"] == pytest.approx(100 * 0.492225 / 0.953188, rel=1e-5)
-    assert one["codes_unused"] == 0 and half["codes_unused"] > 0
+    full, half, lost = rows["octahedral", "sphere"], rows["xy", "hemisphere"], rows["xy", "sphere"]
+    assert full["angle_sup_deg"] == pytest.approx(0.953188, abs=1e-6) and full["angle_sup_deg"] > full["angle_max_deg"]
+    assert full["sup_x"] ** 2 + full["sup_y"] ** 2 + full["sup_z"] ** 2 == pytest.approx(1)
+    assert (full["domain"], half["domain"]) == ("sphere", "hemisphere") and half["sup_z"] >= 0
+    assert full["reached_max_percent"] == pytest.approx(100 * 0.492225 / 0.953188, rel=1e-5)
+    assert full["codes_unused"] == 0 and half["codes_unused"] > 0
     assert lost["angle_sup_deg"] is None and "the set is larger" in lost["sup_found_by"], "half of it has no code"

@@ -1,4 +1,4 @@
-"""A run whose workers and scheduler are killed again and again has the files of one that nobody disturbed."""
+"""A run whose workers and scheduler are killed repeatedly has the files of an undisturbed run."""
 
 import os
 import random
@@ -40,11 +40,11 @@ def started(folder: Path, *on: str) -> subprocess.Popen[str]:
 
 
 def children(pid: int) -> list[int]:
-    """The worker processes of a command."""
+    """Return the worker processes of a command."""
     # -ww: else `ps` cuts its lines where the environment says how wide a terminal is, and the module's name is lost.
     command = ["ps", "-ww", "-o", "pid=,args=", "--ppid", str(pid)]
-    found = subprocess.run(command, capture_output=True, text=True).stdout
-    return sorted(int(line.split()[0]) for line in found.splitlines() if "bench.run.piped" in line)
+    output = subprocess.run(command, capture_output=True, text=True).stdout
+    return sorted(int(line.split()[0]) for line in output.splitlines() if "bench.run.piped" in line)
 
 
 def steps_done(folder: Path) -> int:
@@ -53,13 +53,13 @@ def steps_done(folder: Path) -> int:
 
 
 def wait_for(steps: int, process: subprocess.Popen[str], folder: Path) -> None:
-    """Until a run has measured so many steps, or is over."""
+    """Wait until a run has measured this many steps, or has ended."""
     while process.poll() is None and steps_done(folder) < steps:
         time.sleep(0.02)
 
 
 class Local:
-    """Workers that the command starts, and starts again."""
+    """Workers that the command starts and restarts."""
 
     on, victims = "local:4", ["worker"] * WORKER_KILLS
 
@@ -72,13 +72,13 @@ class Local:
 
 
 class Joined:
-    """Workers of a scheduler. Another one takes the place of each that was killed."""
+    """Workers of a scheduler. A new worker replaces each killed worker."""
 
     def __init__(self, there: Scheduled):
         self.on, self._there = there.address, there
         self.victims = ["worker"] * (WORKER_KILLS - SCHEDULER_KILLS)
-        for at in range(SCHEDULER_KILLS):
-            self.victims.insert(3 + 4 * at, "scheduler")
+        for kill in range(SCHEDULER_KILLS):
+            self.victims.insert(3 + 4 * kill, "scheduler")
 
     def kill(self, process: subprocess.Popen[str], victim: str, rng: random.Random) -> None:  # noqa: ARG002
         if victim == "worker":
@@ -94,7 +94,7 @@ class Joined:
 
 @pytest.fixture
 def workers(request, monkeypatch):
-    """What is killed, by its name."""
+    """The workers to kill: those of the command or those of a scheduler."""
     if request.param == "local":
         yield Local()
         return
@@ -106,7 +106,7 @@ def workers(request, monkeypatch):
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory):
-    """A run that nobody disturbs."""
+    """The folder of an undisturbed run."""
     folder = tmp_path_factory.mktemp("alone") / "run"
     process = started(folder)
     _, err = process.communicate()
@@ -117,7 +117,7 @@ def alone(tmp_path_factory):
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("workers", ["local", "scheduler"], indirect=True)
 def test_kills_of_workers_and_of_the_scheduler_change_nothing(tmp_path, alone, workers):
-    """At random moments, from the first rows on: the same figures to the digit, the same pictures, the same files."""
+    """Kills come at random moments after the first rows; figures, pictures and file names match exactly."""
     rng, folder = random.Random(20260801), tmp_path / "killed"
     process = started(folder, "--on", workers.on)
     began, killed = time.monotonic(), []

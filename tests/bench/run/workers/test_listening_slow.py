@@ -1,4 +1,4 @@
-"""Nothing that `--on` or `worker` starts can be reached from the network, and TLS is as the manual says."""
+"""Processes that `--on` or `worker` starts cannot be reached from the network, and TLS works as in the manual."""
 
 import os
 import re
@@ -36,37 +36,37 @@ MANUAL = PAGES[ROOT / "docs" / "workers.md"]
 
 
 def family_of(pid: int) -> set[int]:
-    """A process and all that it started."""
+    """Return a process and all its descendants."""
     parents = {}
     for folder in (path for path in Path("/proc").iterdir() if path.name.isdecimal()):
         with suppress(OSError):
             parents[int(folder.name)] = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
-    found = {pid}
-    while more := {child for child, parent in parents.items() if parent in found} - found:
-        found |= more
-    return found
+    family = {pid}
+    while more := {child for child, parent in parents.items() if parent in family} - family:
+        family |= more
+    return family
 
 
 def sockets_of(pid: int) -> set[str]:
-    """The inodes of a process's sockets; none of one that has just ended."""
-    found = set()
+    """Return the inodes of a process's sockets; an empty set if the process has just ended."""
+    inodes = set()
     with suppress(OSError):
         for path in Path(f"/proc/{pid}/fd").iterdir():
             with suppress(OSError):
                 if match := re.fullmatch(r"socket:\[(\d+)\]", str(path.readlink())):
-                    found.add(match[1])
-    return found
+                    inodes.add(match[1])
+    return inodes
 
 
 def listening(pid: int) -> list[str]:
-    """The addresses that a process and all that it started listen on."""
+    """Return the addresses on which a process and its descendants listen."""
     inodes = set().union(*map(sockets_of, family_of(pid)))
     rows = [line.split() for name in ("tcp", "tcp6") for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]]
     return [row[1].partition(":")[0] for row in rows if row[3] == LISTENS and row[9] in inodes]
 
 
 def looked_at(process: subprocess.Popen, fewest: int) -> None:
-    """Looks at a command's sockets, as soon as so many of them listen: all are this machine's own."""
+    """Wait until at least this many sockets of a command listen, and check that all use addresses of this machine."""
     addresses, until = [], time.monotonic() + 120
     while process.poll() is None and time.monotonic() < until and len(addresses) < fewest:
         time.sleep(0.1)
@@ -77,7 +77,7 @@ def looked_at(process: subprocess.Popen, fewest: int) -> None:
 
 @pytest.fixture
 def started():
-    """Starts a program, which ends with the test."""
+    """A function that starts a program, which ends with the test."""
     there = []
 
     def start(command: list[str], **named) -> subprocess.Popen:
@@ -85,13 +85,13 @@ def started():
         return there[-1]
 
     yield start
-    for one in reversed(there):
-        one.terminate()
-        one.communicate(timeout=30)
+    for process in reversed(there):
+        process.terminate()
+        process.communicate(timeout=30)
 
 
 def test_local_workers_listen_nowhere(started, tmp_path):
-    """Four looks at the sockets of a command and its two workers, all of which measure by then."""
+    """The sockets are checked four times while a command and its two workers measure."""
     process, seen, until = started([*NORMALBENCH, *LONG, "-o", str(tmp_path / "rows.json")]), 0, time.monotonic() + 120
     while process.poll() is None and time.monotonic() < until and seen < 4:
         assert not listening(process.pid)
@@ -102,8 +102,8 @@ def test_local_workers_listen_nowhere(started, tmp_path):
 
 
 @pytest.mark.drawn(3)
-def test_a_worker_that_is_ended_leaves_no_file(tmp_path, number=signal.SIGTERM):
-    """Neither of its orders nor of dask's."""
+def test_a_stopped_worker_leaves_no_file(tmp_path, number=signal.SIGTERM):
+    """Files of its tasks and of Dask are removed."""
     temporary = tmp_path / "temporary"
     temporary.mkdir()
     words = ("quality", "--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax", "--on")
@@ -121,8 +121,8 @@ def test_a_worker_that_is_ended_leaves_no_file(tmp_path, number=signal.SIGTERM):
     ("scheme", "encrypts", "says"),
     [("tls", "False", "check your TLS configuration"), ("tcp", "True", "encryption required")],
 )
-def test_what_is_wrong_with_tls_is_one_line_of_dasks(command, scheme, encrypts, says):
-    """In seconds: without certificates, and by an address without TLS where encryption is wanted."""
+def test_a_tls_error_is_one_line_from_dask(command, scheme, encrypts, says):
+    """The error comes in seconds: certificates are missing, or the address lacks TLS but encryption is required."""
     variables = os.environ | {"DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION": encrypts}
     words = [*NORMALBENCH, *command, f"{scheme}://127.0.0.1:1"]
     done = subprocess.run(words, capture_output=True, text=True, env=variables, timeout=30)
@@ -140,7 +140,7 @@ def free_port() -> int:
 
 
 def test_the_manuals_commands_measure_over_tls(run, started, tmp_path):
-    """On this machine's address and free ports."""
+    """They run with this machine's address and free ports."""
     (certificate,) = block("certificate")
     subprocess.run(shlex.split(certificate), cwd=tmp_path, check=True, capture_output=True)
     secret = dict(line.split("=") for line in block("variables"))

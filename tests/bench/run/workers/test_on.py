@@ -1,4 +1,4 @@
-"""What `--on` takes and refuses, and what is left behind."""
+"""Values that `--on` accepts or refuses, and clean-up when a command or worker ends."""
 
 import importlib.util
 
@@ -22,14 +22,14 @@ SMALL = ("quality", "--encoding", "xyz,octahedral", "--storage", "rgba8", "--nor
     ],
 )
 @pytest.mark.parametrize("command", [SMALL, ("run",)], ids=["table", "run"])
-def test_a_bad_word_is_refused_at_once(run, tmp_path, monkeypatch, command, word, says):
+def test_invalid_on_value_is_refused_at_once(run, tmp_path, monkeypatch, command, word, says):
     monkeypatch.chdir(tmp_path)
     status, out, err = run(*command, "--on", word)
     assert status == 2 and says in err and not out and len(err.splitlines()) == 1
     assert not list(tmp_path.iterdir()), "nothing is written"
 
 
-def test_without_dask_it_says_what_to_install(run, monkeypatch):
+def test_missing_dask_error_says_what_to_install(run, monkeypatch):
     monkeypatch.setattr(
         words, "find_spec", lambda name: None if name == "distributed" else importlib.util.find_spec(name)
     )

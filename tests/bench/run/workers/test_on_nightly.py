@@ -1,4 +1,4 @@
-"""What `--on` takes and refuses, and what is left behind."""
+"""Values that `--on` accepts or refuses, and clean-up when a command or worker ends."""
 
 import json
 import signal
@@ -13,15 +13,13 @@ rows_alone = test_on_slow.rows_alone
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interruption_leaves_rows_and_no_process_by_any_signal(tmp_path, rows_alone, number):
-    test_on_slow.test_an_interruption_leaves_rows_and_no_process_and_a_killed_worker_costs_no_row(
-        tmp_path, rows_alone, number
-    )
+def test_interruption_by_any_signal_loses_no_rows_and_leaves_no_process(tmp_path, rows_alone, number):
+    test_on_slow.test_interruption_and_killed_workers_lose_no_rows_and_leave_no_process(tmp_path, rows_alone, number)
 
 
 @pytest.mark.usefixtures("gl")
-def test_steps_by_glsl_go_to_no_worker_without_gl(run, tmp_path):
-    """One worker of two has no GL: rows by both back ends are those of one process, and none is measured here."""
+def test_glsl_steps_are_not_sent_to_workers_without_gl(run, tmp_path):
+    """One of two workers has no OpenGL. The rows equal those of one process, and none is measured locally."""
     assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
     with scheduled({}, NO_GL) as there:
         status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", there.address)

@@ -1,4 +1,4 @@
-"""What `--on` takes and refuses, and what is left behind."""
+"""Values that `--on` accepts or refuses, and clean-up when a command or worker ends."""
 
 import json
 import os
@@ -43,8 +43,8 @@ def test_an_address_where_nobody_answers_is_refused_in_seconds(run):
 
 
 @pytest.mark.drawn(3)
-def test_workers_of_this_machine_need_no_dask_and_no_certificates_and_leave_nothing_behind(tmp_path):
-    """In a process that cannot import dask, twice, as a program may that uses the Python functions; workers could."""
+def test_local_workers_need_no_dask_or_certificates_and_leave_no_files(tmp_path):
+    """The process cannot import dask, although its workers can; it measures twice, as a Python program may."""
     options = {"encoding": "xyz,octahedral", "storage": "rgba8", "normals": "axes", "backend": "jax", "on": "local:1"}
     code = "import sys\nsys.modules['dask'] = sys.modules['distributed'] = None\nimport normalbench as nb\n"
     code += f"for _ in range(2):\n    print(len(nb.quality(**{options})))"
@@ -54,8 +54,8 @@ def test_workers_of_this_machine_need_no_dask_and_no_certificates_and_leave_noth
     assert not [*tmp_path.iterdir()], "something is left"
 
 
-def test_what_no_worker_can_measure_is_measured_here(gl, run, monkeypatch, tmp_path):  # noqa: ARG001
-    """Only workers without GL: rows by GLSL are there all the same, and a line says who measured them."""
+def test_steps_that_no_worker_can_measure_are_measured_locally(gl, run, monkeypatch, tmp_path):  # noqa: ARG001
+    """The workers have no OpenGL. Rows by GLSL are still written, and a message says which process measured them."""
     assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
     own = os.environ | NO_GL
     monkeypatch.setattr(piped, "environment", lambda: own)
@@ -65,9 +65,9 @@ def test_what_no_worker_can_measure_is_measured_here(gl, run, monkeypatch, tmp_p
 
 
 def children(pid: int) -> list[int]:
-    """The processes that a process started, and theirs."""
-    found = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True).stdout.split()
-    return [int(one) for one in found] + [other for one in found for other in children(int(one))]
+    """Return the ids of all descendants of a process."""
+    pids = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True).stdout.split()
+    return [int(child) for child in pids] + [other for child in pids for other in children(int(child))]
 
 
 def is_there(pid: int) -> bool:
@@ -89,7 +89,7 @@ MANY += (
 
 
 def begun(folder: Path, *words: str) -> subprocess.Popen[str]:
-    """A command whose temporary files lie in a folder of their own."""
+    """Start a command that keeps its temporary files in a subfolder."""
     (folder / "temporary").mkdir(exist_ok=True)
     command = [sys.executable, "-m", "normalbench", *MANY, *words, "-o", str(folder / "rows.json")]
     variables = os.environ | {"TMPDIR": str(folder / "temporary")}
@@ -97,7 +97,7 @@ def begun(folder: Path, *words: str) -> subprocess.Popen[str]:
 
 
 def kept_in(folder: Path) -> int:
-    """How many steps a command has kept so far, and one line that says of what."""
+    """Return the number of lines in a command's journal: one for each step kept so far, and a header."""
     journal = folder / ".rows.json.rows"
     return len(journal.read_text().splitlines()) if journal.exists() else 0
 
@@ -110,7 +110,7 @@ def wait_for(folder: Path, steps: int) -> None:
 
 @pytest.fixture(scope="module")
 def rows_alone(tmp_path_factory):
-    """The file that one process writes, which nobody disturbs."""
+    """The bytes of the file that one undisturbed process writes."""
     folder = tmp_path_factory.mktemp("alone")
     process = begun(folder)
     assert process.communicate()[1] == "" and process.returncode == 0
@@ -118,7 +118,7 @@ def rows_alone(tmp_path_factory):
 
 
 def a_process_of(pid: int, module: str) -> int:
-    """A process that runs a module, of those that a command started; it may be starting one anew."""
+    """Return the id of a descendant process that runs a module; wait for it, because it may be restarting."""
     until = time.monotonic() + 30
     while time.monotonic() < until:
         for child in children(pid):
@@ -130,11 +130,9 @@ def a_process_of(pid: int, module: str) -> int:
     raise AssertionError(f"no process of {pid} runs {module}")
 
 
-def test_an_interruption_leaves_rows_and_no_process_and_a_killed_worker_costs_no_row(
-    tmp_path, rows_alone, number=signal.SIGKILL
-):
-    """What is kept stays, the workers end, and nothing of them is left. The same command loses two workers, each of
-    which another takes the place of, and ends with the rows of a command that nobody disturbed."""
+def test_interruption_and_killed_workers_lose_no_rows_and_leave_no_process(tmp_path, rows_alone, number=signal.SIGKILL):
+    """Rows already measured are kept; the workers end and leave no files. The command runs again and loses two
+    workers, which are replaced; its rows equal those of an undisturbed command."""
     process = begun(tmp_path, "--on", "local:2")
     wait_for(tmp_path, 3)
     workers = children(process.pid)
@@ -180,8 +178,8 @@ def test_a_killed_scheduler_and_its_killed_worker_cost_no_row(tmp_path, rows_alo
     assert (tmp_path / "rows.json").read_bytes() == rows_alone
 
 
-def test_workers_that_do_not_stay_end_the_command(run, monkeypatch):
-    """In a line, with the last that one of them said."""
+def test_workers_that_keep_ending_end_the_command(run, monkeypatch):
+    """The error ends with the last message from a worker."""
     monkeypatch.setattr(piped, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
     status, out, err = run(*SMALL, "--on", "local:2")
     assert (status, out) == (2, "") and err.endswith("--on local:2: the workers keep ending: broken\n"), err

@@ -37,8 +37,8 @@ def measures(order, needs, names) -> Answer:  # noqa: ARG001
 
 
 class Process:
-    """Stands for a process: `says` makes an answer of the arguments of a call, or ends it. The first `ending` of them
-    end before they are ready."""
+    """A stand-in for a process. `says` returns the answer to a call, or an exit status that ends the process. The
+    first `ending` processes end before they are ready."""
 
     says, ending = staticmethod(measures), 0
 
@@ -65,7 +65,7 @@ class Process:
 
 @pytest.fixture
 def workers(monkeypatch):
-    """Four workers of this machine, without processes; how they answer."""
+    """A function that returns four local workers without processes, given how they answer."""
     monkeypatch.setattr(local, "Piped", Process)
     monkeypatch.setattr(local, "LOOK_S", 0.01)
 
@@ -83,15 +83,15 @@ def measured(carrier, ask: Asked) -> tuple[list[str], list]:
 
 def test_every_step_has_its_rows_once(workers):
     ask = asked("quality", JAX)
-    ticks, found = measured(workers(measures), ask)
-    assert Counter(step.name for step, _ in found) == Counter(step.name for step in ask.steps)
+    ticks, pairs = measured(workers(measures), ask)
+    assert Counter(step.name for step, _ in pairs) == Counter(step.name for step in ask.steps)
     assert sorted(ticks) == sorted(step.name for step in ask.steps)
-    assert all(rows == [{"of": step_name("quality", step.key)}] for step, rows in found)
+    assert all(rows == [{"of": step_name("quality", step.key)}] for step, rows in pairs)
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_workers_that_are_lost_at_random_lose_nothing(seed, workers, monkeypatch):
-    """A tenth of all tasks ends its worker by a signal, and a tenth reaches one that does not know the order."""
+    """A tenth of all tasks kill their worker, and another tenth reach a worker that does not know the order."""
     rng = random.Random(seed)
     monkeypatch.setattr(local, "MOST_LOST", 1000)
 
@@ -99,25 +99,25 @@ def test_workers_that_are_lost_at_random_lose_nothing(seed, workers, monkeypatch
         ends = rng.random()
         return -9 if ends < 0.1 else Answer(knows=False) if ends < 0.2 else rows_of(names)
 
-    _, found = measured(workers(says), asked("quality", JAX))
-    assert Counter(step.name for step, _ in found) == Counter(str(key) for key in JAX)
-    assert all("of" in row for _, rows in found for row in rows)
+    _, pairs = measured(workers(says), asked("quality", JAX))
+    assert Counter(step.name for step, _ in pairs) == Counter(str(key) for key in JAX)
+    assert all("of" in row for _, rows in pairs for row in rows)
 
 
 @pytest.mark.parametrize("ending", [11, 12])
 def test_workers_that_end_before_they_are_ready_cost_no_step(ending, workers, monkeypatch):
-    """But where three for each that there should be do so one after the other, the command ends."""
+    """After 12 such workers in a row, three per worker requested, the command ends."""
     monkeypatch.setattr(Process, "ending", ending)
     carrier = workers(measures)
     if ending == 12:
         with pytest.raises(UsageError, match="--on local:4: the workers keep ending: broken"):
             measured(carrier, asked("quality", JAX))
         return
-    _, found = measured(carrier, asked("quality", JAX))
-    assert len(found) == len(JAX) and all("of" in row for _, rows in found for row in rows)
+    _, pairs = measured(carrier, asked("quality", JAX))
+    assert len(pairs) == len(JAX) and all("of" in row for _, rows in pairs for row in rows)
 
 
-def test_the_order_travels_where_it_is_not_known(workers):
+def test_order_is_sent_to_workers_that_do_not_know_it(workers):
     sent: list[object] = []
 
     def says(order, needs, names):  # noqa: ARG001
@@ -129,16 +129,16 @@ def test_the_order_travels_where_it_is_not_known(workers):
 
 
 def test_a_step_that_ends_worker_after_worker_loses_its_own_rows(workers, capsys):
-    """The others that travelled with it are measured; its row has the reason, and standard error its name."""
+    """Other steps sent with the lost step are measured; its row has the reason, and standard error its name."""
     bad = JAX[5]
     name = step_name("quality", bad)
     carrier = workers(lambda order, needs, names: -9 if name in names else rows_of(names))  # noqa: ARG005
-    _, found = measured(carrier, asked("quality", JAX))
-    rows = {step.name: rows for step, rows in found}
+    _, pairs = measured(carrier, asked("quality", JAX))
+    rows = {step.name: rows for step, rows in pairs}
     (lost,) = rows[str(bad)]
     assert lost["skipped"] == f"{MOST_LOST + 1} workers were lost while they measured it"
     assert lost["encoding"] == "e5" and lost["backend"] == "jax" and lost["mse"] is None
-    assert sum("of" in row for one in rows.values() for row in one) == len(JAX) - 1
+    assert sum("of" in row for step_rows in rows.values() for row in step_rows) == len(JAX) - 1
     assert f"{bad}: {MOST_LOST + 1} workers were lost" in capsys.readouterr().err
 
 
@@ -148,8 +148,8 @@ def test_an_answer_that_is_wrong_ends_the_command(wrong, workers):
         measured(workers(lambda order, needs, names: wrong), asked("quality", JAX))  # noqa: ARG005
 
 
-def test_an_order_is_another_one_where_a_users_file_is(monkeypatch, tmp_path):
-    """A worker that has the first would measure it again for the second, of the same name."""
+def test_order_changes_with_the_text_of_a_users_file(monkeypatch, tmp_path):
+    """Otherwise a worker that knows the first file would measure it again in place of the second."""
     monkeypatch.chdir(tmp_path)
     table, ids = TABLES["quality"], []
     for text in ("// first", "// second", "// first"):
@@ -159,7 +159,7 @@ def test_an_order_is_another_one_where_a_users_file_is(monkeypatch, tmp_path):
 
 
 def test_steps_before_one_that_raises_are_kept(workers, monkeypatch, tmp_path):
-    """By the worker's process, and by this one."""
+    """Both the worker's process and this process keep the rows."""
     ask = asked("quality", JAX[:2])
 
     def measure(_, steps, tick):  # noqa: ARG001
@@ -180,8 +180,8 @@ def test_steps_before_one_that_raises_are_kept(workers, monkeypatch, tmp_path):
     assert kept == [[{"a": 1}]]
 
 
-def test_a_worker_measures_only_what_it_would_measure_as_this_process(monkeypatch):
-    """Of other versions, sources, settings or processors nothing; of steps by GLSL nothing with another device."""
+def test_worker_refuses_steps_that_it_would_measure_differently(monkeypatch):
+    """Another version, source, setting or processor rules out all steps; another device rules out GLSL steps."""
     ask = asked("quality", [{"backend": name} for name in ("glsl", "jax")])
     by_glsl, by_jax = tasks_of(ask, ask.steps, 1)
     assert named(by_glsl.needs) == f"{GL}, {VULKAN}, {BASE}" and named(by_jax.needs) == f"{C_COMPILER}, {BASE}"
@@ -193,8 +193,8 @@ def test_a_worker_measures_only_what_it_would_measure_as_this_process(monkeypatc
         assert {answer.removeprefix("no worker has this ") for answer in answers} == refused, answers
 
 
-def test_what_workers_refuse_and_what_reads_a_clock_is_measured_here(workers, monkeypatch, capsys):
-    """In the end, in one go; workers are not asked for what reads a clock."""
+def test_refused_and_timed_steps_are_measured_locally(workers, monkeypatch, capsys):
+    """The steps are measured at the end, in one go; timed steps are never sent to workers."""
     here: list[str] = []
 
     def measure(ask, steps, tick):  # noqa: ARG001
@@ -204,13 +204,13 @@ def test_what_workers_refuse_and_what_reads_a_clock_is_measured_here(workers, mo
     monkeypatch.setattr(pool.HERE, "measure", measure)
     keys = [{"repeats": n % 2, "pipeline": f"p{n}"} for n in range(10)]
     carrier = workers(lambda order, needs, names: Answer(refused="no worker has this GL device"))  # noqa: ARG005
-    _, found = measured(carrier, asked("sweep", keys))
-    assert len(found) == 10 and here == [str(key) for key in (*keys[1::2], *keys[::2])]
+    _, pairs = measured(carrier, asked("sweep", keys))
+    assert len(pairs) == 10 and here == [str(key) for key in (*keys[1::2], *keys[::2])]
     assert "sweep: 5 steps are measured by this process: no worker has this GL device" in capsys.readouterr().err
 
 
-def test_without_a_worker_for_long_this_process_measures(monkeypatch, capsys):
-    """As where no worker of a scheduler has the GL device."""
+def test_steps_are_measured_locally_if_no_worker_is_available(monkeypatch, capsys):
+    """This happens, for example, if no worker of a scheduler has the OpenGL device."""
 
     class Nobody:
         def count(self, needs):  # noqa: ARG002
@@ -223,8 +223,8 @@ def test_without_a_worker_for_long_this_process_measures(monkeypatch, capsys):
 
     monkeypatch.setattr(pool, "WAIT_S", 0.0)
     monkeypatch.setattr(pool.HERE, "measure", lambda ask, steps, tick: ((step, []) for step in steps))  # noqa: ARG005
-    _, found = measured(Nobody(), asked("quality", JAX))
-    assert len(found) == len(JAX)
+    _, pairs = measured(Nobody(), asked("quality", JAX))
+    assert len(pairs) == len(JAX)
     assert (
         f"quality: {len(JAX)} steps are measured by this process: no worker has all of this: {C_COMPILER}, {BASE}"
         in capsys.readouterr().err
@@ -232,7 +232,7 @@ def test_without_a_worker_for_long_this_process_measures(monkeypatch, capsys):
 
 
 def test_every_table_whose_rows_have_times_says_so_in_its_keys():
-    """By `repeats`, or whatever it is that the table goes by."""
+    """Most tables go by the key `repeats`; the rows of `maps` always have a time."""
     # Readers' times are in the files that they saved.
     timed = {name for name, table in TABLES.items() if table.of_role(Role.TIME)} - {"devices"}
     assert timed == {"cost", "render", "effects", "sweep", "maps"}
@@ -248,7 +248,7 @@ def test_chunks_shrink_towards_the_end(waiting, workers, size):
     assert chunk_size(waiting, workers) == size
 
 
-def test_lists_of_names_travel():
-    """With the caller's own values, which a text would lose."""
+def test_lists_of_names_can_be_pickled():
+    """Lists keep the caller's own values, which text would lose."""
     words = ("octahedral", Given("mine", 1))
     assert pickle.loads(pickle.dumps(words)) == words

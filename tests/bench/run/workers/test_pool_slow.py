@@ -7,8 +7,8 @@ import pytest
 from normalbench.bench.run.workers.carrier import Answer
 
 
-def test_what_becomes_of_a_schedulers_task():
-    """A task that dask gives up is lost, one that went with its scheduler is sent again; any other error is raised."""
+def test_scheduler_task_is_lost_or_sent_again_or_raises():
+    """A task that dask abandons is lost; a task cancelled with its scheduler is sent again; others raise."""
     from distributed import KilledWorker
 
     from normalbench.bench.run.workers.scheduled import _answer

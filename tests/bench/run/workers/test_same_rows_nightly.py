@@ -1,4 +1,4 @@
-"""What workers measure is what one process measures, of further tables."""
+"""Equality of rows by workers and by one process, for more tables."""
 
 import pytest
 import test_same_rows_slow
@@ -13,10 +13,10 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("table", COMMANDS)
-def test_the_rows_and_pictures_of_further_tables_are_those_of_one_process(gl, run, tmp_path, table):  # noqa: ARG001
+def test_the_rows_and_pictures_of_more_tables_are_those_of_one_process(gl, run, tmp_path, table):  # noqa: ARG001
     """Every figure to the last digit, in the same order; every picture to the last byte."""
     test_same_rows_slow.compared(run, tmp_path, table, COMMANDS[table])
 
 
-def test_users_files_of_absolute_paths_travel(gl, run, scheduler, tmp_path, monkeypatch):
-    test_same_rows_slow.test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, True)
+def test_workers_receive_users_files_with_absolute_paths(gl, run, scheduler, tmp_path, monkeypatch):
+    test_same_rows_slow.test_workers_receive_users_files(gl, run, scheduler, tmp_path, monkeypatch, True)

@@ -1,4 +1,4 @@
-"""What workers measure is what one process measures, to the digit, with the same pictures."""
+"""Equality of rows and pictures by workers and by one process, to the last digit."""
 
 import json
 from pathlib import Path
@@ -67,14 +67,14 @@ def pictures(folder: Path) -> dict[str, bytes]:
 
 def measured(run, folder: Path, table: str, words: str, *on: str) -> tuple[list[dict], dict[str, bytes]]:
     pictured = ("--images", str(folder / "images")) if table in PICTURED else ()
-    said = run(table, *words.split(), *pictured, "-o", str(folder / "rows.json"), *on)
-    assert said[0] == 0, said[2]
-    assert "measured by this process" not in said[2], said[2]
+    answer = run(table, *words.split(), *pictured, "-o", str(folder / "rows.json"), *on)
+    assert answer[0] == 0, answer[2]
+    assert "measured by this process" not in answer[2], answer[2]
     return rows_of(folder / "rows.json", table), pictures(folder / "images")
 
 
 def compared(run, folder: Path, table: str, words: str) -> None:
-    """A command's rows and pictures, of this process and of two workers."""
+    """Check that this process and two workers give the same rows and pictures."""
     (folder / "one").mkdir()
     (folder / "two").mkdir()
     here = measured(run, folder / "one", table, words)
@@ -89,9 +89,9 @@ def test_the_rows_and_pictures_are_those_of_one_process(gl, run, tmp_path, table
     compared(run, tmp_path, table, COMMANDS[table])
 
 
-def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolute=False):  # noqa: ARG001
-    """An encoder with what it includes, a layout that names it, a scene and a set of normals, named in any way: the
-    same rows."""
+def test_workers_receive_users_files(gl, run, scheduler, tmp_path, monkeypatch, is_absolute=False):  # noqa: ARG001
+    """An encoder with its includes, a layout that names the encoder, a scene and a set of normals give the same rows,
+    however their paths are written."""
     typed = tmp_path / "typed" / "here"
     (typed / "own").mkdir(parents=True)
     monkeypatch.chdir(typed)
@@ -103,13 +103,13 @@ def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolu
     as_document([sphere(1.0, 16, 8)]).write(typed / "scene.glb")
     n = np.random.default_rng(1).normal(size=(500, 3))
     np.save(typed / "list.npy", (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32))
-    at = f"{typed}/" if is_absolute else ""
-    encoders = f"{at}own/mine.glsl,{typed.parent}/other.glsl,../other.glsl" if is_absolute else "own/mine.glsl"
+    prefix = f"{typed}/" if is_absolute else ""
+    encoders = f"{prefix}own/mine.glsl,{typed.parent}/other.glsl,../other.glsl" if is_absolute else "own/mine.glsl"
     encoders = encoders.removesuffix(",../other.glsl") if is_absolute else f"{encoders},../other.glsl"
     commands = {
-        "normals": f"quality --encoding {encoders} --storage rg8 --normals {at}list.npy --backend glsl",
-        "encoders": f"render --encoding {encoders} --storage rg8 --scene {at}scene.glb --size 64x36 --repeats 0",
-        "layout": f"render --layout {at}lay.toml,hybrid --scene {at}scene.glb --size 64x36 --repeats 0",
+        "normals": f"quality --encoding {encoders} --storage rg8 --normals {prefix}list.npy --backend glsl",
+        "encoders": f"render --encoding {encoders} --storage rg8 --scene {prefix}scene.glb --size 64x36 --repeats 0",
+        "layout": f"render --layout {prefix}lay.toml,hybrid --scene {prefix}scene.glb --size 64x36 --repeats 0",
     }
     # To look at encoders first takes seconds, and paths are the same everywhere.
     for name in ("encoders", "layout") if is_absolute else ("normals", "layout"):
@@ -122,15 +122,15 @@ def test_users_files_travel(gl, run, scheduler, tmp_path, monkeypatch, is_absolu
 
 
 def test_python_takes_workers_as_well(scheduler):
-    """Those of a scheduler."""
+    """The workers belong to a scheduler."""
     alone, others = (
         nb.quality(encoding=["octahedral", "xyz"], storage=["rgba8"], normals="axes", on=on) for on in (None, scheduler)
     )
     pd.testing.assert_frame_equal(others, alone)
 
 
-def test_a_value_of_pythons_own_is_refused():
-    """Workers measure what has a name or is a file."""
+def test_values_that_exist_only_in_python_are_refused():
+    """Workers accept only names and files."""
     normals = {"own": np.eye(3)}
     with pytest.raises(UsageError, match="normals: own exists only in this process; with --on use names and files"):
         nb.quality(encoding="octahedral", storage="rg8", normals=normals, on="local:1")

@@ -1,4 +1,4 @@
-"""A worker that waits for a job ends when it is told to, whichever of its threads the system gives the signal to."""
+"""Signals that end a waiting worker, whichever of its threads receives them."""
 
 import subprocess
 import sys
@@ -24,5 +24,5 @@ except SystemExit as ended:
 """
 
 
-def test_a_signal_that_another_thread_is_given_ends_a_worker():
+def test_signal_delivered_to_another_thread_ends_a_worker():
     assert subprocess.run([sys.executable, "-c", PROGRAM], timeout=60).returncode == 7

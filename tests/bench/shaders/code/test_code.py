@@ -45,8 +45,8 @@ def test_the_reference_texels_hold_the_integers_that_the_python_interface_gives(
     assert np.array_equal(integers & (2 ** np.array(bits) - 1), expected.integers)
 
 
-def test_the_reference_normals_are_unit_and_of_the_domain():
-    """Axes and both zeros among them; z >= 0 for hemispheres, and towards the viewer for views."""
+def test_reference_normals_are_unit_vectors_in_the_domain():
+    """Normals of the hemisphere have z >= 0, and normals for views face the viewer."""
     for domain in ("sphere", "hemisphere", "view"):
         n, view = normals(domain)
         assert n.shape == view.shape == (2**16, 3)
@@ -57,14 +57,14 @@ def test_the_reference_normals_are_unit_and_of_the_domain():
 
 
 def test_the_texel_of_a_known_normal_is_what_the_formula_gives():
-    """(1, 0, 0) is (1, 0) in the octahedral map: 1023 and 511.5, of which the even neighbour is 512."""
+    """(1, 0, 0) maps to (1, 0) in the octahedral encoding: 1023 and 511.5, which rounds to the even 512."""
     expected = reference(codec_of("octahedral/rgb10a2"))
-    at = int(np.argmax((expected.n == (1.0, 0.0, 0.0)).all(axis=1)))
-    assert expected.words[at, 0] == 1023 | 512 << 10
+    index = int(np.argmax((expected.n == (1.0, 0.0, 0.0)).all(axis=1)))
+    assert expected.words[index, 0] == 1023 | 512 << 10
 
 
 def test_a_table_is_a_dds_texture_of_floats():
-    """Sizes and the format of DirectX 10 stand where Microsoft's guide puts them, the floats behind them."""
+    """The sizes and the Direct3D 10 format are at the offsets of Microsoft's guide, followed by the floats."""
     table = np.arange(12, dtype=np.float32).reshape(2, 3, 2)
     data = dds(table)
     assert data[:4] == b"DDS " and struct.unpack_from("<2I", data, 12) == (2, 3)
@@ -72,8 +72,8 @@ def test_a_table_is_a_dds_texture_of_floats():
     assert np.array_equal(np.frombuffer(data, "<f4", offset=148), table.ravel())
 
 
-def test_a_table_is_an_array_of_c_in_the_same_order():
-    """Every number stands in it with the digits that make the same float."""
+def test_table_is_a_c_array_in_the_same_order():
+    """Every number has enough digits to give the same float."""
     table = np.array([[[0.1], [1.0]], [[2.5], [1e-7]]], np.float32)
     numbers = re.findall(r"([-\d.e]+)f", header({"t": table}))
     assert np.array_equal(np.float32(numbers), table.ravel())
@@ -84,13 +84,13 @@ def test_a_texel_is_counted_once():
     codec = codec_of("octahedral/unorm:4:4")
     expected = reference(codec)
     ran = Ran(expected.stored, expected.words, expected.stored, expected.decoded, expected.texels, expected.stored)
-    found = compared(codec, expected, ran)
-    assert found.holds and found.says.startswith(f"all {len(np.unique(expected.words))} texels of 65536 normals")
+    verdict = compared(codec, expected, ran)
+    assert verdict.holds and verdict.says.startswith(f"all {len(np.unique(expected.words))} texels of 65536 normals")
     assert len(np.unique(expected.words)) == 256
 
 
 def test_a_file_of_glsl_may_do_without_the_view(run, tmp_path):
-    """What is written can be measured as it is; encode alone may take the view."""
+    """The written file can be measured if only encode takes the view."""
     code = code_of(codec_of("octahedral/rg8"), "glsl", "mine")
     path = written(tmp_path, code, code.body.replace("mine_encode(vec3 n)", "mine_encode(vec3 n, vec3 view)"))
     arguments = ("--storage", "rg8", "--normals", "axes", "--backend", "glsl", "--format", "json")
@@ -101,7 +101,7 @@ def test_a_file_of_glsl_may_do_without_the_view(run, tmp_path):
 
 
 def test_a_header_of_c_can_be_included_twice_without_a_warning(tmp_path):
-    """All warnings are errors; two codecs of one encoding stand next to each other."""
+    """Warnings are errors, and the file includes two codecs of the same encoding."""
     require_runner("c")
     for storage in ("rgba8", "rgba16f"):
         written(tmp_path, code_of(codec_of(f"xyz_renormalised/{storage}"), "c", storage))
@@ -133,8 +133,8 @@ def test_a_header_of_c_can_be_included_twice_without_a_warning(tmp_path):
         (["xyz", "--prefix", "x" * 61], "at most 60 characters"),
     ],
 )
-def test_what_cannot_be_written_is_a_line_and_status_2(run, arguments, said, tmp_path, monkeypatch):
-    """Bad names, several files without a folder, and what no language is written for."""
+def test_unsupported_request_is_a_one_line_error_with_status_2(run, arguments, said, tmp_path, monkeypatch):
+    """Requests include bad names, several files without a folder and codecs that no language supports."""
     monkeypatch.chdir(tmp_path)
     status, out, err = run("code", *arguments)
     assert (status, out) == (2, "")

@@ -18,8 +18,8 @@ def codec_of(kind, names, storage):
     return codec
 
 
-def test_a_setting_that_nothing_reads_is_no_parameter():
-    """A range of 1 is left out with its quotient; `near` is not taken where the far plane is enough."""
+def test_unused_setting_is_not_a_parameter():
+    """A range of 1 is left out with its division, and `near` is left out if the far plane is enough."""
     roughness = code_of(codec_of("curve", "linear", "r8"), "glsl", "p").body
     assert "float p_encode(float x)" in roughness and "return x;" in roughness
     assert "p_encode(float depth, float far)" in code_of(codec_of("depth", "linear", "packed16"), "glsl", "p").body
@@ -51,21 +51,21 @@ def test_hlsl_unrolls_loops_over_constants_alone():
         (["log:4"], "choose one with --of"),
     ],
 )
-def test_what_cannot_be_written_of_a_kind_is_a_line(run, arguments, said):
+def test_unsupported_request_of_a_kind_is_a_one_line_error(run, arguments, said):
     status, out, err = run("code", *arguments)
     assert (status, out) == (2, "")
     assert said in err and err.count("\n") == 1, err
 
 
 def test_a_range_is_a_constant_of_the_code():
-    """Of light another encoding, of a curve another number; the curve's name has it."""
+    """Another range makes another light encoding; for a curve it is a number, which the file name includes."""
     assert "8.0" in code_of(codec_of("light", "rgbm:8", "rgba8"), "glsl", "p").body
     log = codec_of("curve", "log:range=4", "r8")
     assert log.range == 4 and stem_of(log) == "curve_log_4_r8"
 
 
-def test_a_name_makes_nobodys_file_the_catalogues():
-    """Whose an encoder is decides whether it is walled in: another file with a name of the catalogue's is not ours."""
+def test_catalogue_name_does_not_make_a_users_file_the_catalogues():
+    """Code from users runs in a sandbox, so a user's file with a catalogue name must not pass as the catalogue's."""
     known = ENCODINGS["octahedral"]
     assert is_catalogues(known) and is_catalogues(replace(known, name="octahedral:sign=0"))
     assert not is_catalogues(replace(known, glsl=Path("octahedral.glsl")))

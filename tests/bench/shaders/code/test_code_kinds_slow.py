@@ -29,12 +29,12 @@ def agreement_of(codec, language, folder: Path, text=None):
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("storage", ["rg16_snorm", "rg8_centred", "float:4:5", "unorm:9:7"])
-def test_motion_is_rounded_as_it_is_said(storage, tmp_path):
-    """Cut off toward zero; the file's name says so, and the texels are not those of the nearest."""
+def test_motion_is_rounded_as_requested(storage, tmp_path):
+    """Motion is truncated toward zero: the file name says so, and the texels differ from rounding to nearest."""
     require_runner("c")
     (codec,) = codecs_of_kind(NAMED["motion"], "cube_root", storage, ["truncate"])
-    found = agreement_of(codec, "c", tmp_path)
-    assert found.holds, found.says
+    verdict = agreement_of(codec, "c", tmp_path)
+    assert verdict.holds, verdict.says
     assert stem_of(codec).endswith("_truncate")
     nearest = reference(codec_of("motion", "cube_root", storage))
     assert np.mean((reference(codec).words != nearest.words).any(axis=1)) > 0.25
@@ -63,8 +63,8 @@ def test_a_wrong_number_in_the_code_of_a_kind_is_noticed(fault, tmp_path):
         assert old in text, text
         return text.replace(old, new)
 
-    found = agreement_of(codec_of(*named), "c", tmp_path, changed)
-    assert not found.holds, found.says
+    verdict = agreement_of(codec_of(*named), "c", tmp_path, changed)
+    assert not verdict.holds, verdict.says
 
 
 OWN_MOTION = """
@@ -85,32 +85,32 @@ OWN = {"motion": (OWN_MOTION, "rg16"), "curve": (OWN_ROUGHNESS, "r8")}
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("kind", OWN)
 def test_a_users_code_of_a_kind_is_written(kind, tmp_path):
-    """HLSL of a user in C, compared with what OpenGL makes of it; the kind is what its names say."""
+    """A user's HLSL, written in C, agrees with the OpenGL result; its function names give the kind."""
     require_runner("c")
     text, storage = OWN[kind]
     path = tmp_path / "mine.hlsl"
     path.write_text(text)
-    assert [one.word for one in kinds_named(str(path), "")] == [kind]
+    assert [named_kind.word for named_kind in kinds_named(str(path), "")] == [kind]
     codec = codec_of(kind, str(path), storage)
-    found = agreement_of(codec, "c", tmp_path)
-    assert found.holds, found.says
+    verdict = agreement_of(codec, "c", tmp_path)
+    assert verdict.holds, verdict.says
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_users_light_is_of_light_and_stays_theirs(tmp_path, monkeypatch, run):
-    """One that gives unit vectors back is not of normals for that; with its functions named it is no code of ours."""
+def test_users_light_encoder_is_recognised_and_stays_the_users(tmp_path, monkeypatch, run):
+    """A light encoder may preserve unit vectors. It remains the user's code if its functions are named."""
     monkeypatch.chdir(tmp_path)
     text = "float4 EncodeLight(float3 light) { return float4(light * 0.25, 1.0); }\n"
     Path("mine.hlsl").write_text(text + "float3 DecodeLight(float4 code) { return code.rgb * 4.0; }\n")
     for word in ("mine.hlsl", "mine.hlsl:EncodeLight:DecodeLight"):
-        assert [one.word for one in kinds_named(word, "")] == ["light"]
+        assert [kind.word for kind in kinds_named(word, "")] == ["light"]
         _, out, err = run("code", word, "--storage", "rgba8", "--to", "glsl")
         assert "Encode and decode are yours." in out, err
 
 
 @pytest.mark.usefixtures("gl")
-def test_the_command_finds_the_kind_and_says_it(run):
-    """A name that one kind has needs no --of; the head has the kind, and the command that was typed."""
+def test_command_infers_and_reports_the_kind(run):
+    """A name that only one kind has needs no `--of`; the file's header gives the command with the kind."""
     status, out, err = run("code", "cube_root", "--storage", "rg16_snorm", "--to", "c")
     assert (status, err) == (0, "")
     head = " ".join(line.removeprefix("//").strip() for line in out.partition("\n\n")[0].splitlines())
@@ -120,19 +120,19 @@ def test_the_command_finds_the_kind_and_says_it(run):
 
 @pytest.mark.usefixtures("gl")
 def test_a_kind_is_checked_as_normals_are(run):
-    """A row of each codec."""
+    """The table has a row for each codec."""
     status, out, _ = run("code", "--check", "srgb,gamma_2_2", "--of", "curve", "--storage", "r8", "--to", "c")
     assert status == 0 and {"srgb", "gamma_2_2", "equal"} <= set(out.split()), out
 
 
 @pytest.mark.usefixtures("gl")
 def test_names_of_several_kinds_are_written(run, tmp_path, monkeypatch):
-    """Each in what its kind usually lies in; what a kind does not take is named, and spares the others."""
+    """Each uses its kind's default storage; an unsupported storage is reported and does not affect the others."""
     # Errors take a search for the worst case; test_code.py has a file that says them.
     monkeypatch.setattr(code_command, "figures", lambda _: [])
     status, _, err = run("code", "octahedral,cube_root,rgbm:range=8,Octahedral-Angle", "--to", "c", "-o", str(tmp_path))
-    made = sorted(path.name for path in tmp_path.iterdir())
-    assert status == 0 and made == [
+    files = sorted(path.name for path in tmp_path.iterdir())
+    assert status == 0 and files == [
         "frame_octahedral_angle_rgb10a2.h",
         "light_rgbm_8_rgba8.h",
         "motion_cube_root_rg8.h",
@@ -147,8 +147,8 @@ def test_names_of_several_kinds_are_written(run, tmp_path, monkeypatch):
 @pytest.mark.parametrize("kind, name", [("light", "rgbm:8"), ("curve", "log:4")])
 def test_the_code_over_another_range_gives_the_catalogues_texels(kind, name, tmp_path):
     require_runner("c")
-    found = agreement_of(codec_of(kind, name, ""), "c", tmp_path)
-    assert found.holds, found.says
+    verdict = agreement_of(codec_of(kind, name, ""), "c", tmp_path)
+    assert verdict.holds, verdict.says
 
 
 # Of each kind, codes and storages that are made otherwise: shares, polynomials, powers, floats, and integers.
@@ -176,7 +176,7 @@ CODECS = (
 
 
 def pairs() -> list:
-    """Each codec with each language."""
+    """Return each codec with each language."""
     return [(*codec, language) for codec in CODECS for language in RUN]
 
 
@@ -185,14 +185,14 @@ def pairs() -> list:
 def test_the_code_of_a_kind_gives_the_catalogues_texels(kind, name, storage, language, tmp_path):
     """2^16 values: texels, numbers that come back, and render targets."""
     require_runner(language)
-    found = agreement_of(codec_of(kind, name, storage), language, tmp_path)
-    assert found.holds, found.says
+    verdict = agreement_of(codec_of(kind, name, storage), language, tmp_path)
+    assert verdict.holds, verdict.says
 
 
 @pytest.mark.parametrize("kind", ["motion", "curve", "light", "depth"])
 def test_the_code_of_every_encoding_of_a_kind_is_written(kind, tmp_path):
-    """In the first storage where each usually lies, in C."""
+    """Each encoding is written in C, in its default storage."""
     require_runner("c")
     for name in BY_KIND[NAMED[kind]]:
-        found = agreement_of(codec_of(kind, name, ""), "c", tmp_path)
-        assert found.holds, f"{name}: {found.says}"
+        verdict = agreement_of(codec_of(kind, name, ""), "c", tmp_path)
+        assert verdict.holds, f"{name}: {verdict.says}"

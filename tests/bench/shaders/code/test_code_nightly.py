@@ -24,16 +24,16 @@ def test_the_code_of_a_codec_gives_the_catalogues_texels_in_any_language(languag
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_the_code_of_every_codec_gives_the_catalogues_texels(encoding, tmp_path):
-    """As above, of every storage that fits, in C; in the others of every third one, so that each encoding and each
-    storage is written in each of them. Slang is given HLSL's text, and OpenGL that of GLSL ES but for precisions."""
+    """C covers every storage that fits, and the other languages every third, so that each language still has every
+    encoding and storage. Slang takes the HLSL text, and OpenGL the GLSL ES text without precision qualifiers."""
     languages = ("c", "hlsl", "wgsl", "essl")
     for language in languages:
         require_runner(language)
     wrong = []
     codecs = [codec for codec in codecs_named(encoding, ",".join(STORAGES), "nearest") if codec.fits]
-    for at, codec in enumerate(codecs, list(ENCODINGS).index(encoding)):
-        for language in languages[: 1 if at % 3 else None]:
+    for number, codec in enumerate(codecs, list(ENCODINGS).index(encoding)):
+        for language in languages[: 1 if number % 3 else None]:
             code = code_of(codec, language)
-            found = agreement(codec, language, written(tmp_path, code), code.interface)
-            wrong += [] if found.holds else [f"{codec.name} in {language}: {found.says}"]
+            verdict = agreement(codec, language, written(tmp_path, code), code.interface)
+            wrong += [] if verdict.holds else [f"{codec.name} in {language}: {verdict.says}"]
     assert not wrong, wrong

@@ -38,8 +38,8 @@ def test_a_wrong_constant_or_a_swapped_number_is_noticed(fault, tmp_path):
     code = code_of(codec, "c", "p")
     old, new = MUTANTS[fault]
     assert old in code.body, code.body
-    found = agreement(codec, "c", written(tmp_path, code, code.body.replace(old, new)), code.interface)
-    assert not found.holds, found.says
+    verdict = agreement(codec, "c", written(tmp_path, code, code.body.replace(old, new)), code.interface)
+    assert not verdict.holds, verdict.says
 
 
 MANY_WORDS = """
@@ -68,24 +68,24 @@ def test_a_users_glsl_is_written_in_every_language(language, tmp_path):
     (tmp_path / "many.glsl").write_text(MANY_WORDS)
     (codec,) = codecs_named(str(tmp_path / "many.glsl"), "rgb10a2", "nearest")
     code = code_of(codec, language, "p")
-    found = agreement(codec, language, written(tmp_path, code), code.interface)
-    assert found.holds, found.says
+    verdict = agreement(codec, language, written(tmp_path, code), code.interface)
+    assert verdict.holds, verdict.says
 
 
-def test_code_of_a_user_is_the_users(run, tmp_path):
-    """Its head names no licence for encode and decode, and the command that was typed."""
+def test_users_code_is_attributed_to_the_user(run, tmp_path):
+    """The header claims no licence for encode and decode, and gives the command that was typed."""
     (tmp_path / "many.glsl").write_text(MANY_WORDS)
-    path, made = str(tmp_path / "many.glsl"), tmp_path / "made"
-    status, _, err = run("code", path, "--storage", "rg8", "--to", "glsl", "-o", str(made))
-    assert status == 0 and "left out: " not in err and "normal_halves(" in (made / "many_rg8.glsl").read_text()
-    text = " ".join((made / "many_rg8.glsl").read_text().replace("//", "").split())
+    path, folder = str(tmp_path / "many.glsl"), tmp_path / "made"
+    status, _, err = run("code", path, "--storage", "rg8", "--to", "glsl", "-o", str(folder))
+    assert status == 0 and "left out: " not in err and "normal_halves(" in (folder / "many_rg8.glsl").read_text()
+    text = " ".join((folder / "many_rg8.glsl").read_text().replace("//", "").split())
     assert "Encode and decode are yours." in text and f"normalbench code {path}" in text
     assert "the catalogue's" not in text
 
 
 @pytest.mark.usefixtures("gl")
-def test_check_says_of_every_language_how_many_texels_differ(run):
-    """A row of each codec, a column of each language."""
+def test_check_reports_how_many_texels_differ_in_each_language(run):
+    """The table has a row per codec and a column per language."""
     status, out, _ = run("code", "--check", "octahedral,spheremap", "--storage", "rgb10a2", "--to", "glsl,c")
     assert status == 0
     assert re.search(r"octahedral\s+rgb10a2\s+equal\s+equal", out) or "equal" in out
@@ -94,8 +94,8 @@ def test_check_says_of_every_language_how_many_texels_differ(run):
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize(("languages", "wrong_in"), [("msl", "c"), ("glsl,msl", "glsl")])
-def test_what_is_wrong_in_one_language_is_written_in_none(run, tmp_path, monkeypatch, languages, wrong_in):
-    """All are written from one tree; Metal alone has C as its witness."""
+def test_wrong_translation_prevents_every_file(run, tmp_path, monkeypatch, languages, wrong_in):
+    """All languages come from one syntax tree; Metal on its own is verified through C."""
     seen, own = [], code_command.verified
 
     def verified(code):
@@ -145,8 +145,8 @@ def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_pat
     require_runner(language)
     codec = codec_of(name)
     code = code_of(codec, language, "p")
-    found = agreement(codec, language, written(tmp_path, code), code.interface)
-    assert found.holds, found.says
+    verdict = agreement(codec, language, written(tmp_path, code), code.interface)
+    assert verdict.holds, verdict.says
 
 
 INSTRUCTIONS = ("spheremap", "octahedral", "octahedral_precise", "best_fit_searched")
@@ -154,18 +154,18 @@ INSTRUCTIONS = ("spheremap", "octahedral", "octahedral_precise", "best_fit_searc
 
 @pytest.mark.usefixtures("radv")
 @pytest.mark.parametrize("language", ["glsl", "hlsl"])
-def test_written_code_costs_the_catalogues_instructions(language, tmp_path):
-    """Read again as a user's encoder, encode and decode take as many instructions on RADV, for 8-bit storage."""
+def test_written_code_costs_as_much_as_the_catalogues(language, tmp_path):
+    """Read back as a user's encoder, encode and decode take as many instructions on RADV (8-bit storage)."""
     require_runner("hlsl")
     codecs = [codec_of(f"{name}/{'rgba8' if name == 'best_fit_searched' else 'rg8'}") for name in INSTRUCTIONS]
     files = [written(tmp_path, code_of(codec, language, f"my_{codec.encoding.name}")) for codec in codecs]
     mine = encodings_named(",".join(map(str, files)))
     encodings = [*mine, *(codec.encoding for codec in codecs)]
     counts = cost.counted(cost.cases(encodings, (), cost.OPERATIONS), "navi21", "fragment")
-    for one, codec in zip(mine, codecs, strict=True):
+    for encoding, codec in zip(mine, codecs, strict=True):
         for operation in cost.OPERATIONS:
-            found, ours = (counts[name, operation]["instructions"] for name in (one.name, codec.encoding.name))
-            assert found == ours, f"{one.name} {operation}: {found} instructions, the catalogue's {ours}"
+            count, ours = (counts[name, operation]["instructions"] for name in (encoding.name, codec.encoding.name))
+            assert count == ours, f"{encoding.name} {operation}: {count} instructions, the catalogue's {ours}"
 
 
 @pytest.mark.usefixtures("gl")
@@ -187,7 +187,7 @@ def test_code_prints_one_file_that_says_what_it_is(run):
 
 @pytest.mark.usefixtures("gl")
 def test_code_writes_a_file_of_each_language_and_its_tables(run, tmp_path):
-    """The header of C and the texture of shaders lie beside them."""
+    """The C header and the shader textures are in the same folder."""
     status, _, err = run("code", "spherical_lut", "--storage", "rg8", "--to", "hlsl,c", "-o", str(tmp_path / "made"))
     assert status == 0, err
     assert "Table: normal_xy, 256 x 256 texels of R32G32_FLOAT, 512 kB." in _unwrapped(tmp_path / "made")

@@ -1,4 +1,4 @@
-"""Shaders as people write them: read, and meant the same in every language."""
+"""Everyday shaders of users, read and translated to every language with the same meaning."""
 
 import pytest
 from everyday import GLSL
@@ -16,7 +16,7 @@ LONGEST = 20_000
 
 
 def codec_of(path):
-    """A codec without a first look at its file."""
+    """Return the codec of a file without a first check of the file."""
     return Codec(read_encoding(path), STORAGES["rg16"], "nearest")
 
 
@@ -27,7 +27,7 @@ NESTED = ["nested modulus", "nested choices of components"]
 @pytest.mark.parametrize("name", NESTED)
 @pytest.mark.parametrize("language", ["msl", "glsl"])
 def test_text_grows_with_the_source_and_no_faster(language, name, tmp_path):
-    """Also where nothing runs it here, or it is what was given; `agrees` asks it of each other language."""
+    """This covers a language that cannot run here and the source language; `agrees` checks the other languages."""
     (tmp_path / "mine.glsl").write_text(GLSL[name])
     size = len(code_of(codec_of(tmp_path / "mine.glsl"), language, "p").body)
     assert size < LONGEST, f"{language}: {size} letters"

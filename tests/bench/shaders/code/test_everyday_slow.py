@@ -1,4 +1,4 @@
-"""Shaders as people write them: read, and meant the same in every language."""
+"""Everyday shaders of users, read and translated to every language with the same meaning."""
 
 import re
 from itertools import product
@@ -21,29 +21,29 @@ LANGUAGES = ["c"]
 
 
 def agrees(codec, language, folder):
-    """What is wrong with a codec's file in a language; empty where nothing is."""
+    """Return the error in a codec's file in a language, or an empty string."""
     code = code_of(codec, language, "p")
     assert len(code.body) < LONGEST, f"{code.language}: {len(code.body)} letters, which grow faster than the source"
     (folder / code.name).write_text(code.body)
-    found = agreement(codec, language, folder / code.name, code.interface)
-    return "" if found.holds else f"{code.language}: {found.says}\n{code.body}"
+    verdict = agreement(codec, language, folder / code.name, code.interface)
+    return "" if verdict.holds else f"{code.language}: {verdict.says}\n{code.body}"
 
 
 @pytest.mark.drawn(3)
 @pytest.mark.parametrize("name", GLSL)
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_everyday_glsl_is_read_and_means_the_same(language, name, tmp_path):
-    """What OpenGL makes of the file itself is what each language makes of its translation."""
+    """Each language's translation gives the same results as the original file in OpenGL."""
     require_runner(language)
     (tmp_path / "mine.glsl").write_text(GLSL[name])
-    said = agrees(codec_of(tmp_path / "mine.glsl"), language, tmp_path)
-    assert not said, said
+    wrong = agrees(codec_of(tmp_path / "mine.glsl"), language, tmp_path)
+    assert not wrong, wrong
 
 
 @pytest.mark.drawn(3)
 @pytest.mark.parametrize("name", WGSL)
 def test_everyday_wgsl_means_what_naga_makes_of_it(name, tmp_path):
-    """The text as it was typed, compiled by naga and run by Vulkan, gives the texels of its translation by OpenGL."""
+    """The original text, compiled by naga and run by Vulkan, gives the texels of its translation in OpenGL."""
     require_runner("wgsl")
     (tmp_path / "mine.wgsl").write_text(WGSL[name])
     codec = codec_of(tmp_path / "mine.wgsl")
@@ -52,8 +52,8 @@ def test_everyday_wgsl_means_what_naga_makes_of_it(name, tmp_path):
     calls = "fn p_encode(n: vec3f) -> vec2f { return mine_encode(n); }\n"
     calls += "fn p_decode(e: vec2f) -> vec3f { return mine_decode(e); }\n"
     (tmp_path / code.name).write_text(WGSL[name] + body + calls)
-    found = agreement(codec, "wgsl", tmp_path / code.name, code.interface)
-    assert found.holds, found.says
+    verdict = agreement(codec, "wgsl", tmp_path / code.name, code.interface)
+    assert verdict.holds, verdict.says
 
 
 def codec_of_octahedral():
@@ -68,5 +68,5 @@ OTHERS = [*product(TWO, [name for name in GLSL if name not in NESTED])]
 
 
 @pytest.mark.parametrize("language, name", [*product(TWO, NESTED), *a_tenth(OTHERS)])
-def test_everyday_glsl_is_read_and_means_the_same_in_two_more(language, name, tmp_path):
+def test_everyday_glsl_is_read_and_means_the_same_in_hlsl_and_wgsl(language, name, tmp_path):
     test_everyday_glsl_is_read_and_means_the_same(language, name, tmp_path)

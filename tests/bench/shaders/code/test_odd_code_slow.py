@@ -1,5 +1,5 @@
-"""Emitted code of light, quantities, motion and depth, given what no image should hold: it gives the catalogue's
-texels, which encodings/test_odd_values.py holds to what formats' specifications say."""
+"""Generated code of light, quantities, motion and depth for values that no image should contain: its texels equal
+the catalogue's, which encodings/test_odd_values.py compares with the specifications of the formats."""
 
 from itertools import product
 
@@ -33,7 +33,7 @@ SETTINGS = {"curve": (1.0, 0.0), "motion": (0.125, 0.0), "depth": (NEAR, FAR), "
 
 
 def given(kind: str) -> tuple[np.ndarray, np.ndarray]:
-    """Every three odd values, with a fourth, and the settings of the kind's functions."""
+    """Return every triple of odd values, padded for light, and the settings of the kind's functions."""
     rows = np.array(list(product(ODD, repeat=3)), np.float32)
     n = np.pad(rows, ((0, 0), (0, 1))) if kind == "light" else rows
     return n, np.broadcast_to(np.float32([*SETTINGS[kind], 0.0]), (len(rows), 3))
@@ -43,7 +43,7 @@ def given(kind: str) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("kind, name, storage, language", [(*codec, "c") for codec in CODECS])
 def test_code_gives_the_catalogues_texels_of_odd_values(kind, name, storage, language, tmp_path):
-    """But for a step where numbers lie next to a tie, and the bits of NaN, which nobody promises."""
+    """Values next to a tie may differ by one step; the bits of NaN are not specified."""
     require_runner(language)
     codec = codec_of(kind, name, storage)
     code = code_of(codec, language, "p")
@@ -59,7 +59,7 @@ def test_code_gives_the_catalogues_texels_of_odd_values(kind, name, storage, lan
 
 
 def differing(expected: Reference, ran) -> np.ndarray:
-    """Values that come back as something else."""
+    """Return a mask of the values that decode to something else."""
     with np.errstate(invalid="ignore"):
         apart = np.abs(ran.decoded.astype(np.float64) - expected.decoded)
         near = apart <= 0.01 * np.abs(expected.decoded) + 1e-6
@@ -80,5 +80,5 @@ FEW = [
 @pytest.mark.parametrize(
     "kind, name, storage, language", [(*codec, language) for codec in FEW for language in RUN if language != "c"]
 )
-def test_code_gives_the_catalogues_texels_of_odd_values_in_others(kind, name, storage, language, tmp_path):
+def test_code_gives_the_catalogues_texels_of_odd_values_in_other_languages(kind, name, storage, language, tmp_path):
     test_code_gives_the_catalogues_texels_of_odd_values(kind, name, storage, language, tmp_path)

@@ -18,16 +18,16 @@ QUICK = ("hlsl", "c")
 
 
 def codecs_of(kind, name, storages):
-    """The codecs of an encoding in those of some storages that hold it."""
+    """Return an encoding's codecs in the given storages that fit it."""
     if kind is NORMAL:
-        found = [codec for codec in codecs_named(name, storages, "nearest") if codec.fits]
-        return found or [codec for codec in codecs_named(name, ",".join(STORAGES), "nearest") if codec.fits][:1]
-    found = codecs_of_kind(kind, name, storages, ["nearest"])
-    return [codec for codec in found if not (codec.misfit or getattr(codec.storage, "curved", 0))]
+        codecs = [codec for codec in codecs_named(name, storages, "nearest") if codec.fits]
+        return codecs or [codec for codec in codecs_named(name, ",".join(STORAGES), "nearest") if codec.fits][:1]
+    codecs = codecs_of_kind(kind, name, storages, ["nearest"])
+    return [codec for codec in codecs if not (codec.misfit or getattr(codec.storage, "curved", 0))]
 
 
 def check(codecs, languages) -> None:
-    """Every name, line and loop of the codecs' code."""
+    """Check every name, line and loop of the codecs' code."""
     assert codecs
     for codec in codecs:
         for language in languages:
@@ -51,7 +51,7 @@ def test_the_code_of_an_encoding_has_short_names_and_lines(kind, name):
 
 
 def test_a_loop_that_nothing_unrolls_is_found():
-    """The loop of a polynomial, without the word above it."""
+    """The loop is that of a polynomial, without its `[unroll]`."""
     body = code_of(codecs_of(NORMAL, "spherical", "rg8")[0], "hlsl").body
     assert "[unroll]" in body and not loops_without_unrolling(body)
     assert loops_without_unrolling(re.sub(r" *\[unroll\]\n", "", body))
@@ -66,9 +66,9 @@ def test_a_loop_that_nothing_unrolls_is_found():
     ],
 )
 def test_an_arc_tangent_has_the_octants_that_it_needs(name, has, has_not):
-    """Of a ratio in [-1, 1] none but its own; of two numbers without a sign the first quadrant."""
+    """A ratio in [-1, 1] needs only its own octants, and two unsigned numbers only the first quadrant."""
     names = names_in(code_of(codecs_of(NORMAL, name, "rgba8")[0], "c").body)
-    assert {f"normal_{one}" for one in has} <= names and not {f"normal_{one}" for one in has_not} & names
+    assert {f"normal_{word}" for word in has} <= names and not {f"normal_{word}" for word in has_not} & names
 
 
 DECLARED = {
@@ -83,7 +83,7 @@ DECLARED = {
 
 @pytest.mark.parametrize("language", DECLARED)
 def test_a_texture_is_declared_with_its_binding_and_what_it_holds(language):
-    """And the file that is named lies beside the code."""
+    """The code comes with the file that the declaration names."""
     (codec,) = codecs_of(NORMAL, "best_fit", "rgba8")
     code = code_of(codec, language)
     assert DECLARED[language] in code.body
@@ -98,15 +98,15 @@ def test_two_tables_are_bound_in_the_order_of_their_names():
 
 
 def test_two_files_with_the_same_names_are_both_read():
-    """So that a compiler complains: a guard of the same name would leave one of them out without a word."""
-    (one,), (other,) = (codecs_of(NORMAL, name, "rg8") for name in ("octahedral", "spheremap"))
-    assert "#ifndef OCTAHEDRAL_RG8_INCLUDED" in code_of(one, "c").text([])
+    """A compiler therefore reports the clash; with the same guard it would silently skip one file."""
+    (codec,), (other,) = (codecs_of(NORMAL, name, "rg8") for name in ("octahedral", "spheremap"))
+    assert "#ifndef OCTAHEDRAL_RG8_INCLUDED" in code_of(codec, "c").text([])
     assert "#ifndef SPHEREMAP_RG8_INCLUDED" in code_of(other, "c").text([])
-    assert "#ifndef OCT_INCLUDED" in code_of(one, "c", "oct").text([])
+    assert "#ifndef OCT_INCLUDED" in code_of(codec, "c", "oct").text([])
 
 
 @pytest.mark.parametrize("word", ["frames", "all", "normal,depth"])
-def test_a_wrong_kind_is_a_line_that_lists_layouts(run, word):
+def test_wrong_kind_is_a_one_line_error_that_lists_all_kinds(run, word):
     status, _, err = run("code", "octahedral", "--of", word)
     assert status == 2 and err.strip().count("\n") == 0
     assert "known: normal, motion, curve, light, depth, frame, layout" in err

@@ -17,20 +17,20 @@ from normalbench.encodings.storages.storage import (
 )
 
 
-def test_the_table_of_best_fit_takes_a_byte_a_texel():
-    """Its scales are k / 255: 8 bits are the same numbers as floats of 32 are, a megabyte in place of four."""
+def test_best_fit_table_takes_one_byte_per_texel():
+    """The scales are k / 255, so 8 bits hold the same numbers as 32-bit floats: 1 MiB instead of 4 MiB."""
     (table,) = ENCODINGS["best_fit"].tables().values()
     texels = texels_of(table)
     assert texels.is_bytes and texels.format == "R8_UNORM" and texels.bytes == 2**20
     assert np.array_equal(kept(table) / np.float32(255), table)
     assert len(dds(table)) == 148 + 2**20
     assert "static const unsigned char t[1048576] = {" in header({"t": table})
-    (angles,) = (one for name, one in ENCODINGS["spherical_lut"].tables().items() if name.endswith("angle"))
+    (angles,) = (array for name, array in ENCODINGS["spherical_lut"].tables().items() if name.endswith("angle"))
     assert texels_of(angles).format == "R32_FLOAT"
 
 
 def test_codes_of_one_kind_have_names_of_their_own(run, tmp_path, monkeypatch):
-    """They lie in one folder and may be used together; the command in each says how it is made alone."""
+    """The files share a folder and can be used together; each gives the command that writes it alone."""
     # Errors take a search for the worst case; test_code.py has a file that says them.
     monkeypatch.setattr(code_command, "figures", lambda _: [])
     status, _, _ = run("code", "xy,octahedral,cube_root", "--storage", "rg16_snorm", "--to", "c", "-o", str(tmp_path))
@@ -51,11 +51,11 @@ OF_KIND = {"motion": MOTION_STORAGES, "curve": CURVE_STORAGES, "light": LIGHT_ST
 
 @pytest.mark.parametrize("kind, name", EVERY, ids=[f"{kind.word}-{name}" for kind, name in EVERY])
 def test_code_in_other_storages_has_short_names_and_lines(kind, name):
-    """In every language, and in another storage than the encoding before; at night in all of them."""
+    """Every language is checked, in one storage per encoding, taken in turn; the nightly test checks all storages."""
     codecs = in_other_storages(kind, name)
     check([codecs[EVERY.index((kind, name)) % len(codecs)]], LANGUAGES)
 
 
 def in_other_storages(kind, name) -> list:
-    """The codecs of an encoding in storages of its kind."""
+    """Return the codecs of an encoding in storages of its kind."""
     return codecs_of(kind, name, SOME if kind is NORMAL else ",".join(OF_KIND.get(kind.word, ())))

@@ -1,4 +1,4 @@
-"""Every language runs the same hand-written files, and gives what the same in NumPy gives."""
+"""Hand-written files, run in every language and compared with the same functions in NumPy."""
 
 import json
 import os
@@ -37,7 +37,7 @@ def file_of(what: Interface, language: str) -> Path:
 
 
 def given(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Unit normals, among them the axes, views in sixteenths, and texels."""
+    """Return unit normals including the axes, views in sixteenths, and texels."""
     random = np.random.default_rng(7)
     n = random.normal(size=(count, 3))
     n = (n / np.linalg.norm(n, axis=1, keepdims=True)).astype(np.float32)
@@ -47,7 +47,7 @@ def given(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def by_numpy(what: Interface, n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
-    """What the same functions in NumPy give."""
+    """Return the results of the same functions in NumPy."""
     module = runpy.run_path(str(FOLDER / f"{what.prefix}.py"))
     six = {name: module[f"{what.prefix}_{name}"] for name in PUBLIC}
     besides = (view,) if what.settings else ()
@@ -73,10 +73,10 @@ def ran(language: str, what: Interface, arrays) -> Ran:
 def test_a_plain_code_gives_what_numpy_gives(language):
     """Spheremap in RG8: the same words, and numbers within 4 units in the last place of 1."""
     arrays = given(4096)
-    expected, found = by_numpy(SPHEREMAP, *arrays), ran(language, SPHEREMAP, arrays)
-    differ = np.flatnonzero((expected.words != found.words).any(axis=1))
+    expected, output = by_numpy(SPHEREMAP, *arrays), ran(language, SPHEREMAP, arrays)
+    differ = np.flatnonzero((expected.words != output.words).any(axis=1))
     assert not len(differ), f"{len(differ)} words differ, the first at {arrays[0][differ[0]]}"
-    for name, a, b in zip(Ran._fields, expected, found, strict=True):
+    for name, a, b in zip(Ran._fields, expected, output, strict=True):
         assert a.shape == b.shape, name
         worst = np.abs(a.astype(np.float64) - b).max()
         assert worst <= 4 * 2.0**-23, f"{name} differs by {worst}"
@@ -86,15 +86,15 @@ def test_a_plain_code_gives_what_numpy_gives(language):
 def test_views_tables_signs_and_words_reach_the_functions(language):
     """A code that takes a view, a table, a sign and two words gives the same words and signs, in every language."""
     arrays = given(1000)
-    expected, found = by_numpy(SCALED, *arrays), ran(language, SCALED, arrays)
-    for name, a, b in zip(Ran._fields, expected, found, strict=True):
+    expected, output = by_numpy(SCALED, *arrays), ran(language, SCALED, arrays)
+    for name, a, b in zip(Ran._fields, expected, output, strict=True):
         differ = np.count_nonzero(a != b)
         assert a.shape == b.shape and not differ, f"{differ} {name} differ"
 
 
 @pytest.mark.parametrize("language", RUN)
 def test_blocks_are_put_together_in_order(language, monkeypatch):
-    """A run in blocks of 300 is the run in one block, bit for bit; and nothing gives nothing."""
+    """A run in blocks of 300 equals the run in one block, bit for bit, and empty input gives empty output."""
     arrays = given(1000)
     whole = ran(language, SPHEREMAP, arrays)
     monkeypatch.setattr(interface, "BLOCK", 300)
@@ -105,7 +105,7 @@ def test_blocks_are_put_together_in_order(language, monkeypatch):
 
 
 @pytest.mark.parametrize("language", RUN)
-def test_a_broken_file_is_one_line_that_names_it(language, tmp_path):
+def test_broken_file_is_a_one_line_error_that_names_it(language, tmp_path):
     """A file that does not compile is a ShaderError of one line, not a crash."""
     ran(language, SPHEREMAP, given(8))
     broken = tmp_path / "broken.txt"
@@ -117,7 +117,7 @@ def test_a_broken_file_is_one_line_that_names_it(language, tmp_path):
 
 @pytest.fixture
 def no_judge(monkeypatch):
-    """The judge of texts taken out: what it would refuse is compiled."""
+    """The text filter, disabled: code that it would refuse is compiled."""
     monkeypatch.setattr(c, "judged_text", lambda text, *_: Text(text, is_own=False))
 
 
@@ -132,8 +132,8 @@ ENDS = {
 
 @pytest.mark.usefixtures("no_judge")
 @pytest.mark.parametrize("what", ENDS)
-def test_somebodys_code_loses_its_own_process(what, tmp_path, monkeypatch):
-    """One line says how it ended; this process lives."""
+def test_crashing_user_code_ends_only_its_own_process(what, tmp_path, monkeypatch):
+    """A one-line error says how the process ended, and the calling process survives."""
     ran("c", SPHEREMAP, given(8))
     monkeypatch.setitem(c.LIMITS, "RUN_SECONDS", 1)
     body, how = ENDS[what]
@@ -164,8 +164,8 @@ walled = pytest.mark.skipif(
 
 @walled
 @pytest.mark.parametrize("trap", TRAPS)
-def test_somebodys_code_opens_and_starts_nothing(trap, tmp_path, request):
-    """It is refused. Without the judge it gives what it gives without its attempts, which succeed without the wall."""
+def test_user_code_cannot_open_files_or_start_processes(trap, tmp_path, request):
+    """The text filter refuses such code. Without it, the sandbox blocks attempts that would otherwise succeed."""
     expected = ran("c", SPHEREMAP, given(8))
     before, mark, rest = file_of(SPHEREMAP, "c").read_text().partition("\nstatic inline")
     assert mark
@@ -177,27 +177,27 @@ def test_somebodys_code_opens_and_starts_nothing(trap, tmp_path, request):
     request.getfixturevalue("no_judge")
     with pytest.raises(ShaderError, match="SIGABRT"):
         runner("c").run(tmp_path / "tries.txt", SPHEREMAP, *given(8))
-    found = runner("c").run(tmp_path / "tries.txt", FOREIGN, *given(8))
-    assert all(np.array_equal(a, b) for a, b in zip(expected, found, strict=True))
+    output = runner("c").run(tmp_path / "tries.txt", FOREIGN, *given(8))
+    assert all(np.array_equal(a, b) for a, b in zip(expected, output, strict=True))
 
 
 @walled
-def test_tables_of_somebodys_code_are_found_behind_the_wall():
+def test_user_code_finds_its_tables_in_the_sandbox():
     arrays = given(100)
     for a, b in zip(ran("c", SCALED, arrays), ran("c", replace(SCALED, is_ours=False), arrays), strict=True):
         assert np.array_equal(a, b)
 
 
-def test_without_a_wall_somebodys_code_is_not_run(monkeypatch):
-    """The catalogue's is."""
+def test_user_code_does_not_run_without_a_sandbox(monkeypatch):
+    """The catalogue's code does."""
     monkeypatch.setattr(landlock, "abi", lambda: 0)
     ran("c", SPHEREMAP, given(8))
     with pytest.raises(MissingError, match="Landlock: none; C made of your files is not run here"):
         runner("c").run(file_of(SPHEREMAP, "c"), FOREIGN, *given(8))
 
 
-def test_without_a_wall_the_row_of_a_users_encoder_says_so(run, monkeypatch, tmp_path):
-    """And doctor does."""
+def test_missing_sandbox_is_reported_in_a_users_row(run, monkeypatch, tmp_path):
+    """The `doctor` command also reports the missing sandbox."""
     monkeypatch.setattr(landlock, "abi", lambda: 0)
     (tmp_path / "mine.glsl").write_text(
         "vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }\n"
@@ -211,8 +211,8 @@ def test_without_a_wall_the_row_of_a_users_encoder_says_so(run, monkeypatch, tmp
     assert "no: Landlock: none; C made of your files is not run here" in run("doctor", "--format", "json")[1]
 
 
-def test_a_script_in_place_of_a_compiler_is_not_run_behind_the_wall(monkeypatch, tmp_path):
-    """As some systems wrap theirs: the row says why there is no run."""
+def test_compiler_wrapper_script_is_not_run_in_the_sandbox(monkeypatch, tmp_path):
+    """Some systems wrap their compiler in a script; the error says why nothing runs."""
     (tmp_path / "cc").write_text('#!/bin/sh\nexec /usr/bin/cc "$@"\n')
     (tmp_path / "cc").chmod(0o755)
     ran("c", SPHEREMAP, given(8))
@@ -221,7 +221,7 @@ def test_a_script_in_place_of_a_compiler_is_not_run_behind_the_wall(monkeypatch,
         runner("c").run(file_of(SPHEREMAP, "c"), FOREIGN, *given(8))
 
 
-def test_what_naga_panics_at_is_refused_in_a_line(tmp_path):
+def test_naga_crash_is_a_one_line_error(tmp_path):
     """A choice between vectors by a constant: naga ends its process, and no other."""
     ran("wgsl", SPHEREMAP, given(8))
     foreign = replace(SPHEREMAP, is_ours=False)
@@ -235,11 +235,11 @@ def test_what_naga_panics_at_is_refused_in_a_line(tmp_path):
 
 
 @pytest.mark.parametrize("language", RUN)
-def test_a_runner_says_by_what_it_ran(language):
+def test_runner_reports_the_version_of_its_tool(language):
     """`how` is one line with a version."""
     ran(language, SPHEREMAP, given(8))
-    said = runner(language).how()
-    assert "\n" not in said and any(c.isdigit() for c in said), said
+    line = runner(language).how()
+    assert "\n" not in line and any(c.isdigit() for c in line), line
 
 
 @pytest.mark.parametrize(("language", "tool"), [("c", "gcc"), ("hlsl", "glslang-tools"), ("slang", "slangtorch")])
@@ -248,12 +248,12 @@ def test_a_missing_tool_is_named_with_its_package(language, tool, monkeypatch):
     from normalbench.bench.shaders.isa import spirv
 
     # Before anything is hidden: a module that is imported meanwhile would keep what hides it.
-    found = runner(language)
+    own_runner = runner(language)
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr(spirv, "version", lambda _: None)
     monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
     with pytest.raises(MissingError, match=tool):
-        found.run(file_of(SPHEREMAP, language), SPHEREMAP, *given(8))
+        own_runner.run(file_of(SPHEREMAP, language), SPHEREMAP, *given(8))
 
 
 def test_glsl_es_is_not_run_where_opengl_does_not_take_it(monkeypatch):

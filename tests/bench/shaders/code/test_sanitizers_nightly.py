@@ -1,4 +1,4 @@
-"""C in somebody's engine: whatever it is given, nothing undefined happens, and the same comes back."""
+"""Generated C with arbitrary input: no undefined behaviour, and the same results at each optimisation level."""
 
 import pytest
 from languages import require_runner
@@ -11,15 +11,15 @@ from normalbench.encodings.storages.storage import STORAGES
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_c_of_every_encoding_and_storage_is_defined_for_every_float(encoding, tmp_path):
-    """Of every third storage that an encoding fits, beginning with another one each, so that every storage is there."""
+    """Each encoding takes every third storage that fits, from a different start, so that every storage is covered."""
     require_runner("c")
     codecs = [codec for codec in codecs_named(encoding, ",".join(STORAGES), "nearest") if codec.fits]
-    said = [ran(codec, tmp_path) for codec in codecs[list(ENCODINGS).index(encoding) % 3 :: 3]]
-    assert not any(said), said
+    complaints = [ran(codec, tmp_path) for codec in codecs[list(ENCODINGS).index(encoding) % 3 :: 3]]
+    assert not any(complaints), complaints
 
 
 def test_c_that_reads_the_largest_table_is_defined_for_every_float(tmp_path):
-    """A header of a million numbers, which the storages above may leave out."""
+    """The header has a million numbers; the test above may skip it."""
     require_runner("c")
     complaint = ran(codec_of("best_fit/rgba8"), tmp_path)
     assert not complaint, complaint

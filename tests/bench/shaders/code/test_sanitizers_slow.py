@@ -1,4 +1,4 @@
-"""C in somebody's engine: whatever it is given, nothing undefined happens, and the same comes back."""
+"""Generated C with arbitrary input: no undefined behaviour, and the same results at each optimisation level."""
 
 import itertools
 from dataclasses import replace
@@ -30,7 +30,7 @@ FEW = (
 
 
 def hostile():
-    """COUNT vectors, views and texels: every pair of odd numbers, near unit vectors, then any bits at all."""
+    """Return COUNT vectors, views and texels: pairs of odd numbers, unit vectors, then arbitrary bits."""
     odd = [0.0, -0.0, 1.0, -1.0, np.inf, -np.inf, np.nan, 1e-40, -1e-40, 3e38, -3e38, 2.0**31, 2.0**32, 1e10, 0.5]
     rng = np.random.default_rng(0)
     few = np.array(list(itertools.product(odd, odd, (0.0, -1.0, np.nan))), np.float32)
@@ -45,19 +45,19 @@ def hostile():
 
 
 def ran(codec, folder):
-    """What is wrong: a complaint of a sanitizer, or words that differ between -O0 and -O2."""
+    """Return the results that differ between -O0 and -O2 under the sanitizers, or an empty string."""
     code = code_of(codec, "c", "p")
     for name, data in code.files([]).items():
         (folder / name).write_bytes(data)
-    found = []
+    runs = []
     # Behind the wall that is around users' code a sanitizer cannot look at its own process.
     interface = replace(code.interface, is_ours=True)
     for level in ("-O0", "-O2"):
         with c.built(folder / code.name, interface, "cc", [level, "-ffp-contract=off", *SANITIZERS]) as run:
-            found.append(run(*hostile()))
+            runs.append(run(*hostile()))
     # The bits of what is no number are nobody's business.
-    same = [np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(*found, strict=True)]
-    return "" if all(same) else f"{codec.name}: -O0 and -O2 differ in {dict(zip(found[0]._fields, same, strict=True))}"
+    same = [np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in zip(*runs, strict=True)]
+    return "" if all(same) else f"{codec.name}: -O0 and -O2 differ in {dict(zip(runs[0]._fields, same, strict=True))}"
 
 
 def codec_of(name):
@@ -67,17 +67,17 @@ def codec_of(name):
 
 @pytest.mark.parametrize("name", FEW)
 def test_c_is_defined_for_every_float(name, tmp_path):
-    """3000 vectors that are no normals, views and texels: clean under the sanitizers, and the same at -O0 and -O2."""
+    """3000 arbitrary vectors, views and texels pass the sanitizers and give the same results at -O0 and -O2."""
     require_runner("c")
-    said = ran(codec_of(name), tmp_path)
-    assert not said, said
+    wrong = ran(codec_of(name), tmp_path)
+    assert not wrong, wrong
 
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("name", ["guard before a table", "conversions", "vector by a number", "hexadecimal numbers"])
 def test_c_of_a_users_shader_is_defined_for_every_float(name, tmp_path):
-    """Where GLSL leaves undefined what comes back, C has an answer."""
+    """C defines the results that GLSL leaves undefined."""
     require_runner("c")
     (tmp_path / "mine.glsl").write_text(GLSL[name])
-    said = ran(Codec(read_encoding(tmp_path / "mine.glsl"), STORAGES["rg16"], "nearest"), tmp_path)
-    assert not said, said
+    wrong = ran(Codec(read_encoding(tmp_path / "mine.glsl"), STORAGES["rg16"], "nearest"), tmp_path)
+    assert not wrong, wrong

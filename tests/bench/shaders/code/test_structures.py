@@ -1,4 +1,4 @@
-"""Structures, and parameters that functions change, in the code of every language; tangent frames are such."""
+"""Structures and parameters that functions change, as in tangent frames, in the code of every language."""
 
 import numpy as np
 import pytest
@@ -17,10 +17,10 @@ def frame_codec(name: str, storage: str, rounding: str = "nearest"):
     return codec
 
 
-def test_a_hand_that_comes_back_as_the_other_is_an_error_of_half_a_turn():
-    """What was given is in the order of what is decoded: a normal, the hand, a tangent."""
+def test_flipped_handedness_is_an_error_of_180_degrees():
+    """Input and decoded values have the same order: normal, handedness, tangent."""
     codec = frame_codec("qtangent", "rgba16_snorm")
-    found, errors = reference(codec), kind_of(codec).errors
-    given = np.concatenate([found.n, found.view], axis=1)
-    assert errors(given, found.decoded).max() < 0.01
-    assert (errors(given, found.decoded * np.array([1, 1, 1, -1, 1, 1, 1])) == 180).all()
+    expected, errors = reference(codec), kind_of(codec).errors
+    given = np.concatenate([expected.n, expected.view], axis=1)
+    assert errors(given, expected.decoded).max() < 0.01
+    assert (errors(given, expected.decoded * np.array([1, 1, 1, -1, 1, 1, 1])) == 180).all()

@@ -1,4 +1,4 @@
-"""Structures, and parameters that functions change, in the code of every language; tangent frames are such."""
+"""Structures and parameters that functions change, as in tangent frames, in the code of every language."""
 
 import pytest
 import test_structures_slow

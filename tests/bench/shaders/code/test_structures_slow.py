@@ -1,4 +1,4 @@
-"""Structures, and parameters that functions change, in the code of every language; tangent frames are such."""
+"""Structures and parameters that functions change, as in tangent frames, in the code of every language."""
 
 from pathlib import Path
 
@@ -35,7 +35,7 @@ FRAMES = (
 
 
 def in_languages(rows, languages) -> list:
-    """Rows with each language."""
+    """Return each row with each language."""
     return [(*row, language) for row in rows for language in languages]
 
 
@@ -50,8 +50,8 @@ def agreement_of(codec, language, folder: Path, old="", new=""):
 @pytest.mark.parametrize("name, storage, rounding, language", in_languages(FRAMES, FAST))
 def test_the_code_of_tangent_frames_gives_the_catalogues_texels(name, storage, rounding, language, tmp_path):
     """2^16 frames, half of them mirrored: texels, numbers that come back, normals, tangents and hands."""
-    found = agreement_of(frame_codec(name, storage, rounding), language, tmp_path)
-    assert found.holds, found.says
+    verdict = agreement_of(frame_codec(name, storage, rounding), language, tmp_path)
+    assert verdict.holds, verdict.says
 
 
 # What is changed in C, and what must notice.
@@ -68,8 +68,8 @@ def test_a_wrong_tangent_frame_is_noticed(fault, tmp_path):
     """Each fault alone makes the comparison fail."""
     name, old, new = MUTANTS[fault]
     old = old.replace("st_", "p_")
-    found = agreement_of(frame_codec(name, "rgb10a2"), "c", tmp_path, old, new)
-    assert not found.holds, found.says
+    verdict = agreement_of(frame_codec(name, "rgb10a2"), "c", tmp_path, old, new)
+    assert not verdict.holds, verdict.says
 
 
 @pytest.mark.usefixtures("slang")
@@ -77,9 +77,9 @@ def test_a_wrong_tangent_frame_is_noticed(fault, tmp_path):
 def test_a_users_code_of_tangent_frames_is_written(ending, language, tmp_path):
     """Bitangents, out parameters, a structure, and a quaternion alone."""
     path = str(OWN / f"frame.{ending}")
-    assert [one.word for one in kinds_named(path, "")] == ["frame"]
-    found = agreement_of(frame_codec(path, "unorm:12:12:7:1"), language, tmp_path)
-    assert found.holds, found.says
+    assert [kind.word for kind in kinds_named(path, "")] == ["frame"]
+    verdict = agreement_of(frame_codec(path, "unorm:12:12:7:1"), language, tmp_path)
+    assert verdict.holds, verdict.says
 
 
 # Structures in each other, made anew in a branch, chosen between, returned early, and changed by a function.
@@ -124,8 +124,8 @@ vec3 mine_decode(vec2 e, vec3 view) {
 def test_structures_of_users_are_written(language, tmp_path):
     (tmp_path / "mine.glsl").write_text(STRUCTURES)
     (codec,) = codecs_named(str(tmp_path / "mine.glsl"), "rg16", "nearest")
-    found = agreement_of(codec, language, tmp_path)
-    assert found.holds, found.says
+    verdict = agreement_of(codec, language, tmp_path)
+    assert verdict.holds, verdict.says
 
 
 OTHERS = [language for language in RUN if language not in FAST]
@@ -153,10 +153,10 @@ def test_the_code_of_tangent_frames_gives_the_catalogues_texels_in_any_language(
 
 
 def test_every_code_of_tangent_frames_is_written(tmp_path):
-    """In the first storage where each usually lies, in C."""
+    """Each encoding is written in C, in its default storage."""
     for name in FRAME_ENCODINGS:
-        found = agreement_of(frame_codec(name, ""), "c", tmp_path)
-        assert found.holds, f"{name}: {found.says}"
+        verdict = agreement_of(frame_codec(name, ""), "c", tmp_path)
+        assert verdict.holds, f"{name}: {verdict.says}"
 
 
 @pytest.mark.usefixtures("slang")

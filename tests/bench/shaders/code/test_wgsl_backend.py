@@ -33,7 +33,7 @@ def test_half_arithmetic_is_refused_in_a_line():
 
 
 def test_without_wgpu_the_row_says_what_to_install(monkeypatch):
-    """`pip install wgpu`."""
+    """The row says `pip install wgpu`."""
 
     def missing():
         raise ImportError("No module named 'wgpu'")

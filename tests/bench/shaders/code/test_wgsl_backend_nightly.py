@@ -20,14 +20,14 @@ TO_16_BITS = ",".join(name for name in STORAGES if name != "rgba32f")
 
 @pytest.mark.usefixtures("vulkan", "gl")
 @pytest.mark.parametrize("encoding", ENCODINGS)
-def test_three_back_ends_agree_within_two_hundredths_of_a_decibel(encoding):
-    """Every storage of 16 bits or fewer a number, on uniform directions."""
+def test_three_backends_agree_within_two_hundredths_of_a_decibel(encoding):
+    """Every storage of at most 16 bits per number is measured on uniform directions."""
     apart = []
     sets = normal_sets.NORMAL_SETS["hemisphere" if ENCODINGS[encoding].domain == "hemisphere" else "sphere"]
     normals = sets(2**14, 0)
     for codec in (codec for codec in codecs_named(encoding, TO_16_BITS, "nearest") if codec.fits):
         rows = [row_of(codec, backend, normals) for backend in ("jax", "glsl", "wgsl")]
-        for one, other in itertools.combinations(rows, 2):
-            if abs(one["psnr_db"] - other["psnr_db"]) > 0.02:
-                apart.append((codec.name, one["backend"], one["psnr_db"], other["backend"], other["psnr_db"]))
+        for row, other in itertools.combinations(rows, 2):
+            if abs(row["psnr_db"] - other["psnr_db"]) > 0.02:
+                apart.append((codec.name, row["backend"], row["psnr_db"], other["backend"], other["psnr_db"]))
     assert not apart, apart

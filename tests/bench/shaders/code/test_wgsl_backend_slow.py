@@ -11,17 +11,17 @@ vulkan = test_wgsl_backend.vulkan
 @pytest.mark.usefixtures("vulkan")
 @pytest.mark.parametrize("name", ["spheremap/rg8", "octahedral_precise/rgb10a2", "spherical_lut/rg8", "xy_sign/rg16f"])
 def test_a_row_by_wgsl_has_the_figures_of_jax(name):
-    """The same errors to a millionth, by the shader's rounding, on the Vulkan device."""
+    """Errors agree to 1e-5, with the shader's rounding on the Vulkan device."""
     (codec,) = codecs_named(*name.split("/"), "nearest")
-    found, expected = row_of(codec, "wgsl"), row_of(codec, "jax")
-    assert not found["skipped"] and found["rounded_by"] == "shader" and "Vulkan" in found["device"]
+    row, expected = row_of(codec, "wgsl"), row_of(codec, "jax")
+    assert not row["skipped"] and row["rounded_by"] == "shader" and "Vulkan" in row["device"]
     for column in ("mse", "angle_mean_deg", "angle_max_deg"):
-        assert found[column] == pytest.approx(expected[column], rel=1e-5, abs=1e-12), column
-    assert found["count"] == expected["count"] and not found["invalid"]
+        assert row[column] == pytest.approx(expected[column], rel=1e-5, abs=1e-12), column
+    assert row["count"] == expected["count"] and not row["invalid"]
 
 
 def test_a_table_without_wgsl_measures_by_the_others_and_says_so(run):
-    """`run --backend jax,wgsl` must not fail for the tables that have no WGSL; alone it is an error."""
+    """`run --backend jax,wgsl` must not fail for tables without WGSL; `wgsl` alone is an error."""
     arguments = ("depth", "--depth", "linear", "--storage", "r16f", "--count", "1024", "--backend")
     status, out, err = run(*arguments, "jax,wgsl")
     assert status == 0 and "linear" in out

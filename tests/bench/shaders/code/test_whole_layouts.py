@@ -1,4 +1,4 @@
-"""Code of whole layouts: it packs and unpacks what the renderer's own GLSL does."""
+"""Generated code of whole layouts, compared with the renderer's own GLSL."""
 
 import re
 
@@ -153,7 +153,7 @@ PRESETS = ("unreal4", "bevy", "unity_hdrp", "nrd", "xy_depth_sign", "cryengine3"
 
 @pytest.fixture
 def layouts(tmp_path) -> dict:
-    """Layouts by name: presets, and files."""
+    """Layouts by name, from presets and files."""
     for name, text in FILES.items():
         (tmp_path / f"{name}.toml").write_text(text)
     named = layouts_named(",".join(str(tmp_path / f"{name}.toml") for name in FILES))
@@ -162,8 +162,8 @@ def layouts(tmp_path) -> dict:
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_lines_and_names_are_short(language, layouts):
-    """Lines have 99 letters at most, names 24, and loops over constants are unrolled. Each layout is written in another
-    language than the one before, and at night in all of them."""
+    """Lines have at most 99 characters and names 24; loops over constants are unrolled. Layouts take the languages in
+    turn, and nightly tests check all languages."""
     names = [*LANGUAGES]
     check_short(
         [layout for turn, layout in enumerate(layouts.values()) if names[turn % len(names)] == language], language
@@ -171,7 +171,7 @@ def test_lines_and_names_are_short(language, layouts):
 
 
 def check_short(several, language) -> None:
-    """Every line, name and loop of the code of some layouts."""
+    """Check every line, name and loop of the code of some layouts."""
     assert several
     for layout in several:
         body = gbuffer_code(layout, language).body
@@ -182,7 +182,7 @@ def check_short(several, language) -> None:
 
 
 def test_words_that_cross_channels_come_back():
-    """Integers across channels of 8 and of 16 bits: what is put is what is taken, and nothing else is touched."""
+    """Integers across 8-bit and 16-bit channels are unpacked unchanged, and no other bits are affected."""
     words = [Word("a", 0, 0, 11), Word("b", 0, 11, 10), Word("c", 0, 21, 11)]
     given = {"a": 0b10110011101, "b": 0b1100101011, "c": 0b01110001101}
     for name, size in (("rgba8_uint", 8), ("rg16_uint", 16), ("r32_uint", 32)):
@@ -208,7 +208,7 @@ def test_words_that_cross_channels_come_back():
         ("octahedral", "dithered", "a normal that is rounded with noise"),
     ],
 )
-def test_what_is_not_written_is_one_line(encoding, rounding, why, tmp_path):
+def test_layout_that_cannot_be_written_is_an_error(encoding, rounding, why, tmp_path):
     target = '[[targets]]\nformat = "rg16"\nholds = "normal.x normal.y"\n'
     (tmp_path / "mine.toml").write_text(f'encoding = "{encoding}"\nrounding = "{rounding}"\n\n{target}')
     (layout,) = layouts_named(str(tmp_path / "mine.toml"))
@@ -216,7 +216,7 @@ def test_what_is_not_written_is_one_line(encoding, rounding, why, tmp_path):
         Contents(layout)
 
 
-def test_the_table_says_where_each_field_lies(layouts):
+def test_table_shows_the_target_and_channel_of_each_field(layouts):
     lines = [re.split(r"\s{2,}", line.strip()) for line in table(Contents(layouts["words"]))]
     assert lines[0] == ["target", "format", "bits", "channel", "field", "encoding"]
     assert ["target_0", "rg32_uint", "8", "x 0-7", "roughness", "square_root"] in lines
@@ -225,15 +225,15 @@ def test_the_table_says_where_each_field_lies(layouts):
     assert any("base_color.x" in line and "sRGB, by the format" in line for line in lines)
 
 
-def test_negative_light_and_nan_are_kept_as_none():
-    """As the renderer does before it encodes light."""
+def test_negative_light_and_nan_are_stored_as_no_light():
+    """The renderer does the same before it encodes light."""
     text = gbuffer_code(LAYOUTS["bevy"], "glsl").body
     assert "vec4 emissive = gbuffer_rgb9e5_encode(gbuffer_light_or_none(vec4(s.emissive, 0.0)));" in text
 
 
 def test_folded_lines_are_the_same_code():
     """Nothing but white space is added."""
-    inside = " + ".join(f"f({at}, {at + 1})" for at in range(40))
+    inside = " + ".join(f"f({index}, {index + 1})" for index in range(40))
     for line in (f"    int x = g({inside}, {inside})", f"int x = {' + '.join(['abcdef'] * 30)}"):
         broken = folded(line + "\n")
         assert max(map(len, broken.splitlines())) <= WIDTH

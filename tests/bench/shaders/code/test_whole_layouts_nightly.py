@@ -1,4 +1,4 @@
-"""Code of whole layouts: it packs and unpacks what the renderer's own GLSL does."""
+"""Generated code of whole layouts, compared with the renderer's own GLSL."""
 
 from itertools import product
 
@@ -23,8 +23,8 @@ def test_a_million_surfaces_are_packed_as_the_renderer_packs_them(name, language
 
 
 @pytest.mark.parametrize("name, language", [each for each in product(TIES, OTHERS) if each not in IN_TURN])
-def test_it_packs_and_unpacks_as_the_renderer_does_in_every_language(name, language, layouts):
-    test_whole_layouts_slow.test_it_packs_and_unpacks_as_the_renderer_does(name, language, layouts)
+def test_code_packs_and_unpacks_like_the_renderer_in_every_language(name, language, layouts):
+    test_whole_layouts_slow.test_code_packs_and_unpacks_like_the_renderer(name, language, layouts)
 
 
 @pytest.mark.parametrize("name", [name for name in LAYOUTS if name not in KINDS])

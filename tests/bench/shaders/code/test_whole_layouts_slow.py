@@ -1,4 +1,4 @@
-"""Code of whole layouts: it packs and unpacks what the renderer's own GLSL does."""
+"""Generated code of whole layouts, compared with the renderer's own GLSL."""
 
 import json
 from dataclasses import replace
@@ -45,12 +45,12 @@ TIES |= {
 
 @pytest.mark.drawn(3)
 @pytest.mark.parametrize("name, language", [*product(TIES, FAST)])
-def test_it_packs_and_unpacks_as_the_renderer_does(name, language, layouts):
-    """Bits of every target, and every number that comes back, of surfaces with the ends of each range and beyond."""
+def test_code_packs_and_unpacks_like_the_renderer(name, language, layouts):
+    """Target bits and decoded numbers are compared for surfaces at and beyond the ends of each range."""
     require_runner(language)
-    found = agreement(gbuffer_code(layouts[name], language), FEW)
-    assert found.holds, found.says
-    assert found.differing <= max(TIES[name] * FEW, 2 * (TIES[name] > 0)), found.says
+    verdict = agreement(gbuffer_code(layouts[name], language), FEW)
+    assert verdict.holds, verdict.says
+    assert verdict.differing <= max(TIES[name] * FEW, 2 * (TIES[name] > 0)), verdict.says
 
 
 # Code of layouts by name: each fault is looked for in one after the other.
@@ -58,7 +58,7 @@ WRITTEN = {}
 
 
 def written_in_c(name, layout):
-    """The code of a layout, written once."""
+    """Return the C code of a layout, generated once."""
     if name not in WRITTEN:
         WRITTEN[name] = gbuffer_code(layout, "c")
     return WRITTEN[name]
@@ -89,7 +89,7 @@ def written_in_c(name, layout):
     ],
 )
 def test_a_fault_is_noticed(old, new, layouts):
-    """In the first layout that has such a line."""
+    """The fault is put into the first layout that has such a line."""
     require_runner("c")
     words_first = {"words": layouts["words"]} | layouts
     codes = (written_in_c(name, layout) for name, layout in words_first.items())
@@ -98,22 +98,22 @@ def test_a_fault_is_noticed(old, new, layouts):
 
 
 def test_a_width_in_the_file_changes_both_functions(tmp_path):
-    """Roughness of 8 bits becomes one of 7 with a bit beside it: the code changes, and still agrees."""
+    """8-bit roughness becomes 7 bits and one other bit: the code changes and still agrees."""
     require_runner("c")
     bodies = []
     for name, text in (("eight", WORDS), ("seven", WORDS.replace("(roughness):8", "(roughness):7 other:1"))):
         (tmp_path / f"{name}.toml").write_text(text)
         (layout,) = layouts_named(str(tmp_path / f"{name}.toml"))
         code = gbuffer_code(layout, "c")
-        assert (found := agreement(code, FEW)).differing == 0, found.says
+        assert (verdict := agreement(code, FEW)).differing == 0, verdict.says
         bodies.append(code.body)
     for function in ("gbuffer_targets gbuffer_pack(", "gbuffer_surface gbuffer_unpack("):
         parts = [body.partition(function)[2].partition("\n}")[0] for body in bodies]
         assert "255.0" in parts[0] and "127.0" in parts[1] and parts[0] != parts[1]
 
 
-def test_what_a_layout_calls_by_a_name_is_called_so(tmp_path):
-    """Unless the name is a word of some language, another field's, or there twice: it then has a number."""
+def test_other_fields_keep_their_names_in_the_code(tmp_path):
+    """A number is added to a name that is a keyword, another field's name or a duplicate."""
     require_runner("c")
     words = "other.flags:4 other.half:4 other.roughness:4 other.lit:2 other.lit:2"
     (tmp_path / "mine.toml").write_text(
@@ -122,11 +122,11 @@ def test_what_a_layout_calls_by_a_name_is_called_so(tmp_path):
     (layout,) = layouts_named(str(tmp_path / "mine.toml"))
     names = [field.name for field in Contents(layout).fields if field.components == (field.name,)]
     assert {"flags", "half_4", "roughness_5", "lit_6", "lit_7", "other_1", "other_2"} <= {*names}, names
-    assert (found := agreement(gbuffer_code(layout, "c"), FEW)).differing == 0, found.says
+    assert (verdict := agreement(gbuffer_code(layout, "c"), FEW)).differing == 0, verdict.says
 
 
 def test_the_command_writes_files_and_checks_them(run, tmp_path, monkeypatch):
-    """A file of the name of the layout, which says what made it and how it compares; `--check` writes a table."""
+    """The file has the layout's name and says what wrote it and how it compares; `--check` prints a table."""
     require_runner("c")
     (tmp_path / "mine.toml").write_text(WORDS)
     monkeypatch.chdir(tmp_path)
@@ -151,7 +151,7 @@ def test_the_command_writes_files_and_checks_them(run, tmp_path, monkeypatch):
 
 
 def test_a_file_that_differs_is_not_written(run, tmp_path, monkeypatch):
-    """All languages are made from one tree: where one is wrong none is written, and the exit status is 1."""
+    """All languages come from one tree: if one is wrong, no file is written and the exit status is 1."""
     require_runner("c")
     (tmp_path / "mine.toml").write_text(WORDS)
     monkeypatch.chdir(tmp_path)
@@ -175,19 +175,19 @@ IN_TURN = [(name, OTHERS[turn % len(OTHERS)]) for turn, name in enumerate(TIES)]
 
 
 @pytest.mark.parametrize("name, language", IN_TURN)
-def test_it_packs_and_unpacks_as_the_renderer_does_in_any_language(name, language, layouts):
-    test_it_packs_and_unpacks_as_the_renderer_does(name, language, layouts)
+def test_code_packs_and_unpacks_like_the_renderer_in_any_language(name, language, layouts):
+    test_code_packs_and_unpacks_like_the_renderer(name, language, layouts)
 
 
 @pytest.mark.parametrize("name, language", a_tenth(product(TIES, FAST)))
 def test_many_surfaces_are_packed_as_the_renderer_packs_them(name, language, layouts):
-    """None differs where no curve has a power; else a few do, by a step where they lie next to a tie."""
+    """No surface differs if no curve has a power; otherwise a few next to a tie differ by one step."""
     require_runner(language)
     many_agree(layouts[name], language, TIES[name], MANY // 5)
 
 
 def many_agree(layout, language, share, count) -> None:
-    """Of many surfaces no more than a share differs."""
+    """Check that at most a share of many surfaces differs."""
     result = agreement(gbuffer_code(layout, language), count, seed=1)
     assert result.holds, result.says
     assert result.differing <= share * count, result.says
@@ -199,6 +199,6 @@ KINDS = ("cryengine3", "unreal5_substrate_22", "volo")
 
 @pytest.mark.parametrize("name", [*KINDS, *a_tenth(name for name in LAYOUTS if name not in KINDS)])
 def test_every_preset_is_written(name):
-    """In C: what the renderer's own GLSL writes and reads."""
+    """In C, the code writes and reads the same as the renderer's own GLSL."""
     require_runner("c")
-    assert (found := agreement(gbuffer_code(LAYOUTS[name], "c"), FEW)).holds, found.says
+    assert (verdict := agreement(gbuffer_code(LAYOUTS[name], "c"), FEW)).holds, verdict.says

@@ -10,7 +10,7 @@ import pytest
 
 @pytest.fixture(scope="session")
 def shared(tmp_path_factory):
-    """A folder of all workers, and a lock of it."""
+    """A context manager for a locked folder that all workers share."""
     base = tmp_path_factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cost"
     folder.mkdir(exist_ok=True)
@@ -26,8 +26,8 @@ def shared(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def vendor_rows(request, shared):
-    """A function that gives a vendor's rows, compiled from an empty cache: some on a family for each of its compilers,
-    or every encoding and packing on all of its families."""
+    """A function that returns a vendor's rows, compiled from an empty cache: some on one family per compiler, or
+    every encoding and packing on all families."""
 
     def rows(vendor, is_every: bool) -> list[dict]:
         request.getfixturevalue(vendor.name)

@@ -1,4 +1,4 @@
-"""What encodings cost: exact subtraction, the same counts twice, and what happens where something fails."""
+"""Costs of encodings: exact subtraction, repeatable counts and failures."""
 
 import itertools
 from pathlib import Path
@@ -17,7 +17,7 @@ from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.gbuffer.defines import kernels
 
 
-def test_the_articles_figures_are_whole():
+def test_article_figures_are_complete():
     rows = cost_sheets.article_rows(ENCODINGS, cost.OPERATIONS)
     assert len(rows) == len(published.PSNR_DB) * 2 * (1 + len(published.GPUS))
     assert set(published.SLOTS) == set(published.CYCLES) == set(itertools.product(published.PSNR_DB, cost.OPERATIONS))
@@ -67,16 +67,16 @@ def test_kinds_of_instructions(name, expected):
     assert kind(name) == expected
 
 
-def test_a_listing_that_is_none_has_no_kinds():
+def test_invalid_listing_has_no_kinds():
     assert kinds("(no disassembler)\n", 3) is None
     assert kinds("BB0:\n\tv_mov_b32 v0, v1\n\tmystery v0\n", 2) is None
     assert kinds("BB0:\n\tv_mov_b32 v0, v1  ; 7e\n\ts_endpgm\n", 2)["full_rate"] == 1
 
 
-def test_what_is_repeated_counts_as_often():
+def test_repeated_instructions_are_counted_each_time():
     text = "BB0:\n\tv_rcp_f32 v0, v0\n\tv_mul_f32 v4, v4, v4\n\t(then repeated 2 times)\n\ts_endpgm\n"
-    found = kinds(text, 5)
-    assert found and (found["full_rate"], found["transcendental"], found["waiting"]) == (3, 1, 1)
+    counts = kinds(text, 5)
+    assert counts and (counts["full_rate"], counts["transcendental"], counts["waiting"]) == (3, 1, 1)
 
 
 def test_fused_multiply_adds_are_slow_on_polaris_alone():
@@ -92,8 +92,8 @@ def test_doubles_have_no_kind():
     "family, slots",
     [("polaris10", 61), ("vega10", 61), ("navi10", 20), ("navi21", 20), ("navi31", 20), ("another", None)],
 )
-def test_slots_are_by_the_familys_rates(family, slots):
-    """5 full-rate, 2 conversions, 3 products, 1 + 8 transcendental; nothing for what is no lane's."""
+def test_issue_slots_follow_the_familys_rates(family, slots):
+    """Scalar, memory and waiting instructions take no slots."""
     counts = {"full_rate": 5, "conversion": 2, "quarter_rate": 3, "transcendental": 9, "scalar": 7, "memory": 11}
     expected = slots if slots is None else {61: 5 + 4 * (2 + 3 + 9), 20: 5 + 2 + 4 * 3 + 9}[slots]
     assert issue_slots({**counts, "waiting": 13}, family) == expected
@@ -105,17 +105,17 @@ def made(assembly: str, **statistics: float) -> isa.Compiled:
     return isa.Compiled("navi21", "a device", "1.2.3", (kernel,))
 
 
-def test_spills_are_of_both_sorts_of_registers():
+def test_spills_include_both_kinds_of_register():
     few = {"VGPRs": 8, "SGPRs": 16, "Spilled_VGPRs": 1, "Spilled_SGPRs": 2}
     many = few | {"Spilled_VGPRs": 4, "Spilled_SGPRs": 7, "VGPRs": 12}
     row = TABLES["cost"].empty() | {"family": "navi21"}
     text = "BB0:\n\tv_mov_b32 v0, v1\n\ts_endpgm\n"
-    found, _ = cost._figures(row, made(text, **many), made(text, **few))
-    assert (found["spills"], found["vgprs"], found["sgprs"], found["kernel_vgprs"]) == (8, 4, 0, 12)
+    figures, _ = cost._figures(row, made(text, **many), made(text, **few))
+    assert (figures["spills"], figures["vgprs"], figures["sgprs"], figures["kernel_vgprs"]) == (8, 4, 0, 12)
 
 
 def test_no_runner_knows_an_encoding():
-    """Whatever is in the catalogue is measured: nothing is listed by hand."""
+    """The whole catalogue is measured: no encoding is listed by hand."""
     for module in (cost, work, isa, kernels):
         text = Path(module.__file__).read_text()
         assert not [name for name in ENCODINGS if f'"{name}"' in text and name not in ("xy", "xyz")], module.__name__

@@ -1,4 +1,4 @@
-"""The cost table where a cache is cold, warm or damaged, and where something is missing, fails or never ends."""
+"""The cost table with a cold, warm or damaged cache, and if something is missing, fails or never ends."""
 
 import contextlib
 import io
@@ -24,7 +24,7 @@ SMALL = ["cost", *EVERY, *WORDS]
 
 @pytest.fixture(scope="module")
 def compiled_once(radv, tmp_path_factory):  # noqa: ARG001 (asks for the compilers)
-    """A cache with all of SMALL, and what the command prints."""
+    """A cache with everything that SMALL compiles, and the command's result."""
     folder, out = tmp_path_factory.mktemp("filled"), io.StringIO()
     with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(out):
         patch.setenv("XDG_CACHE_HOME", str(folder))
@@ -35,13 +35,13 @@ def compiled_once(radv, tmp_path_factory):  # noqa: ARG001 (asks for the compile
 
 @pytest.fixture
 def first(compiled_once, own_cache):
-    """What SMALL prints; everything that it compiles is in this test's cache."""
+    """The result of SMALL, with everything that it compiles already in this test's cache."""
     folder, printed = compiled_once
     shutil.copytree(folder, own_cache)
     return printed
 
 
-def test_a_fingerprint_is_of_the_builds_id_and_the_size(tmp_path):
+def test_fingerprint_depends_on_the_build_id_and_the_size(tmp_path):
     file, head = tmp_path / "libvulkan_radeon.so", bytes(range(256)) * 16
     file.write_bytes(head + b"code")
     first = compiler.fingerprint(file)
@@ -51,19 +51,19 @@ def test_a_fingerprint_is_of_the_builds_id_and_the_size(tmp_path):
     assert len({first, other_id, compiler.fingerprint(file)}) == 3
 
 
-def test_the_environment_of_the_driver_is_everybodys(monkeypatch, tmp_path):
+def test_driver_environment_drops_the_users_driver_settings(monkeypatch, tmp_path):
     ours = {"RADV_DEBUG": "nocache", "RADV_PERFTEST": "x", "ACO_DEBUG": "x", "NIR_DEBUG": "x", "AMD_DEBUG": "x"}
     ours |= {"VK_INSTANCE_LAYERS": "x", "VK_LOADER_DRIVERS_SELECT": "x", "VK_ADD_DRIVER_FILES": "x", "MESA_EXTRA": "x"}
     for name, value in (ours | {"RADV_FORCE_FAMILY": "gfx1201", "HOME": "/home/somebody"}).items():
         monkeypatch.setenv(name, value)
     for family in ("navi21", None):
         told = isa._variables(family, family) if family else {}
-        found = driver_files.environment(tmp_path / "radeon.json", told)
-        assert not set(ours) & set(found) and found.get("RADV_FORCE_FAMILY") == family
-        assert found["HOME"] == "/home/somebody" and found["VK_DRIVER_FILES"] == str(tmp_path / "radeon.json")
+        variables = driver_files.environment(tmp_path / "radeon.json", told)
+        assert not set(ours) & set(variables) and variables.get("RADV_FORCE_FAMILY") == family
+        assert variables["HOME"] == "/home/somebody" and variables["VK_DRIVER_FILES"] == str(tmp_path / "radeon.json")
 
 
-def test_the_cache_is_no_error_where_it_cannot_be_written(monkeypatch, tmp_path):
+def test_unwritable_cache_is_not_an_error(monkeypatch, tmp_path):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     cache.write("00", {"a": 1})
@@ -86,7 +86,7 @@ def test_the_help_of_run_names_cost():
         (["--disassembly", "d", "--time"], "--disassembly requires --isa"),
     ],
 )
-def test_bad_input_is_one_line(run, monkeypatch, tmp_path, words, said):
+def test_bad_input_is_a_one_line_error(run, monkeypatch, tmp_path, words, said):
     monkeypatch.chdir(tmp_path)
     status, out, err = run("cost", *words)
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err

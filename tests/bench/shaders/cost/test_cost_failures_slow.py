@@ -1,4 +1,4 @@
-"""The cost table where a cache is cold, warm or damaged, and where something is missing, fails or never ends."""
+"""The cost table with a cold, warm or damaged cache, and if something is missing, fails or never ends."""
 
 import itertools
 import json
@@ -33,9 +33,9 @@ first = test_cost_failures.first
 SAYS = "import json; print(json.dumps({'loaded': json.loads(%r)}))"
 
 
-def test_a_driver_is_known_by_what_is_loaded_of_it(monkeypatch, tmp_path):
-    """Its own library's fingerprint, and LLVM's, which disassembles; where nothing is told nothing is kept."""
-    found = []
+def test_driver_is_identified_by_its_loaded_libraries(monkeypatch, tmp_path):
+    """A driver is identified by its fingerprint and LLVM's; without the driver's fingerprint nothing is cached."""
+    fingerprints = []
     for files in (
         {"/lib/libvulkan_radeon.so": "a", "/lib/libLLVM.so": "b"},
         {"/lib/libLLVM.so": "b", "/lib/libvulkan_radeon.so": "a"},
@@ -46,14 +46,14 @@ def test_a_driver_is_known_by_what_is_loaded_of_it(monkeypatch, tmp_path):
     ):
         monkeypatch.setattr(isa_process, "CHILD", [sys.executable, "-c", SAYS % json.dumps(files)])
         isa._loaded.cache_clear()
-        found.append(isa._loaded(tmp_path / "radeon.json"))
+        fingerprints.append(isa._loaded(tmp_path / "radeon.json"))
     isa._loaded.cache_clear()
-    first, same, driver, llvm, *unknown = found
+    first, same, driver, llvm, *unknown = fingerprints
     assert first == same and len({first, driver, llvm}) == 3 and unknown == ["", ""]
 
 
-def test_instructions_from_the_cache_wait_for_no_import_of_jax_or_pandas(first):
-    """The table is there in two seconds, of which JAX would take one more."""
+def test_cached_instructions_need_no_import_of_jax_or_pandas(first):
+    """The table takes two seconds; importing JAX would add another."""
     program = (
         "import sys; from normalbench.bench.door.cli.app import main; main();"
         "print({'jax', 'pandas', 'matplotlib'} & set(sys.modules) or 'light')"
@@ -90,10 +90,10 @@ def test_a_damaged_cache_is_computed_again(run, first, own_cache):
 
 
 def in_the_cache(folder, kind: str) -> list[tuple[str, dict]]:
-    """(key, value) of what is kept: of "spirv" or of "isa"."""
+    """Return the cached (key, value) pairs of a kind, `spirv` or `isa`."""
     mark = {"isa": "kernels", "spirv": "binary"}[kind]
-    found = [json.loads(path.read_text()) for path in folder.rglob("*.json")]
-    return [(kept["key"], kept["value"]) for kept in found if mark in kept["value"]]
+    entries = [json.loads(path.read_text()) for path in folder.rglob("*.json")]
+    return [(kept["key"], kept["value"]) for kept in entries if mark in kept["value"]]
 
 
 WRONG = [
@@ -116,7 +116,7 @@ READ = {"isa": isa._as_compiled, "spirv": spirv._as_module}
 
 
 @pytest.mark.parametrize("kind, wrong", WRONG)
-def test_what_is_kept_whole_but_is_wrong_is_not_read(compiled_once, kind, wrong):
+def test_intact_but_wrong_cache_entries_are_not_read(compiled_once, kind, wrong):
     kept = in_the_cache(compiled_once[0], kind)
     assert kept
     for _, value in kept:
@@ -124,8 +124,8 @@ def test_what_is_kept_whole_but_is_wrong_is_not_read(compiled_once, kind, wrong)
 
 
 @pytest.mark.parametrize("kind, wrong", WRONG)
-def test_what_is_kept_whole_but_is_wrong_is_computed_again(run, first, own_cache, kind, wrong):
-    """Of the right form, under the right key, with a digest of its own."""
+def test_intact_but_wrong_cache_entries_are_computed_again(run, first, own_cache, kind, wrong):
+    """Each wrong entry has the right key and a valid digest."""
     kept = in_the_cache(own_cache, kind)
     assert kept
     for key, value in kept:
@@ -134,7 +134,7 @@ def test_what_is_kept_whole_but_is_wrong_is_computed_again(run, first, own_cache
     assert dict(in_the_cache(own_cache, kind)) == dict(kept)
 
 
-def test_what_was_changed_after_it_was_kept_is_computed_again(run, first, own_cache):
+def test_cache_entries_changed_after_writing_are_computed_again(run, first, own_cache):
     files = [path for path in own_cache.rglob("*.json") if '"Instructions": ' in path.read_text()]
     for path in files:
         path.write_text(path.read_text().replace('"Instructions": ', '"Instructions": 1'))
@@ -143,7 +143,7 @@ def test_what_was_changed_after_it_was_kept_is_computed_again(run, first, own_ca
 
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_another_driver_compiles_again(run, monkeypatch):
-    """What a Mesa made is not what another makes, under the same file's name and date."""
+    """Two builds of Mesa may give different results under the same file name and date."""
     monkeypatch.setattr(isa, "_loaded", lambda _: "one build")
     first = run(*SMALL)
     monkeypatch.setattr(isa_process, "CHILD", [sys.executable, "-c", "raise SystemExit(9)"])
@@ -154,8 +154,8 @@ def test_another_driver_compiles_again(run, monkeypatch):
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_a_driver_that_is_named_without_its_folder_is_kept_all_the_same(run, monkeypatch, tmp_path):
-    """As a description may: the loader looks for the library as the system does."""
+def test_rows_of_a_driver_named_without_its_folder_are_cached(run, monkeypatch, tmp_path):
+    """A driver description may omit the folder; the loader then searches for the library as the system does."""
     described = json.loads(isa.driver_file().read_text())
     described["ICD"]["library_path"] = Path(described["ICD"]["library_path"]).name
     (tmp_path / "radeon.json").write_text(json.dumps(described))
@@ -179,16 +179,16 @@ def test_another_version_of_a_tool_compiles_again(run, monkeypatch, tool):
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_nothing_is_left_in_the_folder_for_what_is_temporary(run, monkeypatch, tmp_path):
-    """However a process ends: files there have no names."""
-    made = tmp_path / "temporary"
-    made.mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(made))
+def test_no_temporary_files_are_left(run, monkeypatch, tmp_path):
+    """This holds however a process ends, because its temporary files have no names."""
+    root = tmp_path / "temporary"
+    root.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(root))
     seen = []
     own = isa_process._Heard.following
-    monkeypatch.setattr(isa_process._Heard, "following", lambda heard: seen.append(list(made.iterdir())) or own(heard))
+    monkeypatch.setattr(isa_process._Heard, "following", lambda heard: seen.append(list(root.iterdir())) or own(heard))
     assert run(*SMALL)[0] == 0
-    assert seen and not any(seen) and not list(made.iterdir())
+    assert seen and not any(seen) and not list(root.iterdir())
 
 
 CHILD = """
@@ -216,7 +216,7 @@ sys.exit(isa_child.main())
     ],
 )
 def test_a_driver_that_fails_on_a_shader_costs_that_row(run, monkeypatch, tmp_path, what, reason):
-    """Jobs are told apart by their size: that of octahedral's encode is nobody else's."""
+    """The child recognises the job by its size, which is unique to encoding `octahedral`."""
     script = tmp_path / "child.py"
     script.write_text(CHILD.format(what=what))
     (victim,) = cost.cases([ENCODINGS["octahedral"]], (), ["encode"])
@@ -292,7 +292,7 @@ def without_compiler(monkeypatch, _):
         (without_compiler, "glslang-tools", ""),
     ],
 )
-def test_what_is_missing_is_one_line_and_the_other_columns_are_filled(
+def test_missing_tool_is_a_one_line_error_and_other_columns_are_filled(
     run, monkeypatch, tmp_path, take, package, column
 ):
     take(monkeypatch, tmp_path)
@@ -307,7 +307,7 @@ def test_what_is_missing_is_one_line_and_the_other_columns_are_filled(
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_a_users_shader_that_does_not_compile_costs_its_rows_and_is_named_with_file_and_line(tmp_path):
+def test_broken_user_shader_loses_only_its_rows_and_names_file_and_line(tmp_path):
     bad = glsl(tmp_path, "bad", "n.xy * nonsense", "vec3(e, 0.0)", 2)
     chosen = cost.cases([bad, ENCODINGS["xy"]], (), cost.OPERATIONS)
     rows = [row for row, _ in cost.isa_rows(chosen, ["fragment"], ["navi21"], [], lambda _: None)]
@@ -317,7 +317,7 @@ def test_a_users_shader_that_does_not_compile_costs_its_rows_and_is_named_with_f
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_a_compiler_that_crashes_is_one_line(run, monkeypatch):
+def test_compiler_crash_is_a_one_line_error(run, monkeypatch):
     crashed = subprocess.CompletedProcess([], -11, b"", b"")
     monkeypatch.setattr(compilers, "_piped", lambda *_: crashed)
     status, out, err = run("cost", *EVERY, "--encoding", "xy,octahedral", "--family", "navi21", "--storage", "rgba8")
@@ -330,9 +330,7 @@ def test_a_compiler_that_crashes_is_one_line(run, monkeypatch):
     "take, package",
     [(without_driver, "mesa-vulkan-drivers"), (without_loader, "libvulkan1"), (without_compiler, "glslang-tools")],
 )
-def test_a_run_of_cost_alone_ends_without_compilers_and_another_leaves_it_out(
-    run, monkeypatch, tmp_path, capsys, take, package
-):
+def test_run_without_compilers_skips_cost_and_fails_for_cost_alone(run, monkeypatch, tmp_path, capsys, take, package):
     take(monkeypatch, tmp_path)
     isa._loaded.cache_clear()
     try:
@@ -342,12 +340,12 @@ def test_a_run_of_cost_alone_ends_without_compilers_and_another_leaves_it_out(
         assert {ask.table.name for ask in asked_of(RunOptions(tables="cost,depth"), tmp_path)} == {"depth"}
     finally:
         isa._loaded.cache_clear()
-    said = capsys.readouterr().err
-    assert said.startswith("normalbench: left out: cost: ") and package in said and said.count("\n") == 1
+    stderr = capsys.readouterr().err
+    assert stderr.startswith("normalbench: left out: cost: ") and package in stderr and stderr.count("\n") == 1
 
 
 @pytest.mark.usefixtures("radv")
-def test_without_a_gl_device_time_is_missing_and_the_rest_is_there(run, monkeypatch):
+def test_missing_opengl_device_skips_only_the_timed_rows(run, monkeypatch):
     def missing():
         raise NoDeviceError("no OpenGL 4.3 device; install an OpenGL driver")
 

@@ -1,4 +1,4 @@
-"""The chart of cost against error: what is added up, who is beaten, and where things stand."""
+"""The chart of cost against error: sums, Pareto fronts and positions of labels."""
 
 import itertools
 import warnings
@@ -19,7 +19,7 @@ WHERE = Where("isa", "navi21", "fragment")
 
 
 def row(what: str, operation: str, count: float | None, **more) -> dict:
-    """A row of navi21's fragment shaders, of an encoding or of a storage's packing."""
+    """Return a row of an encoding, or of a storage's packing, for navi21's fragment shaders."""
     is_packing = operation in cost.PACKING_OPERATIONS.values()
     about = {"encoding": None, "storage": what} if is_packing else {"encoding": what, "storage": None}
     given = {"measure": "isa", "family": "navi21", "stage": "fragment", "operation": operation, "instructions": count}
@@ -54,12 +54,12 @@ def test_a_codec_costs_its_encoding_its_storage_and_its_sign(name, total):
         ("xy", "rg8", "nothing", "the cost of rg8 8:8 is not known"),
     ],
 )
-def test_a_part_that_is_not_known_is_not_nothing(name, storage, lost, reason):
+def test_unknown_part_of_a_cost_does_not_count_as_zero(name, storage, lost, reason):
     for gone in ([r for r in ROWS if lost not in (r["storage"], r["encoding"])], []):
         rows = gone or [r | {"instructions": None} if lost in (r["storage"], r["encoding"]) else r for r in ROWS]
-        with pytest.raises(LeftOutError) as found:
+        with pytest.raises(LeftOutError) as raised:
             cost_of(name, rows, storage)
-        assert str(found.value) == reason
+        assert str(raised.value) == reason
 
 
 def test_a_loop_has_no_sum_and_a_branch_is_marked():
@@ -70,7 +70,7 @@ def test_a_loop_has_no_sum_and_a_branch_is_marked():
     assert marked.branches and marked.cost == 21
 
 
-def test_a_front_is_what_no_other_beats():
+def test_pareto_front_has_the_points_that_no_other_beats():
     points = [
         Point(*values)
         for values in (
@@ -86,8 +86,8 @@ def test_a_front_is_what_no_other_beats():
     assert [p.name for p in pareto.pareto_front(points)] == ["a", "f", "b", "e", "g"]
 
 
-def test_what_is_no_difference_beats_nobody():
-    """0.05 dB: equally dear codecs are beaten by more than that, and dearer ones by less too."""
+def test_negligible_differences_beat_no_point():
+    """At equal cost, a difference of up to 0.05 dB beats no codec; a more expensive codec must gain more."""
     for good, bad, front in ((48.563975, 48.563965, ["good", "bad"]), (48.6, 48.5, ["good"])):
         assert [p.name for p in pareto.pareto_front([Point("good", 10, good, 16), Point("bad", 10, bad, 16)])] == front
     dear = [Point("dear", 11, 48.563975, 16), Point("cheap", 10, 48.563965, 16)]
@@ -112,14 +112,14 @@ POINTS = [Point(*values, 16) for values in zip(NAMES, COSTS, DECIBELS, strict=Tr
 
 @pytest.fixture
 def drawn():
-    """Draws panels; the figure is gone afterwards."""
+    """A function that draws panels; the figure is closed afterwards."""
     from matplotlib import pyplot
 
     yield lambda *panels: draw.figure([front_chart("cost", "PSNR", panels)])
     pyplot.close("all")
 
 
-def test_labels_lie_over_no_point_line_or_other_label(drawn):
+def test_labels_do_not_overlap_points_lines_or_other_labels(drawn):
     (axis,) = drawn(Panel("encode", POINTS)).axes
     boxes = [labels.extent(text) for text in axis.texts]
     assert len(boxes) == len(POINTS)

@@ -1,4 +1,4 @@
-"""The chart of cost against error: what is added up, who is beaten, and where things stand."""
+"""The chart of cost against error: sums, Pareto fronts and positions of labels."""
 
 import test_cost_fronts
 from test_cost_fronts import POINTS
@@ -8,8 +8,8 @@ from normalbench.reports.charts.pareto import Panel
 drawn = test_cost_fronts.drawn
 
 
-def test_no_point_lies_within_the_legends_box(drawn):
-    """Nor does the legend cover any of an axis."""
+def test_legend_covers_no_point(drawn):
+    """The legend is also outside all axes."""
     figure = drawn(Panel("encode", POINTS), Panel("decode", POINTS[::-1]))
     ((legend,),) = [part.legends for part in figure.subfigs]
     box = legend.get_window_extent()

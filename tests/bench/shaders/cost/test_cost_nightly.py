@@ -1,4 +1,4 @@
-"""What encodings cost, of every family: test_cost_slow.py asks the same of two."""
+"""Costs of encodings on every family; test_cost_slow.py checks two families."""
 
 import pytest
 import test_cost_slow
@@ -17,19 +17,19 @@ ASKED = [
     test_cost_slow.test_every_encoding_stage_and_family_has_its_row,
     test_cost_slow.test_the_kinds_add_up_to_the_drivers_own_count,
     test_cost_slow.test_no_kernel_computes_addresses,
-    test_cost_slow.test_slots_are_what_the_drivers_model_says_where_arithmetic_is_all_there_is,
+    test_cost_slow.test_slots_match_the_drivers_model_for_pure_arithmetic,
     test_cost_slow.test_stages_have_one_count_of_spirv,
     test_cost_slow.test_spheremap_costs_the_articles_four_and_three_for_its_pole,
-    test_cost_slow.test_storages_cost_what_their_conversion_is,
-    test_cost_slow.test_the_far_plane_is_no_lanes_work,
+    test_cost_slow.test_storages_cost_as_much_as_their_conversion,
+    test_cost_slow.test_far_plane_is_not_computed_per_lane,
 ]
 
 
 @pytest.mark.parametrize("ask", ASKED, ids=lambda ask: ask.__name__.removeprefix("test_"))
-def test_what_two_families_hold_every_family_holds(every_family, ask):
+def test_rules_of_two_families_hold_for_every_family(every_family, ask):
     ask(every_family)
 
 
 @pytest.mark.parametrize("stage", STAGES)
-def test_known_orders_hold_in_every_family_of_all(every_family, stage):
+def test_known_orders_hold_in_all_families(every_family, stage):
     test_cost_slow.test_known_orders_hold_in_every_family(every_family, stage)

@@ -1,4 +1,4 @@
-"""What encodings cost: exact subtraction, the same counts twice, and what happens where something fails."""
+"""Costs of encodings: exact subtraction, repeatable counts and failures."""
 
 import itertools
 import re
@@ -27,7 +27,7 @@ def whole_table(radv, tmp_path_factory):  # noqa: ARG001 (asks for the compilers
 
 
 def table_of(families, cache) -> list:
-    """Every row of the default table of some families, and its disassembly."""
+    """Return every row of the default table of some families, with its disassembly."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(cache))
         packings = [
@@ -38,9 +38,9 @@ def table_of(families, cache) -> list:
         packings += [StoragePacking(by_rule("uint", (12, 12)), 2)]
         chosen = cost.cases(ENCODINGS.values(), packings, cost.OPERATIONS)
         lacks: list[str] = []
-        found = list(cost.isa_rows(chosen, list(STAGES), [*families], lacks, lambda _: None))
+        rows = list(cost.isa_rows(chosen, list(STAGES), [*families], lacks, lambda _: None))
         assert not lacks
-        return found
+        return rows
 
 
 # Of a Radeon's row.
@@ -57,7 +57,7 @@ IDENTITIES = [
 
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_an_encoding_that_does_nothing_costs_exactly_nothing(tmp_path):
-    """Encode and decode, fragment and compute, every family, every figure; whatever it moves where."""
+    """This holds for both operations and stages, every family and every figure, even if components are swapped."""
     encodings = [glsl(tmp_path, *identity) for identity in IDENTITIES]
     chosen = cost.cases(encodings, (), cost.OPERATIONS)
     rows = [r for r, _ in cost.isa_rows(chosen, list(STAGES), CHOICES["radeon"], [], lambda _: None)]
@@ -69,7 +69,7 @@ def test_an_encoding_that_does_nothing_costs_exactly_nothing(tmp_path):
 
 
 def costs_of(encode: str, before: str, folder: Path, families=CHOICES["radeon"]) -> list[dict]:
-    """Rows of what encodes so, in both stages."""
+    """Return the rows of an encoder in both stages."""
     encoding = glsl(folder, "mine", encode, "vec3(e, 0.0)", 2, before)
     chosen = cost.cases([encoding], (), ["encode"])
     return [row for row, _ in cost.isa_rows(chosen, list(STAGES), list(families), [], lambda _: None)]
@@ -93,8 +93,8 @@ def test_a_loop_of_a_known_length_costs_what_it_does_written_out(tmp_path):
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_a_loop_that_stays_and_a_branch_are_told(tmp_path):
-    """Of either stage and each generation; the kernel's own branch is not one of them."""
+def test_remaining_loops_and_branches_are_reported(tmp_path):
+    """Both stages of an old and a new family are checked; the kernel's own branch does not count."""
     loop = "vec2 many(vec2 e) { while (e.x < 0.9) e = sin(e + e.yx); return e; }\n"
     rows = costs_of("many(n.xy)", loop, tmp_path, ("polaris10", "navi31"))
     for row in rows:
@@ -142,7 +142,7 @@ STORE = re.compile(r"^\s+buffer_store_\w+ v\d+, (v\d+), s\[[\d:]+\], (\S+) offen
 
 
 def test_no_kernel_computes_addresses(whole_table):
-    """Every store of a compute kernel is by the lane's one register and an offset within the instruction."""
+    """Every store of a compute kernel uses one address register and an offset within the instruction."""
     for row, assembly in whole_table:
         if row["stage"] == "compute":
             stores = STORE.findall(assembly)
@@ -152,37 +152,37 @@ def test_no_kernel_computes_addresses(whole_table):
             )
 
 
-def test_slots_are_what_the_drivers_model_says_where_arithmetic_is_all_there_is(whole_table):
-    """Navi's fragment shaders, wave of 64: two cycles a slot, from one kernel of two numbers to another."""
+def test_slots_match_the_drivers_model_for_pure_arithmetic(whole_table):
+    """Fragment shaders on Navi in waves of 64 take two cycles per slot; two-component decoders are compared."""
     navis = {row["family"] for row, _ in whole_table} & {"navi10", "navi21", "navi31"}
     assert navis
     for family in navis:
-        found = {
+        figures = {
             row["encoding"]: (row["issue_slots"], row["kernel_inverse_throughput"])
             for row, _ in whole_table
             if (row["family"], row["stage"], row["operation"]) == (family, "fragment", "decode")
         }
-        first = found["xy"]
+        first = figures["xy"]
         for name in ("spheremap", "stereographic", "octahedral", "spherical", "per_pixel_view"):
-            slots, cycles = (a - b for a, b in zip(found[name], first, strict=True))
+            slots, cycles = (a - b for a, b in zip(figures[name], first, strict=True))
             assert cycles == 2 * slots > 0, (family, name)
 
 
 def test_stages_have_one_count_of_spirv(whole_table):
-    found = {}
+    by_code = {}
     for row, _ in whole_table:
         if row["encoding"]:
-            found.setdefault((row["encoding"], row["operation"]), set()).add(row["spirv_instructions"])
-    assert all(len(counts) == 1 for counts in found.values()), found
+            by_code.setdefault((row["encoding"], row["operation"]), set()).add(row["spirv_instructions"])
+    assert all(len(counts) == 1 for counts in by_code.values()), by_code
 
 
 def instructions(table, operation: str, stage: str = "fragment") -> dict[str, dict[str, int]]:
-    """By family and encoding or storage."""
-    found: dict[str, dict[str, int]] = {}
+    """Return the instructions of an operation by family and by encoding or storage."""
+    counts: dict[str, dict[str, int]] = {}
     for row, _ in table:
         if (row["operation"], row["stage"]) == (operation, stage):
-            found.setdefault(row["family"], {})[row["encoding"] or row["storage"]] = row["instructions"]
-    return found
+            counts.setdefault(row["family"], {})[row["encoding"] or row["storage"]] = row["instructions"]
+    return counts
 
 
 @pytest.mark.parametrize("stage", STAGES)
@@ -206,8 +206,8 @@ def test_spheremap_costs_the_articles_four_and_three_for_its_pole(whole_table):
             assert sum(name.startswith(("v_cmp", "v_cndmask")) for name in names(assembly)) == 3
 
 
-def test_storages_cost_what_their_conversion_is(whole_table):
-    """UNORM one multiply-add a number, SNORM nothing, packed words more: most where bytes are split."""
+def test_storages_cost_as_much_as_their_conversion(whole_table):
+    """UNORM takes one multiply-add per number, SNORM nothing, and packed words more, most if bytes are split."""
     for stage, operation in itertools.product(STAGES, ("pack", "unpack")):
         for count in instructions(whole_table, operation, stage).values():
             assert (count["rgba8 8:8"], count["rgba8 8:8:8"]) == (2, 3)
@@ -218,8 +218,8 @@ def test_storages_cost_what_their_conversion_is(whole_table):
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_an_encoding_that_is_rounded_precisely_costs_its_choice():
-    """Of four codes of two numbers each is decoded: what a lane pays to round so."""
+def test_precise_rounding_costs_its_search():
+    """Each of the four candidate codes is decoded, which the count includes."""
     plain, precise = (ENCODINGS[name] for name in ("octahedral", "octahedral_precise"))
     chosen = cost.cases([plain, precise], (), cost.OPERATIONS)
     rows = {
@@ -233,7 +233,7 @@ def test_an_encoding_that_is_rounded_precisely_costs_its_choice():
         assert rows["octahedral_precise", "decode", stage]["instructions"] == decode
 
 
-def test_the_far_plane_is_no_lanes_work(whole_table):
+def test_far_plane_is_not_computed_per_lane(whole_table):
     for row, _ in whole_table:
         assert row["transcendental"] == 0 or "depth" not in str(row["storage"]), row
 

@@ -1,4 +1,4 @@
-"""Cost by the clock: the arithmetic against clocks that a test makes up, and the rows of a device and of JAX."""
+"""Measured time as a cost: arithmetic on simulated clocks, and rows of a device and of JAX."""
 
 import math
 from contextlib import ExitStack
@@ -16,18 +16,18 @@ PIXELS = 4096
 
 
 def clock_of(operation_ns: float, empty_ns: float, start_ms: float = 0.7):
-    """Milliseconds of passes that take so long to start, and so many nanoseconds for a turn of a pixel."""
+    """Return a clock whose passes take `start_ms` milliseconds, plus some nanoseconds per pixel and turn."""
     return lambda which, turns: start_ms + turns * PIXELS * (empty_ns if which else operation_ns) * 1e-6
 
 
 @pytest.mark.parametrize("operation, empty", [(3.0, 0.5), (40.0, 2.0), (0.25, 0.25), (1.0, 1.5)])
-def test_a_difference_is_what_the_operation_takes_more(operation, empty):
-    """A nanosecond a pixel is a million nanoseconds for a million of them, whatever starting a pass takes."""
+def test_difference_is_the_extra_time_of_the_operation(operation, empty):
+    """A nanosecond per pixel is a million nanoseconds per megapixel, whatever the start of a pass takes."""
     assert Pair(clock_of(operation, empty), PIXELS).difference() == pytest.approx((operation - empty) * 1e6)
 
 
 def test_a_pass_that_is_disturbed_does_not_count():
-    """One of five is enough for either."""
+    """One undisturbed pass of each kind is enough."""
     quiet, calls = clock_of(3.0, 0.5), []
 
     def disturbed(which: int, turns: int) -> float:
@@ -52,8 +52,8 @@ def test_a_summary_is_the_median_and_its_interval():
 
 
 @pytest.mark.parametrize("count, low, high", [(2, 1, 2), (5, 1, 5), (6, 1, 6), (9, 2, 8), (15, 4, 12), (21, 6, 16)])
-def test_the_median_lies_in_its_interval_as_surely_as_is_said(count, low, high):
-    """Of so many samples these, by tables of the sign test; the next ones inwards would not be sure enough."""
+def test_median_interval_has_the_stated_confidence(count, low, high):
+    """The limits follow tables of the sign test; the next narrower interval would not be confident enough."""
     assert median_interval(list(range(1, count + 1))) == (low, high)
 
     def chance(cut: int) -> float:
@@ -63,13 +63,13 @@ def test_the_median_lies_in_its_interval_as_surely_as_is_said(count, low, high):
 
 
 def test_each_turn_computes_again(gl):
-    """What is added to the inputs after each turn reaches the next: no compiler can compute a turn once for all."""
+    """The value added after each turn reaches the next, so that no compiler can compute a turn only once."""
     turns, nothing = 5, 0.25
     for numbers, operation in ((3, kernels.encode(ENCODINGS["xyz"])), (2, kernels.decode(ENCODINGS["xy"]).empty)):
         with ExitStack() as stack:
             field = Field(gl, stack, (8, 4))
             Passes(field, operation).render(0, turns, nothing)
             given = read_pixels(field.points(numbers))
-            made = read_pixels(field.targets[0])
+            drawn = read_pixels(field.targets[0])
         expected = turns * given[..., :numbers] + nothing * sum(range(turns))
-        assert np.allclose(made[..., :numbers], expected, atol=1e-5)
+        assert np.allclose(drawn[..., :numbers], expected, atol=1e-5)

@@ -1,4 +1,4 @@
-"""Cost by the clock: the arithmetic against clocks that a test makes up, and the rows of a device and of JAX."""
+"""Measured time as a cost: arithmetic on simulated clocks, and rows of a device and of JAX."""
 
 import json
 
@@ -23,12 +23,12 @@ def test_every_operation_and_packing_has_a_row_that_says_what_it_is(run):
     status, out, err = run("cost", "--time", *words, "--format", "json")
     rows = json.loads(out)
     assert (status, err) == (0, "") and {row["measure"] for row in rows} == {"time"} and len(rows) == 4 + 6
-    found = {(row["encoding"] or row["storage"], row["operation"]): row for row in rows}
+    by_key = {(row["encoding"] or row["storage"], row["operation"]): row for row in rows}
     for row in rows:
         assert row["device"] and row["driver"] and row["clock"] and row["turns"] >= 16 and row["size"] == "64x64"
         assert row["software"] is (row["clock"] != "GL timer query") and row["spread"] >= 0
     view, spheremap, packed = (
-        found[key]["ns_per_megapixel"]
+        by_key[key]["ns_per_megapixel"]
         for key in (("per_pixel_view", "encode"), ("spheremap", "encode"), ("rgb8_12_12 12:12", "pack"))
     )
     assert view > spheremap > 0 and packed > 0, "a frame by pixel costs more than spheremap"

@@ -1,4 +1,4 @@
-"""What listings say beyond counts: loops, waves, half arithmetic."""
+"""Facts of listings beyond counts: loops, waves, half arithmetic."""
 
 import pytest
 
@@ -10,8 +10,8 @@ from normalbench.encodings.codecs.variants import in_half
 from normalbench.gbuffer.gl.shader import ShaderError
 
 
-def test_what_lies_between_a_label_and_the_jump_back_to_it_is_in_a_loop():
-    """Of two loops, one in the other, both are found; a jump ahead makes no loop."""
+def test_code_between_a_label_and_a_jump_back_to_it_is_a_loop():
+    """Both of two nested loops are found; a jump ahead is not a loop."""
     lines = ["BB0:", "\tv_a", "\ts_cbranch_vccz BB4", "BB1:", "\tv_b", "BB2:", "\tv_c", "\t(then repeated 2 times)"]
     lines += ["\ts_cbranch_scc1 BB2", "\ts_branch BB1", "BB4:", "\ts_endpgm"]
     assert disassembly.loops("\n".join(lines)) == [range(3, 7), range(2, 8)]
@@ -39,11 +39,11 @@ def test_intels_loops_end_with_while():
         ("skl", None, 7),
     ],
 )
-def test_waves_are_by_registers_and_at_most_what_a_simd_holds(family, registers, waves):
+def test_waves_follow_the_registers_up_to_the_limit_of_a_simd(family, registers, waves):
     assert occupancy.waves(family, registers) == waves
 
 
-def test_every_family_but_those_of_no_rule_has_waves():
+def test_waves_are_unknown_without_a_rule_or_registers():
     assert set(occupancy.OCCUPANCY) <= set(FAMILIES)
     assert occupancy.waves("another", 16) is None and occupancy.waves("navi21", None) is None
 

@@ -1,4 +1,4 @@
-"""What listings say beyond counts: loops, waves, half arithmetic."""
+"""Facts of listings beyond counts: loops, waves, half arithmetic."""
 
 import pytest
 
@@ -14,12 +14,12 @@ OCTAHEDRAL = ENCODINGS["octahedral"]
 
 @pytest.mark.usefixtures("radv")
 def test_polaris_and_vega_hold_as_many_waves_as_radv_says():
-    """Of RDNA's it says twice as many: what two SIMDs hold."""
+    """For RDNA, RADV reports twice as many: the waves of two SIMDs."""
     prepared = cost.prepare(cost.cases([ENCODINGS["octahedral_precise"]], [], ["encode"])[0], "compute")
     for family, outcome in compiled(prepared.job, CHOICES["radeon"]).items():
-        said = outcome.kernels[0].statistics
+        statistics = outcome.kernels[0].statistics
         twice = 1 if family in ("polaris10", "vega10") else 2
-        assert said["Subgroups per SIMD"] == twice * occupancy.waves(family, said["VGPRs"]), family
+        assert statistics["Subgroups per SIMD"] == twice * occupancy.waves(family, statistics["VGPRs"]), family
 
 
 def compiled(job, families) -> dict:
@@ -27,7 +27,7 @@ def compiled(job, families) -> dict:
 
 
 @pytest.mark.usefixtures("radv")
-def test_half_arithmetic_is_compiled_in_halves_and_doing_nothing_costs_nothing():
+def test_half_arithmetic_uses_packed_instructions_and_xyz_costs_nothing():
     rows = [
         row
         for row, _ in cost.isa_rows(
@@ -49,14 +49,14 @@ def test_half_arithmetic_is_compiled_in_halves_and_doing_nothing_costs_nothing()
 def test_a_gpu_without_16_bits_says_so_and_the_others_are_measured():
     prepared = cost.prepare(cost.cases([in_half(OCTAHEDRAL)], [], ["encode"])[0], "fragment")
     assert uses_halves(prepared.job.code) and not uses_halves(prepared.job.vertex)
-    found = compiled(prepared.job, ["polaris10", "vega10"])
-    assert found["polaris10"].reason == "Null hardware (RADV POLARIS10) does not support 16-bit shader arithmetic"
-    assert found["vega10"].kernels
+    outcomes = compiled(prepared.job, ["polaris10", "vega10"])
+    assert outcomes["polaris10"].reason == "Null hardware (RADV POLARIS10) does not support 16-bit shader arithmetic"
+    assert outcomes["vega10"].kernels
 
 
 @pytest.mark.usefixtures("nvidia")
-def test_half_arithmetic_that_is_not_counted_is_said_in_a_line():
+def test_uncounted_half_arithmetic_is_skipped_with_a_reason():
     chosen = cost.cases([in_half(OCTAHEDRAL)], [], ["encode"])
     rows = [row for row, _ in cost.isa_rows(chosen, ["fragment", "compute"], ["sm_86"], [], cost.nobody)]
-    said = {row["family"]: row["skipped"] for row in rows if row["family"]}
-    assert said["sm_86"] == "octahedral:arithmetic=half encode: half arithmetic is not counted for NVIDIA"
+    reasons = {row["family"]: row["skipped"] for row in rows if row["family"]}
+    assert reasons["sm_86"] == "octahedral:arithmetic=half encode: half arithmetic is not counted for NVIDIA"

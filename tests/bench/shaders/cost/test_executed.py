@@ -1,4 +1,4 @@
-"""Issue slots as they are executed: how often loops run, and what that makes of a listing."""
+"""Executed issue slots: turns of loops and the totals that follow from a listing."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def test_the_bisection_of_optimised_rings_takes_eight_turns(gl):
 
 
 def test_a_loop_takes_its_slots_as_often_as_it_runs():
-    """By hand: 1 + 2 outside, an outer loop of 3 slots that runs 4 times, around one of 2 slots that runs 12 times."""
+    """By hand: 1 + 2 slots outside, 2 in an outer loop that runs 4 times, 2 in an inner loop that runs 12 times."""
     kinds, rates = ["a", "b", "a", "c", "a", "b"], {"a": 1, "b": 2}
     loops = [range(1, 5), range(2, 5)]
     assert executed.executed_slots(kinds, rates, [], []) == 7

@@ -1,4 +1,4 @@
-"""Instructions by Intel's compilers: what listings hold, which kernels compare, and the device that is not there."""
+"""Instructions by Intel's compilers: listings, comparable kernels and the null device."""
 
 from pathlib import Path
 
@@ -63,12 +63,12 @@ def test_every_recorded_listing_is_counted():
     ],
 )
 def test_an_instruction_has_its_kind(line, kind):
-    (found,) = intel_disassembly.instructions(line)
-    assert intel_disassembly.kind(found) == kind
+    (instruction,) = intel_disassembly.instructions(line)
+    assert intel_disassembly.kind(instruction) == kind
 
 
 def test_a_listing_that_is_not_understood_has_no_kinds():
-    """Of an unknown instruction, and of another number of instructions than the driver says."""
+    """Examples are an unknown instruction, and a count of instructions that differs from the driver's."""
     text = "add(8) g1<1>F g2<8,8,1>F g3<8,8,1>F { align1 1Q };\n"
     assert intel_disassembly.kinds(text, 1) and not intel_disassembly.kinds(text, 2)
     assert intel_disassembly.kinds(text + text.replace("add", "frobnicate"), 2) is None
@@ -80,7 +80,7 @@ def test_a_mesa_that_counts_no_waits_is_understood():
     assert (with_waits["waiting"], without["waiting"], without["other_alu"]) == (1, 0, 1)
 
 
-def test_loops_and_branches_are_told():
+def test_loops_and_branches_are_counted():
     text = "(+f0.0) if(8) JIP: L { };\nelse(8) JIP: L { };\nendif(8) JIP: L { };\n(-f0.0) while(8) JIP: L { };\n"
     assert intel_disassembly.jumps(text) == (1, 1)
 
@@ -89,9 +89,9 @@ def kernel(width: int, spills: int = 0) -> Kernel:
     return Kernel(width, {"Instruction Count": 10 * width, "Spill Count": spills, "Fill Count": spills}, "")
 
 
-def test_the_widest_kernel_that_does_not_spill_is_compared_with_the_empty_one_of_its_width():
+def test_widest_kernel_without_spills_is_compared_at_its_own_width():
     empties = [kernel(8), kernel(16)]
-    found = [
+    pairs = [
         cost.alike(kernels, empties)
         for kernels in (
             [kernel(8), kernel(16), kernel(32)],
@@ -100,27 +100,27 @@ def test_the_widest_kernel_that_does_not_spill_is_compared_with_the_empty_one_of
             [kernel(32)],
         )
     ]
-    assert [pair and (pair[0].simd_width, pair[1].simd_width) for pair in found] == [(16, 16), (8, 8), (16, 16), None]
+    assert [pair and (pair[0].simd_width, pair[1].simd_width) for pair in pairs] == [(16, 16), (8, 8), (16, 16), None]
 
 
 def test_kernels_of_no_common_width_have_no_counts():
     row = TABLES["cost"].empty() | {"family": "skl"}
     ours, empty = (Compiled("skl", "a device", "1.2.3", (kernel(width),)) for width in (8, 16))
-    found, _ = cost._figures(row, ours, empty)
-    assert found["instructions"] is None and found["skipped"].startswith("compiled for 8 lanes, but the empty kernel")
+    counts, _ = cost._figures(row, ours, empty)
+    assert counts["instructions"] is None and counts["skipped"].startswith("compiled for 8 lanes, but the empty kernel")
 
 
-def test_figures_are_by_the_drivers_own_names_and_what_a_radeon_has_is_empty():
+def test_figures_use_the_drivers_names_and_radeon_columns_stay_empty():
     row = TABLES["cost"].empty() | {"family": "skl"}
     text = "add(16) g1<1>F g2<8,8,1>F g3<8,8,1>F { };\n"
     statistics = {"Instruction Count": 3, "Cycle Count": 40, "Spill Count": 2, "Fill Count": 1}
     ours = Compiled("skl", "a device", "1.2.3", (Kernel(16, statistics, 3 * text),))
     nothing = {"Instruction Count": 1, "Cycle Count": 9, "Spill Count": 0, "Fill Count": 0}
-    found, _ = cost._figures(row, ours, Compiled("skl", "a device", "1.2.3", (Kernel(16, nothing, text),)))
-    assert (found["instructions"], found["other_alu"], found["spills"], found["kernel_latency"]) == (2, 2, 3, 40)
-    assert found["simd_width"] == 16
+    counts, _ = cost._figures(row, ours, Compiled("skl", "a device", "1.2.3", (Kernel(16, nothing, text),)))
+    assert (counts["instructions"], counts["other_alu"], counts["spills"], counts["kernel_latency"]) == (2, 2, 3, 40)
+    assert counts["simd_width"] == 16
     for column in ("issue_slots", "full_rate", "quarter_rate", "vgprs", "sgprs", "code_bytes", "kernel_vgprs"):
-        assert found[column] is None, column
+        assert counts[column] is None, column
 
 
 def test_vendors_stand_for_their_families():
@@ -132,7 +132,7 @@ def test_vendors_stand_for_their_families():
         chosen_families("icl")
 
 
-def test_a_page_speaks_of_the_first_vendors_last_family():
+def test_page_uses_the_last_family_of_the_first_vendor():
     rows = [
         {"family": name, "stage": "fragment", "instructions": 3} for name in ("navi21", "navi31", "skl", "dg2", "new")
     ]
@@ -141,7 +141,7 @@ def test_a_page_speaks_of_the_first_vendors_last_family():
     assert extras.usual_family({}) == ""
 
 
-def test_a_cache_that_cannot_be_written_is_one_line(monkeypatch, tmp_path):
+def test_unwritable_cache_is_a_one_line_error(monkeypatch, tmp_path):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     with pytest.raises(null_device.NullDeviceError, match="set XDG_CACHE_HOME to another folder") as error:

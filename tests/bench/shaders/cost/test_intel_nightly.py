@@ -1,10 +1,10 @@
-"""Instructions by Intel's compilers: what listings hold, which kernels compare, and the device that is not there."""
+"""Instructions by Intel's compilers: listings, comparable kernels and the null device."""
 
 import test_intel_slow
 from vendors import INTEL
 
 
-def test_no_kernel_of_intels_spills(vendor_rows):
+def test_no_intel_kernel_spills(vendor_rows):
     assert {row["spills"] for row in vendor_rows(INTEL, True)} == {0}
 
 

@@ -1,4 +1,4 @@
-"""Instructions by Intel's compilers: what listings hold, which kernels compare, and the device that is not there."""
+"""Instructions by Intel's compilers: listings, comparable kernels and the null device."""
 
 import json
 import os
@@ -55,8 +55,8 @@ def test_the_null_device_answers_for_itself_alone():
 @pytest.mark.usefixtures("intel")
 def test_the_null_device_is_built_once_and_again_where_it_is_damaged(own_cache, monkeypatch):
     path = null_device.library()
-    made = path.stat().st_mtime_ns
-    assert path.parent == own_cache / "normalbench" and null_device.library().stat().st_mtime_ns == made
+    built_ns = path.stat().st_mtime_ns
+    assert path.parent == own_cache / "normalbench" and null_device.library().stat().st_mtime_ns == built_ns
     whole = path.read_bytes()
     path.write_bytes(whole[:100])
     assert null_device.library().read_bytes() == whole
@@ -86,9 +86,9 @@ def with_a_broken_cc(monkeypatch, folder):
 )
 def test_a_machine_without_a_c_compiler_loses_intels_rows_alone(run, monkeypatch, tmp_path, take, status, said):
     take(monkeypatch, tmp_path)
-    found, out, err = run(*INSTRUCTIONS, "--stage", "fragment", "--family", "navi21,skl")
+    exit_status, out, err = run(*INSTRUCTIONS, "--stage", "fragment", "--family", "navi21,skl")
     rows = json.loads(out)
-    assert (found, err.count("\n")) == (status, 1) and said in err, err
+    assert (exit_status, err.count("\n")) == (status, 1) and said in err, err
     (lost,) = [row for row in rows if row["skipped"]]
     assert lost["family"] == "skl" and said in lost["skipped"] and lost["instructions"] is None
     counted = [row for row in rows if row["family"] == "navi21"]
@@ -116,7 +116,7 @@ def test_known_counts_of_intels_compilers(vendor_rows, is_every=False):
     for name in INTEL.families(is_every):
         asked = (name, "fragment", "encode")
         chosen = [row for row in rows if (row["family"], row["stage"], row["operation"]) == asked]
-        found = {row["encoding"]: row["instructions"] for row in chosen}
-        assert found["octahedral"] == OCTAHEDRAL[name], name
-        order = [found[encoding] for encoding in ("xy", "stereographic", "spheremap", "octahedral")]
+        counts = {row["encoding"]: row["instructions"] for row in chosen}
+        assert counts["octahedral"] == OCTAHEDRAL[name], name
+        order = [counts[encoding] for encoding in ("xy", "stereographic", "spheremap", "octahedral")]
         assert order == sorted(set(order)), name

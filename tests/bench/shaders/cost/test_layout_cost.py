@@ -1,4 +1,4 @@
-"""What packing and unpacking whole layouts costs: counted by hand, the same for all vendors' compilers, and nothing."""
+"""Costs of packing and unpacking whole layouts: counted by hand, and zero for floats with every vendor's compiler."""
 
 from dataclasses import replace
 
@@ -21,12 +21,12 @@ def test_a_layout_whose_code_is_not_written_has_no_kernel():
         pack_operation(view)
 
 
-def test_an_array_may_be_a_parameter_and_what_a_macro_stands_for():
+def test_arrays_can_be_parameters_and_values_of_macros():
     program = read_glsl(
         "#version 430\n#define FOUR float[4]\n"
         "FOUR same(float[4] x, float y[4]) { FOUR made; made[0] = x[0] + y[0]; return made; }"
     )
     (function,) = program.functions
-    assert [function.kind, *(one.kind for one in function.parameters)] == ["float[4]"] * 3
+    assert [function.kind, *(parameter.kind for parameter in function.parameters)] == ["float[4]"] * 3
     with pytest.raises(TranslationError):
         read_glsl("#version 430\nfloat f(float[4] x[2]) { return x[0][0]; }")

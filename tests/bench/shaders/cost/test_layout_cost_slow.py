@@ -1,4 +1,4 @@
-"""What packing and unpacking whole layouts costs: counted by hand, the same for all vendors' compilers, and nothing."""
+"""Costs of packing and unpacking whole layouts: counted by hand, and zero for floats with every vendor's compiler."""
 
 from functools import partial
 
@@ -36,11 +36,11 @@ WORDS = Layout(
 
 
 def slots(layout: Layout, family: str) -> tuple[float, float]:
-    """What packing and unpacking take on a family."""
+    """Return the slots of packing and unpacking on a family."""
     make = {"pack": pack_operation, "unpack": unpack_operation}
-    chosen = [cost.CostCase(None, layout.name, name, partial(one, layout)) for name, one in make.items()]
-    found = cost.counted(chosen, family, "compute")
-    return found[layout.name, "pack"]["executed_slots"], found[layout.name, "unpack"]["executed_slots"]
+    chosen = [cost.CostCase(None, layout.name, name, partial(operation, layout)) for name, operation in make.items()]
+    counts = cost.counted(chosen, family, "compute")
+    return counts[layout.name, "pack"]["executed_slots"], counts[layout.name, "unpack"]["executed_slots"]
 
 
 @pytest.mark.usefixtures("radv")
@@ -68,17 +68,17 @@ def _costs_nothing(family: str) -> None:
 @pytest.mark.usefixtures("radv")
 @pytest.mark.parametrize("family", ["polaris10", "navi31"])
 def test_floats_cost_nothing_on_radeons(family):
-    """Also where planes of numbers are out of reach of an instruction's offset: the empty kernel computes as many."""
+    """Even planes beyond the reach of an instruction's offset are free: the empty kernel computes them too."""
     _costs_nothing(family)
 
 
 @pytest.mark.usefixtures("intel")
-def test_floats_cost_nothing_on_intels():
+def test_floats_cost_nothing_on_intel():
     _costs_nothing("tgl")
 
 
 @pytest.mark.usefixtures("nvidia")
-def test_floats_cost_nothing_on_nvidias_and_whole_numbers_are_compiled():
+def test_floats_cost_nothing_on_nvidia_and_integers_are_compiled():
     _costs_nothing("sm_86")
     # No fewer than a Radeon, whose instructions do as much: half of NVIDIA's rate are conversions and shifts.
     assert all(mine >= theirs for mine, theirs in zip(slots(WORDS, "sm_86"), (34, 29), strict=True))

@@ -1,4 +1,4 @@
-"""Instructions by NVIDIA's compiler of CUDA: what listings hold, what is compiled, and what a machine may lack."""
+"""Instructions by NVIDIA's CUDA compiler: listings, compiled code and missing tools."""
 
 import re
 from pathlib import Path
@@ -29,7 +29,7 @@ COUNTED = {
 
 
 def line(code: str, place: int = 0, control: int = 0x000FE40000000F00) -> str:
-    """An instruction as nvdisasm prints it."""
+    """Return an instruction as nvdisasm prints it."""
     return f"        /*{place:04x}*/   {code} ;   /* 0x0000000000000000 */\n    /* {control:#018x} */\n"
 
 
@@ -66,21 +66,21 @@ def test_an_instruction_has_its_kind(code, kind):
 
 
 def test_a_listing_that_is_not_understood_has_no_kinds():
-    """Of an unknown instruction, of doubles, and of another number of instructions than there are."""
+    """Examples are an unknown instruction, doubles, and a wrong number of instructions."""
     text = line("FADD R1, R2, R3")
     assert sass.kinds(text, 1) and not sass.kinds(text, 2)
     assert sass.kinds(text + line("FROB R1, R2"), 2) is None and sass.kinds(line("DADD R2, R2, R4"), 1) is None
 
 
-def test_padding_behind_the_end_is_no_instruction():
+def test_padding_after_the_end_is_not_an_instruction():
     text = line("NOP") + line("EXIT", 16) + line("BRA 0x20", 32) + line("NOP", 48) + line("NOP", 64)
     assert sass.names(text) == ["NOP", "EXIT", "BRA"]
 
 
-def test_loops_and_branches_are_told():
-    """A jump ahead under a condition, one without, one back, and the last one, to itself."""
+def test_loops_and_branches_are_counted():
+    """The jumps are conditional and unconditional, ahead and back, and the last jumps to itself."""
     code = ["@P0 BRA 0x20", "BRA 0x30", "@!P1 BRA 0x10", "BRA P2, 0x40", "BRA 0x40"]
-    assert sass.jumps("".join(line(text, 16 * at) for at, text in enumerate(code))) == (2, 1)
+    assert sass.jumps("".join(line(text, 16 * index) for index, text in enumerate(code))) == (2, 1)
 
 
 def test_stalls_are_read_from_the_second_word():
@@ -94,18 +94,18 @@ def test_stalls_are_read_from_the_second_word():
 def test_a_sum_waits_for_the_product_it_needs():
     """In the recorded decoder of sm_86: 4 cycles from FMUL R4 to FFMA, which reads it, the latency that microbenchmarks
     find on Volta and later (Jia et al., 2018); 13 from a compare to the jump under its predicate."""
-    found = sass.instructions((LISTINGS / "sm_86-xy-decode.asm").read_text())
-    names = [one.name for one in found]
-    stalls = [one.control >> 41 & 15 for one in found]
+    instructions = sass.instructions((LISTINGS / "sm_86-xy-decode.asm").read_text())
+    names = [instruction.name for instruction in instructions]
+    stalls = [instruction.control >> 41 & 15 for instruction in instructions]
     first, second = names.index("FMUL"), names.index("FFMA")
     assert sum(stalls[first:second]) == 4 and stalls[names.index("ISETP")] == 13
     assert sum(stalls) == sass.stall_cycles((LISTINGS / "sm_86-xy-decode.asm").read_text()) == 92
 
 
-def test_listings_of_several_kernels_are_parted_and_begin_at_0():
-    """A jump names a place in its own kernel."""
+def test_listings_of_several_kernels_are_split_and_begin_at_0():
+    """A jump refers to an address in its own kernel."""
     lines = "".join(
-        line(code, 16 * at) for at, code in enumerate(["MOV R1, R2", "BRA 0x10", "@P0 BRA 0x40", "NOP", "EXIT"])
+        line(code, 16 * index) for index, code in enumerate(["MOV R1, R2", "BRA 0x10", "@P0 BRA 0x40", "NOP", "EXIT"])
     )
     first, second = listing._parted(["\t.headerflags", *lines.splitlines()], [32, 48])
     assert sass.names(first) == ["MOV", "BRA"] and sass.jumps(first) == (0, 0)
@@ -118,15 +118,15 @@ def test_listings_of_several_kernels_are_parted_and_begin_at_0():
 @pytest.mark.parametrize(
     "data", [b"", b"\x7fELF\x01" + bytes(100), b"\x7fELF\x02" + bytes(10), b"\x7fELF\x02" + b"\xff" * 100]
 )
-def test_what_is_no_elf_file_is_one_line(data):
+def test_invalid_elf_file_is_an_error(data):
     with pytest.raises(DriverError, match=r"not a known ELF file|has 0 functions"):
         cubin.kernel_of(data)
 
 
 def test_figures_are_of_the_code_without_padding():
     text = line("MOV R1, R2") + line("EXIT", 16) + line("NOP", 32)
-    found = statistics(Kernel(bytes(48), 16, 0), text)
-    assert found == {
+    figures = statistics(Kernel(bytes(48), 16, 0), text)
+    assert figures == {
         "Instructions": 2,
         "Registers": 16,
         "Code size": 32,
@@ -143,8 +143,8 @@ def test_vendors_stand_for_their_families():
     assert CHOICES["nvidia"] == tuple(name for name in FAMILIES if name.startswith("sm_"))
 
 
-def test_all_families_are_those_that_this_machine_has_the_compiler_of(monkeypatch):
-    """NVIDIA's by name or by vendor are asked for wherever."""
+def test_all_selects_only_families_with_an_installed_compiler(monkeypatch):
+    """Families named explicitly are selected in any case."""
     monkeypatch.setattr(tools, "missing", lambda: "nothing is installed")
     assert not set(chosen_families("all")) & set(CHOICES["nvidia"])
     assert set(chosen_families("all,sm_86")) >= {"navi31", "sm_86"}
@@ -154,8 +154,8 @@ def test_all_families_are_those_that_this_machine_has_the_compiler_of(monkeypatc
     assert chosen_families("all") == list(FAMILIES)
 
 
-def test_a_page_speaks_of_the_family_that_has_fragment_shaders():
-    """And draws both."""
+def test_page_uses_the_family_with_fragment_shaders():
+    """Both families are drawn."""
     stages = {"sm_120": "compute", "navi31": "fragment"}
     rows = [{"family": name, "stage": stage, "instructions": 3} for name, stage in stages.items()]
     assert extras.usual_family({"cost": rows}) == "navi31"
@@ -163,7 +163,7 @@ def test_a_page_speaks_of_the_family_that_has_fragment_shaders():
 
 
 def taken(folder: Path) -> list[str]:
-    """What of a folder of CUDA's is found."""
+    """Return the tools that are found in a CUDA folder."""
     return [path.relative_to(folder).as_posix() for path in (tools.library(), tools.disassembler()) if path]
 
 
@@ -193,7 +193,7 @@ def test_glsl_that_cannot_be_translated_is_named_with_its_place(tmp_path):
 
 
 class _Operation:
-    """An operation of a file that is not one of the program's."""
+    """An operation from a file outside the program."""
 
     def __init__(self, operation, file):
         self.defines, self._file, self._operation = operation.defines, file, operation

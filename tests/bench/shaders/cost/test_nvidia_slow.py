@@ -1,4 +1,4 @@
-"""Instructions by NVIDIA's compiler of CUDA: what listings hold, what is compiled, and what a machine may lack."""
+"""Instructions by NVIDIA's CUDA compiler: listings, compiled code and missing tools."""
 
 import json
 import re
@@ -59,15 +59,15 @@ PACKED = ("rgba8", "12:12", "16:16", "11:10:11", "11:11", "rgba8_snorm")
 
 @pytest.fixture(scope="module")
 def called(shared):
-    """Every operation's CUDA as the machine's own C++ compiles it: (operation, given, beside) to what is made."""
+    """A function (operation, given, beside) that runs each operation's CUDA, compiled as C++ on this machine."""
     import ctypes
 
     operations = [kernels.encode(e) for e in PLAIN] + [kernels.decode(e) for e in PLAIN]
-    operations += [made for name in PACKED for p in PACKINGS[name] for made in (p.pack(), p.unpack())]
+    operations += [way for name in PACKED for p in PACKINGS[name] for way in (p.pack(), p.unpack())]
     language = source.LANGUAGE.read_text().replace('asm("abs.f32 %0, %1;" : "=f"(made) : "f"(x));', "made = fabsf(x);")
     text = HOST + re.sub(r"    asm\(.*?\);\n", "", language, flags=re.S)
-    for at, operation in enumerate(operations):
-        text += f"namespace own_{at} {{\n{source.functions_of(operation)}}}\n"
+    for index, operation in enumerate(operations):
+        text += f"namespace own_{index} {{\n{source.functions_of(operation)}}}\n"
     text += "}\n"
     sizes = [{"at": at, "given": o.given, "beside": o.beside, "made": o.made} for at, o in enumerate(operations)]
     text += "".join(CALL.format(**size) for size in sizes)
@@ -83,25 +83,25 @@ def called(shared):
     library = ctypes.CDLL(str(folder / "all.so"))
 
     def call(at: int, given: np.ndarray, beside: np.ndarray) -> np.ndarray:
-        made = np.zeros((len(given), sizes[at]["made"]), np.float32)
+        output = np.zeros((len(given), sizes[at]["made"]), np.float32)
         kept = [np.ascontiguousarray(a, np.float32) for a in (given, beside)]
         pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in kept]
-        getattr(library, f"call_{at}")(*pointers, made.ctypes.data_as(ctypes.c_void_p), len(given))
-        return made
+        getattr(library, f"call_{at}")(*pointers, output.ctypes.data_as(ctypes.c_void_p), len(given))
+        return output
 
     return call
 
 
 @pytest.mark.parametrize("name", PACKED)
 def test_the_cuda_of_a_packing_brings_numbers_back(called, name):
-    """To a step of the channel that has the fewest bits, 8."""
+    """Numbers return to within a step of the smallest channel, 8 bits."""
     first = 2 * len(PLAIN) + 2 * sum(len(PACKINGS[other]) for other in PACKED[: PACKED.index(name)])
     random = np.random.default_rng(7)
-    for at, packing in enumerate(PACKINGS[name]):
+    for index, packing in enumerate(PACKINGS[name]):
         size = packing.unpack().made
         given = random.uniform(-1, 1, (500, size)).astype(np.float32)
-        texels = called(first + 2 * at, given, np.zeros((500, 3)))
-        back = called(first + 2 * at + 1, texels, np.zeros((500, 3)))
+        texels = called(first + 2 * index, given, np.zeros((500, 3)))
+        back = called(first + 2 * index + 1, texels, np.zeros((500, 3)))
         assert np.abs(back - given).max() < 1 / 127, packing.name
 
 
@@ -123,7 +123,7 @@ def test_a_machine_without_the_compiler_loses_nvidias_rows_alone(run, monkeypatc
 
 @pytest.mark.usefixtures("radv", "own_cache")
 def test_a_fragment_shader_is_refused_in_a_line(run, monkeypatch):
-    """CUDA has none; other vendors' rows are there."""
+    """CUDA has no fragment shaders; rows of other vendors are still measured."""
     monkeypatch.setattr(tools, "missing", lambda: "")
     status, out, _ = run(*INSTRUCTIONS, "--family", "navi21,sm_86", "--stage", "fragment")
     (lost,) = [row for row in json.loads(out) if row["skipped"]]
@@ -132,7 +132,7 @@ def test_a_fragment_shader_is_refused_in_a_line(run, monkeypatch):
 
 
 def normals(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Unit normals in front, the axes among them, and places before the camera."""
+    """Return unit normals with z >= 0, among them the axes, and points in front of the camera."""
     random = np.random.default_rng(7)
     n = random.normal(size=(count, 3))
     n[:5] = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0]]
@@ -143,10 +143,10 @@ def normals(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("at", range(len(PLAIN)), ids=[encoding.name for encoding in PLAIN])
 def test_the_cuda_of_an_encoding_computes_its_formula(called, at):
-    """As Python's twin has it: codes of normals to 2^-19, and the normals of these codes."""
+    """Codes agree with the Python version to 2^-19 except on seams, and decoded normals to 2^-18."""
     encoding, (n, view) = PLAIN[at], normals(2000)
     codes = called(at, n, view)
-    found = called(len(PLAIN) + at, codes, view)
+    decoded = called(len(PLAIN) + at, codes, view)
     expected = np.stack(encoding.encode(Vec3(*n.T), Vec3(*view.T)), axis=-1)
     code = (Vec2 if codes.shape[1] == 2 else Vec3)(*codes.T)
     back = np.stack(encoding.decode(code, Vec3(*view.T)), axis=-1)
@@ -154,12 +154,12 @@ def test_the_cuda_of_an_encoding_computes_its_formula(called, at):
         apart = np.abs(codes - expected).max(axis=1)
         # A code on a seam may be either of two.
         assert np.mean(apart > 2.0**-19) < 0.005, f"{apart.max()} of {n[apart.argmax()]}"
-    apart = np.abs(found - back).max(axis=1)
+    apart = np.abs(decoded - back).max(axis=1)
     assert apart.max() < 2.0**-18, f"{apart.max()} of {codes[apart.argmax()]}"
 
 
 @pytest.mark.usefixtures("nvidia", "own_cache")
-def test_an_architecture_that_nvrtc_does_not_know_is_one_line(run, monkeypatch):
+def test_unknown_nvrtc_architecture_is_skipped_with_a_reason(run, monkeypatch):
     monkeypatch.setattr(isa, "FAMILIES", FAMILIES | {"sm_120": FAMILIES["sm_90"]})
     monkeypatch.setattr(isa, "_variables", lambda *_: {isa.ARCHITECTURE: "sm_999"})
     status, out, _ = run(*INSTRUCTIONS, "--family", "sm_120")
@@ -173,20 +173,20 @@ OCTAHEDRAL = {"sm_75": 15, "sm_86": 15, "sm_89": 15, "sm_90": 15, "sm_100": 14, 
 
 
 def test_known_counts_of_nvidias_compiler(vendor_rows, is_every=False):
-    """The order of cheap encodings is a Radeon's."""
+    """Cheap encodings have the same order as on a Radeon."""
     rows = vendor_rows(NVIDIA, is_every)
     if {row["driver"] for row in rows} != {VERSIONS}:
         pytest.skip("counts hold for one version")
-    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in rows}
+    counts = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in rows}
     for name in NVIDIA.families(is_every):
-        assert (found["octahedral", "encode", name], found["octahedral", "decode", name]) == (OCTAHEDRAL[name], 17), (
+        assert (counts["octahedral", "encode", name], counts["octahedral", "decode", name]) == (OCTAHEDRAL[name], 17), (
             name
         )
-        order = [found[encoding, "encode", name] for encoding in ("xy", "stereographic", "spheremap")]
+        order = [counts[encoding, "encode", name] for encoding in ("xy", "stereographic", "spheremap")]
         assert order == [0, 8, 10], name
 
 
-def test_an_instruction_of_nvidias_is_16_bytes_and_none_spills(vendor_rows, is_every=False):
+def test_nvidia_instructions_are_16_bytes_and_no_kernel_spills(vendor_rows, is_every=False):
     for row in vendor_rows(NVIDIA, is_every):
         assert (row["code_bytes"], row["spills"]) == (16 * row["instructions"], 0), row
         if row["encoding"] == "octahedral":
@@ -194,7 +194,7 @@ def test_an_instruction_of_nvidias_is_16_bytes_and_none_spills(vendor_rows, is_e
 
 
 def test_the_compiler_is_told_from_the_graphics_driver(nvidia, monkeypatch):  # noqa: ARG001 (asks for the compiler)
-    """By name and version, wherever a row or `doctor` names it; a library that pip did not bring by its own number."""
+    """Rows and `doctor` give the compiler's name and version; a library not installed by pip reports its own."""
     assert re.match(
         r"NVRTC [\d.]+ \(CUDA's compiler, not the graphics driver's\), nvdisasm [\d.]+$", tools.title("1.2")
     )

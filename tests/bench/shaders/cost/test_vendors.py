@@ -1,5 +1,5 @@
-"""What holds for every vendor's compiler: nothing costs nothing, kinds add up, rows are kept, and its failures are its
-own. Figures of one vendor stand in the vendor's file."""
+"""Rules for every vendor's compiler: the identity costs nothing, kinds add up, rows are cached, and failures affect
+only its own rows. Figures of a vendor are in the vendor's own file."""
 
 import sys
 import threading
@@ -9,8 +9,8 @@ from pathlib import Path
 from normalbench.bench.shaders.isa import process as isa_process
 
 
-def test_a_reader_that_starts_late_meets_no_closed_stream(monkeypatch):
-    """As on a busy machine: the child is left at once, and its thread has only then begun to read."""
+def test_late_reader_does_not_find_a_closed_stream(monkeypatch):
+    """On a busy machine the child may be left before its reading thread has begun to read."""
     script = "print('{}', flush=True); input()"
     monkeypatch.setattr(isa_process, "CHILD", [sys.executable, "-c", script])
     read, errors, ended = isa_process._read, [], threading.Event()

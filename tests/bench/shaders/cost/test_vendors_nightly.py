@@ -1,10 +1,10 @@
-"""What holds for every vendor's compiler: nothing costs nothing, kinds add up, rows are kept, and its failures are its
-own. Figures of one vendor stand in the vendor's file."""
+"""Rules for every vendor's compiler: the identity costs nothing, kinds add up, rows are cached, and failures affect
+only its own rows. Figures of a vendor are in the vendor's own file."""
 
 import test_vendors_slow
 from test_vendors_slow import named
 from test_vendors_slow import (
-    test_the_kinds_of_every_encoding_and_packing_add_up_to_the_compilers_own_count as kinds_add_up,
+    test_kinds_add_up_to_the_compilers_own_count as kinds_add_up,
 )
 
 
@@ -14,5 +14,5 @@ def test_doing_nothing_costs_nothing_of_every_encoding(vendor_rows, vendor):
 
 
 @named
-def test_the_kinds_of_every_encoding_and_packing_add_up_to_the_compilers_own_count_for_all(vendor_rows, vendor):
+def test_all_kinds_add_up_to_the_compilers_own_count_on_every_family(vendor_rows, vendor):
     kinds_add_up(vendor_rows, vendor, is_every=True)

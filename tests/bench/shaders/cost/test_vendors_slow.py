@@ -1,5 +1,5 @@
-"""What holds for every vendor's compiler: nothing costs nothing, kinds add up, rows are kept, and its failures are its
-own. Figures of one vendor stand in the vendor's file."""
+"""Rules for every vendor's compiler: the identity costs nothing, kinds add up, rows are cached, and failures affect
+only its own rows. Figures of a vendor are in the vendor's own file."""
 
 import json
 
@@ -21,7 +21,7 @@ def test_doing_nothing_costs_nothing(vendor_rows, vendor, is_every=False):
 
 
 @named
-def test_the_kinds_of_every_encoding_and_packing_add_up_to_the_compilers_own_count(vendor_rows, vendor, is_every=False):
+def test_kinds_add_up_to_the_compilers_own_count(vendor_rows, vendor, is_every=False):
     rows = vendor_rows(vendor, is_every)
     shaders = sum(map(len, vendor.shaders(is_every)))
     assert len(rows) == 2 * shaders * len(vendor.stages) * len(vendor.families(is_every))
@@ -32,10 +32,8 @@ def test_the_kinds_of_every_encoding_and_packing_add_up_to_the_compilers_own_cou
 
 @pytest.mark.usefixtures("own_cache")
 @named
-def test_rows_are_the_same_from_the_cache_and_another_gpu_or_build_is_compiled_for_again(
-    request, run, monkeypatch, vendor
-):
-    """The article's rows stand next to them."""
+def test_cached_rows_are_the_same_and_another_gpu_or_build_recompiles(request, run, monkeypatch, vendor):
+    """The article's rows appear next to the compiler's."""
     request.getfixturevalue(vendor.name)
     asked = [*INSTRUCTIONS, "--stage", ",".join(vendor.stages), "--family", vendor.quick[-1], "--article"]
     first = run(*asked)

@@ -14,8 +14,8 @@ from normalbench.encodings.kinds import BY_NAME
 
 @pytest.fixture
 def in_this_process(monkeypatch):
-    """Files are translated here: a process takes far longer to begin than to translate. test_translated.py and
-    test_wall.py hold the process, what limits it, and its wall."""
+    """Translation of files within this process, because a process takes far longer to start than to translate.
+    test_translated.py and test_wall.py test the separate process, its limits and its sandbox."""
 
     def finished(command, _):
         folder, word, by, kind, part = command

@@ -1,4 +1,4 @@
-"""What a file may not do, and what stands in the way of a pair: found by those who tried."""
+"""Forbidden actions of a file, and obstacles to finding a pair, collected from attempted attacks."""
 
 import itertools
 import re
@@ -36,8 +36,8 @@ PLAIN = ENCODE.replace("CODE", "n.xy") + DECODE
     ],
 )
 def test_a_file_writes_no_program_and_reads_no_other_file(tmp_path, text, ending):
-    """Words of Slang's that put a string into the C++ that is run, or read a module, however they are written: what
-    needs them is refused, and what does not is measured as if they were not there."""
+    """Slang keywords can put a string into the C++ that is run, or read a module. However they are written, code that
+    needs them is refused, and other code is measured as if they were absent."""
     (tmp_path / "other.slang").write_text("float f(float a) { return 1.0; }\n")
     path = tmp_path / "own" / f"mine.{ending}"
     (path.parent / ".git").mkdir(parents=True)
@@ -84,7 +84,7 @@ JOINED = [("hlsl", "file"), ("wgsl", "file")]
 
 @pytest.mark.parametrize("ending, by, joins", [(*way, [*JOINS] if way in JOINED else ["plain"]) for way in WAYS])
 def test_no_disguise_of_an_include_reads_a_file_elsewhere(tmp_path, ending, by, joins):
-    """The encoder calls a function of a file that may not be read: whoever compiles it has read that file."""
+    """The encoder calls a function of a forbidden file, so it compiles only if that file was read."""
     folders = [tmp_path / name for name in ("elsewhere", "own", "work")]
     for folder in folders:
         folder.mkdir()
@@ -122,7 +122,7 @@ def test_a_refusal_names_the_line_whatever_branches_stand_before_it(tmp_path):
         "#pragma once\n#line 3\n#define LONG(x) \\\n    (x)\n\f#define FEED\n",
     ],
 )
-def test_what_harms_nobody_is_read(tmp_path, text):
+def test_harmless_constructs_are_read(tmp_path, text):
     path = tmp_path / "mine.hlsl"
     path.write_text(text + PLAIN)
     assert translated(path).named == "PackDir:UnpackDir"
@@ -133,7 +133,7 @@ def test_what_harms_nobody_is_read(tmp_path, text):
     "value", ["\\", "1 \\ ", "//", "/*", '#include "NOTE"', '%:include "NOTE"', "import", "__include"]
 )
 def test_a_macro_of_a_command_line_is_judged_as_a_line_of_the_file(tmp_path, ending, value):
-    """`-D A=VALUE`: it hides no line behind it, and reads no file."""
+    """A value in `-D A=VALUE` can neither hide the next line nor read a file."""
     (tmp_path / "note.txt").write_text("float two() { return 2.0; }\n")
     path = tmp_path / f"mine.{ending}"
     path.write_text("A\n" + ENCODE.replace("CODE", "n.xy * two()") + DECODE)
@@ -154,7 +154,7 @@ def test_a_wiring_has_numbers_and_names_alone(tmp_path, value):
         translated(f"{path}:PackDir(n=n; r={value})->xyz:UnpackDir(t.xyz=e)")
 
 
-def test_what_a_side_is_not_given_is_said(tmp_path):
+def test_error_names_an_input_that_a_side_does_not_have(tmp_path):
     path = tmp_path / "mine.hlsl"
     path.write_text(
         "float4 PackDir(float3 n, float r) { return float4(n, r); }\nfloat3 UnpackDir(float4 t) { return t.xyz; }\n"
@@ -172,16 +172,16 @@ def test_what_a_side_is_not_given_is_said(tmp_path):
         'string Widget = "slider{";\nfloat2 sign(float2 v) { return v * 2.0; }\n',
     ],
 )
-def test_what_a_pair_needs_is_kept(tmp_path, text):
-    """What a macro defines before a function that goes; what is reached by pasting alone; braces in quotes."""
+def test_code_that_a_pair_needs_is_kept(tmp_path, text):
+    """Examples are a macro's definition before a removed function, names made by pasting, and braces in quotes."""
     path = tmp_path / "mine.hlsl"
     code = "float2(CALL(Of)(n.x), sign(n.xy).y)" if "CALL" in text else "sign(n.xy)"
     path.write_text(text + ENCODE.replace("CODE", code) + DECODE)
     assert "* 2.0" in translated(path).texts[0]
 
 
-def test_a_global_that_is_wrong_is_the_reason(tmp_path):
-    """And not that what uses it does not know it."""
+def test_invalid_global_is_the_reported_error(tmp_path):
+    """The error is not reported at the function that uses the global."""
     path = tmp_path / "mine.hlsl"
     path.write_text("static const float H = Something(3);\n" + ENCODE.replace("CODE", "n.xy * H") + DECODE)
     with pytest.raises(UsageError, match=r"mine\.hlsl:1:\d+: undefined identifier 'Something'"):
@@ -196,7 +196,7 @@ def test_a_macro_before_a_function_is_an_item_of_its_own():
 
 
 def test_the_packer_of_the_file_comes_before_the_helper_that_it_includes(tmp_path):
-    """As in Unity's HDRP; in one file, a line names it."""
+    """Unity's HDRP is such a case. In a single file, a note names the packer."""
     helper = PLAIN.replace("CODE", "n.xy")
     packer = (
         "struct Data { float3 normalWS; float roughness; };\n"
@@ -208,6 +208,6 @@ def test_the_packer_of_the_file_comes_before_the_helper_that_it_includes(tmp_pat
     (tmp_path / "both.hlsl").write_text(helper + packer)
     with pytest.raises(UsageError, match=r"EncodeIntoBuffer\(d.normalWS=n; d.roughness=0.5\)->o.xy:"):
         translated(tmp_path / "mine.hlsl")
-    made = translated(tmp_path / "both.hlsl")
-    assert made.named == "PackDir:UnpackDir"
-    assert "EncodeIntoBuffer:DecodeFromBuffer is measured if it is named" in made.notes
+    translation = translated(tmp_path / "both.hlsl")
+    assert translation.named == "PackDir:UnpackDir"
+    assert "EncodeIntoBuffer:DecodeFromBuffer is measured if it is named" in translation.notes

@@ -1,4 +1,4 @@
-"""What a file may not do, and what stands in the way of a pair: found by those who tried."""
+"""Forbidden actions of a file, and obstacles to finding a pair, collected from attempted attacks."""
 
 import pytest
 import test_attacked

@@ -1,4 +1,4 @@
-"""Shaders in files of something else, and in files of any ending."""
+"""Shaders embedded in files of other languages, and in files with any extension."""
 
 import pytest
 
@@ -15,26 +15,26 @@ PAIR = "vec2 f(vec3 n) { return n.xy; }"
     [f"const x = 1;\nconst s = /* glsl */ `{PAIR}`;", f"// ours\nexport default `{PAIR}`;\n", f"const s = `{PAIR}`"],
 )
 def test_a_template_of_javascript_is_read_where_it_stood(text):
-    found = shader_text(text, ".js")
-    assert found.strip() == PAIR and len(found) == len(text) and found.index(PAIR) == text.index(PAIR)
+    shader = shader_text(text, ".js")
+    assert shader.strip() == PAIR and len(shader) == len(text) and shader.index(PAIR) == text.index(PAIR)
 
 
 @pytest.mark.parametrize(
     "text", [f"f(`{PAIR}`); g();", f"const a = '{PAIR}'; const b = 2;", "", "const a = `x`, b = `y`;"]
 )
-def test_other_strings_are_not(text):
+def test_other_javascript_strings_are_not_read(text):
     assert not shader_text(text, ".ts").strip()
 
 
-def test_what_stands_in_a_shader_class_is_read_alone():
+def test_only_the_body_of_a_shader_class_is_read():
     text = "namespace A.B\n{\n  shader X<int N> : Y, Z\n  {\n    override float f() { return 1; }\n  };\n}\n"
-    found = shader_text(text, ".sdsl")
-    assert found.strip() == "float f() { return 1; }" and found.count("\n") == text.count("\n")
+    shader = shader_text(text, ".sdsl")
+    assert shader.strip() == "float f() { return 1; }" and shader.count("\n") == text.count("\n")
     assert shader_text("float f() { return 1; }", ".sdsl") == "float f() { return 1; }"
 
 
-def test_a_file_that_is_there_is_read_whatever_its_ending(tmp_path, monkeypatch):
-    """Text alone, and none of another thing's or language's ending."""
+def test_existing_text_file_with_an_unknown_extension_is_read(tmp_path, monkeypatch):
+    """The file must be text, and its extension must not belong to another format or language."""
     monkeypatch.chdir(tmp_path)
     for name in ("mine.code", "rows.csv", "mine.metal"):
         (tmp_path / name).write_text("fn f(n: vec3<f32>) -> vec2<f32> { return n.xy; }")
@@ -47,7 +47,7 @@ def test_a_file_that_is_there_is_read_whatever_its_ending(tmp_path, monkeypatch)
     assert UserFile("mine.code:f:g").functions == ("f", "g")
 
 
-def test_a_mark_stands_before_the_names_of_functions_alone():
+def test_prefix_is_added_only_to_names_of_functions():
     text = "struct S { float and; };\nbool2 and(bool2 a) { return a; }\n[a(and)] float or ( float x ) { return x; }"
     assert [line.strip() for line in marked_heads(text, "m_").split("\n")] == [
         "struct S { float and; };",

@@ -1,4 +1,4 @@
-"""Encoders in the forms that engines write: each is read as it lies, and has the figures of the code that it is."""
+"""Encoders in the forms that engines use, read unchanged and measured like the catalogue's encodings."""
 
 from pathlib import Path
 
@@ -12,8 +12,8 @@ pytestmark = pytest.mark.usefixtures("in_this_process")
 
 
 @pytest.mark.usefixtures("slang")
-def test_a_function_for_want_of_what_is_not_there_is_named(tmp_path):
-    """The function of the pair that the compiler refuses, its line and column, and the include that is missing."""
+def test_error_has_the_place_and_the_missing_include(tmp_path):
+    """The error has the line and column that the compiler refuses, and the missing include."""
     path = tmp_path / "mine.slang"
     path.write_text(
         '#include "gone.hlsli"\n'
@@ -22,8 +22,8 @@ def test_a_function_for_want_of_what_is_not_there_is_named(tmp_path):
     )
     with pytest.raises(UsageError) as error:
         translated(path)
-    said = str(error.value)
-    assert f"{path}:2:35: undefined identifier 'gone'" in said and f"{path}:1: gone.hlsli is not next to" in said, said
+    text = str(error.value)
+    assert f"{path}:2:35: undefined identifier 'gone'" in text and f"{path}:1: gone.hlsli is not next to" in text, text
 
 
 @pytest.mark.usefixtures("slang")
@@ -39,8 +39,8 @@ def test_another_overload_does_not_take_the_place_of_one_that_is_refused(tmp_pat
 
 
 @pytest.mark.usefixtures("slang")
-def test_what_the_pair_does_not_need_is_not_compiled(tmp_path):
-    """Functions, globals and branches that are wrong; a head that a branch chooses; a buffer that is bound wrongly."""
+def test_code_that_the_pair_does_not_need_is_not_compiled(tmp_path):
+    """The file has invalid functions, globals and branches, a head inside a branch and a wrongly bound buffer."""
     path = tmp_path / "mine.hlsl"
     path.write_text(
         "#if NOT_DEFINED\n#error no\nfloat2 PackDir(float x) {\n#else\nfloat2 PackDir(float3 n) {\n#endif\n"
@@ -53,19 +53,19 @@ def test_what_the_pair_does_not_need_is_not_compiled(tmp_path):
     assert "gone" not in text and "Gone" not in text and "Wrong" not in text and "A::z(e)" in text
 
 
-def test_items_are_what_stands_at_the_top():
+def test_items_are_top_level_declarations():
     text = "#define A {\nstruct S { int x; };\n"
     text += "float2 f(float3 n) : A { if (n.x > 0) { return n.xy; } return n.yx; }\nint g;\n"
-    found = items(text)
-    assert "".join(text[item.start : item.end] for item in found) == text
+    pieces = items(text)
+    assert "".join(text[item.start : item.end] for item in pieces) == text
     assert functions_in(text) == ["f"]
-    cut = without(text, [item for item in found if "f(" in text[item.start : item.end]])
+    cut = without(text, [item for item in pieces if "f(" in text[item.start : item.end]])
     assert cut.count("\n") == text.count("\n") and "f(" not in cut and "int g;" in cut and "#define A {" in cut
     assert functions_in("namespace A { namespace B { int f(int x) { return x; } } }") == ["A::B::f"]
 
 
 def test_includes_are_searched_up_to_the_repository_and_no_further(tmp_path):
-    """Eight folders at most, of files that end as shaders do, never beyond links, the home folder or above it."""
+    """At most eight folders below the home folder are searched, only for shader files and never through links."""
     deep = tmp_path / "outer" / "repository" / "a" / "b"
     deep.mkdir(parents=True)
     (tmp_path / "outer" / "repository" / ".git").mkdir()
@@ -82,7 +82,7 @@ def test_includes_are_searched_up_to_the_repository_and_no_further(tmp_path):
     assert [line.wrong.split()[0] for line in source.lines if line.wrong] == list(names[1:])
 
 
-def test_nothing_above_the_home_folder_is_searched(tmp_path, monkeypatch):
+def test_home_folder_is_not_searched(tmp_path, monkeypatch):
     home = tmp_path / "home"
     (home / "project").mkdir(parents=True)
     monkeypatch.setattr(Path, "home", lambda: home)

@@ -1,4 +1,4 @@
-"""Encoders in the forms that engines write: each is read as it lies, and has the figures of the code that it is."""
+"""Encoders in the forms that engines use, read unchanged and measured like the catalogue's encodings."""
 
 import json
 import shutil
@@ -22,7 +22,7 @@ OF_XY = ("struct.wgsl", "import.wgsl", "real3x3.hlsl", "overloads.hlsl")
 
 
 def angles(run, tmp_path, files, normals) -> dict[str, float]:
-    """The mean angle of each file; GLSL that is named by its functions gets a name of its own."""
+    """Return the mean angle of each file; GLSL that is named by its functions gets a unique name."""
     shutil.copytree(FORMS, tmp_path / "forms")
     for path in (tmp_path / "forms").iterdir():
         if path.is_file():
@@ -37,28 +37,28 @@ def angles(run, tmp_path, files, normals) -> dict[str, float]:
 
 @pytest.mark.usefixtures("gl")
 def test_octahedral_has_its_mean_in_every_form(run, tmp_path, files=OF_OCTAHEDRAL):
-    """Names, main, uniforms and functions that are not there, namespaces, defaults, include roots, endings."""
-    found = angles(run, tmp_path, files, "sphere")
-    assert len(found) == len(files)
-    assert found == {name: pytest.approx(OCTAHEDRAL, abs=0.002) for name in found}
+    """The forms cover names, main, uniforms, absent functions, namespaces, defaults, include roots and endings."""
+    means = angles(run, tmp_path, files, "sphere")
+    assert len(means) == len(files)
+    assert means == {name: pytest.approx(OCTAHEDRAL, abs=0.002) for name in means}
 
 
 @pytest.mark.usefixtures("gl")
 def test_xy_has_its_mean_in_every_form(run, tmp_path, files=OF_XY):
-    """Half literals, overloads, Unity's types, structures, and WGSL of engines' preprocessors."""
-    found = angles(run, tmp_path, files, "hemisphere")
+    """The forms cover half literals, overloads, Unity's types, structures and WGSL with engines' preprocessors."""
+    means = angles(run, tmp_path, files, "hemisphere")
     _, out, _ = run(
         *("quality", "--encoding", "xy", "--storage", "rg8", "--backend", "glsl", "--count", "65536"),
         *("--normals", "hemisphere", "--format", "json"),
     )
     (row,) = json.loads(out)
-    assert len(found) == len(files)
-    assert found == {name: pytest.approx(row["angle_mean_deg"], rel=1e-4) for name in found}
+    assert len(means) == len(files)
+    assert means == {name: pytest.approx(row["angle_mean_deg"], rel=1e-4) for name in means}
 
 
 @pytest.mark.usefixtures("gl", "slang")
-def test_of_several_pairs_the_one_that_undoes_itself_is_measured(run, tmp_path):
-    """Of several that do, each is."""
+def test_pair_that_round_trips_is_measured(run, tmp_path):
+    """If several pairs round-trip, each is measured."""
     path = tmp_path / "mine.hlsl"
     path.write_text(
         "float2 MapA(float3 n) { return n.xy; }\nfloat2 MapB(float3 n) { return n.zz; }\n"
@@ -69,15 +69,15 @@ def test_of_several_pairs_the_one_that_undoes_itself_is_measured(run, tmp_path):
     (row,) = json.loads(out)
     assert row["encoding"] == "mine.hlsl:MapA" and row["angle_mean_deg"] == pytest.approx(0.463, abs=0.01)
     _, out, _ = run("quality", "--encoding", str(FORMS / "many.hlsl"), *words)
-    assert [row["encoding"] for row in json.loads(out)] == [f"many.hlsl:dir_to_oct_{one}" for one in ("snorm", "unorm")]
+    assert [row["encoding"] for row in json.loads(out)] == [f"many.hlsl:dir_to_oct_{end}" for end in ("snorm", "unorm")]
 
 
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("count", [300])
-def test_hundreds_of_functions_that_are_wrong_stand_in_no_pairs_way(tmp_path, count):
+def test_hundreds_of_invalid_functions_do_not_block_a_pair(tmp_path, count):
     path = tmp_path / "mine.slang"
-    wrong = "".join(f"float unused_{at}(float2 p)\n{{ return gone(p).x; }}\n" for at in range(count))
-    wrong += "".join(f"Gone{at} lost_{at}(float2 p)\n{{ return gone(p).x; }}\n" for at in range(count))
+    wrong = "".join(f"float unused_{number}(float2 p)\n{{ return gone(p).x; }}\n" for number in range(count))
+    wrong += "".join(f"Gone{number} lost_{number}(float2 p)\n{{ return gone(p).x; }}\n" for number in range(count))
     path.write_text(
         "float2 PackDir(float3 n) { return n.xy; }\n" + wrong + "float3 UnpackDir(float2 e) { return float3(e, 0); }\n"
     )
@@ -95,9 +95,9 @@ PACKED = {
 @pytest.mark.usefixtures("gl", "slang")
 @pytest.mark.parametrize("name", PACKED)
 def test_an_integer_is_measured_as_it_stands(run, name):
-    """Of a uint the halves are stored exactly, in one row whatever storages are named. 0.00261 degrees are octahedral's
-    16:16 cut off, twice what rounding leaves; 0.3385 those of 8:8:8, cut off and normalised; 0.8607
-    those of xy in 8:8."""
+    """A packed code is stored exactly, in one row whatever storages are named. Mean angles are 0.00261 degrees for
+    octahedral truncated to 16:16, twice the error of rounding; 0.3385 for 8:8:8, truncated and normalised; 0.8607
+    for xy in 8:8."""
     mean, normals, bits = PACKED[name]
     storage = ("--storage", "rg8,rg16", "--backend", "glsl", "--count", "65536", "--format", "json")
     status, out, err = run("quality", "--encoding", str(FORMS / name), "--normals", normals, *storage)
@@ -107,7 +107,7 @@ def test_an_integer_is_measured_as_it_stands(run, name):
 
 
 @pytest.mark.usefixtures("gl", "slang")
-def test_a_packed_pair_beside_another_is_named(run):
+def test_packed_pair_next_to_another_is_reported(run):
     storage = ("--storage", "rg8", "--backend", "glsl", "--count", "4096", "--format", "json")
     _, out, err = run("quality", "--encoding", str(FORMS / "uint.hlsl"), "--normals", "sphere", *storage)
     assert json.loads(out)[0]["storage"] == "rg8"

@@ -1,4 +1,4 @@
-"""Encoders of engines, written in HLSL from their definitions, have the figures that were published for their codes."""
+"""Encoders of engines, written in HLSL from their definitions and compared with published figures."""
 
 import shutil
 from pathlib import Path
@@ -32,9 +32,9 @@ PUBLISHED = {
 
 
 def angles(name: str, count: int, file: Path):
-    """(mean, largest) of a file, and of the catalogue's encoding of the same code."""
+    """Return (mean, largest) angles of a file, and of the catalogue's encoding with the same code."""
     catalogues, storage, rounding, *_ = PUBLISHED[name]
-    found = nb.quality(
+    table = nb.quality(
         encoding=f"{file},{catalogues}",
         storage=storage,
         rounding=rounding,
@@ -43,8 +43,8 @@ def angles(name: str, count: int, file: Path):
         arithmetic="float",
         count=count,
     ).set_index("encoding")
-    (own,) = set(found.index) - {catalogues}
-    return [tuple(found.loc[each, ["angle_mean_deg", "angle_max_deg"]]) for each in (own, catalogues)]
+    (own,) = set(table.index) - {catalogues}
+    return [tuple(table.loc[each, ["angle_mean_deg", "angle_max_deg"]]) for each in (own, catalogues)]
 
 
 def test_every_file_has_figures():
@@ -53,7 +53,7 @@ def test_every_file_has_figures():
 
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_an_engines_encoder_has_its_published_mean(name):
-    """And, whatever it does in other words, that of the catalogue's code."""
+    """The mean and largest angles also agree with the catalogue's encoding."""
     mean = PUBLISHED[name][3]
     own, catalogues = angles(name, 65536, FILES / f"{name}.hlsl")
     assert own == pytest.approx(catalogues, rel=1e-3), f"{name}: {own}, by the catalogue {catalogues}"
@@ -63,6 +63,6 @@ def test_an_engines_encoder_has_its_published_mean(name):
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("name", ["wicked", "octahedral", "o3de"])
 def test_slang_has_the_figures_of_the_same_text_in_hlsl(name, tmp_path):
-    """Slang reads HLSL; whole numbers and halves in it become what they are there."""
+    """Slang reads HLSL, and integers and halves keep their meaning."""
     copy = Path(shutil.copy(FILES / f"{name}.hlsl", tmp_path / f"{name}.slang"))
     assert angles(name, 65536, copy)[0] == pytest.approx(angles(name, 65536, FILES / f"{name}.hlsl")[0], rel=1e-5)

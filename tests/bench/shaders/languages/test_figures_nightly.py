@@ -1,4 +1,4 @@
-"""Encoders of engines, written in HLSL from their definitions, have the figures that were published for their codes."""
+"""Encoders of engines, written in HLSL from their definitions and compared with published figures."""
 
 import pytest
 from test_figures import FILES, PUBLISHED, angles
@@ -8,7 +8,7 @@ pytestmark = pytest.mark.usefixtures("gl", "hlsl")
 
 @pytest.mark.parametrize("name", [name for name, row in PUBLISHED.items() if row[4]])
 def test_an_engines_encoder_has_its_published_largest_angle(name):
-    """Of as many directions as it was published of."""
+    """The angle is measured on two million directions, as published."""
     *_, mean, most = PUBLISHED[name]
     own, _ = angles(name, 2_000_000, FILES / f"{name}.hlsl")
     assert own == pytest.approx((mean, most), rel=0.01), f"{name}: {own}, published {mean} and {most}"

@@ -20,7 +20,7 @@ def test_a_comma_in_a_files_name_is_a_part_of_it(tmp_path, monkeypatch):
     assert with_files("my,file.hlsl:A:B", {"my,file.hlsl": "x/my,file.hlsl"}) == "x/my,file.hlsl:A:B"
 
 
-def test_normals_of_such_a_name_are_measured(run, tmp_path, monkeypatch):
+def test_normals_file_with_a_comma_is_measured(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "tests" / "inputs" / "normals" / "points.ply", tmp_path / "my,points.ply")
     words = ("--normals", "my,points.ply,axes", "--backend", "jax", "--encoding", "xyz", "--format", "json")

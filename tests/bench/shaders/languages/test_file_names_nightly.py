@@ -5,5 +5,5 @@ from test_file_names_slow import check_measured
 
 
 @pytest.mark.usefixtures("gl", "slang")
-def test_workers_measure_files_of_such_names(run, tmp_path, monkeypatch):
+def test_workers_measure_files_with_commas_and_pluses(run, tmp_path, monkeypatch):
     check_measured(run, tmp_path, monkeypatch, "--on", "local:1")

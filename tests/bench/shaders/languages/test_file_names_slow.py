@@ -13,8 +13,8 @@ OCTAHEDRAL = 0.3356
 
 
 @pytest.mark.usefixtures("gl", "slang")
-def test_files_of_such_names_are_measured(run, tmp_path, monkeypatch):
-    """By their functions as well; workers are sent them at night."""
+def test_files_with_commas_and_pluses_are_measured(run, tmp_path, monkeypatch):
+    """Files are also named with their functions; the nightly test sends the files to workers."""
     check_measured(run, tmp_path, monkeypatch)
 
 
@@ -28,9 +28,9 @@ def check_measured(run, tmp_path, monkeypatch, *more: str) -> None:
     asked = ("--storage", "rg8", "--backend", "glsl", "--count", "65536", "--normals", "sphere", "--format", "json")
     status, out, err = run("quality", "--encoding", ",".join(names), *asked, *more)
     assert status == 0, err
-    found = {row["encoding"]: row["angle_mean_deg"] for row in json.loads(out)}
-    assert len(found) == len(names)
-    assert found == {name: pytest.approx(OCTAHEDRAL, abs=0.002) for name in found}
+    means = {row["encoding"]: row["angle_mean_deg"] for row in json.loads(out)}
+    assert len(means) == len(names)
+    assert means == {name: pytest.approx(OCTAHEDRAL, abs=0.002) for name in means}
     for word in ("my,file.hlsl", "c+d/named.hlsl:PackDir:UnpackDir"):
         status, out, err = run("doctor", word)
         assert status == 0, err

@@ -1,4 +1,4 @@
-"""Files of materials: what is common to their programs, and each program by itself."""
+"""Material files: code shared by their programs, and each program separately."""
 
 import pytest
 from typed import Source, translated
@@ -24,11 +24,11 @@ def material(folder, *blocks):
     return path
 
 
-def test_a_program_has_what_is_common_and_each_line_where_it_stood(tmp_path):
+def test_program_has_the_shared_code_and_keeps_line_numbers(tmp_path):
     path = material(tmp_path, PAIR, OTHER, COMMON)
-    one, other = programs_of(Source(path))
-    assert one.text.count("\n") == other.text.count("\n") == Source(path).text.count("\n")
-    assert "PackDir" in one.text and "SCALE 1.0" in one.text and "frag" not in one.text
+    first, other = programs_of(Source(path))
+    assert first.text.count("\n") == other.text.count("\n") == Source(path).text.count("\n")
+    assert "PackDir" in first.text and "SCALE 1.0" in first.text and "frag" not in first.text
     assert "frag" in other.text and "SCALE 1.0" in other.text and "PackDir" not in other.text
 
 
@@ -42,13 +42,13 @@ def test_a_file_without_blocks_is_a_program(tmp_path):
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("blocks", [(COMMON, OTHER, PAIR), (COMMON, PAIR, OTHER)])
 def test_macros_of_a_program_do_not_reach_another(tmp_path, blocks):
-    found = translated(material(tmp_path, *blocks))
-    assert [name for name, _ in found.functions] == ["PackDir", "UnpackDir"]
+    translation = translated(material(tmp_path, *blocks))
+    assert [name for name, _ in translation.functions] == ["PackDir", "UnpackDir"]
 
 
 @pytest.mark.usefixtures("slang")
-def test_what_is_wrong_with_the_pair_is_said(tmp_path):
-    """Whichever program it stands in, at its line."""
+def test_error_in_the_pair_is_reported_at_its_line(tmp_path):
+    """The pair may be in any program of the file."""
     path = material(tmp_path, OTHER, PAIR.replace("SCALED(n.xy)", "gone(n.xy)"))
     with pytest.raises(UsageError, match=r"mine\.shader:8:35: .*gone"):
         translated(path)

@@ -130,20 +130,20 @@ def test_the_pair_of_a_file_is_found(text, named):
         (f"float3 EncodeA(float3 n) {OF} {BACK}", ("EncodeA", "DecodeNormal"), "EncodeA must take a float3"),
     ],
 )
-def test_a_file_without_one_pair_says_what_it_has(text, asked, said):
+def test_file_without_a_unique_pair_reports_what_it_has(text, asked, said):
     with pytest.raises(NoPairError, match=said.replace("(", r"\(").replace(")", r"\)")):
         pair(text, asked)
 
 
 def function(name: str, made: int, given: int) -> Function:
-    """One by its types alone."""
+    """Return a function that is known only by its types."""
     parameter = Parameter("p", f"float{given}", True, False, False, (Place("p", "float", given),))
     kind, results = f"float{made}", (Place("", "float", made),)
     return Function(name, made, (given,), kind, parameters=(parameter,), results=results)
 
 
 def many(count: int, decoder: str) -> list[Function]:
-    """So many encoders and decoders."""
+    """Return a given number of encoders and of decoders."""
     encoders = [function(f"Encode{number}", 2, 3) for number in range(count)]
     return [*encoders, *(function(decoder.format(number), 3, 2) for number in range(count))]
 
@@ -151,14 +151,14 @@ def many(count: int, decoder: str) -> list[Function]:
 def test_too_many_functions_whose_names_do_not_go_together_are_refused_early():
     with pytest.raises(SeveralPairsError):
         pair_of(many(100, "UnpackOf{}"), None, "mine.hlsl")
-    said = "300 functions may encode and 300 may decode, but no two have matching names; name two: "
-    said += "mine.hlsl:ENCODE:DECODE"
-    with pytest.raises(NoPairError, match=said):
+    message = "300 functions may encode and 300 may decode, but no two have matching names; name two: "
+    message += "mine.hlsl:ENCODE:DECODE"
+    with pytest.raises(NoPairError, match=message):
         pair_of(many(300, "UnpackOf{}"), None, "mine.hlsl")
 
 
-def test_a_pair_is_told_by_its_name_where_types_cannot():
-    """A code of three numbers has the types of its decoder."""
+def test_name_identifies_a_pair_if_types_cannot():
+    """An encoder to three numbers has the same types as its decoder."""
     assert [role(name) for name in ("UnpackNormalOctRectEncode", "PackNormalOctRectEncode", "Wrap")] == [
         "decode",
         "encode",

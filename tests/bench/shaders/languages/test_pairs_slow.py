@@ -15,7 +15,7 @@ pytestmark = pytest.mark.usefixtures("slang")
 
 
 def test_hundreds_of_pairs_are_found_in_seconds():
-    """The time to find them grows with their number, where names go together: it was 60 s for 300 of them."""
+    """The time grows with the number of pairs if names match; it was once 60 s for 300 pairs."""
     began = time.process_time()
     with pytest.raises(SeveralPairsError) as several:
         pair_of(many(1000, "Decode{}"), None, "mine.hlsl")
@@ -25,8 +25,8 @@ def test_hundreds_of_pairs_are_found_in_seconds():
     assert (taken := time.process_time() - began) < 5, f"{taken:.1f} s"
 
 
-def test_other_pairs_of_a_file_of_hundreds_are_told_in_seconds():
-    """They are looked for once more for each pair that is tried."""
+def test_candidates_among_hundreds_of_pairs_are_found_in_seconds():
+    """The candidates are searched again for each pair that is tried."""
     began = time.process_time()
     assert len(candidates(many(1000, "Decode{}"))) == 1000
     assert candidates(many(1000, "UnpackOf{}")) == []

@@ -1,4 +1,4 @@
-"""A translation is measured once a second compiler has given the same."""
+"""Translations, confirmed by a second compiler before they are measured."""
 
 import numpy as np
 import pytest
@@ -13,12 +13,12 @@ pytestmark = pytest.mark.usefixtures("gl", "in_this_process")
 
 @pytest.fixture(autouse=True)
 def empty_cache(tmp_path, monkeypatch):
-    """What was found before is not what these tests find."""
+    """An empty cache, so that no earlier result is found."""
     monkeypatch.setattr(kept, "folder", lambda: tmp_path / "cache")
 
 
-def test_codes_on_the_two_sides_of_a_seam_are_no_difference():
-    """-0 and 0, and normals that rounding moves across a seam, are on either side of it; a changed constant is not."""
+def test_codes_on_both_sides_of_a_seam_count_as_equal():
+    """Rounding may move a normal, or -0 and 0, across a seam; a changed constant is a difference."""
     n = directions()
 
     def folded(given):
@@ -27,5 +27,5 @@ def test_codes_on_the_two_sides_of_a_seam_are_no_difference():
     moved = n.copy()
     moved[np.abs(n[:, 2]) < 1e-7, 2] *= -1
     assert second_look._first_apart(folded, n, folded(n), folded(moved), 2.0**-16) is None
-    at = second_look._first_apart(folded, n, folded(n), folded(n) * 1.001, 2.0**-16)
-    assert at is not None and angles_deg(n[at : at + 1], n[at : at + 1])[0] == 0
+    index = second_look._first_apart(folded, n, folded(n), folded(n) * 1.001, 2.0**-16)
+    assert index is not None and angles_deg(n[index : index + 1], n[index : index + 1])[0] == 0

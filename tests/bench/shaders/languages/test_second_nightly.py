@@ -1,4 +1,4 @@
-"""A translation is measured once a second compiler has given the same."""
+"""Translations, confirmed by a second compiler before they are measured."""
 
 import pytest
 import test_second
@@ -15,8 +15,8 @@ def test_a_remainder_that_glslang_misreads_is_measured_as_hlsl_defines_it(tmp_pa
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
-def test_a_matrix_that_glslang_is_known_to_misread_is_not_measured_by_it_alone(tmp_path):
-    test_second_slow.test_what_glslang_is_known_to_misread_is_not_measured_by_it_alone(
+def test_matrix_that_glslang_misreads_is_not_measured_by_glslang_alone(tmp_path):
+    test_second_slow.test_code_that_glslang_misreads_is_not_measured_by_glslang_alone(
         tmp_path, "float2x2", "mul((float2x2)1, p)"
     )
 
@@ -36,5 +36,5 @@ def test_all_divisions_of_whole_numbers_are_noted(name, tmp_path):
     ],
     ids=["beyond whole numbers", "negative remainder"],
 )
-def test_what_else_drivers_give_as_they_like_is_refused(body, tmp_path):
-    test_second_slow.test_what_drivers_give_as_they_like_is_refused(body, tmp_path)
+def test_other_driver_dependent_results_are_refused(body, tmp_path):
+    test_second_slow.test_driver_dependent_results_are_refused(body, tmp_path)

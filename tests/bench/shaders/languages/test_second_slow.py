@@ -1,4 +1,4 @@
-"""A translation is measured once a second compiler has given the same."""
+"""Translations, confirmed by a second compiler before they are measured."""
 
 import re
 from contextlib import nullcontext
@@ -48,8 +48,8 @@ UNDEFINED = "it divides an integer by 0 for some normal; its language does not d
 
 @pytest.mark.usefixtures("hlsl", "slang")
 def test_a_whole_number_divided_by_zero_is_refused_in_a_line(tmp_path):
-    said = first_look(hlsl_of(tmp_path, "mine", "int k = int(n.x * 0.0); return n.xy + (7 / k) * 1e-12;"))["error"]
-    assert said.endswith(UNDEFINED)
+    error = first_look(hlsl_of(tmp_path, "mine", "int k = int(n.x * 0.0); return n.xy + (7 / k) * 1e-12;"))["error"]
+    assert error.endswith(UNDEFINED)
 
 
 # HLSL that glslang reads otherwise than HLSL defines, beside the same written out.
@@ -64,17 +64,17 @@ MISREAD = {
 # To glslang a remainder is an fmod.
 @pytest.mark.parametrize("name", [name for name in MISREAD if name != "remainder"])
 def test_hlsl_that_glslang_misreads_is_measured_as_hlsl_defines_it(name, tmp_path):
-    """A line names the function, the normal and the two codes; the codes are those of the same written out."""
-    misread, plain = (hlsl_of(tmp_path, f"f{at}", body) for at, body in enumerate(MISREAD[name]))
-    (said,) = first_look(misread)["notes"]
-    assert said.startswith("MineEncode of [") and " by Slang and [" in said and "by glslang; the first" in said
+    """A note names the function, the normal and both codes; Slang's code equals that of the formula written out."""
+    misread, plain = (hlsl_of(tmp_path, f"f{index}", body) for index, body in enumerate(MISREAD[name]))
+    (note,) = first_look(misread)["notes"]
+    assert note.startswith("MineEncode of [") and " by Slang and [" in note and "by glslang; the first" in note
     assert "notes" not in first_look(plain)
     assert np.allclose(codes(misread), codes(plain), atol=2e-6)
     assert not np.allclose(codes(misread, "glslang"), codes(plain), atol=0.1)
 
 
 def test_a_translation_that_naga_contradicts_is_refused(tmp_path, monkeypatch):
-    """With a fault put into the translator: the remainder of a negative number has the divisor's sign."""
+    """The translator is given a fault: the remainder of a negative number takes the divisor's sign."""
     require_runner("wgsl")
     path = tmp_path / "mine.wgsl"
     path.write_text(WGSL["remainder of floats"])
@@ -82,13 +82,13 @@ def test_a_translation_that_naga_contradicts_is_refused(tmp_path, monkeypatch):
     path.write_text(WGSL["remainder of floats"] + "\n")
     own = WgslParser._modulus
     monkeypatch.setattr(WgslParser, "_modulus", lambda self, _, x, y: own(self, "floor", x, y))
-    said = first_look(path)["error"]
-    assert "two compilers disagree: mine_encode of [" in said and " by this program and [" in said and "by naga" in said
+    line = first_look(path)["error"]
+    assert "two compilers disagree: mine_encode of [" in line and " by this program and [" in line and "by naga" in line
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
-def test_the_second_way_is_gone_once(tmp_path, monkeypatch):
-    """What it found is kept by the text; another text is looked at again."""
+def test_second_compiler_runs_once_per_text(tmp_path, monkeypatch):
+    """The result is cached by the text; another text is checked again."""
     path, ways = hlsl_of(tmp_path, "mine", "return n.xy;"), []
     own = second.second_way
     monkeypatch.setattr(second_look, "second_way", lambda *given: ways.append(given) or own(*given))
@@ -101,36 +101,36 @@ def test_the_second_way_is_gone_once(tmp_path, monkeypatch):
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
-def test_without_a_second_compiler_a_line_says_so(tmp_path, monkeypatch):
-    """It is measured as it was, and asked again the next time; glslang is a second compiler as well."""
+def test_missing_second_compiler_is_noted(tmp_path, monkeypatch):
+    """The file is still measured, and is checked again the next time; glslang also serves as a second compiler."""
     path = hlsl_of(tmp_path, "mine", "return n.xy;")
     with monkeypatch.context() as patched:
         patched.setenv("MESA_EXTENSION_OVERRIDE", "-GL_ARB_gl_spirv")
         assert "notes" not in first_look(path)
         kept.folder().rename(tmp_path / "gone")
         patched.setattr(second_look, "_by_glslang", lambda *_: None)
-        (said,) = first_look(path)["notes"]
-    assert said == "no second compiler has checked its translation: the OpenGL driver has no GL_ARB_gl_spirv"
+        (note,) = first_look(path)["notes"]
+    assert note == "no second compiler has checked its translation: the OpenGL driver has no GL_ARB_gl_spirv"
     assert "notes" not in first_look(path)
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
 @pytest.mark.parametrize("used, body", [("fmod", "fmod(p, 0.7)")])
-def test_what_glslang_is_known_to_misread_is_not_measured_by_it_alone(tmp_path, used, body):
-    """Slang refuses the silent truncation of a float3; without fmod a line says that glslang alone has read it."""
+def test_code_that_glslang_misreads_is_not_measured_by_glslang_alone(tmp_path, used, body):
+    """Slang refuses to truncate a float3 silently. Without fmod a note says that only glslang can read the file."""
     plain = hlsl_of(tmp_path, "plain", "float2 p = n; return p;").name
     path = tmp_path / plain
     path.write_text(path.read_text().replace(MATRICES, ""))
     assert "notes" not in first_look(path) and "error" not in first_look(path)
     assert "only glslang can read it; Slang's compiler cannot" in translated(path).notes
     path.write_text(path.read_text().replace("return p;", f"return {body};"))
-    said = first_look(path)["error"]
-    assert f"it uses {used}, which glslang interprets differently from HLSL" in said and "slangc does not" in said
+    error = first_look(path)["error"]
+    assert f"it uses {used}, which glslang interprets differently from HLSL" in error and "slangc does not" in error
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
-def test_what_neither_compiler_reads_is_said_by_slang(tmp_path):
-    """select() of HLSL 2021, as Unreal has it, is read by Slang alone."""
+def test_error_in_code_that_neither_compiler_reads_is_slangs(tmp_path):
+    """Only Slang reads `select()` of HLSL 2021, which Unreal uses."""
     path = hlsl_of(tmp_path, "mine", "return select(n.z >= 0.0, n.xy, n.yx);")
     assert "error" not in first_look(path)
     wrong = hlsl_of(tmp_path, "wrong", "return select(nothing, n.xy, n.yx);")
@@ -159,7 +159,7 @@ FEW = ("of a number", "a remainder without a sign", "of the lowest number", "in 
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("name", FEW)
 def test_divisions_of_whole_numbers_are_noted(name, tmp_path):
-    """By the second way, whatever the driver gives for them."""
+    """The second translation finds the division, whatever the driver returns."""
     division, is_undefined = DIVISIONS[name]
     path = tmp_path / "mine.slang"
     body = f"{SUM} int k = int(n.x * 0.0); int m = k - 1; return n.xy + float({division}) * 1e-12;"
@@ -167,9 +167,9 @@ def test_divisions_of_whole_numbers_are_noted(name, tmp_path):
     way = second.second_way(UserFile(str(path)), translated(path), tmp_path)
     given = directions()
     with pytest.raises(second.UndefinedError) if is_undefined else nullcontext():
-        made, _ = way(given, np.zeros_like(given), np.zeros(3, np.float32))
+        encoded, _ = way(given, np.zeros_like(given), np.zeros(3, np.float32))
         sums = np.abs(given).sum(axis=1, keepdims=True)
-        assert np.allclose(made[:, :2], given[:, :2] / sums, atol=1e-6)
+        assert np.allclose(encoded[:, :2], given[:, :2] / sums, atol=1e-6)
 
 
 @pytest.mark.usefixtures("slang")
@@ -181,7 +181,7 @@ def test_divisions_of_whole_numbers_are_noted(name, tmp_path):
     ],
     ids=["negative as unsigned", "not set"],
 )
-def test_what_drivers_give_as_they_like_is_refused(body, tmp_path):
-    """Slang's GLSL and its SPIR-V differ, though one driver runs both."""
-    said = first_look(hlsl_of(tmp_path, "mine", body))["error"]
-    assert "two compilers disagree: MineEncode of [" in said and "by its SPIR-V" in said
+def test_driver_dependent_results_are_refused(body, tmp_path):
+    """Slang's GLSL and SPIR-V differ although the same driver runs both."""
+    error = first_look(hlsl_of(tmp_path, "mine", body))["error"]
+    assert "two compilers disagree: MineEncode of [" in error and "by its SPIR-V" in error

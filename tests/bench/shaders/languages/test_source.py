@@ -1,4 +1,4 @@
-"""A file with what it includes: from its own folder, and each line with the place that it was written."""
+"""A file with its includes: where includes are read from, and the original place of each line."""
 
 import pytest
 from typed import Source
@@ -30,10 +30,10 @@ def test_lines_keep_their_file_and_number(tmp_path):
 
 @pytest.mark.parametrize("guard", ["#pragma once\n", ""])
 def test_a_file_is_not_included_by_itself(tmp_path, guard):
-    """Nor, with #pragma once, a second time."""
+    """With `#pragma once` a file is also included only once."""
     written(tmp_path, f'{guard}#include "mine.hlsl"\npart', "part.hlsli")
-    found = Source(written(tmp_path, '#include "part.hlsli"\n#include <part.hlsli>\nmine')).text.split()
-    assert [word for word in found if word in ("part", "mine")] == ["part"] * (1 if guard else 2) + ["mine"]
+    words = Source(written(tmp_path, '#include "part.hlsli"\n#include <part.hlsli>\nmine')).text.split()
+    assert [word for word in words if word in ("part", "mine")] == ["part"] * (1 if guard else 2) + ["mine"]
 
 
 ONCE, GUARD = "#pragma once\npart", "\n#ifndef PART\n#define PART\npart\n#endif"
@@ -41,22 +41,22 @@ ONCE, GUARD = "#pragma once\npart", "\n#ifndef PART\n#define PART\npart\n#endif"
 
 @pytest.mark.parametrize("part, times", [("part", 2), (ONCE, 2), (GUARD, 2)])
 def test_each_branch_has_what_it_includes(tmp_path, part, times):
-    """Whichever is compiled: a guard in the file keeps it from being there twice."""
+    """Every branch keeps its include, whichever is compiled; a guarded file that was read before is left out."""
     written(tmp_path, part, "part.hlsli")
     text = '#if A\n#include "part.hlsli"\n#else\n#include <part.hlsli>\n#endif\n#include "part.hlsli"'
-    found = Source(written(tmp_path, text)).text.split().count("part")
-    assert found == times + 1
+    count = Source(written(tmp_path, text)).text.split().count("part")
+    assert count == times + 1
     assert Source(written(tmp_path, '#include "part.hlsli"\n' + text)).text.split().count("part") == (
         1 if part != "part" else times + 2
     )
 
 
-def test_a_guard_is_no_branch(tmp_path):
-    """What a guarded file includes is there for those behind it as well: a library is read once, not once a path."""
-    for at in range(30):
-        inner = f'#include "{at + 1}.hlsli"\n' * 2 if at < 29 else "part"
-        guard = f"#ifndef G{at}\n#define G{at}\n{inner}\n#endif" if at % 2 else f"#pragma once\n{inner}"
-        written(tmp_path, guard, f"{at}.hlsli")
+def test_include_guard_is_not_a_branch(tmp_path):
+    """Later files also see the includes of a guarded file, so a library is read once, not once per path."""
+    for number in range(30):
+        inner = f'#include "{number + 1}.hlsli"\n' * 2 if number < 29 else "part"
+        guard = f"#ifndef G{number}\n#define G{number}\n{inner}\n#endif" if number % 2 else f"#pragma once\n{inner}"
+        written(tmp_path, guard, f"{number}.hlsli")
     assert Source(written(tmp_path, '#include "0.hlsli"\n#include "7.hlsli"')).text.split().count("part") == 1
 
 
@@ -75,8 +75,8 @@ def test_a_list_of_macros_is_included_as_often_as_it_is_asked_for(tmp_path):
         ("Packages/Common.hlsl", "is not next to mine.hlsl"),
     ],
 )
-def test_what_lies_elsewhere_is_not_read(tmp_path, name, why):
-    """It becomes an #error, which does no harm in a branch that is left out."""
+def test_files_elsewhere_are_not_read(tmp_path, name, why):
+    """Such an include becomes an #error, which is harmless in an inactive branch."""
     written(tmp_path, "secret", "outside.hlsli")
     folder = tmp_path / "folder"
     (folder / ".git").mkdir(parents=True)
@@ -86,8 +86,8 @@ def test_what_lies_elsewhere_is_not_read(tmp_path, name, why):
     assert source.explained(2, "#error :").startswith(f"{folder / 'mine.hlsl'}:2: {name} {why}")
 
 
-def test_a_macro_in_place_of_a_file_is_none(tmp_path):
-    """Some engines have no marks around the name of a file."""
+def test_macro_is_not_accepted_as_an_included_file(tmp_path):
+    """Some engines write file names without quotation marks."""
     written(tmp_path, "int part;", "part.hlsli")
     source = Source(written(tmp_path, "#define FILE <part.hlsli>\n#include FILE\n#include part.hlsli"))
     assert source.text == "#define FILE <part.hlsli>\n#error not read\nint part;\n"
@@ -107,7 +107,7 @@ def test_an_include_in_disguise_is_refused(tmp_path):
     ],
 )
 def test_a_line_that_goes_on_is_read_as_one(tmp_path, text, lines):
-    """As compilers read it, also behind spaces; the lines behind it keep their numbers."""
+    """As in compilers, spaces may follow the backslash; later lines keep their numbers."""
     written(tmp_path, "int part;", "part.hlsli")
     assert Source(written(tmp_path, text)).text.splitlines() == lines
 
@@ -129,8 +129,8 @@ def test_comments_leave_every_column_where_it_is():
         ("a /* b /* */", "a /* b /* */"),
     ],
 )
-def test_comments_of_wgsl_are_its_own(text, left):
-    """One may stand in another, and a line ends where it ends; one that is not closed stays."""
+def test_wgsl_comments_follow_their_own_rules(text, left):
+    """Comments can be nested, a backslash does not continue a line, and an unclosed comment stays."""
     assert bare(text, is_wgsl=True) == left
 
 

@@ -1,4 +1,4 @@
-"""How users' files are read: macros, preludes, folders of includes and languages, as a part of their names."""
+"""Settings for reading users' files, given after the file name: macros, preludes, include folders and languages."""
 
 import json
 

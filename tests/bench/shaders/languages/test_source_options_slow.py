@@ -1,4 +1,4 @@
-"""How users' files are read: macros, preludes, folders of includes and languages, as a part of their names."""
+"""Settings for reading users' files, given after the file name: macros, preludes, include folders and languages."""
 
 import json
 
@@ -34,13 +34,13 @@ def test_macros_and_preludes_are_read_first(tmp_path, mine):
 
 
 @pytest.mark.usefixtures("gl", "slang")
-def test_a_layout_says_it_behind_the_name(mine):
-    """Its files lie in the layout's folder or below it."""
+def test_layout_accepts_settings_after_the_file_name(mine):
+    """The files must be in the layout's folder or below it."""
     (mine.parent / "pre.hlsl").write_text("#define SCALE 1.0\n")
     layout, text = mine.parent / "mine.toml", OWN_LAYOUT.replace('"octahedral"', '"mine.hlsl:prelude=pre.hlsl"')
     layout.write_text(text)
-    (found,) = layouts_named(str(layout))
-    assert found.encoding.name == "mine.hlsl"
+    (parsed,) = layouts_named(str(layout))
+    assert parsed.encoding.name == "mine.hlsl"
     layout.write_text(text.replace("=pre", "=../pre"))
     with pytest.raises(UsageError, match="is not in the layout's folder"):
         layouts_named(str(layout))
@@ -56,7 +56,7 @@ def test_a_layout_says_it_behind_the_name(mine):
     ],
     ids=lambda command: command[0],
 )
-def test_every_command_takes_them(run, mine, tmp_path, monkeypatch, command):
+def test_every_command_accepts_macros(run, mine, tmp_path, monkeypatch, command):
     monkeypatch.chdir(tmp_path)
     status, _, err = run(*command, str(mine), "-D", "SCALE=1.0", "-o", "out")
     assert status == 0, err
@@ -64,12 +64,12 @@ def test_every_command_takes_them(run, mine, tmp_path, monkeypatch, command):
 
 @pytest.mark.usefixtures("gl", "slang")
 def test_rows_say_what_they_were_read_with(run, mine, tmp_path):
-    """Another macro is another row; workers are sent the same at night."""
+    """Each macro value gives another row; the nightly test sends the same to workers."""
     rows_by_macros(run, mine, tmp_path)
 
 
 def rows_by_macros(run, mine, tmp_path) -> tuple:
-    """What is asked of `quality`, and the mean angle where a macro is 1."""
+    """Return the arguments of `quality`, and the mean angle with the macro set to 1."""
     library = tmp_path / "library"
     library.mkdir()
     (library / "half.hlsl").write_text("#define SCALE (HALF)\n")

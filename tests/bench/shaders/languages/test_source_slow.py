@@ -1,4 +1,4 @@
-"""A file with what it includes: from its own folder, and each line with the place that it was written."""
+"""A file with its includes: where includes are read from, and the original place of each line."""
 
 import contextlib
 import time
@@ -12,8 +12,8 @@ from normalbench.bench.ground.output.errors import UsageError
 
 @pytest.mark.parametrize("part", ["", "x\n", "\n" * 10**5, "y" * 10**6])
 def test_a_bomb_of_includes_is_refused_at_once(tmp_path, part):
-    for at in range(40):
-        written(tmp_path, part + f'#include "{at + 1}.hlsli"\n' * 2, f"{at}.hlsli")
+    for number in range(40):
+        written(tmp_path, part + f'#include "{number + 1}.hlsli"\n' * 2, f"{number}.hlsli")
     written(tmp_path, "z", "40.hlsli")
     began = time.process_time()
     with pytest.raises(UsageError, match=r"with its includes|are included more than"):
@@ -23,7 +23,7 @@ def test_a_bomb_of_includes_is_refused_at_once(tmp_path, part):
 
 @pytest.mark.parametrize("text", ["/* " * 10**6, '\\"' * 10**6, '"' * 10**6, "#include" * 10**5, " " * 10**6 + "#"])
 def test_reading_takes_as_long_as_the_text(tmp_path, text):
-    """No text makes it look at a letter again and again; it is read before anything limits it."""
+    """No text is scanned repeatedly; reading happens before any limit applies."""
     path = written(tmp_path, text)
     began = time.process_time()
     with contextlib.suppress(UsageError):
@@ -32,7 +32,7 @@ def test_reading_takes_as_long_as_the_text(tmp_path, text):
 
 
 def test_includes_are_nested_no_deeper_than_can_be_read(tmp_path):
-    for at in range(2000):
-        written(tmp_path, f'#include "{at + 1}.hlsli"', f"{at}.hlsli")
+    for number in range(2000):
+        written(tmp_path, f'#include "{number + 1}.hlsli"', f"{number}.hlsli")
     with pytest.raises(UsageError, match="nested too deep"):
         Source(tmp_path / "0.hlsli")

@@ -1,4 +1,4 @@
-"""Users' files in HLSL and Slang in every command, and what is wrong with one said in a line that spares the others."""
+"""Users' HLSL and Slang files in every command, and one-line errors that do not affect other files."""
 
 import json
 import subprocess
@@ -34,13 +34,13 @@ QUICK = ("--storage", "rg8", "--normals", "hemisphere", "--backend", "glsl", "--
 
 
 def changed(code: str) -> str:
-    """MINE with another end of its encoder."""
+    """Return MINE with another end of its encoder."""
     return MINE.replace("return float2(p.x + p.y, p.x - p.y);", code)
 
 
 @pytest.fixture(autouse=True)
 def _here(tmp_path, monkeypatch):
-    """Files are named without the folder of a test, which is another one in each run: what was translated is kept."""
+    """The test's folder as working directory, so that translations cached by file name are reused in each run."""
     monkeypatch.chdir(tmp_path)
 
 
@@ -49,7 +49,7 @@ def written(folder, text, name) -> str:
     return name if folder == Path.cwd() else str(folder / name)
 
 
-def test_of_several_pairs_each_is_measured(run, tmp_path, ending):
+def test_each_of_several_pairs_is_measured(run, tmp_path, ending):
     path = written(tmp_path, MINE + MINE.replace("Normal(", "NormalOct("), f"mine.{ending}")
     _, out, _ = run("quality", "--encoding", path, *QUICK)
     assert {row["encoding"] for row in json.loads(out)} == {f"mine.{ending}:EncodeNormal{end}" for end in ("", "Oct")}
@@ -61,7 +61,7 @@ def test_of_several_pairs_each_is_measured(run, tmp_path, ending):
 
 
 @pytest.mark.usefixtures("hlsl")
-def test_names_of_glsl_name_the_encoding(run, tmp_path):
+def test_glsl_style_function_names_name_the_encoding(run, tmp_path):
     path = written(
         tmp_path, MINE.replace("EncodeNormal", "diamond_encode").replace("DecodeNormal", "diamond_decode"), "x.hlsl"
     )
@@ -71,12 +71,12 @@ def test_names_of_glsl_name_the_encoding(run, tmp_path):
 
 @pytest.mark.usefixtures("hlsl")
 def test_codes_in_0_to_1_are_stored_as_they_are(run, tmp_path):
-    """What engines return is what an unsigned storage holds; a column says so in rows, and doctor in a line."""
+    """An unsigned storage holds the returned value itself; rows say so in a column, and `doctor` in a line."""
     text = changed("return float2(p.x + p.y, p.x - p.y) * 0.5 + 0.5;").replace(
         "float2 p = float2(e", "e = e * 2.0 - 1.0; float2 p = float2(e"
     )
-    one, other = written(tmp_path, MINE, "signed.hlsl"), written(tmp_path, text, "unsigned.hlsl")
-    _, out, err = run("quality", "--encoding", f"{one},{other}", *QUICK)
+    signed, other = written(tmp_path, MINE, "signed.hlsl"), written(tmp_path, text, "unsigned.hlsl")
+    _, out, err = run("quality", "--encoding", f"{signed},{other}", *QUICK)
     rows = json.loads(out)
     first, second = (row["angle_mean_deg"] for row in rows)
     assert first == pytest.approx(second, rel=1e-6)
@@ -85,19 +85,19 @@ def test_codes_in_0_to_1_are_stored_as_they_are(run, tmp_path):
     assert "are in [0, 1]; every storage holds them unchanged" in out
 
 
-def test_the_way_to_a_signed_number_and_back_moves_no_integer():
-    """docs/your-encoding.md: at most 2^-26, which is less than half a step of any storage by far."""
-    half, one = np.float32(0.5), np.float32(1)
+def test_conversion_to_signed_and_back_keeps_every_integer():
+    """docs/your-encoding.md states an error of at most 2^-26, far below half a step of any storage."""
+    half, unity = np.float32(0.5), np.float32(1)
     c = np.concatenate(
         [np.arange(2**bits) / (2**bits - 1) for bits in (5, 8, 10, 11, 12, 16)] + [np.linspace(0, 1, 10**6)]
     )
     c = c.astype(np.float32)
-    back = (c * 2 - one) * half + half
+    back = (c * 2 - unity) * half + half
     assert back.dtype == np.float32 and np.abs(back - c.astype(np.float64)).max() <= 2**-26
     for bits in (5, 8, 10, 11, 12, 16):
         whole = np.arange(2**bits)
-        at = np.float32(whole / (2**bits - 1))
-        assert np.array_equal(np.rint(((at * 2 - one) * half + half) * np.float32(2**bits - 1)), whole)
+        scaled = np.float32(whole / (2**bits - 1))
+        assert np.array_equal(np.rint(((scaled * 2 - unity) * half + half) * np.float32(2**bits - 1)), whole)
 
 
 def test_codes_in_0_to_1_are_told_from_others():
@@ -107,14 +107,14 @@ def test_codes_in_0_to_1_are_told_from_others():
     assert not is_unit(abs(n) * [1, 1, 1] - [0, 0, 0.2])
 
 
-def test_a_wrong_file_alone_is_one_line(run, tmp_path, ending):
+def test_single_invalid_file_is_a_one_line_error(run, tmp_path, ending):
     path = written(tmp_path, changed("\n return n.xy * strange;"), f"mine.{ending}")
     status, out, err = run("quality", "--encoding", path, *QUICK)
     assert (status, out) == (2, "") and err.count("\n") == 1 and f"{path}:5:16: " in err, err
 
 
 @pytest.mark.usefixtures("hlsl")
-def test_a_twin_next_to_it_is_measured_by_jax(run, tmp_path):
+def test_python_twin_of_a_file_is_measured_by_jax(run, tmp_path):
     path = written(tmp_path, MINE, "mine.hlsl")
     written(tmp_path, HALF_OCTAHEDRAL, "mine.py")
     _, out, _ = run("quality", "--encoding", path, *QUICK[:4], *QUICK[6:])
@@ -122,8 +122,8 @@ def test_a_twin_next_to_it_is_measured_by_jax(run, tmp_path):
     assert by_jax == pytest.approx(by_gl, rel=1e-3)
 
 
-def test_rows_kept_from_before_know_what_a_file_includes(tmp_path):
-    """An interrupted command measures anew where an include or the twin is another."""
+def test_cached_rows_depend_on_includes_and_twin(tmp_path):
+    """An interrupted command measures again if an include or the twin has changed."""
     path, seen = written(tmp_path, '#include "part.hlsli"\n' + MINE, "mine.hlsl"), set()
     for name, text in (
         ("part.hlsli", "// one"),
@@ -139,8 +139,8 @@ def test_rows_kept_from_before_know_what_a_file_includes(tmp_path):
 def test_a_shader_becomes_functions_of_other_names():
     shader = "#version 430\nlayout(location = 0) in vec3 _8;\nlayout(location = 0) out vec2 _9;\n"
     shader += "void main()\n{\n    _9 = _8.xy;\n}\n"
-    made = "vec2 p_main(vec3 p_0, vec3 view)\n{\n    vec2 p_out;\n    p_out = p_0.xy;\n    return p_out;\n}\n"
-    assert plain(shader, "p", "vec3") == made
+    expected = "vec2 p_main(vec3 p_0, vec3 view)\n{\n    vec2 p_out;\n    p_out = p_0.xy;\n    return p_out;\n}\n"
+    assert plain(shader, "p", "vec3") == expected
     with pytest.raises(NotPlainError, match="a texture or a constant buffer"):
         plain("layout(binding = 0) uniform sampler2D _7;\n" + shader, "p", "vec3")
 
@@ -154,7 +154,7 @@ def test_nothing_heavy_is_imported_to_translate():
 
 @pytest.mark.parametrize("version", ["", "#define __HLSL_VERSION 2016\n"])
 def test_the_version_of_hlsl_is_known(run, ending, version):
-    """Engines ask for it before they use what it brought; a file may still say another one."""
+    """Engines check the version before they use newer features; a file may still set another version."""
     Path(f"mine.{ending}").write_text(
         f"{version}#ifdef __HLSL_VERSION\n#if __HLSL_VERSION < 2021\n{MINE}\n#endif\n#endif\n"
     )

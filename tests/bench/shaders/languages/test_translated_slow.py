@@ -1,4 +1,4 @@
-"""Users' files in HLSL and Slang in every command, and what is wrong with one said in a line that spares the others."""
+"""Users' HLSL and Slang files in every command, and one-line errors that do not affect other files."""
 
 import itertools
 import json
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("gl")
 _here = test_translated._here
 
 
-def test_a_missing_compiler_is_said_with_what_to_install(run, tmp_path, monkeypatch):
+def test_missing_compiler_error_says_what_to_install(run, tmp_path, monkeypatch):
     monkeypatch.setattr(tools, "path_of", lambda tool: (_ for _ in ()).throw(tools.MissingError(tools.MISSING[tool])))
     for ending in ("hlsl", "slang"):
         status, out, err = run("quality", "--encoding", written(tmp_path, MINE, f"mine.{ending}"), *QUICK)
@@ -28,7 +28,7 @@ def test_a_missing_compiler_is_said_with_what_to_install(run, tmp_path, monkeypa
 
 
 @pytest.mark.usefixtures("hlsl")
-def test_where_the_cache_cannot_be_written_a_folder_of_the_process_serves(run, tmp_path, monkeypatch):
+def test_process_folder_replaces_an_unwritable_cache(run, tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / written(tmp_path, "a file", "cache")))
     status, out, _ = run("quality", "--encoding", written(tmp_path, MINE, "mine.hlsl"), *QUICK)
     assert status == 0 and json.loads(out)[0]["angle_mean_deg"]
@@ -37,14 +37,14 @@ def test_where_the_cache_cannot_be_written_a_folder_of_the_process_serves(run, t
 @pytest.mark.usefixtures("hlsl")
 def test_a_damaged_translation_is_made_again(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    made = translated.translated(UserFile(str(written(tmp_path, MINE, "mine.hlsl")))).glsl(False)
-    text = made.read_text()
-    made.write_text("damaged")
+    path = translated.translated(UserFile(str(written(tmp_path, MINE, "mine.hlsl")))).glsl(False)
+    text = path.read_text()
+    path.write_text("damaged")
     assert translated.translated(UserFile(str(tmp_path / "mine.hlsl"))).glsl(False).read_text() == text
 
 
-def test_hints_to_compilers_keep_nothing_from_being_written(run, ending):
-    """[unroll] and [branch], which SPIRV-Cross writes as macros under a condition."""
+def test_compiler_hints_do_not_prevent_translation(run, ending):
+    """SPIRV-Cross writes [unroll] and [branch] as conditional macros."""
     loop = "float s = 0; [unroll] for (int i = 0; i < 2; i++) s += p[i];"
     Path(f"mine.{ending}").write_text(changed(f"{loop} [branch] if (n.z < 2) return float2(s, p.x - p.y); return p;"))
     status, out, err = run(
@@ -69,7 +69,7 @@ def test_a_file_is_measured_rendered_and_costed(run, tmp_path, ending):
 
 
 @pytest.mark.usefixtures("hlsl")
-def test_a_run_and_gates_take_it(run, tmp_path):
+def test_run_and_gates_accept_a_users_file(run, tmp_path):
     written(tmp_path, MINE, "mine.hlsl")
     written(tmp_path, '[[gate]]\nencoding = "mine.hlsl"\nstorage = "rg8"\nnormals = "hemisphere"\ncount = 4096\n'
             'angle_mean_deg = "at most 0.3"\n', "gates.toml")  # fmt: skip
@@ -92,22 +92,22 @@ float3 unit(float3 v) {{ if (dot(v, v) > TINY) return v * rsqrt(dot(v, v)); retu
 
 
 def in_hlsl(name: str) -> str:
-    """An encoding of the catalogue, word for word."""
+    """Return an encoding of the catalogue, word for word in HLSL."""
     text = ENCODINGS[name].glsl.read_text().replace(f"{name}_", f"own_{name}_")
     return OF_VEC + re.sub(r"\bvec([23])", r"float\1", re.sub("#include.*", "", text))
 
 
 @pytest.mark.usefixtures("radv")
 def test_the_same_steps_cost_the_same_instructions(run, ending, tmp_path):
-    """To the instruction, on two generations of GPUs."""
+    """Counts are equal on two generations of GPUs."""
     # Slang is given HLSL's text, and takes a second for each.
     names = PLAIN if ending == "hlsl" else PLAIN[:2]
     files = [written(tmp_path, in_hlsl(name), f"{name}.{ending}") for name in names]
     row = ("--isa", "--stage", "fragment", "--family", "polaris10,navi21", "--storage", "rg8", "--format", "json")
     _, out, _ = run("cost", "--encoding", ",".join([*files, *names]), *row)
-    found = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in json.loads(out)}
+    counts = {(row["encoding"], row["operation"], row["family"]): row["instructions"] for row in json.loads(out)}
     for name, operation, family in itertools.product(names, ("encode", "decode"), ("polaris10", "navi21")):
-        own, glsl = (found[each, operation, family] for each in (f"own_{name}", name))
+        own, glsl = (counts[each, operation, family] for each in (f"own_{name}", name))
         assert own == glsl, f"{name} {operation} on {family}: {own} instructions, {glsl} in GLSL"
 
 
@@ -137,16 +137,16 @@ WRONG = {
 }
 
 
-def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, ending):
-    """One line names the user's file, and the others' rows are measured."""
+def test_invalid_files_do_not_affect_the_others(run, tmp_path, ending):
+    """One line names each invalid file, and the rows of the others are measured."""
     text = {name: text for name, (text, _) in WRONG.items()}
     text |= {"large": "// " + "x" * 10_000_000 + "\n" + MINE, "good": MINE}
     files = [str(tmp_path / written(tmp_path, each, f"{name}.{ending}")) for name, each in text.items()]
     status, out, err = run("quality", "--encoding", ",".join([*files, "hemi_octahedral"]), *QUICK)
     measured = {row["encoding"] for row in json.loads(out)}
     assert status == 0 and measured == {f"large.{ending}", f"good.{ending}", "hemi_octahedral"}
-    said = [line for line in err.splitlines() if "left out: " in line]
-    assert len(said) == len(WRONG) and "Traceback" not in err
+    lines = [line for line in err.splitlines() if "left out: " in line]
+    assert len(lines) == len(WRONG) and "Traceback" not in err
     for name, (_, why) in WRONG.items():
-        (line,) = [line for line in said if f"/{name}.{ending}" in line.split(": ")[2]]
+        (line,) = [line for line in lines if f"/{name}.{ending}" in line.split(": ")[2]]
         assert re.search(why, line), line

@@ -29,7 +29,7 @@ def two(tmp_path):
     return f"{tmp_path / 'enc.hlsl'}:PackDir,{tmp_path / 'dec.hlsl'}:UnpackDir"
 
 
-def test_two_names_in_a_row_are_one(two):
+def test_encoder_and_decoder_in_a_row_are_one_name(two):
     assert file_names(f"octahedral,{two},mine.hlsl:A:B,xyz") == ("octahedral", two, "mine.hlsl:A:B", "xyz")
     assert file_names("a.hlsl:A, b.hlsl:B,c.hlsl:C,d.hlsl:D") == ("a.hlsl:A, b.hlsl:B", "c.hlsl:C,d.hlsl:D")
     assert file_names("a.hlsl:A:define=X,b.hlsl:B")[0] == "a.hlsl:A:define=X"

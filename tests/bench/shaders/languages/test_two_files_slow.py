@@ -10,10 +10,10 @@ two = test_two_files.two
 
 
 @pytest.mark.usefixtures("slang")
-def test_what_both_define_does_not_clash(two):
-    found = translated(two)
-    assert found.name == "enc.hlsl:PackDir:dec.hlsl" and found.components == 2
-    assert [name for name, _ in found.functions] == ["PackDir", "UnpackDir"]
+def test_shared_definitions_of_two_files_do_not_clash(two):
+    translation = translated(two)
+    assert translation.name == "enc.hlsl:PackDir:dec.hlsl" and translation.components == 2
+    assert [name for name, _ in translation.functions] == ["PackDir", "UnpackDir"]
     places = {line.path.name for line in Source(two).lines}
     assert places == {"enc.hlsl", "dec.hlsl", "common.hlsl"}
 

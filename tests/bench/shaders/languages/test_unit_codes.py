@@ -1,4 +1,4 @@
-"""Encoders whose codes are in [0, 1]: one rule for every language, and stored as an engine writes them."""
+"""Encoders whose codes are in [0, 1], recognised alike in every language and stored as an engine writes them."""
 
 import json
 
@@ -52,7 +52,7 @@ SPHERE = ("--normals", "sphere", "--count", "65536", "--format", "json")
 
 @pytest.fixture(autouse=True)
 def _here(tmp_path, monkeypatch):
-    """What was translated is kept by the name of its file."""
+    """Files in the working directory, because translations are cached by file name."""
     monkeypatch.chdir(tmp_path)
     for ending, text in TEXTS.items():
         (tmp_path / f"unit.{ending}").write_text(text)
@@ -76,7 +76,7 @@ def test_every_language_gives_the_row_of_the_catalogue(run, ending, request):
 
 @pytest.mark.parametrize("name", ["rg8_snorm", "rg16_snorm", "rg16f", "rgba32f"])
 def test_a_signed_storage_of_unsigned_numbers_keeps_them(name):
-    """It comes back within half a step, and there are as many numbers as texels in [0, 1]."""
+    """Numbers return within half a step, and [0, 1] has as many numbers as texels."""
     storage = of_unit(STORAGES[name])
     codec = Codec(ENCODINGS["octahedral"], storage)
     c = np.linspace(-1, 1, 1001, dtype=np.float32)

@@ -1,4 +1,4 @@
-"""Encoders whose codes are in [0, 1]: one rule for every language, and stored as an engine writes them."""
+"""Encoders whose codes are in [0, 1], recognised alike in every language and stored as an engine writes them."""
 
 import json
 
@@ -24,7 +24,7 @@ def decode(e, view):
 
 
 def test_signed_and_float_targets_hold_what_the_engine_writes(run):
-    """Of the same bits half are used: 1 dB is a sixth of a bit, and twice the angle is one bit."""
+    """Only half of the codes are used: 1 dB is a sixth of a bit, and twice the angle is one bit."""
     rows = figures(run, "unit.glsl,octahedral", "rg8,rg8_snorm,rg16f,rg16_snorm", "--backend", "glsl")
     means = {name: row["angle_mean_deg"] for name, row in rows.items()}
     assert means["dir", "rg16f"] == pytest.approx(0.0296, rel=0.01)
@@ -35,18 +35,18 @@ def test_signed_and_float_targets_hold_what_the_engine_writes(run):
 
 
 def test_a_layout_holds_what_the_engine_writes(run):
-    """Of an image the normals lose about a bit in signed and float targets, and nothing in unsigned ones."""
+    """In an image, normals lose about one bit in signed and float targets, and nothing in unsigned targets."""
     storages = "rg8,rg8_snorm,rg16f"
     words = ("--size", "160x100", "--repeats", "1", "--scene", "room", "--format", "json")
     status, out, err = run("render", "--encoding", "unit.glsl,octahedral", "--storage", storages, *words)
-    found = {(row["encoding"], row["storage"]): row["normal_psnr_db"] for row in json.loads(out)}
+    psnr_db = {(row["encoding"], row["storage"]): row["normal_psnr_db"] for row in json.loads(out)}
     assert status == 0, err
-    loss = {storage: found["octahedral", storage] - found["dir", storage] for storage in storages.split(",")}
+    loss = {storage: psnr_db["octahedral", storage] - psnr_db["dir", storage] for storage in storages.split(",")}
     # A room has few directions: more or less than 6 dB is chance.
     assert abs(loss["rg8"]) < 0.05 and 4 < loss["rg8_snorm"] < 12 and 4 < loss["rg16f"] < 12, loss
 
 
-def test_a_twin_of_such_codes_is_measured_the_same(run, tmp_path):
+def test_python_twin_of_unit_codes_gives_the_same_figures(run, tmp_path):
     (tmp_path / "unit.py").write_text(TWIN)
     for storage in ("rg8", "rg16f", "rg16_snorm"):
         status, out, err = run("quality", "--encoding", "unit.glsl", "--storage", storage, *SPHERE)
@@ -56,7 +56,7 @@ def test_a_twin_of_such_codes_is_measured_the_same(run, tmp_path):
 
 
 @pytest.mark.parametrize("storage", ["rg8_snorm", "rg16f"])
-def test_code_of_such_an_encoder_is_verified(run, storage):
-    """What `code` writes gives the texels that were measured."""
+def test_written_code_of_unit_codes_is_verified(run, storage):
+    """The code that `code` writes gives the measured texels."""
     status, out, err = run("code", "unit.glsl", "--storage", storage, "--to", "c")
     assert status == 0 and "dir" in out, err

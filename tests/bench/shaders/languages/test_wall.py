@@ -1,4 +1,4 @@
-"""The wall around the process that translates a file, where the judge of its text is taken out."""
+"""The sandbox of the process that translates a file, tested with the text filter disabled."""
 
 import json
 import subprocess
@@ -18,8 +18,8 @@ MINE = (
 )
 
 
-def test_a_translation_is_kept_by_what_judged_it():
-    """Else what an earlier judge let through would be measured for ever."""
+def test_translation_cache_depends_on_the_text_filter():
+    """Otherwise a text that an earlier check accepted would be measured forever."""
     names = {f"{path.parent.name}/{path.name}" for path in translated.sources_of_this()}
     assert {"compilers/text.py", "compilers/lines.py", "languages/slang.py", "translator/tree.py"} <= names
 
@@ -41,8 +41,8 @@ SAID = {
 
 
 @pytest.mark.parametrize("name", SAID)
-def test_what_a_misled_process_says_writes_nothing_elsewhere(tmp_path, monkeypatch, name):
-    """A compiler that a file has taken over may say anything: it is one line, and no path."""
+def test_answer_of_a_compromised_process_writes_nothing_elsewhere(tmp_path, monkeypatch, name):
+    """A compromised compiler may print anything; the answer becomes one line and is never used as a path."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     path = tmp_path / "mine.hlsl"
     path.write_text(MINE)
@@ -54,10 +54,10 @@ def test_what_a_misled_process_says_writes_nothing_elsewhere(tmp_path, monkeypat
     assert not (tmp_path / "out").exists()
 
 
-def test_what_it_says_is_one_line(tmp_path, monkeypatch):
+def test_answer_of_the_process_is_one_line(tmp_path, monkeypatch):
     path = tmp_path / "mine.hlsl"
     path.write_text(MINE)
-    said = json.dumps({"error": "a\x1b[31m\nnormalbench: all is well"})
-    monkeypatch.setattr(translated.children, "finished", lambda *_: subprocess.CompletedProcess([], 0, said, ""))
+    stdout = json.dumps({"error": "a\x1b[31m\nnormalbench: all is well"})
+    monkeypatch.setattr(translated.children, "finished", lambda *_: subprocess.CompletedProcess([], 0, stdout, ""))
     with pytest.raises(UsageError, match=r"^a \[31m normalbench: all is well$"):
         translated.translated(UserFile(str(path)))

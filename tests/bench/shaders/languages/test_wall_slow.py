@@ -1,4 +1,4 @@
-"""The wall around the process that translates a file, where the judge of its text is taken out."""
+"""The sandbox of the process that translates a file, tested with the text filter disabled."""
 
 import json
 import os
@@ -44,7 +44,7 @@ def wall():
 
 
 def answer(tmp_path, head="", attempt="pass", is_walled=True, code=MINE):
-    """What the process says of a file in a folder of its own, with the fault."""
+    """Return the answer of the process to a file with a fault, and its output."""
     (tmp_path / "own").mkdir(exist_ok=True)
     (tmp_path / "work").mkdir(exist_ok=True)
     path = tmp_path / "own" / "mine.hlsl"
@@ -58,15 +58,15 @@ def answer(tmp_path, head="", attempt="pass", is_walled=True, code=MINE):
 
 @pytest.mark.usefixtures("wall")
 @pytest.mark.parametrize("way", ["#include", "import", "__include"])
-def test_an_include_that_nobody_judged_reads_nothing(tmp_path, way):
-    """Without the wall the same file is read: the fault is one."""
+def test_unchecked_include_cannot_read_a_file(tmp_path, way):
+    """Without the sandbox the file is read, so the fault is real."""
     note = tmp_path / "note.slang"
     note.write_text(("implementing mine;\n" if way == "__include" else "") + NOTE)
     head = f'{way} "{note}"' + ("\n" if way == "#include" else ";\n")
     open_answer, _ = answer(tmp_path, head, is_walled=False)
-    walled_answer, said = answer(tmp_path, head)
+    walled_answer, printed = answer(tmp_path, head)
     assert way == "__include" or "1.2345" in open_answer["texts"][0], open_answer
-    assert "error" in walled_answer and "1.2345" not in said and "secret() {" not in said, walled_answer
+    assert "error" in walled_answer and "1.2345" not in printed and "secret() {" not in printed, walled_answer
 
 
 ATTEMPTS = {
@@ -91,23 +91,23 @@ def test_code_in_the_process_opens_writes_and_starts_nothing(tmp_path, name):
         tried = type(error).__name__
     print("tried: " + tried, file=sys.stderr)
     """
-    _, said = answer(tmp_path, attempt=telling.strip(), code=MINE.replace(" * secret()", ""))
-    assert "tried: PermissionError" in said or "tried: CalledProcessError" in said, said
-    assert "tried: done" not in said and "root:" not in said and not (tmp_path / "written").exists()
+    _, printed = answer(tmp_path, attempt=telling.strip(), code=MINE.replace(" * secret()", ""))
+    assert "tried: PermissionError" in printed or "tried: CalledProcessError" in printed, printed
+    assert "tried: done" not in printed and "root:" not in printed and not (tmp_path / "written").exists()
 
 
 @pytest.mark.usefixtures("wall")
 def test_no_variable_that_compilers_do_not_need_is_left_in_the_process(tmp_path, monkeypatch):
-    """A token of somebody's, for instance."""
+    """Access tokens, for example, are removed."""
     monkeypatch.setenv("SOME_TOKEN", "1")
     monkeypatch.setenv("PYPI_TOKEN", "1")
     attempt = "import os; print('variables: ' + ' '.join(os.environ), file=sys.stderr)"
-    _, said = answer(tmp_path, attempt=attempt, code=MINE.replace(" * secret()", ""))
-    assert "variables: " in said and "PATH" in said and "_TOKEN" not in said, said
+    _, printed = answer(tmp_path, attempt=attempt, code=MINE.replace(" * secret()", ""))
+    assert "variables: " in printed and "PATH" in printed and "_TOKEN" not in printed, printed
 
 
 @pytest.mark.usefixtures("wall")
-def test_behind_the_wall_files_are_translated_as_before(tmp_path):
+def test_files_are_translated_inside_the_sandbox(tmp_path):
     code = MINE.replace(" * secret()", "")
     answers = [answer(tmp_path, is_walled=is_walled, code=code)[0] for is_walled in (False, True)]
     assert answers[0] == answers[1] and answers[0]["components"] == 2

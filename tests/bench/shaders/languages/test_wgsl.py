@@ -1,4 +1,4 @@
-"""Users' encoders in WGSL: the catalogue's figures, by OpenGL and by wgpu, and one line for what is wrong."""
+"""Users' encoders in WGSL: the catalogue's figures by OpenGL and by wgpu, and one-line errors."""
 
 import json
 import re
@@ -46,7 +46,7 @@ def written(folder, text, name="mine.wgsl"):
 
 
 def test_an_encoder_in_wgsl_has_the_figures_of_the_catalogues(run, tmp_path):
-    """The octahedral map in WGSL's words is the catalogue's, digit by digit where roots are rounded alike."""
+    """The octahedral map written in WGSL agrees with the catalogue's to a relative 1e-6."""
     status, out, err = run("quality", "--encoding", f"{written(tmp_path, MINE)},octahedral", *QUICK)
     assert status == 0, err
     mine, ours = sorted(json.loads(out), key=lambda row: row["encoding"] == "octahedral")
@@ -55,7 +55,7 @@ def test_an_encoder_in_wgsl_has_the_figures_of_the_catalogues(run, tmp_path):
 
 
 def test_the_users_own_text_by_wgpu_gives_the_codes_of_its_translation(tmp_path):
-    """The text as it was typed, compiled by naga: the functions of a codec's code call it."""
+    """The original text, compiled by naga, is called by the functions of the codec's code."""
     require_runner("wgsl")
     (codec,) = codecs_named(written(tmp_path, MINE), "rgb10a2", "nearest")
     code = code_of(codec, "wgsl", "p")
@@ -67,8 +67,8 @@ def test_the_users_own_text_by_wgpu_gives_the_codes_of_its_translation(tmp_path)
     )
     assert mine.count("EncodeNormal") == 1 and mine.count("DecodeNormal") == 1
     (tmp_path / code.name).write_text(MINE + mine)
-    found = agreement(codec, "wgsl", tmp_path / code.name, code.interface)
-    assert found.holds and not found.differing, found.says
+    verdict = agreement(codec, "wgsl", tmp_path / code.name, code.interface)
+    assert verdict.holds and not verdict.differing, verdict.says
 
 
 WRONG = {
@@ -96,16 +96,16 @@ WRONG = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_what_is_wrong_is_one_line_and_status_2(run, tmp_path, name):
-    """The user's file is named, with line and column where they are known."""
-    text, said = WRONG[name]
+def test_invalid_file_is_a_one_line_error_with_status_2(run, tmp_path, name):
+    """The error names the user's file, with the line and column if they are known."""
+    text, pattern = WRONG[name]
     status, out, err = run("quality", "--encoding", written(tmp_path, text), *QUICK)
     assert (status, out) == (2, "") and err.count("\n") == 1, err
-    assert "mine.wgsl" in err and re.search(said, err), err
+    assert "mine.wgsl" in err and re.search(pattern, err), err
 
 
 def test_a_wrong_file_loses_its_own_rows_alone(run, tmp_path):
-    """The other's row is there, and the status is 0."""
+    """The other file's row is measured, and the status is 0."""
     wrong = written(tmp_path, WRONG["syntax"][0], "wrong.wgsl")
     status, out, err = run("quality", "--encoding", f"{wrong},{written(tmp_path, MINE)}", *QUICK)
     assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["mine.wgsl"]

@@ -1,4 +1,4 @@
-"""Users' encoders in WGSL: the catalogue's figures, by OpenGL and by wgpu, and one line for what is wrong."""
+"""Users' encoders in WGSL: the catalogue's figures by OpenGL and by wgpu, and one-line errors."""
 
 import json
 import re
@@ -41,7 +41,7 @@ ARRAYS = {
 
 
 def with_array(where, declared, read):
-    """MINE, with its two signs in an array."""
+    """Return MINE with its two signs in an array."""
     text = MINE
     for axis in "xy":
         text = text.replace(f"select(t, -t, n.{axis} >= 0.0)", "t * " + read.format(f"u32(n.{axis} >= 0.0)"))
@@ -51,7 +51,7 @@ def with_array(where, declared, read):
 
 
 def test_an_array_in_wgsl_has_elements_of_any_type(run, tmp_path, names=("typed matrices", "structures", "no name")):
-    """Wherever it stands, and with its type written or not: the figures of the octahedral map."""
+    """An array gives the octahedral figures wherever it is declared, with or without an explicit type."""
     files = [written(tmp_path, with_array(*ARRAYS[name]), f"{name}.wgsl") for name in names]
     status, out, err = run("quality", "--encoding", ",".join([*files, "octahedral"]), *QUICK)
     rows = json.loads(out)
@@ -78,17 +78,17 @@ def test_an_array_that_is_not_read_says_why(array, said, tmp_path):
 
 @pytest.mark.parametrize("language", ["wgsl", "hlsl", "c"])
 def test_an_encoder_in_wgsl_can_be_written_in_every_language(language, tmp_path):
-    """Its own WGSL by wgpu gives the texels that its translation gives by OpenGL: two translations that agree."""
+    """The written code gives the same texels as the OpenGL translation in each language."""
     require_runner(language)
     (codec,) = codecs_named(written(tmp_path, MINE), "rgb10a2", "nearest")
     code = code_of(codec, language, "p")
     (tmp_path / code.name).write_text(code.body)
-    found = agreement(codec, language, tmp_path / code.name, code.interface)
-    assert found.holds and not found.differing, found.says
+    verdict = agreement(codec, language, tmp_path / code.name, code.interface)
+    assert verdict.holds and not verdict.differing, verdict.says
 
 
 def test_a_variable_without_a_value_is_zero(tmp_path):
-    """GLSL leaves it undefined, so that each is written with its zero: of numbers, vectors, arrays and structures."""
+    """GLSL leaves such variables undefined, so numbers, vectors, arrays and structures are written with zeros."""
     (tmp_path / "mine.wgsl").write_text(
         "struct S { a: f32, b: vec2f }\n"
         "fn encode_normal(n: vec3f) -> vec2f { var s: S; var f: f32; var l: array<f32, 2>; var v: vec2f;\n"

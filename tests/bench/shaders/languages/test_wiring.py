@@ -1,4 +1,4 @@
-"""Functions that are given and give more than a normal and its code."""
+"""Functions that take or return more than a normal and its code."""
 
 import pytest
 from manual import ROOT
@@ -19,7 +19,7 @@ MATERIAL = "PackSurface(s.normalWS=n; s.roughness=0.25)->o1.xy:UnpackSurface(o1.
 @pytest.mark.parametrize(
     "text", ["Pack", "A::Pack(s.normalWS=n; s.roughness=0.5)->o1.xyz", "f(n.xy=e.xy; face=e.z)->(n.xy; face)", "g->xyz"]
 )
-def test_a_wiring_is_said_as_it_is_read(text):
+def test_wiring_round_trips_through_its_text(text):
     assert str(wiring_of(text)) == text
     assert wiring_of(text).is_plain == text.isalpha()
 
@@ -46,7 +46,7 @@ def test_commas_and_spaces_are_read_as_well():
         (MATERIAL.replace("=0.25", "=gone"), "is not in the form Pack(s.normal=n; s.roughness=0.5)->o1.xyz"),
     ],
 )
-def test_what_is_wired_wrongly_is_named(wiring, said):
+def test_wiring_error_is_reported_in_one_line(wiring, said):
     with pytest.raises(UsageError) as error:
         translated(f"{FORMS / 'material.hlsl'}:{wiring}")
     assert said in str(error.value) and str(error.value).count("\n") == 0

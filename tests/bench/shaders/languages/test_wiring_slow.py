@@ -1,4 +1,4 @@
-"""Functions that are given and give more than a normal and its code."""
+"""Functions that take or return more than a normal and its code."""
 
 import json
 
@@ -21,11 +21,11 @@ MEANS = {
 
 @pytest.mark.usefixtures("gl", "slang")
 def test_roughness_structures_and_out_parameters_are_bound(run):
-    """Files untouched: what is bound is found by types and names, tried, and said."""
+    """The files are unchanged; bindings are found by types and names, tried and reported."""
     words = ("--storage", "rgba8", "--normals", "sphere", "--count", "65536", "--backend", "glsl", "--format", "json")
     status, out, err = run("quality", "--encoding", ",".join(str(FORMS / name) for name in MEANS), *words)
     assert status == 0, err
-    found = sorted(row["angle_mean_deg"] for row in json.loads(out))
-    assert found == pytest.approx(sorted(MEANS.values()), abs=0.0005)
+    means = sorted(row["angle_mean_deg"] for row in json.loads(out))
+    assert means == pytest.approx(sorted(MEANS.values()), abs=0.0005)
     assert "measured: EncodeNormal(n=n)->(n.xy; face):DecodeNormal(n.xy=e.xy; face=e.z)->n" in err
     assert "EncodeGBuffer(worldNormal=n; worldPos=view; depth=0.5)->xyw:DecodeGBuffer(gb.xyw=e)->worldNormal" in err

@@ -1,4 +1,4 @@
-"""Programs read as trees and written again: meaning, comments and places are kept, in every language."""
+"""Programs read as syntax trees and written in every language, with their meaning, comments and positions."""
 
 import re
 import sys
@@ -52,7 +52,7 @@ def written(writer, source=SOURCE):
 
 
 def test_a_program_keeps_what_its_roots_need_under_one_prefix():
-    """Overloads get names of their own, a view that nothing reads goes, and what is not called goes."""
+    """Overloads get distinct names; an unused view and uncalled functions are removed."""
     text = written(GlslWriter)
     assert re.findall(r"^\w+ (\w+)\(", text, re.MULTILINE) == ["p_unit1", "p_unit2", "p_encode", "p_decode"]
     assert "view" not in text and "unused" not in text
@@ -62,16 +62,16 @@ def test_a_program_keeps_what_its_roots_need_under_one_prefix():
     "text", ["a\nb", "a\r\nb", "a\u2028b", "a\x85b", "a\fb", "a \\", "a ??/ ", "  a\nb", "a\\ " * 90]
 )
 def test_no_comment_ends_or_goes_on_where_it_should_not(text):
-    """In no language, whatever a name or a title holds."""
+    """This holds in every language, whatever text a name or a title has."""
     line = in_a_comment(text)
     assert line.isprintable() and not line.endswith(("\\", "/"))
     for language in LANGUAGES:
         lines = commented("body", language, "guard", [text]).splitlines()
-        assert all(said.startswith("//") for said in lines[: lines.index("")]), lines
+        assert all(comment.startswith("//") for comment in lines[: lines.index("")]), lines
 
 
 def test_comments_stay_where_they_were():
-    """A comment above a function, and one behind a statement, are those of the source."""
+    """The output has the source's comments above a function and after a statement."""
     text = written(GlslWriter)
     assert "// Above the function.\nvec2 p_encode(vec3 n)" in text
     assert "float sum = 0.0;  // behind it" in text
@@ -87,20 +87,20 @@ def test_comments_stay_where_they_were():
         (CWriter, "return v < 0.0f ? -1.0f : 1.0f;"),
     ],
 )
-def test_each_language_says_it_in_its_words(writer, expected):
-    """One line that each language writes otherwise than GLSL."""
+def test_each_language_uses_its_own_syntax(writer, expected):
+    """One line is typical of each language."""
     assert expected.lower() in written(writer).lower()
 
 
 def test_wgsl_chooses_by_select_and_only_changes_variables():
-    """`?:` is select with its arguments the other way round; what is assigned to is a var."""
+    """`?:` becomes `select` with swapped arguments, and assigned names become `var`."""
     text = written(WgslWriter)
     assert "return select(1.0, -1.0, v < 0.0);" in text
     assert "var sum = 0.0;" in text
     assert "for (var i = 0; i < P_STEPS - 1; i++) {" in text
 
 
-def test_c_computes_a_scalar_once_that_scales_a_vector():
+def test_c_computes_a_scalar_factor_of_a_vector_once():
     """A vector times a quotient divides once."""
     text = written(CWriter)
     assert text.count("/") - text.count("//") * 2 == 1, text
@@ -115,7 +115,7 @@ def test_a_matrix_of_columns_is_its_transpose_in_hlsl():
 
 
 def test_names_that_a_language_reserves_get_an_underscore():
-    """`sample` is a word of HLSL and of Metal, and none of GLSL's dialect here."""
+    """`line` is reserved in HLSL, but not in GLSL."""
     source = "vec2 mine_encode(vec3 n) { float line = n.x; return vec2(line); }"
     source += "vec3 mine_decode(vec2 e) { return vec3(e, 0.0); }"
     assert "float line_ = n.x;" in written(HlslWriter, source)
@@ -146,8 +146,8 @@ def test_names_that_a_language_reserves_get_an_underscore():
         ("", ""),
     ],
 )
-def test_what_cannot_be_read_is_said_with_line_and_column(source, said):
-    """One line, at the place in the text; an empty file is an empty program."""
+def test_unreadable_glsl_error_has_line_and_column(source, said):
+    """The error is one line; an empty file is an empty program."""
     if not said:
         assert read_glsl(source).functions == []
         return
@@ -157,7 +157,7 @@ def test_what_cannot_be_read_is_said_with_line_and_column(source, said):
 
 
 def test_a_power_that_no_float_holds_stays_a_call():
-    """Of numbers that are written out, 2^x is a number where a float has it."""
+    """For literal numbers 2^x becomes a number only if a float can hold it."""
     text = written(GlslWriter, SOURCE.replace("n.xy * (", "vec2(exp2(2000.0), exp2(3.0)) * ("))
     assert "vec2(exp2(2000.0), 8.0)" in text
 
@@ -176,8 +176,8 @@ fn mineDecode(e: Code) -> vec3<f32> { let z = inverseSqrt(dot(e, e)); return vec
 """
 
 
-def test_wgsl_is_read_and_said_in_glsl():
-    """Functions before those they call, splats, select, saturate, bitcast and % of floats."""
+def test_wgsl_is_translated_to_glsl():
+    """The WGSL has functions used before their definition, splats, select, saturate, bitcast and % of floats."""
     text = GlslWriter("p", {}).program(
         reduced(read_wgsl(WGSL), {"mineEncode": "encode", "mineDecode": "decode"}, "p", "mine")
     )
@@ -207,19 +207,19 @@ def test_wgsl_is_read_and_said_in_glsl():
         ("fn f(x: f32) -> f32 { return x", "; expected"),
     ],
 )
-def test_what_wgsl_has_beyond_functions_is_refused_in_a_line(source, said):
-    """Bindings and pointers are no part of an encoder."""
+def test_unsupported_wgsl_is_an_error(source, said):
+    """Bindings and pointers are not part of an encoder."""
     with pytest.raises(TranslationError, match=re.escape(said)):
         reduced(read_wgsl(source), {"f": "encode"}, "p", "")
 
 
-def test_a_loop_of_wgsl_may_break_before_what_it_continues_with():
+def test_wgsl_loop_may_break_before_its_continuing_block():
     source = "fn f(x: f32) -> f32 { var i = x; loop { if i > 3 { break; } continuing { i += 1; } } return i; }"
     assert "break;" in GlslWriter("p", {}).program(reduced(read_wgsl(source), {"f": "encode"}, "p", ""))
 
 
 def test_a_step_of_c_is_1_at_its_edge():
-    """As GLSL has it: 0 where x is less than the edge, else 1."""
+    """As in GLSL, the result is 0 only if x is less than the edge."""
     source = "vec2 mine_encode(vec3 n) { return vec2(step(0.5, n.x), n.y); } vec3 mine_decode(vec2 e) { return e.xyx; }"
     assert " < 0.5f ? 0.0f : 1.0f" in written(CWriter, source), written(CWriter, source)
 
@@ -238,8 +238,8 @@ fn texel(at: vec2<i32>) -> vec3<f32> { return textureLoad(sheet, at, 0).xyz; }
 """
 
 
-def test_what_a_module_of_wgsl_has_for_others_is_left_out():
-    """Entry points, bindings and pointers do not keep the pair next to them from being read."""
+def test_unrelated_parts_of_a_wgsl_module_are_left_out():
+    """Entry points, bindings and pointers do not prevent the pair from being read."""
     written = [
         GlslWriter("p", {}).program(
             reduced(read_wgsl(text), {"mineEncode": "encode", "mineDecode": "decode"}, "p", "mine")
@@ -267,8 +267,8 @@ vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, 1.0); }
 """
 
 
-def test_cuda_takes_arrays_and_changes_what_it_is_given():
-    """Arrays are values there, as in GLSL; both sides of a choice are computed, and loops are asked to be unrolled."""
+def test_cuda_supports_array_and_inout_parameters():
+    """Arrays are values, as in GLSL; both sides of a choice are computed, and loops have an unroll pragma."""
     text = written(CudaWriter, ARRAYS)
     assert "__forceinline__ void p_turn(int at, Array<float, 2> &numbers) {" in text
     assert "__forceinline__ Array<vec4, 2> p_both(Array<float, 2> numbers) {" in text
@@ -295,13 +295,13 @@ def test_cuda_assigns_to_several_components_and_hides_no_function():
 
 
 @pytest.mark.parametrize("length", ["n", "int(n.x)"])
-def test_an_array_without_a_length_is_said_with_line_and_column(length):
+def test_array_with_a_variable_length_is_an_error_with_its_position(length):
     with pytest.raises(TranslationError, match=r"^2:\d+: an array's length is not a number"):
         read_glsl(f"vec2 f(vec3 n) {{\n    float x[{length}];\n    return n.xy;\n}}")
 
 
 def test_the_room_for_deep_trees_is_given_back_by_the_last_thread():
-    """The limit of recursion is one for all threads: two readers that overlap leave it as it was."""
+    """All threads share the recursion limit: two overlapping readers leave it unchanged."""
     before, first, second = sys.getrecursionlimit(), one_error_type(), one_error_type()
     first.__enter__()
     second.__enter__()

@@ -1,4 +1,4 @@
-"""Programs read as trees and written again: meaning, comments and places are kept, in every language."""
+"""Programs read as syntax trees and written in every language, with their meaning, comments and positions."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from normalbench.bench.shaders.translator.tree import TranslationError
 
 
 def test_macros_that_stand_for_millions_of_words_are_refused():
-    """A bomb of macros costs no memory: 2^30 words would."""
+    """A macro bomb of 2^30 tokens is refused before it takes memory."""
     bomb = "#define A0 1.0 +\n" + "".join(f"#define A{n} A{n - 1} A{n - 1}\n" for n in range(1, 31))
     with pytest.raises(TranslationError, match="more than 200000 tokens"):
         read_glsl(bomb + "float f() { return A30 1.0; }")

@@ -1,4 +1,4 @@
-"""What makes a pair of two functions is named; an encoder that rounds rightly by itself raises nothing."""
+"""Findings that name the missing step between two functions, and no findings for encoders that round correctly."""
 
 import pytest
 from mistakes import PLAIN
@@ -25,7 +25,7 @@ vec3 mine_decode(vec2 e) {
 
 
 def decoder(name: str) -> str:
-    """A decode of the catalogue."""
+    """Return a decode function of the catalogue."""
     text = ENCODINGS[name].glsl.read_text()
     start = text.index(f"vec3 {name}_decode")
     return text[start : text.index("\n}\n", start) + 3].replace(f"{name}_", "mine_")
@@ -113,27 +113,27 @@ PAIRS = {
 
 def findings(folder, text: str) -> list[str]:
     (folder / "mine.glsl").write_text(text)
-    found = first_look(folder / "mine.glsl")
-    assert "error" not in found, found
-    return found["wrong"]
+    look = first_look(folder / "mine.glsl")
+    assert "error" not in look, look
+    return look["wrong"]
 
 
-def test_a_step_between_the_two_is_all_that_is_said(tmp_path):
-    """Half of the range is unused before it, and nothing after it."""
+def test_missing_step_is_the_only_finding(tmp_path):
+    """Half of the range is unused before the step, and none after it."""
     assert len(findings(tmp_path, PAIRS["half of [0, 1]"][0])) == 1
 
 
-def test_signed_codes_cut_off_toward_0_are_named(tmp_path):
+def test_signed_codes_truncated_toward_0_are_named(tmp_path):
     (first, *_) = findings(tmp_path, with_code("trunc(c * 127.0) / 127.0"))
     assert "codes are truncated to 8 bits, not to nearest" in first
 
 
-def test_a_shift_that_is_no_half_step_is_said_as_it_is(tmp_path):
+def test_shift_other_than_half_a_step_is_reported_as_a_number(tmp_path):
     (first, *_) = findings(tmp_path, with_code("c * 0.9 + 0.03").replace("vec2 e) {", "vec2 e) { e = e / 0.9;"))
     assert "encode gives the code that decode expects, plus 0.03" in first
 
 
 @pytest.mark.parametrize("scale, said", [(0.9, "0.9 times"), (0.99, "0.99 times"), (1 / 1.5, "0.66667 times")])
 def test_a_scale_is_named(tmp_path, scale, said):
-    found = findings(tmp_path, with_code(f"c * {scale}"))
-    assert any(f"encode gives {said} the code that decode expects" in line for line in found), found
+    lines = findings(tmp_path, with_code(f"c * {scale}"))
+    assert any(f"encode gives {said} the code that decode expects" in line for line in lines), lines

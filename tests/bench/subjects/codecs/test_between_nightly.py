@@ -1,4 +1,4 @@
-"""What makes a pair of two functions is named; an encoder that rounds rightly by itself raises nothing."""
+"""Findings that name the missing step between two functions, and no findings for encoders that round correctly."""
 
 import pytest
 import test_between_slow

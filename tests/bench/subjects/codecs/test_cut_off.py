@@ -1,4 +1,4 @@
-"""Codes that are cut off are named however they are packed; codes that are rounded raise nothing."""
+"""Findings for truncated codes, however they are packed, and no findings for rounded codes."""
 
 import re
 
@@ -58,20 +58,20 @@ CUT = {
 
 
 def said(name, bits, encode, decode) -> list[str]:
-    """What is said of a map in integers of so many bits, packed into one float64, which hides what they are."""
+    """Return the findings for a map in integers of given bits, packed into one float64 that hides the integers."""
     to, back, least = MAPS[name]
     most = [2.0**size - 1 for size in bits]
-    places = np.cumprod([1, *(one + 1 for one in most[:-1])])
+    places = np.cumprod([1, *(top + 1 for top in most[:-1])])
 
     def packed(n):
         numbers = to(n.astype(np.float64)) * 0.5 + 0.5
         return (
-            sum(encode(x, one) * place for x, one, place in zip(numbers.T, most, places, strict=True))[:, None] / 2**40
+            sum(encode(x, top) * place for x, top, place in zip(numbers.T, most, places, strict=True))[:, None] / 2**40
         )
 
     def unpacked(code):
         whole = code[:, 0] * 2**40
-        numbers = [decode(whole // place % (one + 1), one) for one, place in zip(most, places, strict=True)]
+        numbers = [decode(whole // place % (top + 1), top) for top, place in zip(most, places, strict=True)]
         return back(np.stack(numbers, axis=1) * 2 - 1)
 
     probe = Probe(packed, unpacked, 1, is_packed=True)
@@ -88,13 +88,13 @@ def test_a_code_in_the_middle_of_its_directions_raises_nothing(name, bits, way):
 
 @pytest.mark.parametrize("way", CUT)
 @pytest.mark.parametrize("name, bits", SIZED)
-def test_a_code_that_is_cut_off_is_named(name, bits, way):
-    """Whatever the map, the bits and the side: rounding leaves half of the error."""
+def test_truncated_code_is_named(name, bits, way):
+    """For every map, bit count and side, rounding would halve the error."""
     assert said(name, bits, *CUT[way]) == ["codes are truncated instead of rounded: rounding would halve the error"]
 
 
 def of_signed(cut):
-    """Of numbers in [-1, 1] as signed integers, in two's complement: (x * 2 - 1) * (most // 2)."""
+    """Return encode and decode of [-1, 1] as signed integers in two's complement: (x * 2 - 1) * (most // 2)."""
 
     def encode(x, most):
         return cut((x * 2 - 1) * (most // 2)) % (most + 1)
@@ -106,23 +106,23 @@ def of_signed(cut):
 
 
 @pytest.mark.parametrize("bits", BITS[2])
-def test_signed_codes_that_are_cut_off_are_named(bits):
-    """Toward 0, where the shifts of the quadrants cancel, and downwards."""
+def test_truncated_signed_codes_are_named(bits):
+    """Truncation is toward 0, which cancels the shifts of the quadrants, or downwards."""
     expected = ["codes are truncated instead of rounded: rounding would halve the error"]
     for cut in (np.trunc, np.floor):
         assert said("octahedral", bits, *of_signed(cut)) == expected
     assert said("octahedral", bits, *of_signed(lambda x: np.floor(x + 0.5))) == []
 
 
-def test_xyz_that_is_cut_off_toward_0_is_shifted():
-    """Renormalisation takes away most of that shift."""
+def test_xyz_truncated_toward_0_is_reported_as_shifted():
+    """Renormalisation removes most of the shift."""
     (line,) = said("xyz", (8, 8, 8), *of_signed(np.trunc))
     assert line.startswith("codes are shifted: ") and 70 < int(re.findall(r"(\d+)%", line)[0]) < 85, line
     assert said("xyz", (8, 8, 8), *of_signed(lambda x: np.floor(x + 0.5))) == []
 
 
-def test_one_number_of_two_that_is_cut_off_is_named():
-    """The finer one; the other one is rounded. Rounding both leaves 0.79 of the root mean square."""
+def test_truncation_of_one_of_two_numbers_is_named():
+    """The finer number is truncated, the other rounded. Rounding both leaves 0.79 of the root mean square error."""
 
     def encode(x, most):
         return np.floor(x * most + (0.5 if most == 2**10 - 1 else 0.0))
@@ -132,6 +132,6 @@ def test_one_number_of_two_that_is_cut_off_is_named():
     assert 74 < float(line.split()[-1].rstrip("%")) < 84, line
 
 
-def test_a_scale_of_one_step_is_not_taken_for_a_cut():
+def test_scale_of_one_step_is_not_taken_for_truncation():
     (line,) = said("octahedral", (8, 8), lambda x, most: np.floor(x * (most - 1) + 0.5), lambda i, most: i / most)
     assert line.startswith("codes are shifted: "), line

@@ -1,4 +1,4 @@
-"""What is likely wrong with a user's encoder is named; of a right one nothing is said but what it is made for."""
+"""Diagnoses of users' encoders: likely errors of wrong encoders, and only the domain of correct encoders."""
 
 import json
 from pathlib import Path
@@ -151,7 +151,7 @@ OF_A_HALF = {
 
 
 def both(kind: str, encode: str, decode: str) -> str:
-    """Two functions of a code of a kind, by their bodies."""
+    """Return the two functions of a code of a kind, given their bodies."""
     return f"{kind} mine_encode(vec3 n) {{ {encode} }}\nvec3 mine_decode({kind} e) {{ {decode} }}\n"
 
 
@@ -160,7 +160,7 @@ def octahedral(code="p", before="", result="normalize(n)") -> str:
 
 
 def three(text: str) -> str:
-    """An encoding of two numbers with a third that is always 0."""
+    """Return an encoding of two numbers with a third that is always 0."""
     return (
         text.replace("vec2 mine", "vec3 mine")
         .replace("return p;", "return vec3(p, 0.0);")
@@ -269,28 +269,28 @@ def looked_at(folder: Path, text: str) -> dict:
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("what", WRONG)
-def test_what_is_wrong_is_named_first(tmp_path, what):
-    text, said = WRONG[what]
-    found = looked_at(tmp_path, text)
-    first, *_ = [found["broken"]] if "broken" in found else found["wrong"]
-    assert said in first, found
+def test_error_of_an_encoder_is_named_first(tmp_path, what):
+    text, finding = WRONG[what]
+    look = looked_at(tmp_path, text)
+    first, *_ = [look["broken"]] if "broken" in look else look["wrong"]
+    assert finding in first, look
 
 
 @pytest.mark.parametrize("what", RIGHT)
-def test_of_a_right_encoder_nothing_is_said(gl, tmp_path, what):
-    """But for what it makes of a direction that it does not define, where a device makes no number of that."""
+def test_correct_encoder_has_no_findings(gl, tmp_path, what):
+    """A GPU may return NaN for a direction that the encoder does not define; that finding is allowed."""
     text, domain = RIGHT[what]
-    found = looked_at(tmp_path, text)
-    wrong = [said for said in found["wrong"] if gl.is_software or "all other directions come back" not in said]
-    assert (found["domain"], wrong) == (domain, []) and "half" not in found
+    look = looked_at(tmp_path, text)
+    wrong = [line for line in look["wrong"] if gl.is_software or "all other directions come back" not in line]
+    assert (look["domain"], wrong) == (domain, []) and "half" not in look
 
 
 @pytest.mark.parametrize("name", ENCODINGS)
-def test_of_the_catalogue_nothing_is_said(gl, name):
-    """And what each is made for is found."""
+def test_encodings_of_the_catalogue_have_no_findings(gl, name):
+    """The domain of each encoding is also found."""
     encoding = ENCODINGS[name]
-    found = diagnosed(probe_of(gl, encoding), gl)
-    assert (found.domain, found.wrong) == (Domain(encoding.domain), [])
+    diagnosis = diagnosed(probe_of(gl, encoding), gl)
+    assert (diagnosis.domain, diagnosis.wrong) == (Domain(encoding.domain), [])
 
 
 # A number for the face of a cube, which needs few values: its encode of face f, and its decode of number e.z.
@@ -316,19 +316,19 @@ def faces(encode: str, decode: str) -> str:
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("steps, reach", [(8.0, 0.625), (16.0, 0.312)])
 def test_a_number_of_few_values_need_not_fill_its_range(run, tmp_path, steps, reach):
-    """A note says what is free, in the numbers of the user's own range."""
+    """A note states the unused range in the user's own units."""
     path = tmp_path / "mine.glsl"
     path.write_text(faces(f"f / {steps}", f"e.z * {steps}"))
     assert looked_at(tmp_path, path.read_text())["wrong"] == []
     status, out, _ = run("doctor", str(path), "--format", "json")
     notes = [row["finding"] for row in json.loads(out) if row["kind"] == "note"]
-    said = f"component 3 of the code has 6 values from 0 to {reach}; the rest of [0, 1] is unused"
-    assert status == 0 and notes[1] == said
+    note = f"component 3 of the code has 6 values from 0 to {reach}; the rest of [0, 1] is unused"
+    assert status == 0 and notes[1] == note
 
 
 @pytest.mark.usefixtures("gl")
 def test_an_encoder_that_rounds_for_another_storage_is_not_wrong(run, tmp_path):
-    """What it loses in a storage of other steps is a note, with the storage that has its steps."""
+    """The loss in a storage with other steps is a note that suggests the matching storage."""
     path = tmp_path / "mine.glsl"
     path.write_text(octahedral("floor(p * 127.0 + 0.5) / 127.0"))
     status, out, _ = run("doctor", str(path), "--format", "json")
@@ -341,7 +341,7 @@ def test_an_encoder_that_rounds_for_another_storage_is_not_wrong(run, tmp_path):
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_table_says_it_too(run, tmp_path):
+def test_findings_also_appear_in_a_table_command(run, tmp_path):
     path = tmp_path / "mine.glsl"
     path.write_text(octahedral("p * 0.7", "e /= 0.7;"))
     status, _, err = run("quality", "--encoding", str(path), "--storage", "rg8", "--backend", "glsl", "--count", "64")
@@ -359,6 +359,6 @@ def test_a_table_says_it_too(run, tmp_path):
         (("a.glsl", "--plot", "a.txt"), "a.txt"),
     ],
 )
-def test_what_doctor_cannot_do_is_one_line(run, words, said):
+def test_unsupported_doctor_request_is_a_one_line_error(run, words, said):
     status, out, err = run("doctor", *words)
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err

@@ -1,4 +1,4 @@
-"""What is likely wrong with a user's encoder is named; of a right one nothing is said but what it is made for."""
+"""Diagnoses of users' encoders: likely errors of wrong encoders, and only the domain of correct encoders."""
 
 import json
 
@@ -7,7 +7,7 @@ from test_diagnoses import FLAT, faces, looked_at, octahedral
 
 
 @pytest.mark.usefixtures("gl")
-def test_doctor_names_it_and_draws_the_sphere(run, tmp_path):
+def test_doctor_names_the_error_and_draws_the_sphere(run, tmp_path):
     path, picture = tmp_path / "mine.glsl", tmp_path / "sphere.png"
     path.write_text(octahedral(result="normalize(n.yxz)"))
     status, out, err = run("doctor", str(path), "--plot", str(picture), "--format", "json")
@@ -26,8 +26,8 @@ def test_doctor_names_it_and_draws_the_sphere(run, tmp_path):
 
 @pytest.mark.usefixtures("gl")
 def test_a_wrong_number_of_few_values_blames_no_other_number(tmp_path):
-    found = looked_at(tmp_path, faces("f / 6.0", "e.z * 5.0"))
-    assert found["is_unit"] and len(found["wrong"]) == 1 and "are not a pair" in found["wrong"][0]
+    look = looked_at(tmp_path, faces("f / 6.0", "e.z * 5.0"))
+    assert look["is_unit"] and len(look["wrong"]) == 1 and "are not a pair" in look["wrong"][0]
 
 
 @pytest.mark.usefixtures("gl")

@@ -1,4 +1,4 @@
-"""What is said of pairs in the forms that engines write: which function is wrong, and what makes a pair of two."""
+"""Findings on pairs in the forms that engines use: which function is wrong, and what is missing between the two."""
 
 import pytest
 import test_engines_pairs_slow
@@ -8,5 +8,5 @@ pytestmark = pytest.mark.usefixtures("gl", "slang")
 
 
 @pytest.mark.parametrize("name", [name for name in ALONE if name not in BY_DOCTOR])
-def test_doctor_tells_one_function_alone_what_it_is(run, tmp_path, name):
-    test_engines_pairs_slow.test_one_function_alone_is_told_what_it_is(run, tmp_path, "doctor", name)
+def test_doctor_identifies_a_single_function(run, tmp_path, name):
+    test_engines_pairs_slow.test_single_function_is_identified(run, tmp_path, "doctor", name)

@@ -1,4 +1,4 @@
-"""What is said of pairs in the forms that engines write: which function is wrong, and what makes a pair of two."""
+"""Findings on pairs in the forms that engines use: which function is wrong, and what is missing between the two."""
 
 import json
 import re
@@ -35,7 +35,7 @@ SAID = {
 
 
 @pytest.mark.parametrize("name", SAID)
-def test_what_is_wrong_with_a_pair_is_named(name):
+def test_error_of_a_pair_is_named(name):
     begin, also = SAID[name]
     (line,) = first_look(FORMS / name)["wrong"]
     assert line.startswith(begin) and also in line, line
@@ -47,7 +47,7 @@ def test_doctor_ends_with_status_1_and_names_the_side(run):
 
 
 def test_octahedral_in_three_bytes_is_measured_as_it_stands(run):
-    """12:12 cut off: a float64 reference has 0.0418 degrees on average and 0.117 at most, half of it rounded."""
+    """A float64 reference of truncated 12:12 has mean 0.0418 and maximum 0.117 degrees; rounding halves both."""
     asked = ("--normals", "sphere", "--storage", "rgba8", "--backend", "glsl", "--count", "65536", "--format", "json")
     status, out, err = run("quality", "--encoding", str(FORMS / "888.hlsl"), *asked)
     (row,) = json.loads(out)
@@ -85,7 +85,7 @@ BY_DOCTOR = ("octahedral.glsl",)
 
 
 @pytest.mark.parametrize("command, name", [*product(["quality"], ALONE), *product(["doctor"], BY_DOCTOR)])
-def test_one_function_alone_is_told_what_it_is(run, tmp_path, command, name):
+def test_single_function_is_identified(run, tmp_path, command, name):
     (tmp_path / "octahedral.glsl").write_text(OCTAHEDRAL)
     (tmp_path / "other.hlsl").write_text(OTHER)
     path = (FORMS if name in ("decoder.hlsl", "enc.hlsl") else tmp_path) / name

@@ -114,11 +114,11 @@ def _here(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("what", LOST)
 def test_a_lost_half_is_a_finding_that_names_the_side(run, tmp_path, what):
-    text, said = LOST[what]
+    text, finding = LOST[what]
     (tmp_path / "dir.glsl").write_text(text)
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")
     rows = json.loads(out)
-    assert status == 1 and said in rows[0]["finding"] and rows[0]["domain"] == "sphere", rows
+    assert status == 1 and finding in rows[0]["finding"] and rows[0]["domain"] == "sphere", rows
     status, out, _ = run("doctor", "dir.glsl", "--domain", "hemisphere", "--format", "json")
     assert json.loads(out)[0]["domain"] == "hemisphere" and "directions with" not in out, out
     # The mirrored spheremap leaves the rim of its square unused, whatever it is meant for.
@@ -134,24 +134,24 @@ def test_a_lost_half_is_found_along_any_axis(tmp_path, what, half):
     text += f"vec2 dir_encode(vec3 n) {{ return own_in({to}); }}\n"
     text += f"vec3 dir_decode(vec2 e) {{ vec3 m = own_out(e); return {back}; }}\n"
     (tmp_path / "dir.glsl").write_text(text)
-    (said,) = first_look(tmp_path / "dir.glsl")["wrong"]
+    (finding,) = first_look(tmp_path / "dir.glsl")["wrong"]
     lost = half.replace(">=", "<") if ">=" in half else half.replace("<=", ">")
     side = "encode is octahedral, but its fold" if what == "no fold" else "decode is octahedral, but its unfold"
-    assert f"{side} is missing: directions with {lost} are lost" in said
+    assert f"{side} is missing: directions with {lost} are lost" in finding
 
 
 @pytest.mark.parametrize("half", HALVES)
 @pytest.mark.parametrize("what", DESIGNS)
-def test_a_design_for_a_half_is_none(tmp_path, what, half):
+def test_design_for_a_half_is_not_a_finding(tmp_path, what, half):
     (tmp_path / "dir.glsl").write_text(design(what, half))
-    found = first_look(tmp_path / "dir.glsl")
-    axis, side = found.get("half", (2, 1))
-    assert found["wrong"] == [] and found["domain"] == "hemisphere", found
+    look = first_look(tmp_path / "dir.glsl")
+    axis, side = look.get("half", (2, 1))
+    assert look["wrong"] == [] and look["domain"] == "hemisphere", look
     assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half
 
 
 def test_a_layout_in_world_space_keeps_the_axes_of_a_half(tmp_path):
-    """A code for y >= 0 holds what looks up in the world, and of view space what looks at the viewer."""
+    """A code for y >= 0 holds normals that face up in world space, or face the viewer in view space."""
     (tmp_path / "dir.glsl").write_text(design("xy", "y >= 0"))
     (encoding,) = encodings_named("dir.glsl")
     layout = replace(LAYOUTS["fp32"].with_codec(Codec(encoding, STORAGES["rg8"])), space="view")
@@ -206,8 +206,8 @@ vec3 dir_decode(vec2 e) {
 """
 
 
-def test_a_hole_in_a_code_for_the_sphere_is_a_finding_unless_it_is_meant_for_less(run, tmp_path):
-    """What is no number is counted; the others are measured."""
+def test_hole_in_a_code_is_a_finding_unless_the_domain_excludes_it(run, tmp_path):
+    """The other directions are measured."""
     (tmp_path / "dir.glsl").write_text(SPHEREMAP)
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")
     first = json.loads(out)[0]
@@ -224,23 +224,23 @@ def test_a_hole_in_a_code_for_the_sphere_is_a_finding_unless_it_is_meant_for_les
 
 
 def test_directions_that_are_lost_are_counted(run, tmp_path):
-    """Most of a half comes back as it was: how many do not, and how far at most, not what the median direction does."""
+    """Most of a half round-trips; the finding gives the number of other directions and their largest error."""
     text = NO_FOLD.replace("return n.xy; }", "return n.z >= 0.0 ? n.xy : fold(n.xy); }")
     wrong = text.replace("return normalize(n);", "if (n.z < -0.6) n.x += 0.3 * sign(n.x); return normalize(n);")
     assert wrong != text
     (tmp_path / "dir.glsl").write_text(wrong)
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")
-    (said, *_) = [row["finding"] for row in json.loads(out)]
-    found = re.fullmatch(
-        r"of directions with z < 0 (\d+) of (\d+) come back more than 1 degree off, up to ([\d.]+): .*", said
+    (finding, *_) = [row["finding"] for row in json.loads(out)]
+    match = re.fullmatch(
+        r"of directions with z < 0 (\d+) of (\d+) come back more than 1 degree off, up to ([\d.]+): .*", finding
     )
-    assert status == 1 and found, said
-    count, among, largest = map(float, found.groups())
+    assert status == 1 and match, finding
+    count, among, largest = map(float, match.groups())
     assert 0.1 < count / among < 0.9 and 15 < largest < 40
 
 
 def test_a_square_that_is_half_used_is_a_finding(run, tmp_path):
-    """Neither folds: each number is used from -1 to 1, and half of the square is not."""
+    """Neither function folds: each number covers -1 to 1, but half of the square is unused."""
     text = NO_FOLD.split("vec3 dir_decode")[0] + NO_UNFOLD[NO_UNFOLD.index("vec3 dir_decode") :]
     (tmp_path / "dir.glsl").write_text(text)
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")

@@ -12,7 +12,7 @@ _here = test_halves._here
 
 
 def test_a_code_for_a_half_is_measured_on_its_half(run, tmp_path):
-    """Whichever it is, its figures are those of the same code for z >= 0, and a line says which half."""
+    """Figures of each half equal the figures for z >= 0, and a message names the half."""
     means = {}
     for half in HALVES:
         (tmp_path / "dir.glsl").write_text(design("hemi-octahedral", half))
@@ -28,14 +28,14 @@ def test_a_code_for_a_half_is_measured_on_its_half(run, tmp_path):
 
 @pytest.mark.parametrize("half", ["y >= 0", "z <= 0"])
 def test_code_of_a_half_is_in_its_own_axes(run, tmp_path, half):
-    """What is written for an engine has the axes of the engine's file, though tables turn it."""
+    """Code written for an engine has the axes of the engine's file, although tables rotate it."""
     (tmp_path / "dir.glsl").write_text(design("hemi-octahedral", half))
     status, out, _ = run("code", "dir.glsl", "--storage", "rg8", "--to", "glsl")
     assert status == 0 and f"Normals: unit vectors with {half}." in out
     (tmp_path / "written.glsl").write_text(out)
-    found = first_look(tmp_path / "written.glsl")
-    axis, side = found.get("half", (2, 1))
-    assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half and found["wrong"] == []
+    look = first_look(tmp_path / "written.glsl")
+    axis, side = look.get("half", (2, 1))
+    assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half and look["wrong"] == []
 
 
 # Each design of a half has all six; of these two are enough, of which one is turned and mirrored.
@@ -49,18 +49,18 @@ def test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monke
     monkeypatch.setitem(DESIGNS, what, OPEN[what])
     (tmp_path / "dir.glsl").write_text(design(what, half))
     for domain in ("", "hemisphere"):
-        found = first_look(tmp_path / "dir.glsl", domain)
-        axis, side = found.get("half", (2, 1))
-        assert found["wrong"] == [] and found["domain"] == "hemisphere" and "not finite" in found["hole"], found
+        look = first_look(tmp_path / "dir.glsl", domain)
+        axis, side = look.get("half", (2, 1))
+        assert look["wrong"] == [] and look["domain"] == "hemisphere" and "not finite" in look["hole"], look
         assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half
-    found = first_look(tmp_path / "dir.glsl", "sphere")
-    assert "not finite" in (found.get("broken") or found["wrong"][0])
+    look = first_look(tmp_path / "dir.glsl", "sphere")
+    assert "not finite" in (look.get("broken") or look["wrong"][0])
 
 
-def test_a_hole_in_the_half_that_comes_back_is_no_other_half(tmp_path):
-    """A root of a rounding below 0 on the rim: NaN stays a finding of z >= 0."""
+def test_hole_in_the_half_that_comes_back_stays_a_finding(tmp_path):
+    """Rounding makes the square root's argument negative on the rim; the NaN remains a finding for z >= 0."""
     text = "vec2 dir_encode(vec3 n) { return n.xy * 0.5 + 0.5; }\n"
     text += "vec3 dir_decode(vec2 e) { e = e * 2.0 - 1.0; return vec3(e, sqrt(1.0 - dot(e, e))); }\n"
     (tmp_path / "dir.glsl").write_text(text)
-    found = first_look(tmp_path / "dir.glsl")
-    assert found["domain"] == "hemisphere" and "not finite" in found["wrong"][0]
+    look = first_look(tmp_path / "dir.glsl")
+    assert look["domain"] == "hemisphere" and "not finite" in look["wrong"][0]

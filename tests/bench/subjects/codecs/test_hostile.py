@@ -1,4 +1,4 @@
-"""Users' code that hangs, dies, grows or lies costs its own rows, and a line says why."""
+"""Users' code that hangs, crashes, grows or lies, and loses only its own rows with a stated reason."""
 
 import pytest
 from typed import read_encoding
@@ -16,7 +16,7 @@ vec3 NAME_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0
 
 
 def test_a_file_elsewhere_is_not_opened(tmp_path, monkeypatch):
-    """Its own includes would be read too, and a word of them be in a message."""
+    """The includes of such a file would also be read, and an error message could quote them."""
     note, opened = tmp_path / "note.txt", []
     note.write_text("password\n#include SECRET_WORD\n")
     path = tmp_path / "own" / "mine.glsl"
@@ -31,7 +31,7 @@ def test_a_file_elsewhere_is_not_opened(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("letter", ['"', "\n", "\x0b", "\u2028"])
 def test_a_path_does_not_end_the_line_that_includes_it(tmp_path, letter):
-    """Codes in [0, 1] are read by a text that includes the file."""
+    """For codes in [0, 1], generated text includes the file."""
     path = tmp_path / f"a{letter}b" / "mine.glsl"
     path.parent.mkdir()
     path.write_text(GOOD.replace("NAME", "mine"))
@@ -42,7 +42,7 @@ def test_a_path_does_not_end_the_line_that_includes_it(tmp_path, letter):
 @pytest.mark.parametrize("ending", ["glsl", "txt"])
 @pytest.mark.parametrize("text", ['#include "NOTE"', '/*\n#include "NOTE"\n*/', '\u2028#include "NOTE"'])
 def test_a_file_elsewhere_is_not_included(run, tmp_path, text, ending):
-    """Outside the repository, or with a name that does not end as a shader's does: neither is compiled."""
+    """Neither a file outside the repository nor a file without a shader extension is compiled."""
     home, note = tmp_path / "own", tmp_path / ("elsewhere" if ending == "glsl" else "own") / f"note.{ending}"
     (home / ".git").mkdir(parents=True)
     note.parent.mkdir(exist_ok=True)

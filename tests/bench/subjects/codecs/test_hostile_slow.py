@@ -1,4 +1,4 @@
-"""Users' code that hangs, dies, grows or lies costs its own rows, and a line says why."""
+"""Users' code that hangs, crashes, grows or lies, and loses only its own rows with a stated reason."""
 
 import json
 import re
@@ -104,7 +104,7 @@ sys.exit(os.waitstatus_to_exitcode(status))
 
 
 def measured(folder: Path, *names: str) -> tuple[list[dict], str]:
-    """The rows of files by name, and what was said; in a process whose memory is watched."""
+    """Return the rows of the named files and the messages, from a process whose memory is watched."""
     command = [sys.executable, "-m", "normalbench", "quality", "--encoding", ",".join(names), "--format", "json"]
     command += ["--normals", "hemisphere", "--count", "4096", "--storage", "rgba8"]
     peak = folder / "peak"
@@ -113,10 +113,10 @@ def measured(folder: Path, *names: str) -> tuple[list[dict], str]:
         status = subprocess.run(watched, cwd=folder, stdout=out, stderr=err).returncode
         out.seek(0)
         err.seek(0)
-        rows, said = out.read(), err.read()
-    assert status == 0 and "Traceback" not in said, said
+        rows, messages = out.read(), err.read()
+    assert status == 0 and "Traceback" not in messages, messages
     assert int(peak.read_text()) < 2 << 20, "2 GiB, in kilobytes"
-    return json.loads(rows), said
+    return json.loads(rows), messages
 
 
 def written(folder: Path, name: str, shader: str = GOOD, twin: str = "") -> str:
@@ -131,17 +131,17 @@ def twin_of(name: str) -> str:
     return TWIN.replace("BODY", body).replace("TOP", top)
 
 
-def test_two_dozen_that_are_hostile_spare_the_others(tmp_path):
+def test_two_dozen_hostile_files_do_not_affect_the_others(tmp_path):
     files = [written(tmp_path, name, twin=twin_of(name)) for name in TWINS]
     files += [written(tmp_path, name, text) for name, (text, _) in SHADERS.items()]
     files += [written(tmp_path, name, text) for name, text in READ_IN_PART.items()]
     good = written(tmp_path, "good", twin=TWIN.replace("BODY", "pass").replace("TOP", ""))
-    rows, said = measured(tmp_path, *files, "octahedral", good)
+    rows, messages = measured(tmp_path, *files, "octahedral", good)
     figures = {(row["encoding"], row["backend"]): row["psnr_db"] for row in rows}
     assert all(figures[name, backend] for name in ("octahedral", "good") for backend in ("jax", "glsl"))
     assert all(figures[name, "glsl"] == figures["good", "glsl"] for name in READ_IN_PART)
-    assert "/etc/hostname is outside the folder of includes.glsl" in said
-    lines = [line for line in but_the_domain(said) if not re.search(rf"\b({'|'.join(READ_IN_PART)})\b", line)]
+    assert "/etc/hostname is outside the folder of includes.glsl" in messages
+    lines = [line for line in but_the_domain(messages) if not re.search(rf"\b({'|'.join(READ_IN_PART)})\b", line)]
     for name, (*_, why) in {**TWINS, **SHADERS}.items():
         (line,) = [line for line in lines if re.search(rf"\b{name}\.(glsl|py)", line)]
         assert re.search(why, line), line
@@ -151,19 +151,19 @@ def test_two_dozen_that_are_hostile_spare_the_others(tmp_path):
 
 
 def but_the_domain(said: str) -> list[str]:
-    """The lines but those that say what a file is taken to be made for, and what computes it."""
+    """Return all lines except notes on the assumed domain and on the backend."""
     return [line for line in said.splitlines() if not re.search("assumed to be made only for|computed by XLA", line)]
 
 
 def test_a_twin_that_contradicts_its_shader_is_named(tmp_path):
     twin = TWIN.replace("BODY", "return Vec2(n.y, n.x)").replace("TOP", "")
-    rows, said = measured(tmp_path, written(tmp_path, "turned", twin=twin))
-    assert len(rows) == 2 and re.search(r"turned\.py: encode differs from the GLSL for \d+% of directions", said)
-    assert len(but_the_domain(said)) == 1
+    rows, messages = measured(tmp_path, written(tmp_path, "turned", twin=twin))
+    assert len(rows) == 2 and re.search(r"turned\.py: encode differs from the GLSL for \d+% of directions", messages)
+    assert len(but_the_domain(messages)) == 1
 
 
 def test_nothing_of_the_current_folder_is_imported(tmp_path):
-    """A module of every name of the standard library lies beside the user's shader."""
+    """The user's folder has a module with every name of the standard library."""
     for name in sorted(sys.stdlib_module_names - {"__main__"}):
         (tmp_path / f"{name}.py").write_text(f"open('{tmp_path}/ran-{name}', 'w'); raise SystemExit('ran {name}')")
     path = written(tmp_path, "mine")

@@ -1,4 +1,4 @@
-"""Layouts of users' files that name users' encoders: measured, found again after a change, refused in a line."""
+"""Layout files that name users' encoders: measurement, changes and one-line errors."""
 
 import json
 import re
@@ -45,7 +45,7 @@ WRAP = "vec2 wrap(vec2 v) { return (1.0 - abs(v.yx)) * vec2(v.x >= 0.0 ? 1.0 : -
 
 
 def written(folder: Path, encoding: str, name: str = "own.toml") -> str:
-    """A layout in a folder, with an encoder and what it includes below it; the layout's path."""
+    """Write a layout to a folder, with an encoder and its include below it, and return the layout's path."""
     (folder / "code").mkdir(parents=True, exist_ok=True)
     (folder / "code" / "mine.glsl").write_text(OCTAHEDRAL)
     (folder / "code" / "wrap.glsl").write_text(WRAP)
@@ -64,7 +64,7 @@ def test_a_layout_takes_a_tuned_table(tmp_path):
 
 @pytest.mark.parametrize("name", ["mine.glsl", "wrap.glsl", "mine.py"])
 def test_rows_of_an_encoder_that_changed_are_not_used_again(tmp_path, name):
-    """Its file, what it includes and its twin count like the layout's own file."""
+    """The encoder's file, its includes and its twin count like the layout's own file."""
     options = RenderOptions(layout=written(tmp_path, "code/mine.glsl"))
     before = files_of(options)
     with (tmp_path / "code" / name).open("a") as file:
@@ -88,7 +88,7 @@ def test_rows_of_an_encoder_that_changed_are_not_used_again(tmp_path, name):
         ("octahedral:axis=w", "axis is x, y or z, not 'w'"),
     ],
 )
-def test_an_encoding_that_a_layout_cannot_have_is_one_line(run, tmp_path, encoding, said):
+def test_invalid_encoding_of_a_layout_is_a_one_line_error(run, tmp_path, encoding, said):
     path = written(tmp_path, encoding)
     (tmp_path / "code" / "bad.glsl").write_text("float f() { return 1.0; }\n")
     status, out, err = run("render", "--layout", path, "--size", "96x64")
@@ -96,7 +96,7 @@ def test_an_encoding_that_a_layout_cannot_have_is_one_line(run, tmp_path, encodi
 
 
 def test_an_encoding_that_is_a_link_out_of_the_layouts_folder_is_refused(run, tmp_path):
-    """As an include is; a link within the folder is a file like any other."""
+    """Includes follow the same rule; a link within the folder is accepted."""
     path, mine = Path(written(tmp_path / "inside", "code/link.glsl")), tmp_path / "inside/code/mine.glsl"
     link = mine.with_name("link.glsl")
     link.symlink_to("mine.glsl")

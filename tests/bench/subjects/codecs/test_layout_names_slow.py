@@ -1,4 +1,4 @@
-"""Layouts of users' files that name users' encoders: measured, found again after a change, refused in a line."""
+"""Layout files that name users' encoders: measurement, changes and one-line errors."""
 
 import json
 from pathlib import Path
@@ -10,7 +10,7 @@ pytestmark = pytest.mark.usefixtures("gl")
 
 
 def test_a_layout_takes_a_users_encoder(run, tmp_path, monkeypatch):
-    """The octahedron in a user's words loses what the catalogue's loses; its file is sought where the layout lies."""
+    """A user's octahedral encoder loses as much as the catalogue's; its file is found relative to the layout."""
     monkeypatch.chdir(tmp_path)
     layouts = f"{written(Path('here'), 'code/mine.glsl')},{written(Path('here'), 'octahedral', 'other.toml')}"
     words = ("--scene", "room", "--size", "96x64", "--repeats", "0", "--format", "json")

@@ -1,7 +1,7 @@
-"""Mistakes of encoders are named rightly, whatever the text and the bits; right files raise nothing.
+"""Mistakes in encoders, named correctly for every text and bit count, and correct files without findings.
 
-Each program is a right text with one edit; see `mistakes`. What is measured is a round trip without any storage, so
-that a mistake which changes no result, as `>` for `>=` in a fold, is none.
+Each program is a correct text with one edit; see `mistakes`. The round trip is measured without any storage, so an
+edit that changes no result, such as `>` for `>=` in a fold, is not a mistake.
 """
 
 import json
@@ -36,28 +36,28 @@ ALIKE = (
 def findings(folder: Path, text: str) -> list[str]:
     path = folder / "mine.glsl"
     path.write_text(text)
-    found = first_look(path)
-    assert "error" not in found and "missing" not in found, found
-    return [*([found["broken"]] if "broken" in found else []), *found.get("wrong", [])]
+    look = first_look(path)
+    assert "error" not in look and "missing" not in look, look
+    return [*([look["broken"]] if "broken" in look else []), *look.get("wrong", [])]
 
 
 def others(mistake: str, bits: int) -> list[str]:
-    """Mistakes of other names."""
-    alike = next((one for one in ALIKE if mistake in one), {mistake})
-    return [one for one in MISTAKES if one not in alike and said(one, bits) and said(one, bits) != said(mistake, bits)]
+    """Return the mistakes that have another message."""
+    alike = next((group for group in ALIKE if mistake in group), {mistake})
+    return [bug for bug in MISTAKES if bug not in alike and said(bug, bits) and said(bug, bits) != said(mistake, bits)]
 
 
 def check(folder: Path, text: str, mistake: str, bits: int) -> None:
-    made = program(text, mistake, bits)
-    if made is None:
+    shader = program(text, mistake, bits)
+    if shader is None:
         assert text not in OCTAHEDRAL or "decode" in mistake, "every mistake is made in every text of the octahedron"
         return
-    found, expected = findings(folder, made), said(mistake, bits)
-    is_named = any(re.search(expected, line) for line in found)
+    lines, expected = findings(folder, shader), said(mistake, bits)
+    is_named = any(re.search(expected, line) for line in lines)
     # Of another map than the octahedron a mistake need not be known, but something must be said.
-    assert is_named if text in OCTAHEDRAL and expected else bool(found) == bool(expected), found
-    wrong = [one for one in others(mistake, bits) if any(re.search(said(one, bits), line) for line in found)]
-    assert wrong == [], (wrong, found)
+    assert is_named if text in OCTAHEDRAL and expected else bool(lines) == bool(expected), lines
+    wrong = [other for other in others(mistake, bits) if any(re.search(said(other, bits), line) for line in lines)]
+    assert wrong == [], (wrong, lines)
 
 
 @pytest.mark.parametrize("text, mistake, bits", QUICK)
@@ -67,13 +67,13 @@ def test_a_mistake_is_named(tmp_path, text, mistake, bits):
 
 @pytest.mark.parametrize("mistake", ["cut off", "half-step bias", "254 for 255"])
 @pytest.mark.parametrize("storage, bits", [("rg8", 8), ("rgb10a2", 10), ("rg16", 16)])
-def test_doctor_names_it_and_says_what_it_costs_in_a_storage(run, tmp_path, storage, bits, mistake):
+def test_doctor_names_a_mistake_and_its_cost_in_a_storage(run, tmp_path, storage, bits, mistake):
     (tmp_path / "mine.glsl").write_text(program("in [0, 1]", mistake, bits))
     status, out, _ = run("doctor", str(tmp_path / "mine.glsl"), "--storage", storage, "--format", "json")
     first, *rest = [row["finding"] for row in json.loads(out)]
     assert status == 1 and re.search(said(mistake, bits), first), first
     worse = [re.fullmatch(rf"in {storage} this is octahedral, but (\d+)% worse: .*", line) for line in rest]
-    assert [40 < int(found[1]) < 150 for found in worse if found] == [True], rest
+    assert [40 < int(match[1]) < 150 for match in worse if match] == [True], rest
 
 
 @pytest.mark.parametrize("text", TEXTS)
@@ -82,7 +82,7 @@ def test_a_text_without_a_mistake_raises_nothing(tmp_path, text):
 
 
 def test_each_mistake_changes_the_text():
-    """Of an octahedral map each, in one text at least."""
+    """Each mistake changes at least one octahedral text."""
     for mistake in MISTAKES:
-        made = [program(text, mistake, 8) for text in OCTAHEDRAL]
-        assert any(one and one != program(text, "", 8) for text, one in zip(OCTAHEDRAL, made, strict=True)), mistake
+        texts = [program(text, mistake, 8) for text in OCTAHEDRAL]
+        assert any(new and new != program(text, "", 8) for text, new in zip(OCTAHEDRAL, texts, strict=True)), mistake

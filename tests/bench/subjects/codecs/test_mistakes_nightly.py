@@ -1,7 +1,7 @@
-"""Mistakes of encoders are named rightly, whatever the text and the bits; right files raise nothing.
+"""Mistakes in encoders, named correctly for every text and bit count, and correct files without findings.
 
-Each program is a right text with one edit; see `mistakes`. What is measured is a round trip without any storage, so
-that a mistake which changes no result, as `>` for `>=` in a fold, is none.
+Each program is a correct text with one edit; see `mistakes`. The round trip is measured without any storage, so an
+edit that changes no result, such as `>` for `>=` in a fold, is not a mistake.
 """
 
 from pathlib import Path
@@ -22,7 +22,7 @@ BITS = (8, 10, 16)
 ALL = [(text, mistake, bits) for text in TEXTS for mistake in MISTAKES for bits in BITS]
 
 
-@pytest.mark.parametrize("text, mistake, bits", [one for one in ALL if one not in QUICK])
+@pytest.mark.parametrize("text, mistake, bits", [case for case in ALL if case not in QUICK])
 def test_every_mistake_is_named(tmp_path, text, mistake, bits):
     check(tmp_path, text, mistake, bits)
 

@@ -1,7 +1,7 @@
-"""Mistakes of encoders are named rightly, whatever the text and the bits; right files raise nothing.
+"""Mistakes in encoders, named correctly for every text and bit count, and correct files without findings.
 
-Each program is a right text with one edit; see `mistakes`. What is measured is a round trip without any storage, so
-that a mistake which changes no result, as `>` for `>=` in a fold, is none.
+Each program is a correct text with one edit; see `mistakes`. The round trip is measured without any storage, so an
+edit that changes no result, such as `>` for `>=` in a fold, is not a mistake.
 """
 
 from pathlib import Path
@@ -24,9 +24,9 @@ def check_written(folder: Path, name: str, language: str) -> None:
     codec = Codec(ENCODINGS[name], STORAGES["rgba16"])
     path = folder / f"mine.{language}"
     path.write_text(code_of(codec, language).text([]))
-    found = first_look(path)
-    assert found.get("wrong") == [], found
-    assert found["domain"] == ENCODINGS[name].domain
+    look = first_look(path)
+    assert look.get("wrong") == [], look
+    assert look["domain"] == ENCODINGS[name].domain
 
 
 @pytest.mark.parametrize("name, language", sorted(SOME))

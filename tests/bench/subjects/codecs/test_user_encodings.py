@@ -1,4 +1,4 @@
-"""Users' own encodings from GLSL files: measured, and what is wrong with them said in a line that spares the others."""
+"""Users' encodings from GLSL files, and one-line errors that do not affect the others."""
 
 import json
 import re
@@ -27,8 +27,8 @@ def written(folder: Path, text: str = MINE, name: str = "mine.glsl") -> str:
 
 
 @pytest.mark.parametrize("words", ["quality --normals axes --encoding", "depth --depth", "lights --light-buffer"])
-def test_an_unknown_name_next_to_a_file_that_is_left_out_is_one_line(run, tmp_path, words):
-    """What is left out is said once the command goes on."""
+def test_unknown_name_next_to_a_missing_file_is_a_one_line_error(run, tmp_path, words):
+    """Files that are left out are reported only if the command continues."""
     status, _, err = run(*words.split(), f"{tmp_path / 'missing.glsl'},nothing")
     assert status == 2 and err.startswith("normalbench: unknown ") and err.count("\n") == 1, err
 
@@ -41,9 +41,9 @@ def test_hlsl_in_a_glsl_file_is_read_as_hlsl(run, tmp_path):
     assert status == 0 and json.loads(out)[0]["angle_mean_deg"] > 0
 
 
-def test_two_files_of_one_name_are_told_apart(run, tmp_path):
-    one, other = written(tmp_path), written(tmp_path, name="other.glsl")
-    status, out, err = run("quality", "--encoding", f"{one},{other}", "--backend", "glsl", *QUICK)
+def test_second_file_with_the_same_encoding_name_is_left_out(run, tmp_path):
+    path, other = written(tmp_path), written(tmp_path, name="other.glsl")
+    status, out, err = run("quality", "--encoding", f"{path},{other}", "--backend", "glsl", *QUICK)
     assert status == 0 and len(json.loads(out)) == 1 and "another file has an encoding named mine" in err
 
 
@@ -59,7 +59,7 @@ def test_parameters_are_written_as_glsl_allows(tmp_path, parameters):
     assert first_look(path) == {"domain": "hemisphere", "wrong": []}
 
 
-def test_what_is_given_from_outside_and_not_read_makes_no_difference(tmp_path):
+def test_unread_uniforms_and_buffers_are_ignored(tmp_path):
     told = MINE.replace("mine", "other")
     path = written(
         tmp_path,
@@ -82,7 +82,7 @@ def test_what_is_given_from_outside_and_not_read_makes_no_difference(tmp_path):
         ('#include "below.glsl"\nfloat q() { return below; }', "the uniform below"),
     ],
 )
-def test_only_what_is_read_from_outside_is_refused(tmp_path, before, told):
+def test_only_uniforms_and_blocks_that_are_read_are_refused(tmp_path, before, told):
     written(tmp_path, "uniform float below;", "below.glsl")
     path = Path(written(tmp_path, f"{before}\n{MINE}"))
     if not told:
@@ -92,7 +92,7 @@ def test_only_what_is_read_from_outside_is_refused(tmp_path, before, told):
         read_encoding(path)
 
 
-def test_a_missing_file_is_one_line(run, tmp_path):
+def test_missing_file_is_a_one_line_error(run, tmp_path):
     status, _, err = run("quality", "--encoding", str(tmp_path / "none.glsl"), *QUICK)
     assert (status, err) == (2, f"normalbench: {tmp_path / 'none.glsl'}: there is no such file\n")
 
@@ -114,7 +114,7 @@ def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path,
 
 
 def test_the_first_look_finds_the_domain(tmp_path):
-    found = first_look(Path(written(tmp_path)))
-    assert found == {"domain": "hemisphere", "wrong": []}
+    look = first_look(Path(written(tmp_path)))
+    assert look == {"domain": "hemisphere", "wrong": []}
     assert len(directions()) > 4000
     assert read_encoding(Path(written(tmp_path))).components == 2

@@ -1,4 +1,4 @@
-"""Users' own encodings from GLSL files: measured, and what is wrong with them said in a line that spares the others."""
+"""Users' encodings from GLSL files, and one-line errors that do not affect the others."""
 
 import json
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("gl")
 
 
 def test_two_functions_are_measured_like_any_other(run, tmp_path):
-    """Half the sphere in the whole square: about a bit more than the octahedron is worth there."""
+    """Using the whole square for half the sphere gains about one bit over the full octahedral map."""
     path = written(tmp_path)
     status, out, err = run("quality", "--encoding", f"{path},octahedral", "--backend", "glsl", *QUICK)
     rows = {row["encoding"]: row for row in json.loads(out)}
@@ -26,13 +26,13 @@ def test_two_functions_are_measured_like_any_other(run, tmp_path):
     assert status == 0 and json.loads(out)[0]["encoding"] == "mine"
 
 
-def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path):
+def test_jax_row_reports_a_missing_twin_and_agrees_with_an_existing_one(run, tmp_path):
     path = written(tmp_path)
     status, out, err = run("quality", "--encoding", path, *QUICK)
     jax_row, gl_row = json.loads(out)
-    said = "mine has no Python twin; add mine.py next to it for rows computed by JAX"
-    assert status == 0 and jax_row["skipped"] == said
-    assert f"normalbench: measured by OpenGL alone: {said}\n" in err and "without figures" not in err
+    reason = "mine has no Python twin; add mine.py next to it for rows computed by JAX"
+    assert status == 0 and jax_row["skipped"] == reason
+    assert f"normalbench: measured by OpenGL alone: {reason}\n" in err and "without figures" not in err
     _, out, _ = run("quality", "--encoding", path, *QUICK[:-1], "markdown")
     assert "| mine " in out and "jax" not in out.partition("- by OpenGL")[0], "a row by GLSL alone"
     assert f"by OpenGL alone: mine/rgba8 on hemisphere ({jax_row['skipped']})" in out
@@ -47,7 +47,7 @@ def test_without_a_twin_the_jax_row_says_so_and_with_one_it_agrees(run, tmp_path
     assert [row["psnr_db"] for row in renamed] == [by_jax["psnr_db"], by_gl["psnr_db"]], renamed
 
 
-def test_a_decoder_that_undoes_nothing_is_said_and_measured(run, tmp_path):
+def test_decoder_that_does_not_invert_the_encoder_is_reported_and_measured(run, tmp_path):
     path = written(tmp_path, MINE.replace("vec3(p, 1.0", "vec3(p * p, 1.0"))
     status, out, err = run("quality", "--encoding", path, "--backend", "glsl", *QUICK)
     assert status == 0 and len(json.loads(out)) == 1 and "encode and decode are not a pair" in err
@@ -64,7 +64,7 @@ def test_a_decoder_that_undoes_nothing_is_said_and_measured(run, tmp_path):
         ("", "no function vec2"),
     ],
 )
-def test_what_is_wrong_with_one_spares_the_others(run, tmp_path, text, said):
+def test_invalid_file_does_not_affect_the_others(run, tmp_path, text, said):
     path = written(tmp_path, text)
     status, out, err = run("quality", "--encoding", path, *QUICK)
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err

@@ -1,4 +1,4 @@
-"""Environments by their names and from files; what is no environment is refused in one line."""
+"""Environments by name and from files, and one-line errors for files that are not environments."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ from normalbench.gbuffer.environment.prefilter import prefiltered
 
 @pytest.fixture
 def in_here(monkeypatch):
-    """Files are read in this process: a process for each takes half a second."""
+    """Reading of files in this process, because a process for each takes half a second."""
     monkeypatch.setattr(pixel_files, "_in_a_process", in_this_process)
 
 
@@ -33,8 +33,8 @@ def exr(path, radiance, **more):
 
 @here
 @pytest.mark.parametrize("kind", [np.float16, np.float32])
-def test_an_exr_file_is_what_is_in_it_to_the_bit(tmp_path, kind):
-    """Alpha and other layers are not read, nor multiplied."""
+def test_exr_file_is_read_bit_for_bit(tmp_path, kind):
+    """Alpha is neither read nor multiplied, and other layers are ignored."""
     radiance = light().astype(kind)
     aside = np.full(radiance.shape[:2], np.nan, kind)
     path = exr(tmp_path / "A.EXR", radiance, A=np.full_like(aside, 0.5), depth=aside)
@@ -49,7 +49,7 @@ def test_a_file_of_large_radiance_is_not_clamped(tmp_path):
 
 
 def test_averages_are_over_the_area_of_each_texel():
-    """Of twice as many texels: two rows by their areas, and two columns; of three halves: by shares."""
+    """Reduction by 2 weights two rows by area and two columns; reduction by 1.5 weights texels by their overlap."""
     radiance, area = light(8).astype(np.float64), solid_angles(8)[..., None]
     blocks = (radiance * area).reshape(4, 2, 8, 2, 3).sum((1, 3)) / (2 * area.reshape(4, 2, 1, 1).sum(1))
     assert averaged(radiance, 4) == pytest.approx(blocks, rel=1e-6)
@@ -76,22 +76,22 @@ BAD = {
 
 @here
 @pytest.mark.parametrize("what", BAD)
-def test_what_is_no_environment_is_one_line(tmp_path, what):
-    radiance, said = BAD[what]
+def test_invalid_environment_is_a_one_line_error(tmp_path, what):
+    radiance, message = BAD[what]
     path = exr(tmp_path / "bad.exr", radiance)
-    assert refused(path).startswith(f"{path}: {said}")
+    assert refused(path).startswith(f"{path}: {message}")
 
 
 def refused(path):
     with pytest.raises(UsageError) as error:
         environment_named(str(path))
-    said = str(error.value)
-    assert "\n" not in said and str(path) in said and ("; " in said or ": " in said)
-    return said
+    message = str(error.value)
+    assert "\n" not in message and str(path) in message and ("; " in message or ": " in message)
+    return message
 
 
 def test_too_wide_a_file_is_refused_by_its_header(tmp_path):
-    """Nothing of it is read: it has no pixels."""
+    """The file has no pixels, so nothing but the header can be read."""
     path = tmp_path / "wide.hdr"
     path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4100 +X 8200\n" + bytes(8200 * 4))
     assert "8200 x 4100 pixels; at most 8192 x 4096 are supported: scale it down" in refused(path)

@@ -1,4 +1,4 @@
-"""Environments by their names and from files; what is no environment is refused in one line."""
+"""Environments by name and from files, and one-line errors for files that are not environments."""
 
 import os
 
@@ -15,13 +15,13 @@ from normalbench.gbuffer.environment.environment import solid_angles
 in_here = test_environment_files.in_here
 
 
-def test_a_radiance_file_is_what_is_in_it(tmp_path):
-    """To the precision of RGBE, whose three colours share an exponent; in a process of its own."""
-    found = environment_named(str(write_image(tmp_path / "a.hdr", light())))
-    assert found.name == "a.hdr" and found.changes == () and found.sun is None
-    assert found.radiance.dtype == np.float32 and found.radiance.flags.c_contiguous
-    assert np.abs(found.radiance - light()).max() <= light().max(-1).max() / 128
-    assert (np.abs(found.radiance - light()).max(-1) <= light().max(-1) / 127).all()
+def test_radiance_file_is_read_to_rgbe_precision(tmp_path):
+    """RGBE's three colours share an exponent; the file is read in a separate process."""
+    sky = environment_named(str(write_image(tmp_path / "a.hdr", light())))
+    assert sky.name == "a.hdr" and sky.changes == () and sky.sun is None
+    assert sky.radiance.dtype == np.float32 and sky.radiance.flags.c_contiguous
+    assert np.abs(sky.radiance - light()).max() <= light().max(-1).max() / 128
+    assert (np.abs(sky.radiance - light()).max(-1) <= light().max(-1) / 127).all()
 
 
 def test_names_are_those_of_the_catalogue_however_spelled():
@@ -32,18 +32,18 @@ def test_names_are_those_of_the_catalogue_however_spelled():
 @here
 @pytest.mark.parametrize(("height", "wanted"), [(513, 512), (1024, 512), (10, 8), (30, 28)])
 def test_a_larger_file_is_averaged_and_says_so(tmp_path, height, wanted):
-    """To 1024 x 512, and to a width that 8 divides; no light is lost."""
+    """The result is at most 1024 x 512, with a width divisible by 8; no light is lost."""
     radiance = light(height)
-    found = environment_named(str(exr(tmp_path / "a.exr", radiance)))
-    assert found.radiance.shape == (wanted, 2 * wanted, 3) and found.radiance.dtype == np.float32
-    assert found.changes == (f"averaged from {2 * height} x {height}",)
+    sky = environment_named(str(exr(tmp_path / "a.exr", radiance)))
+    assert sky.radiance.shape == (wanted, 2 * wanted, 3) and sky.radiance.dtype == np.float32
+    assert sky.changes == (f"averaged from {2 * height} x {height}",)
     before, after = (
-        (one.astype(np.float64) * solid_angles(len(one))[..., None]).sum((0, 1)) for one in (radiance, found.radiance)
+        (rgb.astype(np.float64) * solid_angles(len(rgb))[..., None]).sum((0, 1)) for rgb in (radiance, sky.radiance)
     )
     assert after == pytest.approx(before, rel=1e-6)
 
 
-def test_other_files_are_one_line(tmp_path):
+def test_other_files_are_one_line_errors(tmp_path):
     (tmp_path / "sky.png").write_bytes(png_bytes(np.zeros((8, 16, 3), np.uint8)))
     (tmp_path / "photo.hdr").write_bytes(b"\xff\xd8\xff\xe0" + bytes(99))
     (tmp_path / "cut.hdr").write_bytes(write_image(tmp_path / "whole.hdr", light()).read_bytes()[:-900])
@@ -51,7 +51,7 @@ def test_other_files_are_one_line(tmp_path):
     (tmp_path / "folder").mkdir()
     (tmp_path / "folder.exr").mkdir()
     os.mkfifo(tmp_path / "pipe.exr")
-    for name, said in (
+    for name, message in (
         ("sky.png", "it stores no light brighter than white; save the environment as .hdr or .exr"),
         ("none.jpg", "it stores no light brighter than white"),
         ("photo.hdr", "not in HDR format, by its first bytes; save it again"),
@@ -62,4 +62,4 @@ def test_other_files_are_one_line(tmp_path):
         ("pipe.exr", "it is not a plain file"),
         ("none.hdr", "there is no such file"),
     ):
-        assert said in refused(tmp_path / name), name
+        assert message in refused(tmp_path / name), name

@@ -1,4 +1,4 @@
-"""Bad captures: each is refused in one line, and the process lives on."""
+"""Bad captures, each refused in one line without ending the process."""
 
 import io
 import os
@@ -90,38 +90,38 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_a_bad_file_is_one_line(tmp_path, run, what):
-    name, data, said = BAD[what]
+def test_bad_file_is_a_one_line_error(tmp_path, run, what):
+    name, data, parts = BAD[what]
     (tmp_path / name).write_bytes(data)
     err = refusal(run, tmp_path / name)
-    assert all(part in err for part in said), err
+    assert all(part in err for part in parts), err
 
 
-def test_what_is_no_plain_file_is_one_line(tmp_path, run):
+def test_pipe_folder_or_missing_file_is_a_one_line_error(tmp_path, run):
     os.mkfifo(tmp_path / "pipe.npy")
     (tmp_path / "folder.png").mkdir()
-    for name, said in (
+    for name, message in (
         ("pipe.npy", "not a plain file"),
         ("folder.png", "it is a folder; name a file"),
         ("none.npy", "no such file"),
     ):
-        assert said in refusal(run, tmp_path / name)
+        assert message in refusal(run, tmp_path / name)
 
 
-def test_numbers_that_stand_for_nothing_known_are_one_line(tmp_path):
+def test_unsupported_number_type_is_a_one_line_error(tmp_path):
     path = write_image(tmp_path / "a.tif", np.ones((4, 4, 3), np.int16))
     with pytest.raises(UsageError, match="numbers of type int16; uint8, uint16, half, float, double are read"):
         capture(path, Reading())
 
 
-def test_parts_that_do_not_lie_over_each_other_are_one_line(tmp_path):
+def test_parts_of_different_sizes_are_a_one_line_error(tmp_path):
     n = some_normals()
     path = write_exr(tmp_path / "a.exr", {"large": {"X": n[..., 0]}, "small": planes_of(n[:9], ("x", "Y", "Z"))})
     with pytest.raises(UsageError, match=r"large.X, small.Y, small.Z are in parts of different sizes or types"):
         capture(path, Reading(channels="large.X,small.Y,small.Z"))
 
 
-def test_a_crash_of_the_library_is_one_line(tmp_path, monkeypatch):
+def test_library_crash_is_a_one_line_error(tmp_path, monkeypatch):
     (tmp_path / "python").write_text("#!/bin/sh\nkill -SEGV $$\n")
     (tmp_path / "python").chmod(0o700)
     path = write_exr(tmp_path / "frame.exr", planes_of(some_normals()))
@@ -142,7 +142,7 @@ def test_a_crash_of_the_library_is_one_line(tmp_path, monkeypatch):
         (["--normals", "a.glb", "--size", "16000x16000"], "2^25"),
     ],
 )
-def test_bad_usage_is_one_line(run, arguments, said):
+def test_bad_usage_is_a_one_line_error(run, arguments, said):
     status, out, err = run("quality", "--backend", "jax", *arguments)
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
 

@@ -1,4 +1,4 @@
-"""Bad captures: each is refused in one line, and the process lives on."""
+"""Bad captures, each refused in one line without ending the process."""
 
 import numpy as np
 import pytest
@@ -10,8 +10,8 @@ from normalbench.bench.subjects.normals.captures import Reading, capture
 
 
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 0.9, 0.999])
-def test_a_truncated_exr_is_one_line(tmp_path, capfd, share):
-    """What the library writes is not seen."""
+def test_truncated_exr_is_a_one_line_error(tmp_path, capfd, share):
+    """The library's own output is not shown."""
     path = write_exr(tmp_path / "frame.exr", planes_of(some_normals()), compression="zip")
     data = path.read_bytes()
     path.write_bytes(data[: max(int(share * len(data)), 4)])
@@ -20,9 +20,9 @@ def test_a_truncated_exr_is_one_line(tmp_path, capfd, share):
     assert capfd.readouterr() == ("", "")
 
 
-def test_an_exr_that_is_too_large_or_of_another_kind_is_one_line(tmp_path):
-    """The header is changed: to more pixels than are read, to far more, and to half the samples; nothing of that size
-    is allocated."""
+def test_exr_of_wrong_size_or_sampling_is_a_one_line_error(tmp_path):
+    """The header is changed to more pixels than are allowed, to far more, and to half the samples. No memory of that
+    size is allocated."""
     path = write_exr(tmp_path / "frame.exr", planes_of(some_normals()), compression="zip")
     data, window = path.read_bytes(), np.array([0, 0, 63, 47], "<i4").tobytes()
     channel = b"N.X\0" + np.array([2, 0, 1, 1], "<i4").tobytes()
@@ -32,14 +32,14 @@ def test_an_exr_that_is_too_large_or_of_another_kind_is_one_line(tmp_path):
         r"far more pixels than the file can hold; at most 33554432 pixels": (window, [0, 0, 2**15 - 1, 2**15 - 1]),
         r"subsampled; save it in full": (channel[4:], [2, 0, 2, 1]),
     }
-    for said, (old, new) in changes.items():
+    for message, (old, new) in changes.items():
         path.write_bytes(data.replace(old, np.array(new, "<i4").tobytes()))
-        with pytest.raises(UsageError, match=said):
+        with pytest.raises(UsageError, match=message):
             capture(path, Reading())
 
 
 @pytest.mark.parametrize("kind", ["png8", "tiff", "float tiff", "dds", "hdr", "webp"])
-def test_a_truncated_image_is_one_line(tmp_path, capfd, kind):
+def test_truncated_image_is_a_one_line_error(tmp_path, capfd, kind):
     data = picture(tmp_path, kind)
     path = tmp_path / f"a.{ENDINGS.get(kind, kind)}"
     for share in (0.3, 0.9):

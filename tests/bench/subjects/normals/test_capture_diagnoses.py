@@ -1,4 +1,4 @@
-"""Is my capture right? Frames that are read wrongly are named, with the option that mends them; right ones are not."""
+"""Diagnoses of captures: frames read incorrectly are named with the option that corrects them, and no others."""
 
 import math
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from normalbench.gbuffer.scenes.built_in.playground import CAMERA, playground
 
 
 def turned(yaw: float, pitch: float) -> np.ndarray:
-    """The rotation of a camera's view matrix, in degrees, (3, 3) for column vectors."""
+    """Return the rotation of a camera's view matrix, given in degrees, (3, 3) for column vectors."""
     (c, s), (d, e) = ((math.cos(a), math.sin(a)) for a in map(math.radians, (yaw, pitch)))
     return np.array([(1, 0, 0), (0, d, -e), (0, e, d)]) @ np.array([(c, 0, -s), (0, 1, 0), (s, 0, c)])
 
@@ -32,7 +32,7 @@ N = playground().normals[1::4, 1::4]
 
 
 def room(width: int, height: int, fov: float, view: np.ndarray) -> np.ndarray:
-    """View-space normals of a room of 4 x 3 x 6 seen from its middle, cast for each pixel, (height, width, 3)."""
+    """Return view-space normals of a room of 4 x 3 x 6 seen from its centre, per pixel, (height, width, 3)."""
     half = math.tan(math.radians(fov) / 2)
     x = ((np.arange(width) + 0.5) / width * 2 - 1) * half * width / height
     y = (1 - (np.arange(height) + 0.5) / height * 2) * half
@@ -43,7 +43,7 @@ def room(width: int, height: int, fov: float, view: np.ndarray) -> np.ndarray:
 
 
 def bumpy(n: np.ndarray) -> np.ndarray:
-    """As a normal map has them: up to some 20 degrees off."""
+    """Return normals as a normal map perturbs them, by up to some 20 degrees."""
     n = n + np.random.default_rng(0).normal(0, 0.1, n.shape)
     return n / np.linalg.norm(n, axis=-1, keepdims=True)
 
@@ -62,7 +62,7 @@ def floats(path: Path, n: np.ndarray) -> Path:
 
 @dataclass(frozen=True)
 class Wrong:
-    """What a file holds, how it is read, what is said of it (an error if it cannot be measured), and what mends it."""
+    """A file, a wrong way to read it, the expected message (an error if it cannot be measured) and the correction."""
 
     write: Callable[[Path], Path]
     said: str
@@ -180,12 +180,12 @@ WRONG = {
 
 
 def besides_bits(notes: list[str]) -> list[str]:
-    """What is said but of a file's own 8 bits, which is no fault."""
+    """Return the notes except notes about a file's own 8 bits, which are not a fault."""
     return [note for note in notes if not note.startswith("8 bits per channel")]
 
 
 def said_of(path: Path, reading: Reading) -> list[str]:
-    """The notes, or the error."""
+    """Return the notes of a capture, or its error."""
     try:
         return capture(path, reading)[1]
     except UsageError as error:
@@ -193,15 +193,15 @@ def said_of(path: Path, reading: Reading) -> list[str]:
 
 
 @pytest.mark.parametrize("what", WRONG)
-def test_a_frame_that_is_read_wrongly_is_named_and_what_is_said_mends_it(tmp_path, what):
-    """One line, which says the option; with it the frame is the one that was written, and nothing is said."""
+def test_wrongly_read_frame_is_named_with_an_option_that_corrects_it(tmp_path, what):
+    """One line names the option; with that option the frame equals the written frame, and no note remains."""
     wrong = WRONG[what]
     path = wrong.write(tmp_path / "frame")
     (line,) = besides_bits(said_of(path, wrong.reading))
     assert line.endswith(wrong.said), line
-    made, notes = capture(path, wrong.mended)
+    frame, notes = capture(path, wrong.mended)
     assert besides_bits(notes) == []
-    n, covered = given(made)
+    n, covered = given(frame)
     off = np.abs(n - N.reshape(-1, 3))[covered & COVERED.ravel()].max()
     assert off < wrong.within, off
 
@@ -238,7 +238,7 @@ def png(path: Path, n: np.ndarray) -> Path:
 
 
 @pytest.mark.parametrize("what", RIGHT)
-def test_nothing_is_said_of_a_frame_that_is_read_rightly(tmp_path, what):
+def test_correctly_read_frame_has_no_notes(tmp_path, what):
     write, reading = RIGHT[what]
     assert besides_bits(said_of(write(tmp_path / "frame"), reading)) == []
 
@@ -248,8 +248,8 @@ def test_rows_from_the_bottom_up_are_told_from_another_angle_of_view(tmp_path):
     assert "if y points down, or rows run from the bottom up" in line
 
 
-def test_a_frame_of_8_bits_is_told_what_it_favours(tmp_path):
-    """Its normals lie on the steps of RGBA8, which loses nothing more of them; 16 bits and floats favour none."""
+def test_8_bit_frame_has_a_note_on_the_encodings_it_favours(tmp_path):
+    """8-bit normals are on the steps of RGBA8, which loses nothing more; 16 bits and floats favour no storage."""
     (line,) = said_of(of_8_bits(tmp_path / "frame", N), Reading())
     assert line.startswith("8 bits per channel, about 0.2 degrees off themselves")
     assert said_of(png(tmp_path / "frame", N), Reading()) == []
@@ -260,18 +260,18 @@ def test_a_grey_background_of_packed_normals_is_background(tmp_path):
     path = floats(tmp_path / "frame", packed_floats)
     (line,) = said_of(path, Reading())
     assert line.endswith("use --unpack")
-    made, notes = capture(path, Reading(unpack=True))
-    assert notes == [] and np.array_equal(given(made)[1], COVERED.ravel())
+    frame, notes = capture(path, Reading(unpack=True))
+    assert notes == [] and np.array_equal(given(frame)[1], COVERED.ravel())
 
 
-def test_what_is_normalised_all_the_same_is_told_what_would_be_right(tmp_path):
+def test_note_on_normalised_captures_names_the_right_curve(tmp_path):
     path = of_8_bits(tmp_path / "frame", N, to_srgb)
     (line,) = besides_bits(said_of(path, Reading(normalise=True)))
     assert line.endswith("normalised; --curve srgb would read them at unit length")
 
 
 @pytest.mark.parametrize("option", ["curve", "space"])
-def test_names_of_how_to_read_are_matched_as_all_names_are(tmp_path, option):
+def test_reading_option_names_ignore_case_and_separators(tmp_path, option):
     path = floats(tmp_path / "frame", N * [1, 1, -1])
     assert said_of(path, Reading(space="View_Left-Handed")) == []
     (line,) = said_of(path, replace(Reading(), **{option: "srbg-removed"}))

@@ -1,4 +1,4 @@
-"""Captured frames as sets of normals: channels, packing, spaces, masks, and what bad files get."""
+"""Captured frames as sets of normals: channels, packing, spaces, masks and errors."""
 
 import json
 from pathlib import Path
@@ -25,7 +25,7 @@ ROTATION = np.array([(2, -1, 2), (2, 2, -1), (-1, 2, 2)]) / 3
 
 
 def capture(path: Path, reading: Reading) -> NormalSet:
-    """The set alone."""
+    """Return the set without its notes."""
     return captures.capture(path, reading)[0]
 
 
@@ -84,8 +84,8 @@ def test_packed_floats_are_read_with_unpack(tmp_path, run):
     np.save(tmp_path / "frame.npy", some_normals() * np.float32(0.5) + np.float32(0.5))
     err = refusal(run, tmp_path / "frame.npy")
     assert "all components are in [0" in err and "use --unpack" in err
-    made, covered = given(capture(tmp_path / "frame.npy", Reading(unpack=True)))
-    assert covered.all() and np.allclose(made, some_normals().reshape(-1, 3), atol=2e-7)
+    normals, covered = given(capture(tmp_path / "frame.npy", Reading(unpack=True)))
+    assert covered.all() and np.allclose(normals, some_normals().reshape(-1, 3), atol=2e-7)
 
 
 def test_floats_that_are_not_packed_are_not_read_with_unpack(tmp_path, run):
@@ -93,29 +93,29 @@ def test_floats_that_are_not_packed_are_not_read_with_unpack(tmp_path, run):
     assert "use --no-unpack" in refusal(run, tmp_path / "frame.npy", "--unpack")
 
 
-def test_what_is_not_unit_is_refused_with_what_it_is(tmp_path, run):
+def test_normals_that_are_not_unit_length_are_refused_with_their_lengths(tmp_path, run):
     np.save(tmp_path / "frame.npy", 3 * some_normals())
     err = refusal(run, tmp_path / "frame.npy")
     assert "100.0% of the normals are not unit" in err and "median 3" in err and "--normalise" in err
-    made, _ = given(capture(tmp_path / "frame.npy", Reading(normalise=True)))
-    assert np.allclose(made, some_normals().reshape(-1, 3), atol=2e-7)
+    normals, _ = given(capture(tmp_path / "frame.npy", Reading(normalise=True)))
+    assert np.allclose(normals, some_normals().reshape(-1, 3), atol=2e-7)
     codes = some_normals()
     codes[..., 2] = 0
     np.save(tmp_path / "codes.npy", codes)
     assert "are not unit" in refusal(run, tmp_path / "codes.npy")
 
 
-def test_a_few_normals_off_unit_length_are_normalised_and_it_is_said(tmp_path):
+def test_few_normals_off_unit_length_are_normalised_with_a_note(tmp_path):
     n = some_normals()
     n[0, :10] *= 0.5
     np.save(tmp_path / "frame.npy", n)
-    made, notes = captures.capture(tmp_path / "frame.npy", Reading())
-    assert np.allclose(given(made)[0], some_normals().reshape(-1, 3), atol=2e-7)
+    frame, notes = captures.capture(tmp_path / "frame.npy", Reading())
+    assert np.allclose(given(frame)[0], some_normals().reshape(-1, 3), atol=2e-7)
     assert notes == ["0.326% of the normals are not unit length: normalised"]
 
 
 def test_world_space_is_turned_to_view_space(tmp_path):
-    """By nine numbers, by sixteen with a move, by a file, with a scale or a mirror; what comes out is in view space."""
+    """The matrix has 9 numbers, or 16 with a move and a scale, or is a file; left-handed frames are mirrored."""
     n = some_normals()
     np.save(tmp_path / "world.npy", n.astype(np.float64) @ ROTATION)
     four = np.eye(4)
@@ -125,22 +125,22 @@ def test_world_space_is_turned_to_view_space(tmp_path):
     broken = np.load(tmp_path / "world.npy")
     broken[0, 0], broken[1, 1] = np.nan, np.inf
     np.save(tmp_path / "broken.npy", broken)
-    made, covered = given(capture(tmp_path / "broken.npy", Reading(space="world", view_matrix=typed[0], nan_share=0.1)))
-    assert covered.sum() == 48 * 64 - 2 and np.allclose(made[covered], n.reshape(-1, 3)[covered], atol=2e-7)
+    back, covered = given(capture(tmp_path / "broken.npy", Reading(space="world", view_matrix=typed[0], nan_share=0.1)))
+    assert covered.sum() == 48 * 64 - 2 and np.allclose(back[covered], n.reshape(-1, 3)[covered], atol=2e-7)
     for matrix in typed:
-        made, _ = given(capture(tmp_path / "world.npy", Reading(space="world", view_matrix=matrix)))
-        assert np.allclose(made, n.reshape(-1, 3), atol=2e-7), matrix
+        back, _ = given(capture(tmp_path / "world.npy", Reading(space="world", view_matrix=matrix)))
+        assert np.allclose(back, n.reshape(-1, 3), atol=2e-7), matrix
     np.save(tmp_path / "left.npy", n * np.float32([1, 1, -1]))
-    made, _ = given(capture(tmp_path / "left.npy", Reading(space="view-left-handed")))
-    assert np.array_equal(made, n.reshape(-1, 3))
+    back, _ = given(capture(tmp_path / "left.npy", Reading(space="view-left-handed")))
+    assert np.array_equal(back, n.reshape(-1, 3))
     assert captures.capture(tmp_path / "left.npy", Reading(space="view-left-handed"))[1] == []
     (note,) = captures.capture(tmp_path / "left.npy", Reading())[1]
     assert "if z points the other way: read it with --space view-left-handed" in note
 
 
 def test_normals_are_given_to_encoders_in_the_space_that_the_engine_encodes(tmp_path):
-    """A frame in world space of an engine that encodes there is measured as it is, with or without the matrix; one in
-    view space is turned back. Rays are turned with the normals."""
+    """A world-space frame of an engine that encodes in world space is measured unchanged, with or without the matrix;
+    a view-space frame is rotated back. Rays are rotated with the normals."""
     n, matrix = some_normals(), ",".join(map(str, ROTATION.ravel()))
     world = (n.astype(np.float64) @ ROTATION).astype(np.float32)
     for name, frame in (("world", world), ("view", n), ("left", n * np.float32([1, 1, -1]))):
@@ -148,32 +148,32 @@ def test_normals_are_given_to_encoders_in_the_space_that_the_engine_encodes(tmp_
     spaces = {"world": "world", "view": "view", "left": "view-left-handed"}
     for name, space in spaces.items():
         reading = Reading(space=space, code_space="world", view_matrix=matrix, fov=60)
-        made = capture(tmp_path / f"{name}.npy", reading)
-        assert np.allclose(given(made)[0], world.reshape(-1, 3), atol=2e-7) and made.code_space == "world"
+        taken = capture(tmp_path / f"{name}.npy", reading)
+        assert np.allclose(given(taken)[0], world.reshape(-1, 3), atol=2e-7) and taken.code_space == "world"
         seen = capture(tmp_path / "view.npy", Reading(fov=60))
-        ours, views = (np.stack([np.asarray(c) for c in next(s.loads())().view], 1) for s in (made, seen))
+        ours, views = (np.stack([np.asarray(c) for c in next(s.loads())().view], 1) for s in (taken, seen))
         assert np.allclose(ours, views @ ROTATION, atol=2e-7) and seen.code_space == "view"
-    made = capture(tmp_path / "world.npy", Reading(space="world", code_space="world"))
-    assert np.array_equal(given(made)[0], world.reshape(-1, 3))
+    taken = capture(tmp_path / "world.npy", Reading(space="world", code_space="world"))
+    assert np.array_equal(given(taken)[0], world.reshape(-1, 3))
     assert playground().code_space is None
 
 
 def test_the_space_of_codes_is_in_the_row_and_named_by_the_hint(run, tmp_path):
-    """Octahedral in world space is not octahedral in view space: the same frame has other errors."""
+    """The octahedral map in world space has other errors than in view space for the same frame."""
     n = rendered().normals[1::4, 1::4]
     np.save(tmp_path / "world.npy", n.astype(np.float64) @ ROTATION)
     matrix = ",".join(map(str, ROTATION.ravel()))
     words = ["quality", "--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--format", "json"]
     words += ["--normals", str(tmp_path / "world.npy")]
-    found = {}
+    means = {}
     for space in ("view", "world"):
         more = ["--space", "world", "--code-space", space, "--view-matrix", matrix]
         (row,) = json.loads(run(*words, *more)[1])
         assert row["code_space"] == space
-        found[space] = row["angle_mean_deg"]
-    assert found["view"] != pytest.approx(found["world"], rel=1e-4)
+        means[space] = row["angle_mean_deg"]
+    assert means["view"] != pytest.approx(means["world"], rel=1e-4)
     (row,) = json.loads(run(*words, "--space", "world", "--code-space", "world")[1])
-    assert row["angle_mean_deg"] == found["world"]
+    assert row["angle_mean_deg"] == means["world"]
     err = run(*words)[2]
     assert "--space world --view-matrix" in err and "--space world --code-space world" in err
 
@@ -200,14 +200,14 @@ def test_codes_that_need_the_view_ray_need_it_in_their_own_space(run, tmp_path):
         ("world", "missing.txt", "neither numbers nor a text file of numbers: there is no such file"),
     ],
 )
-def test_a_space_that_cannot_be_is_one_line(tmp_path, monkeypatch, space, matrix, said):
+def test_invalid_space_is_a_one_line_error(tmp_path, monkeypatch, space, matrix, said):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(UsageError, match=said) as error:
         turns_of(checked(Reading(space=space, view_matrix=matrix)))
     assert "\n" not in str(error.value)
 
 
-def test_a_space_of_codes_that_cannot_be_is_one_line():
+def test_invalid_code_space_is_an_error():
     with pytest.raises(UsageError, match="unknown code space 'screen'; known: view, world"):
         checked(Reading(code_space="screen"))
     with pytest.raises(UsageError, match="--space view --code-space world needs --view-matrix"):
@@ -217,7 +217,7 @@ def test_a_space_of_codes_that_cannot_be_is_one_line():
 
 
 def test_masks_by_file_and_by_channel(tmp_path, monkeypatch):
-    """Garbage under the mask is never looked at."""
+    """Garbage under the mask is ignored."""
     monkeypatch.setattr(pixel_files, "_in_a_process", in_this_process)
     n, surface = some_normals(), np.zeros((48, 64), bool)
     surface[10:30, 5:60] = True
@@ -229,12 +229,12 @@ def test_masks_by_file_and_by_channel(tmp_path, monkeypatch):
     np.save(tmp_path / "mask.npy", surface)
     write_exr(tmp_path / "mask.exr", {"mask": surface.astype(np.float32)})
     for mask in ("A", *(str(tmp_path / name) for name in ("mask.png", "one.png", "mask.npy", "mask.exr"))):
-        made = capture(tmp_path / "frame.exr", Reading(mask=mask))
-        assert np.array_equal(given(made)[1], surface.ravel()), mask
-        assert (made.background, made.not_finite) == (48 * 64 - 20 * 55, 0), mask
+        frame = capture(tmp_path / "frame.exr", Reading(mask=mask))
+        assert np.array_equal(given(frame)[1], surface.ravel()), mask
+        assert (frame.background, frame.not_finite) == (48 * 64 - 20 * 55, 0), mask
     np.save(tmp_path / "small.npy", surface[:5])
-    for mask, said in ((str(tmp_path / "small.npy"), "5 x 64, the normals are 48 x 64"), ("B", "no channel 'B'")):
-        with pytest.raises(UsageError, match=said):
+    for mask, message in ((str(tmp_path / "small.npy"), "5 x 64, the normals are 48 x 64"), ("B", "no channel 'B'")):
+        with pytest.raises(UsageError, match=message):
             capture(tmp_path / "frame.exr", Reading(mask=mask))
 
 
@@ -257,11 +257,11 @@ def test_nan_is_refused_or_masked_and_counted_as_is_asked_for(tmp_path, run):
 @pytest.mark.parametrize("kind", [np.uint8, np.uint16])
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
 def test_png_of_every_filter_and_depth(tmp_path, kind, channels):
-    """Written byte by byte as the specification has it; noise on a ramp, so that every predictor is taken."""
+    """The files are written byte by byte after the specification; noise on a ramp exercises every predictor."""
     rng = np.random.default_rng(0)
     ramp = np.arange(21 * 17 * channels).reshape(21, 17, channels) * (np.iinfo(kind).max // 4000)
     pixels = (ramp + rng.integers(0, np.iinfo(kind).max // 3, ramp.shape)).astype(kind)
     (tmp_path / "a.png").write_bytes(png_bytes(pixels, [4, 3, 2, 1, 0, 4, 4]))
     names = [["Y"], ["Y", "A"], list("RGB"), list("RGBA")][channels - 1]
-    found = pixel_process.read_pixels("png", str(tmp_path / "a.png"), names)
-    assert found.dtype == kind and np.array_equal(found, np.moveaxis(pixels, -1, 0))
+    planes = pixel_process.read_pixels("png", str(tmp_path / "a.png"), names)
+    assert planes.dtype == kind and np.array_equal(planes, np.moveaxis(pixels, -1, 0))

@@ -1,4 +1,4 @@
-"""Captured frames as sets of normals: channels, packing, spaces, masks, and what bad files get."""
+"""Captured frames as sets of normals: channels, packing, spaces, masks and errors."""
 
 import struct
 import time
@@ -42,18 +42,18 @@ def figures(made, codec: Codec = RG8) -> dict:
 
 
 def test_rays_of_a_field_of_view_are_the_cameras(tmp_path):
-    """Per-pixel view space on the playground's normals with its field of view, within 0.01 dB of the playground's."""
+    """`per_pixel_view` with the playground's normals and field of view is within 0.01 dB of the playground itself."""
     np.save(tmp_path / "frame.npy", rendered().normals)
     codec = Codec(ENCODINGS["per_pixel_view"], STORAGES["rg8"])
-    made = capture(tmp_path / "frame.npy", Reading(fov=CAMERA.fov))
-    own, parallel = figures(playground(), codec)["psnr_db"], figures(replace(made), codec)["psnr_db"]
+    frame = capture(tmp_path / "frame.npy", Reading(fov=CAMERA.fov))
+    own, parallel = figures(playground(), codec)["psnr_db"], figures(replace(frame), codec)["psnr_db"]
     assert parallel == pytest.approx(own, abs=0.01)
     without = figures(capture(tmp_path / "frame.npy", Reading()), codec)["psnr_db"]
     assert abs(without - own) > 5, "parallel rays are another matter"
 
 
 def test_normals_of_no_length_are_background(tmp_path):
-    """Zero, less than a code of 8 bits from zero, and a cleared packed target; never NaN."""
+    """Zeros, values within an 8-bit step of zero and cleared packed targets are background, and never NaN."""
     n = some_normals()
     n[:5] = 0
     np.save(tmp_path / "frame.npy", n)
@@ -61,16 +61,16 @@ def test_normals_of_no_length_are_background(tmp_path):
     stored[2:4] = (127, 128, 127)
     Image.fromarray(stored).save(tmp_path / "frame.png")
     for name in ("frame.npy", "frame.png"):
-        made = capture(tmp_path / name, Reading())
-        n_made, covered = given(made)
-        assert made.background == 5 * 64 and not covered[: 5 * 64].any() and covered[5 * 64 :].all()
+        frame = capture(tmp_path / name, Reading())
+        n_made, covered = given(frame)
+        assert frame.background == 5 * 64 and not covered[: 5 * 64].any() and covered[5 * 64 :].all()
         assert np.isfinite(n_made).all()
 
 
 def all_of(path: Path):
-    """Every channel of a file, (channels, height, width), and what stands for 1."""
-    made = read_pixels(path, lambda names: names)
-    return made.planes, made.full
+    """Return every channel of a file, (channels, height, width), and the value that stands for 1."""
+    image = read_pixels(path, lambda names: names)
+    return image.planes, image.full
 
 
 # Of each format: the type of its numbers, and how OpenImageIO is to write it.
@@ -99,7 +99,7 @@ def test_numbers_of_every_format_come_back_as_they_are(tmp_path, name):
 
 
 def test_dds_webp_and_radiance_files_are_read(tmp_path):
-    """Whole numbers to the last one, also under an alpha of 0; Radiance's to the 8 bits that it has."""
+    """Integers are exact, even under an alpha of 0; Radiance values are exact to their 8 bits."""
     pixels = np.random.default_rng(0).integers(0, 256, (9, 7, 4), np.uint8)
     (tmp_path / "a.dds").write_bytes(dds_bytes(pixels))
     Image.fromarray(pixels).save(tmp_path / "a.webp", lossless=True, exact=True)
@@ -116,14 +116,14 @@ def test_pages_of_a_file_are_layers(tmp_path):
     pages = [np.random.default_rng(seed).integers(1, 256, (9, 7, 3), np.uint8) for seed in range(2)]
     Image.fromarray(pages[0]).save(tmp_path / "a.tif", save_all=True, append_images=[Image.fromarray(pages[1])])
     seen = []
-    made = read_pixels(tmp_path / "a.tif", lambda names: seen.extend(names) or ["2.R", "G"])
+    image = read_pixels(tmp_path / "a.tif", lambda names: seen.extend(names) or ["2.R", "G"])
     assert seen == ["R", "G", "B", "2.R", "2.G", "2.B"]
-    assert np.array_equal(made.planes, [pages[1][..., 0], pages[0][..., 1]])
+    assert np.array_equal(image.planes, [pages[1][..., 0], pages[0][..., 1]])
     assert chosen_channels(tmp_path / "a.tif", seen, None) == ["R", "G", "B"]
 
 
 def test_whole_numbers_of_an_exr_are_not_scaled(tmp_path):
-    """An object's number is not a share of 2^32."""
+    """An object's id is not a fraction of 2^32."""
     objects = np.arange(63, dtype=np.uint32).reshape(9, 7)
     planes, full = all_of(write_exr(tmp_path / "a.exr", {"id": objects}))
     assert np.array_equal(planes, [objects]) and full is None
@@ -131,7 +131,7 @@ def test_whole_numbers_of_an_exr_are_not_scaled(tmp_path):
 
 @pytest.mark.parametrize("size", [(9, 13), (1, 1), (3, 2)])
 def test_an_interlaced_png_is_read(tmp_path, size):
-    """Its seven passes one after the other, each as an image of its own."""
+    """The file has seven passes in order, each encoded as a separate image."""
     pixels = np.random.default_rng(0).integers(0, 2**16, (*size, 3), np.uint16)
     passes = [(0, 0, 8, 8), (0, 4, 8, 8), (4, 0, 8, 4), (0, 2, 4, 4), (2, 0, 4, 2), (0, 1, 2, 2), (1, 0, 2, 1)]
     parts = [pixels[y::down, x::across].astype(">u2") for y, x, down, across in passes]
@@ -143,7 +143,7 @@ def test_an_interlaced_png_is_read(tmp_path, size):
 
 
 def test_the_playground_through_a_file_has_the_playgrounds_own_figures(tmp_path):
-    """To the bit, by EXR in float and NPY in float32 and float64; the counts are its own too."""
+    """EXR in float and NPY in float32 and float64 agree to the bit, including the counts."""
     n = rendered().normals
     write_exr(tmp_path / "frame.exr", planes_of(n))
     np.save(tmp_path / "frame32.npy", n)
@@ -155,7 +155,7 @@ def test_the_playground_through_a_file_has_the_playgrounds_own_figures(tmp_path)
 
 @pytest.mark.parametrize("how, angle", [("half", 0.03), ("half npy", 0.03), ("png16", 0.002), ("png8", 0.4)])
 def test_coarser_files_are_as_far_off_as_their_numbers_are_coarse(tmp_path, how, angle):
-    """Half steps of half floats are 2^-12 beside 1, of 16 bits 2^-16, of 8 bits 1/255; up to sqrt 3 of that is lost."""
+    """Half steps near 1 are 2^-12 in half floats, 2^-16 in 16 bits, 1/255 in 8; errors reach sqrt(3) half steps."""
     n = rendered().normals
     if how == "half":
         path = write_exr(tmp_path / "frame.exr", planes_of(n.astype(np.float16)))
@@ -165,13 +165,13 @@ def test_coarser_files_are_as_far_off_as_their_numbers_are_coarse(tmp_path, how,
     else:
         path = tmp_path / "frame.png"
         path.write_bytes(png_bytes(packed(n, np.uint16 if how == "png16" else np.uint8)))
-    made, covered = given(capture(path, Reading()))
+    normals, covered = given(capture(path, Reading()))
     assert np.array_equal(covered, rendered().covered.ravel())
-    dot = np.sum(made[covered].astype(np.float64) * n.reshape(-1, 3)[covered], axis=1)
-    cross = np.linalg.norm(np.cross(made[covered].astype(np.float64), n.reshape(-1, 3)[covered]), axis=1)
+    dot = np.sum(normals[covered].astype(np.float64) * n.reshape(-1, 3)[covered], axis=1)
+    cross = np.linalg.norm(np.cross(normals[covered].astype(np.float64), n.reshape(-1, 3)[covered]), axis=1)
     off = np.degrees(np.arctan2(cross, dot))
     assert off.max() < angle and off.max() > angle / 20, f"{off.max():.4f} degrees"
-    assert abs(np.linalg.norm(made[covered].astype(np.float64), axis=1) - 1).max() < 2e-6
+    assert abs(np.linalg.norm(normals[covered].astype(np.float64), axis=1) - 1).max() < 2e-6
 
 
 def test_pictures_are_drawn_of_a_capture(tmp_path, run):
@@ -188,12 +188,12 @@ def test_layers_and_parts_of_an_exr_by_name(tmp_path):
     planes = planes_of(other, ("R", "G", "B")) | planes_of(n.astype(np.float16), ("Nx", "Ny", "Nz"))
     write_exr(tmp_path / "layers.exr", planes, compression="piz")
     assert np.allclose(given(capture(tmp_path / "layers.exr", Reading()))[0], n.reshape(-1, 3), atol=1e-3)
-    made = given(capture(tmp_path / "layers.exr", Reading(channels="B,G,R")))[0]
-    assert np.array_equal(made, other.reshape(-1, 3)[:, ::-1])
+    normals = given(capture(tmp_path / "layers.exr", Reading(channels="B,G,R")))[0]
+    assert np.array_equal(normals, other.reshape(-1, 3)[:, ::-1])
     write_exr(tmp_path / "parts.exr", {"beauty": planes_of(other, tuple("XYZ")), "normal": planes_of(n, tuple("XYZ"))})
     assert np.array_equal(given(capture(tmp_path / "parts.exr", Reading()))[0], n.reshape(-1, 3))
-    made = given(capture(tmp_path / "parts.exr", Reading(channels="beauty")))[0]
-    assert np.array_equal(made, other.reshape(-1, 3))
+    normals = given(capture(tmp_path / "parts.exr", Reading(channels="beauty")))[0]
+    assert np.array_equal(normals, other.reshape(-1, 3))
 
 
 @pytest.mark.parametrize("shape", [(1080, 1920, 3), (1, 262144, 3), (262144, 1, 3)])

@@ -1,4 +1,4 @@
-"""Clouds of points, which are sets of normals; and Git LFS pointers in place of any file."""
+"""Point clouds as sets of normals, and Git LFS pointers in place of files."""
 
 import struct
 
@@ -17,15 +17,15 @@ POINTER = f"version https://git-lfs.github.com/spec/v1\noid sha256:{'0' * 64}\ns
 
 
 def normals_of(path, **reading):
-    """The normals of a set, (count, 3)."""
-    (made,) = normal_sets_named(str(path), 0, 0, Reading(**reading))
-    chunk = made.chunk(0)
-    return np.stack([np.asarray(one) for one in chunk.n], axis=1)[np.asarray(chunk.covered)]
+    """Return the normals of a set, (count, 3)."""
+    (cloud,) = normal_sets_named(str(path), 0, 0, Reading(**reading))
+    chunk = cloud.chunk(0)
+    return np.stack([np.asarray(component) for component in chunk.n], axis=1)[np.asarray(chunk.covered)]
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_binary_clouds_are_read_as_text_is(tmp_path, order):
-    """Options of captures hold for them."""
+    """Capture options apply to binary clouds."""
     n = np.array([[0, 0, 1], [0, 0.6, 0.8], [-1, 0, 0]], np.float32)
     kind = {"<": "little", ">": "big"}[order]
     names = "".join(f"property float {name}\n" for name in ("nx", "ny", "nz"))

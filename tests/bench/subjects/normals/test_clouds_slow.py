@@ -1,4 +1,4 @@
-"""Clouds of points, which are sets of normals; and Git LFS pointers in place of any file."""
+"""Point clouds as sets of normals, and Git LFS pointers in place of files."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""The normals of a mesh's vertices as a set: which there are, once each, and what their file's rounding has cost."""
+"""The vertex normals of a mesh as a set: each normal once, with the error of the file's rounding."""
 
 import json
 from dataclasses import replace
@@ -29,10 +29,10 @@ CLOUD = ROOT / "tests" / "inputs" / "normals" / "points.ply"
 
 
 def vertices(path, said=""):
-    """The set of a file's vertices, and their normals."""
-    (made,) = normal_sets_named(f"{path}#vertices{said}", 0, 0, Reading())
-    n, covered = given(made)
-    return made, n[covered]
+    """Return the set of a file's vertices, and their normals."""
+    (loaded,) = normal_sets_named(f"{path}#vertices{said}", 0, 0, Reading())
+    n, covered = given(loaded)
+    return loaded, n[covered]
 
 
 def sorted_rows(n) -> np.ndarray:
@@ -48,7 +48,7 @@ def directions(count: int) -> np.ndarray:
 
 
 def ball_of(normals: np.ndarray, normalized: bool = True) -> Document:
-    """A glTF of points whose exact normals are given in another type."""
+    """Return a glTF document of points whose normals are stored in the type of the array."""
     document = Document()
     mesh = document.mesh(np.arange(3.0 * len(normals)).reshape(-1, 3), mode=0)
     attributes = document.json["meshes"][mesh]["primitives"][0]["attributes"]
@@ -59,27 +59,27 @@ def ball_of(normals: np.ndarray, normalized: bool = True) -> Document:
 
 
 @pytest.mark.parametrize("how", ["glb", "data"])
-def test_normals_are_those_of_the_file_in_object_space_and_once_for_all_places(tmp_path, how):
-    """A mesh in two places, each mirrored and turned; a camera and a normal map would change nothing."""
+def test_normals_are_in_object_space_and_counted_once_for_all_instances(tmp_path, how):
+    """The mesh has two instances, one mirrored and one rotated."""
     document = Document()
     n = unit(np.array([(1, 2, 2), (0, 3, 4), (-2, 1, 2)], float))
     mesh = document.mesh(TRIANGLE, n, [(0, 1, 2)])
     document.node(mesh=mesh, scale=[-2, 1, 0.5])
     document.node(mesh=mesh, rotation=[0, 0, 0.5**0.5, 0.5**0.5])
-    made, found = vertices(document.write(tmp_path / ("a.glb" if how == "glb" else "a.gltf"), how))
-    assert sorted_rows(found) == pytest.approx(sorted_rows(n), abs=1e-6)
-    assert made.name.endswith("#vertices") and made.code_space == "object" and made.own_error_deg is None
+    loaded, normals = vertices(document.write(tmp_path / ("a.glb" if how == "glb" else "a.gltf"), how))
+    assert sorted_rows(normals) == pytest.approx(sorted_rows(n), abs=1e-6)
+    assert loaded.name.endswith("#vertices") and loaded.code_space == "object" and loaded.own_error_deg is None
 
 
-def test_a_vertex_that_stands_twice_counts_once_and_one_without_a_triangle_not_at_all(tmp_path):
-    """Of six vertices one is unused, one repeats another with other uv, and one has its normal in another place."""
+def test_duplicate_vertices_count_once_and_unused_vertices_do_not_count(tmp_path):
+    """One of six vertices is unused, one repeats another with a different uv, and one repeats a normal elsewhere."""
     positions = [*TRIANGLE, (1, 0, 0), (0, 0, 9), (5, 5, 5)]
     normals = unit(np.array([(0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)], float))
     document = Document()
     uv = np.arange(12.0).reshape(6, 2)
     document.node(mesh=document.mesh(positions, normals, [(0, 1, 2), (0, 3, 4)], TEXCOORD_0=uv))
-    _, found = vertices(document.write(tmp_path / "a.glb"))
-    assert sorted_rows(found).tolist() == sorted_rows([(0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 0, 1)]).tolist()
+    _, kept = vertices(document.write(tmp_path / "a.glb"))
+    assert sorted_rows(kept).tolist() == sorted_rows([(0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 0, 1)]).tolist()
 
 
 def test_a_mesh_without_normals_leaves_the_others_of_its_file(tmp_path):
@@ -87,8 +87,8 @@ def test_a_mesh_without_normals_leaves_the_others_of_its_file(tmp_path):
     n = unit(np.array([(1, 2, 2), (0, 3, 4), (-2, 1, 2)], float))
     document.node(mesh=document.mesh(TRIANGLE, None, [(0, 1, 2)]))
     document.node(mesh=document.mesh(TRIANGLE, n, [(0, 1, 2)]))
-    _, found = vertices(document.write(tmp_path / "a.glb"))
-    assert sorted_rows(found) == pytest.approx(sorted_rows(n), abs=1e-6)
+    _, normals = vertices(document.write(tmp_path / "a.glb"))
+    assert sorted_rows(normals) == pytest.approx(sorted_rows(n), abs=1e-6)
 
 
 def test_normals_of_no_length_and_nan_are_left_out_and_counted(tmp_path, run):
@@ -96,9 +96,9 @@ def test_normals_of_no_length_and_nan_are_left_out_and_counted(tmp_path, run):
     n = [(0, 0, 2), (0, 0, 0), (np.nan, 0, 1), (0, -1e30, 1), (0.1, 0, 0)]
     document.node(mesh=document.mesh(np.arange(15.0).reshape(5, 3), n, mode=0))
     path = document.write(tmp_path / "a.glb")
-    made, found = vertices(path)
-    assert (made.count, made.background, made.not_finite) == (5, 1, 2)
-    assert sorted_rows(found) == pytest.approx(np.array([(0, 0, 1), (1, 0, 0)]))
+    loaded, normals = vertices(path)
+    assert (loaded.count, loaded.background, loaded.not_finite) == (5, 1, 2)
+    assert sorted_rows(normals) == pytest.approx(np.array([(0, 0, 1), (1, 0, 0)]))
     status, out, err = run(
         *("quality", "--encoding", "octahedral", "--normals", f"{path}#vertices", "--backend", "jax"),
         *("--format", "json"),
@@ -110,7 +110,7 @@ def test_normals_of_no_length_and_nan_are_left_out_and_counted(tmp_path, run):
 
 
 def test_each_kind_of_mesh_file_gives_its_normals(tmp_path):
-    """An OBJ file's two materials share vertices; PLY in any order of bytes."""
+    """An OBJ file's two materials share vertices; PLY files have any byte order."""
     (tmp_path / "a.obj").write_text(OBJ.replace("vn 0 0 2", "vn 0 3 4"))
     assert sorted_rows(vertices(tmp_path / "a.obj")[1]).tolist() == [[0, 0.6, 0.8]] * 4
     for order in ("ascii", "binary_little_endian", "binary_big_endian"):
@@ -121,28 +121,28 @@ def test_each_kind_of_mesh_file_gives_its_normals(tmp_path):
 
 
 def test_a_clouds_normals_of_no_length_are_counted_and_splats_have_none(tmp_path, run):
-    """Gaussian splats have nx, ny, nz, and all of them are 0."""
+    """Gaussian splats have nx, ny and nz, all of them 0."""
     path = tmp_path / "a.ply"
     path.write_text(CLOUD.read_text().replace("vertex 2", "vertex 3") + "2 0 0 0 0 0\n")
-    (made,) = normal_sets_named(str(path), 0, 0, Reading())
-    assert (made.count, made.background, made.code_space, made.has_rays) == (3, 1, "object", False)
+    (cloud,) = normal_sets_named(str(path), 0, 0, Reading())
+    assert (cloud.count, cloud.background, cloud.code_space, cloud.has_rays) == (3, 1, "object", False)
     (seen,) = normal_sets_named(str(path), 0, 0, Reading(fov=60.0))
     assert (seen.code_space, seen.has_rays) == ("view", True)
     path.write_text(CLOUD.read_text().replace("0 0 1", "0 0 0").replace("0 1 0", "0 0 0"))
-    for name, said in ((path, "none of its points has a normal"), (f"{path}#vertices", "none of its 2 vertex normals")):
+    for name, text in ((path, "none of its points has a normal"), (f"{path}#vertices", "none of its 2 vertex normals")):
         status, out, err = run("quality", "--encoding", "octahedral", "--normals", str(name))
-        assert (status, out) == (2, "") and len(err.splitlines()) == 1 and said in err, err
+        assert (status, out) == (2, "") and len(err.splitlines()) == 1 and text in err, err
 
 
 def test_a_code_that_needs_a_view_ray_is_left_out_in_a_line(tmp_path, run):
     path = as_glb(tmp_path / "a.glb", BALL)
     words = ("quality", "--normals", f"{path}#vertices", "--backend", "jax", "--format", "json")
     status, out, err = run(*words, "--encoding", "octahedral,per_pixel_view")
-    said = "per_pixel_view on a.glb#vertices: it needs the view ray, which normals in object space do not have"
+    message = "per_pixel_view on a.glb#vertices: it needs the view ray, which normals in object space do not have"
     assert status == 0 and [row["encoding"] for row in json.loads(out)] == ["octahedral"]
-    assert err == f"normalbench: left out: {said}\n"
+    assert err == f"normalbench: left out: {message}\n"
     status, out, err = run(*words, "--encoding", "per_pixel_view")
-    assert (status, out, err) == (2, "", f"normalbench: {said}\n")
+    assert (status, out, err) == (2, "", f"normalbench: {message}\n")
     named = ("--encoding", "per_pixel_view")
     for words in (("mix", *named), ("pick", *named, "--storage", "rg8")):
         status, out, err = run(*words, "--normals", f"{path}#vertices")
@@ -172,7 +172,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_bad_input_is_one_line(run, tmp_path, monkeypatch, what):
+def test_bad_input_is_a_one_line_error(run, tmp_path, monkeypatch, what):
     monkeypatch.chdir(tmp_path)
     as_glb(tmp_path / "ball.glb", BALL)
     for name, normals in (("bare", None), ("zeros", np.zeros((3, 3)))):
@@ -182,13 +182,13 @@ def test_bad_input_is_one_line(run, tmp_path, monkeypatch, what):
     Document().write(tmp_path / "empty.glb")
     (tmp_path / "none.ply").write_text(CLOUD.read_text().replace(" nx", " ax"))
     (tmp_path / "beyond.ply").write_bytes(ply("ascii", [[0, 1, 9]]))
-    words, said = BAD[what]
+    words, message = BAD[what]
     status, out, err = run("quality", "--encoding", "octahedral", "--normals", *words.split())
-    assert (status, out) == (2, "") and len(err.splitlines()) == 1 and said in err, err
+    assert (status, out) == (2, "") and len(err.splitlines()) == 1 and message in err, err
 
 
 def test_gates_and_workers_find_the_file(tmp_path, monkeypatch, run):
-    """The word is a file wherever files are looked for: next to the gates, among what a step is known by."""
+    """The word counts as a file next to the gates, and in the identity of a step."""
     from normalbench.bench.ground.user_files import file_of, files_in, with_files
     from normalbench.bench.run.measuring import files_of
     from normalbench.bench.tables.quality.table import QualityOptions
@@ -207,55 +207,55 @@ def test_gates_and_workers_find_the_file(tmp_path, monkeypatch, run):
     assert len(before["files"]) == 1 and files_of(QualityOptions(normals=word)) != before
 
 
-def test_python_has_them_too(tmp_path):
+def test_python_functions_accept_vertices(tmp_path):
     import normalbench
 
     path = as_glb(tmp_path / "a,b.glb", BALL)
-    made = normalbench.quality(encoding="octahedral", storage="rg8", normals=f"{path}#vertices", backend="jax")
-    (row,) = made.to_dict("records")
+    table = normalbench.quality(encoding="octahedral", storage="rg8", normals=f"{path}#vertices", backend="jax")
+    (row,) = table.to_dict("records")
     assert row["count"] == 24 * 15 + 2 and row["normals"] == "a,b.glb#vertices"
 
 
 def turned_deg(exact: np.ndarray, found: np.ndarray) -> float:
-    """The mean angle between unit normals."""
+    """Return the mean angle between unit normals, in degrees."""
     return float(np.degrees(2 * np.arcsin(np.minimum(np.linalg.norm(exact - found, axis=1) / 2, 1))).mean())
 
 
 @pytest.mark.parametrize("kind, noted", [(np.int8, True), (np.int16, False)])
-def test_whole_numbers_of_gltf_say_by_how_much_they_are_off(tmp_path, capsys, kind, noted):
-    """Against the exact normals, which the file does not have: 0.17 degrees in 8 bits, 1/258 of that in 16."""
+def test_gltf_integers_report_their_own_error(tmp_path, capsys, kind, noted):
+    """Measured against the exact normals, the error is 0.17 degrees in 8 bits and 1/258 of it in 16 bits."""
     exact, full = directions(3000), np.iinfo(kind).max
     path = ball_of(np.round(exact * full).astype(kind)).write(tmp_path / "a.glb")
-    made, found = vertices(path)
-    right = turned_deg(exact, found)
+    loaded, normals = vertices(path)
+    right = turned_deg(exact, normals)
     assert right == pytest.approx(0.17 * 127 / full, rel=0.05)
-    assert made.own_error_deg == pytest.approx(right, rel=0.05)
+    assert loaded.own_error_deg == pytest.approx(right, rel=0.05)
     err = capsys.readouterr().err
-    said = (
+    message = (
         "its vertex normals have 8 bits and are off by about 0.17 degrees themselves: "
         "encodings with a mean error below 0.06"
     )
-    assert (said in err) == noted and len(err.splitlines()) == noted, err
+    assert (message in err) == noted and len(err.splitlines()) == noted, err
 
 
 @pytest.mark.parametrize("bits", [6, 8, 10, 12])
 def test_an_octahedral_map_is_found_and_its_error_known(bits):
-    """Normals that a map of few bits packed, as Draco's and meshoptimizer's do; exact ones have no such grid."""
+    """Draco and meshoptimizer pack normals in such a map of few bits; exact normals show no such grid."""
     exact = directions(2000)
     (storage,) = storages_named(f"snorm:{bits}:{bits}")
     codec = Codec(ENCODINGS["octahedral"], storage)
     decoded = codec.round_trip(Vec3(*exact.T.astype(np.float32)), Vec3(*np.zeros((3, 2000), np.float32)))
-    packed = np.stack([np.asarray(one) for one in decoded], axis=1).astype(np.float64)
-    (found,) = all_roundings(packed, ())
-    assert found == Rounding(2 ** (bits - 1) - 1, is_octahedral=True)
-    assert own_error_deg(packed, [found]) == pytest.approx(turned_deg(exact, packed), rel=0.05)
+    packed = np.stack([np.asarray(component) for component in decoded], axis=1).astype(np.float64)
+    (rounding,) = all_roundings(packed, ())
+    assert rounding == Rounding(2 ** (bits - 1) - 1, is_octahedral=True)
+    assert own_error_deg(packed, [rounding]) == pytest.approx(turned_deg(exact, packed), rel=0.05)
     short = unit(np.round(packed * 32767) / 32767)
-    assert all_roundings(short, [Rounding(32767)]) == (found, Rounding(32767))
+    assert all_roundings(short, [Rounding(32767)]) == (rounding, Rounding(32767))
     assert all_roundings(exact, ()) == ()
 
 
 def test_few_normals_and_those_along_axes_show_no_map():
-    """A box lies on every grid, and is exact: nothing is said of it."""
+    """A box fits every grid and is exact, so no map is reported."""
     box = np.repeat(np.concatenate([np.eye(3), -np.eye(3)]), 100, axis=0)
     assert all_roundings(box, ()) == () and own_error_deg(box, [Rounding(127)]) == 0
     few = unit(np.array([(a, b, 7 - abs(a) - abs(b)) for a in range(-3, 4) for b in range(-3, 4)], float))
@@ -265,8 +265,8 @@ def test_few_normals_and_those_along_axes_show_no_map():
 @pytest.mark.parametrize(
     "kind, order", [("char", "ascii"), ("uchar", "ascii"), ("char", "binary_big_endian"), ("short", "ascii")]
 )
-def test_whole_numbers_of_points_are_read_and_their_error_is_said(tmp_path, run, kind, order):
-    """With a sign 127 stands for 1; without one 0 to 255 stand for -1 to 1. By name alone and as vertices."""
+def test_integer_normals_of_points_are_read_with_their_error(tmp_path, run, kind, order):
+    """Signed, 127 stands for 1; unsigned, 0 to 255 stand for -1 to 1. Files are read as clouds and as vertices."""
     exact = directions(2000)
     full = {"char": 127, "uchar": 255, "short": 32767}[kind]
     stored = np.round((exact + 1) / 2 * 255) if kind == "uchar" else np.round(exact * full)
@@ -276,31 +276,31 @@ def test_whole_numbers_of_points_are_read_and_their_error_is_said(tmp_path, run,
     path = tmp_path / "points.ply"
     path.write_bytes(head.encode() + (text if order == "ascii" else stored.astype(">i1").tobytes()))
     (cloud,) = normal_sets_named(str(path), 0, 0, Reading())
-    for made in (cloud, vertices(path)[0]):
-        n, covered = given(made)
+    for loaded in (cloud, vertices(path)[0]):
+        n, covered = given(loaded)
         right = turned_deg(exact, unit(n[covered].astype(float)))
         assert right == pytest.approx(0.17 * 127 / min(full, 32767) * (2 if kind == "uchar" else 1), rel=0.06)
-        assert made.own_error_deg == pytest.approx(right, rel=0.06) and made.code_space == "object"
+        assert loaded.own_error_deg == pytest.approx(right, rel=0.06) and loaded.code_space == "object"
     _, _, err = run("quality", "--encoding", "octahedral", "--normals", str(path), "--backend", "jax")
     assert ("its normals have 8 bits and are off by about 0.17 degrees" in err) == (kind != "short"), err
 
 
-def test_a_mesh_that_a_camera_sees_says_its_vertices_error(tmp_path):
-    """Between the corners of a triangle their errors cancel in part, by at most the root of 1/2 in the mean of many:
-    measured against the same picture of floats."""
+def test_rendered_mesh_reports_the_error_of_its_vertices(tmp_path):
+    """Vertex errors partly cancel inside a triangle, in the mean of many by at most a factor of sqrt(1/2); the error
+    is measured against the same image with float normals."""
     ball = sphere(1.0, 48, 32)
     exact, coarse = Document(), Document()
     for document, kind in ((exact, None), (coarse, np.int8)):
         mesh = document.mesh(ball.positions, ball.normals, ball.triangles)
         if kind:
             stored = np.round(ball.normals * 127).astype(kind)
-            at = document.accessor(stored, True)
-            document.json["meshes"][mesh]["primitives"][0]["attributes"]["NORMAL"] = at
+            index = document.accessor(stored, True)
+            document.json["meshes"][mesh]["primitives"][0]["attributes"]["NORMAL"] = index
         document.node(mesh=mesh)
     coarse.json["extensionsRequired"] = ["KHR_mesh_quantization"]
     paths = [d.write(tmp_path / f"{name}.glb") for d, name in ((exact, "exact"), (coarse, "coarse"))]
     sets = normal_sets_named(",".join(map(str, paths)), 0, 0, Reading(size="160x120"))
-    (right, covered), (found, _) = map(given, sets)
-    off = turned_deg(right[covered].astype(float), found[covered].astype(float))
+    (right, covered), (rounded, _) = map(given, sets)
+    off = turned_deg(right[covered].astype(float), rounded[covered].astype(float))
     assert sets[0].own_error_deg is None and sets[1].own_error_deg is not None
     assert 0.7 < off / sets[1].own_error_deg < 1.05, (off, sets[1].own_error_deg)

@@ -1,4 +1,4 @@
-"""Captured frames as scenes: the image and the figures of a scene that was read back and written as a frame."""
+"""Captured frames as scenes, compared with the image and figures of the scenes that they were written from."""
 
 import json
 from pathlib import Path
@@ -17,7 +17,7 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 
 def frame(folder: Path, **changes) -> Path:
-    """A slope of 24 x 16 pixels that faces the camera, in arrays, described with some entries in place of others."""
+    """Write a 24 x 16 slope facing the camera, with some entries of its description changed; return the path."""
     shape = (16, 24)
     arrays = {
         "depth": np.linspace(2.0, 8.0, 16 * 24).reshape(shape),
@@ -27,12 +27,12 @@ def frame(folder: Path, **changes) -> Path:
         "small": np.ones((8, 12)),
         "holes": np.full(shape, np.nan),
     }
-    for name, found in arrays.items():
-        np.save(folder / f"{name}.npy", found.astype(np.float32))
-    said = {name: {"file": f"{name}.npy"} for name in ("depth", "normal", "base_color", "roughness")}
-    said |= {"fov": 60, "near": 1, "far": 10} | changes
+    for name, array in arrays.items():
+        np.save(folder / f"{name}.npy", array.astype(np.float32))
+    entries = {name: {"file": f"{name}.npy"} for name in ("depth", "normal", "base_color", "roughness")}
+    entries |= {"fov": 60, "near": 1, "far": 10} | changes
     path = folder / "frame.json"
-    path.write_text(json.dumps({name: one for name, one in said.items() if one != "left out"}))
+    path.write_text(json.dumps({name: entry for name, entry in entries.items() if entry != "left out"}))
     return path
 
 
@@ -84,7 +84,7 @@ def pixels_of(path: Path) -> PixelSurfaces:
         ({"view_matrix": [1, 0, 0, 0, 1, 0, 0, 0, 10**300]}, ("view_matrix is 1e+300", "a 32-bit float")),
     ],
 )
-def test_what_is_wrong_is_one_line(tmp_path, changes, said):
+def test_invalid_entry_is_a_one_line_error(tmp_path, changes, said):
     with pytest.raises(UsageError) as refusal:
         read(frame(tmp_path, **changes))
     line = str(refusal.value)
@@ -93,16 +93,16 @@ def test_what_is_wrong_is_one_line(tmp_path, changes, said):
 
 
 @pytest.mark.parametrize("number", ["9" * 310, "-" + "9" * 5000, "1e999", "NaN", "-Infinity"])
-def test_a_number_that_no_float_holds_is_one_line_with_its_place(run, tmp_path, number):
+def test_number_beyond_float_range_is_a_one_line_error_with_its_place(run, tmp_path, number):
     path = frame(tmp_path, roughness={"file": "roughness.npy", "scale": 7.25})
     path.write_text(path.read_text().replace("7.25", number))
     status, out, err = run("budget", "--bytes", "12", "--scene", str(path))
-    said = "roughness.scale is not a finite number; write one below 1e308"
-    assert (status, out, err) == (2, "", f"normalbench: {path}: {said}\n")
+    message = "roughness.scale is not a finite number; write one below 1e308"
+    assert (status, out, err) == (2, "", f"normalbench: {path}: {message}\n")
 
 
 @pytest.mark.parametrize("text", ["[]", "{", '"depth"', "\udcff"])
-def test_what_is_no_description_is_one_line(tmp_path, text):
+def test_malformed_description_is_a_one_line_error(tmp_path, text):
     path = tmp_path / "a.json"
     path.write_bytes(text.encode("utf-8", "surrogateescape"))
     with pytest.raises(
@@ -114,40 +114,40 @@ def test_what_is_no_description_is_one_line(tmp_path, text):
 
 def test_numbers_stand_for_quantities_and_smoothness_for_roughness(tmp_path):
     smooth = {"roughness": None, "smoothness": {"file": "roughness.npy"}, "metallic": 1, "emissive": [0, 0.5, 2]}
-    found = pixels_of(frame(tmp_path, **smooth, f0={"file": "roughness.npy", "scale": 0.08}))
+    pixels = pixels_of(frame(tmp_path, **smooth, f0={"file": "roughness.npy", "scale": 0.08}))
     rough = np.load(tmp_path / "roughness.npy")
-    assert np.allclose(found.roughness, 1 - rough) and np.allclose(found.f0, 0.08 * rough)
-    assert (found.metallic == 1).all() and (found.emissive == (0, 0.5, 2)).all() and (found.ao == 1).all()
+    assert np.allclose(pixels.roughness, 1 - rough) and np.allclose(pixels.f0, 0.08 * rough)
+    assert (pixels.metallic == 1).all() and (pixels.emissive == (0, 0.5, 2)).all() and (pixels.ao == 1).all()
     (line,) = read(frame(tmp_path, **smooth)).notes
     assert line.startswith("it has no f0 (0.04), ao (1)")
 
 
-def test_background_is_what_depth_or_normals_say(tmp_path):
-    """Beyond the far plane, or without a normal: what other images hold there does not matter."""
+def test_depth_and_normals_define_the_background(tmp_path):
+    """Pixels beyond the far plane or without a normal are background, whatever the other images hold there."""
     path = frame(tmp_path)
     depth, normal, rough = (np.load(tmp_path / f"{name}.npy") for name in ("depth", "normal", "roughness"))
     depth[0], normal[1], rough[:2] = 20.0, 0.0, np.nan
-    for name, found in (("depth", depth), ("normal", normal), ("roughness", rough)):
-        np.save(tmp_path / f"{name}.npy", found)
-    found = pixels_of(path)
-    assert not found.depth[:2].any() and (found.depth[2:] > 0).all()
+    for name, pixels in (("depth", depth), ("normal", normal), ("roughness", rough)):
+        np.save(tmp_path / f"{name}.npy", pixels)
+    pixels = pixels_of(path)
+    assert not pixels.depth[:2].any() and (pixels.depth[2:] > 0).all()
     meshes = [part.mesh for part in read(path).scene.parts]
     assert sum(len(mesh.triangles) for mesh in meshes) == 2 * 14 * 24
 
 
 def test_large_frames_are_drawn_by_some_of_their_pixels(tmp_path, monkeypatch):
-    """Every so manyth row and column, as they are, and the camera sees what is left of the frame."""
+    """Rows and columns are taken at regular steps without averaging, and the camera keeps its field of view."""
     monkeypatch.setattr(reading, "MOST_PIXELS", 100)
     path = frame(tmp_path)
-    found = read(path)
+    captured = read(path)
     assert (
-        found.sides == (12, 8)
-        and "one row and one column in 2 are drawn, 12 x 8 pixels, without averaging" in found.notes
+        captured.sides == (12, 8)
+        and "one row and one column in 2 are drawn, 12 x 8 pixels, without averaging" in captured.notes
     )
-    (part,) = found.scene.parts
-    rough = found.scene.materials[0].rough_metal_map
+    (part,) = captured.scene.parts
+    rough = captured.scene.materials[0].rough_metal_map
     assert np.array_equal(rough.texels[..., 1], np.load(tmp_path / "roughness.npy")[1::2, 1::2])
-    assert len(part.mesh.positions) == 4 * 12 * 8 and found.scene.view.fov == pytest.approx(60)
+    assert len(part.mesh.positions) == 4 * 12 * 8 and captured.scene.view.fov == pytest.approx(60)
     monkeypatch.setattr(reading, "MOST_PIXELS", 45)
     assert read(path).sides == (8, 5)
 
@@ -155,32 +155,32 @@ def test_large_frames_are_drawn_by_some_of_their_pixels(tmp_path, monkeypatch):
 @pytest.mark.parametrize("up", [0, 1, 2])
 @pytest.mark.parametrize("hand", [1.0, -1.0])
 def test_worlds_of_any_axes_have_y_up(up, hand):
-    """A camera that looks down a little in a world of either hand: its axes stay axes, and the picture is the same."""
+    """For a slightly tilted camera in a world of either handedness, world axes are mapped to world axes."""
     level = np.roll(np.eye(3), up - 1, axis=0) * (1, 1, hand)
     turn = rotation(0.7, 0.3, 0.1)
-    found = reading.upright(level @ turn)
-    assert np.linalg.det(found) == pytest.approx(1) and found[1, 1] > 0.9
-    moved = found @ np.linalg.inv(level @ turn)
+    matrix = reading.upright(level @ turn)
+    assert np.linalg.det(matrix) == pytest.approx(1) and matrix[1, 1] > 0.9
+    moved = matrix @ np.linalg.inv(level @ turn)
     assert np.allclose(abs(moved).max(axis=0), 1) and np.allclose(moved @ moved.T, np.eye(3))
     if (up, hand) == (1, 1.0):
-        assert np.allclose(found, turn)
+        assert np.allclose(matrix, turn)
 
 
 def test_many_reflectances_are_rounded_and_few_are_not(tmp_path):
     few = pixel_scene(pixels_of(frame(tmp_path, f0=0.05)), SCENES["ramps"].make(Setting()).view)
-    assert [one.reflectance for one in few.materials] == [pytest.approx(0.05)]
+    assert [material.reflectance for material in few.materials] == [pytest.approx(0.05)]
     many = read(frame(tmp_path, f0={"file": "roughness.npy", "scale": 0.1})).scene
-    found = np.array([one.reflectance for one in many.materials])
-    assert 200 < len(found) <= 256 and np.diff(found).min() > 0
-    assert found[[0, -1]] == pytest.approx((0.01, 0.09)) and len(many.parts) == len(found)
+    reflectances = np.array([material.reflectance for material in many.materials])
+    assert 200 < len(reflectances) <= 256 and np.diff(reflectances).min() > 0
+    assert reflectances[[0, -1]] == pytest.approx((0.01, 0.09)) and len(many.parts) == len(reflectances)
 
 
 def test_images_belong_to_what_is_measured(tmp_path):
-    """Another image makes another input, and workers are sent it."""
+    """A changed image is a changed input, and workers receive the images."""
     matrix = tmp_path / "view.txt"
     matrix.write_text("1 0 0 0 1 0 0 0 1")
     path = frame(tmp_path, view_matrix="view.txt", metallic=0)
-    assert [one.name for one in companions(path)] == [
+    assert [file.name for file in companions(path)] == [
         *("base_color.npy", "depth.npy", "normal.npy", "roughness.npy", "view.txt")
     ]
     path.write_text("{")

@@ -1,4 +1,4 @@
-"""Captured frames as scenes: the image and the figures of a scene that was read back and written as a frame."""
+"""Captured frames as scenes, compared with the image and figures of the scenes that they were written from."""
 
 import json
 from contextlib import ExitStack
@@ -24,33 +24,33 @@ SIZE = (160, 120)
 
 
 def unlit(name: str) -> SceneMaker:
-    """A scene of the catalogue under the environment of captured frames alone."""
+    """Return a scene of the catalogue lit only by the environment of captured frames."""
     maker = SCENES[name]
     around = ENVIRONMENTS[AROUND].make()
     return replace(maker, make=lambda setting: replace(maker.make(setting), lights=(), environment=around))
 
 
 def written(exact: Exact, folder: Path) -> Path:
-    """What an exact image is of, as arrays of floats, with the description of that."""
+    """Write the surfaces of an exact image as float arrays with a description, and return its path."""
     view, surfaces = exact.stage.scene.view, exact.surfaces
     depth = exact._made.read(LINEAR_DEPTH)[0][..., 0]
     arrays = {
         "depth": np.where(exact.covered, depth, 0),
         **{name: getattr(surfaces, name) for name in surfaces.__dataclass_fields__},
     }
-    for name, found in arrays.items():
-        np.save(folder / f"{name}.npy", found.astype(np.float32))
-    said = {name: {"file": f"{name}.npy"} for name in arrays}
-    said["normal"]["space"] = "world"
-    said |= {"fov": view.fov, "near": view.near, "far": view.far, "view_matrix": view.matrix().tolist()}
+    for name, array in arrays.items():
+        np.save(folder / f"{name}.npy", array.astype(np.float32))
+    entries = {name: {"file": f"{name}.npy"} for name in arrays}
+    entries["normal"]["space"] = "world"
+    entries |= {"fov": view.fov, "near": view.near, "far": view.far, "view_matrix": view.matrix().tolist()}
     path = folder / "gbuffer.json"
-    path.write_text(json.dumps(said))
+    path.write_text(json.dumps(entries))
     return path
 
 
 @pytest.mark.parametrize("name", ["ramps", "studio"])
 def test_a_scene_that_was_read_back_has_the_images_of_the_scene(gl, name, tmp_path):
-    """Attributes and the lit image to within texels' rounding, and each code's errors to a hundredth of a decibel."""
+    """Attributes and the lit image agree to the rounding of texels, and each code's errors to 0.1 dB."""
     with ExitStack() as stack:
         whole = Exact(gl, stack, Stage(unlit(name), Setting(), SIZE))
         (maker,) = scene_makers_named(str(written(whole, tmp_path)))
@@ -58,9 +58,9 @@ def test_a_scene_that_was_read_back_has_the_images_of_the_scene(gl, name, tmp_pa
         maker = replace(maker, exposure=SCENES[name].exposure)
         again = Exact(gl, stack, Stage(maker, Setting(), SIZE))
         assert np.array_equal(whole.covered, again.covered) and set(whole.classes) == set(again.classes)
-        for one in whole.surfaces.__dataclass_fields__:
-            apart = abs(getattr(whole.surfaces, one) - getattr(again.surfaces, one))[whole.covered]
-            assert apart.max() < 1e-6 * max(1.0, abs(getattr(whole.surfaces, one)).max()), one
+        for field in whole.surfaces.__dataclass_fields__:
+            apart = abs(getattr(whole.surfaces, field) - getattr(again.surfaces, field))[whole.covered]
+            assert apart.max() < 1e-6 * max(1.0, abs(getattr(whole.surfaces, field)).max()), field
         assert abs(whole.shown - again.shown).max() < 1e-4
         for attribute in ("normal", "base_color", "roughness", "metallic", "ao"):
             code = SEEN[attribute].codes[0]
@@ -71,7 +71,7 @@ def test_a_scene_that_was_read_back_has_the_images_of_the_scene(gl, name, tmp_pa
 
 
 def test_images_of_eight_bits_are_read_by_their_curve_and_named(tmp_path):
-    """A PNG's base colour, and roughness that RenderDoc's script wrote as floats, lie on steps of 8 bits."""
+    """A PNG's base colour, and roughness that RenderDoc's script wrote as floats, are on 8-bit steps."""
     rng = np.random.default_rng(5)
     colours = rng.integers(0, 256, (16, 24, 3), np.uint8)
     (tmp_path / "a.png").write_bytes(png_bytes(colours))

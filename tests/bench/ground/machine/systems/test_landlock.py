@@ -1,4 +1,4 @@
-"""A process behind a wall of Landlock, and what it starts, get at nothing but what is named."""
+"""A process behind a Landlock wall, and its children, can access only what is named."""
 
 import os
 import shutil
@@ -84,7 +84,7 @@ int main(int count, char **words) {
 
 @pytest.fixture
 def place(tmp_path):
-    """A folder to write, next to one with a secret."""
+    """A folder that may be written, next to a folder with a secret."""
     (tmp_path / "outside").mkdir()
     (tmp_path / "outside" / "secret").write_text(SECRET)
     (tmp_path / "place").mkdir()
@@ -98,13 +98,13 @@ def compiled(place: Path, text: str, tool: str = "cc") -> subprocess.CompletedPr
 
 
 def tried(place: Path, line: str, *reads: str) -> subprocess.CompletedProcess[str]:
-    """What a line of Python does behind a wall, which was run from outside."""
+    """Run a line of Python behind a wall; return the finished process."""
     wall = walls.of_python() | Wall(reads=reads, writes=(str(place),))
     return children.finished(wall.around([sys.executable, "-I", "-c", line]), 60)
 
 
 def test_a_compiler_works_and_its_program_runs(place):
-    """Compiled and linked in the folder; its temporary files lie there as well."""
+    """The program is compiled and linked in the folder, which also has the temporary files."""
     done = compiled(place, "#include <stdio.h>\n#include <math.h>\nint main(int n, char **w) {"
         "(void)w; printf(\"%g\\n\", sqrt(4.0 * n)); return 0; }")  # fmt: skip
     assert done.returncode == 0, done.stderr
@@ -114,14 +114,14 @@ def test_a_compiler_works_and_its_program_runs(place):
 
 @pytest.mark.parametrize("line", ['#include "{0}"', 'const char *s = __FILE__; __asm__(".incbin \\"{0}\\"");'])
 def test_a_compiler_includes_nothing_from_outside(place, line):
-    """Neither by the preprocessor nor by the assembler, and the message does not quote the file."""
+    """Both the preprocessor and the assembler are blocked, and the message does not quote the file."""
     done = compiled(place, line.format(place.parent / "outside" / "secret") + "\nint main(void) { return 0; }\n")
     assert done.returncode != 0 and SECRET not in done.stderr
 
 
 @pytest.mark.parametrize("tool", ["glslangValidator", "spirv-cross", "spirv-opt", tools.SLANG])
-def test_tools_of_shaders_run(tool, place):
-    """On the system's path or in a wheel: they print what they print without a wall."""
+def test_shader_tools_run_behind_a_wall(tool, place):
+    """Tools on the system's path or in a wheel print the same help as without a wall."""
     try:
         path = str(tools.path_of(tool) if tool == tools.SLANG else shutil.which(tool) or "")
     except MissingError:
@@ -134,16 +134,16 @@ def test_tools_of_shaders_run(tool, place):
     assert free.stdout or free.stderr
 
 
-def test_a_strangers_program_gets_nothing(place, monkeypatch):
-    """Nor do a child of it, and itself where it starts anew; only its own folder is written."""
+def test_an_untrusted_program_can_access_nothing_outside(place, monkeypatch):
+    """Its child and its own restart are blocked too; it can write only its own folder."""
     monkeypatch.setenv("SECRET", SECRET)
     outside = place.parent / "outside"
     with socket.create_server(("127.0.0.1", 0)) as server:
         facts = {"FOLDER": place, "OUTSIDE": outside, "SECRET_FILE": outside / "secret"}
         head = "".join(f'#define {name} "{path}"\n' for name, path in facts.items())
         head += f"#define PORT {server.getsockname()[1]}\n#define PARENT {os.getpid()}\n"
-        made = compiled(place, head + STRANGER)
-        assert made.returncode == 0, made.stderr
+        built = compiled(place, head + STRANGER)
+        assert built.returncode == 0, built.stderr
         # It can do all of it, if nothing holds it.
         assert {"read", "truncate", "remove"} & set(subprocess.check_output([place / "main"], text=True).splitlines())
         (outside / "secret").write_text(SECRET)
@@ -171,7 +171,7 @@ def test_a_strangers_program_gets_nothing(place, monkeypatch):
     ],
 )
 def test_python_behind_a_wall_is_refused(place, line, says):
-    """And in a child of it, which `multiprocessing` forks."""
+    """A forked child, such as those of `multiprocessing`, is denied access too."""
     line = line.format(secret=str(place.parent / "outside" / "secret"), home=str(Path.home()))
     done = tried(place, line)
     assert done.returncode == 1 and any(says_one in done.stderr for says_one in says.split("|")), done.stderr
@@ -180,7 +180,7 @@ def test_python_behind_a_wall_is_refused(place, line, says):
 
 
 def test_a_running_process_walls_itself_in(place):
-    """It keeps what is open, opens nothing more, and cannot take the wall down."""
+    """The process keeps its open files, opens no others, and cannot remove the wall."""
     line = (
         "from normalbench.bench.ground.machine.systems.landlock import restrict\n"
         f"file = open({str(place.parent / 'outside' / 'secret')!r})\n"
@@ -191,8 +191,8 @@ def test_a_running_process_walls_itself_in(place):
     assert done.stdout == f"{SECRET}\n" and "PermissionError" in done.stderr, done.stderr
 
 
-def test_a_process_with_more_threads_is_refused():
-    """The others would stay outside."""
+def test_a_process_with_several_threads_is_refused():
+    """The other threads would stay outside the wall."""
     line = (
         "import threading, time\nfrom normalbench.bench.ground.machine.systems import landlock\n"
         "threading.Thread(target=time.sleep, args=[1]).start()\nlandlock.restrict([], [], [])"
@@ -201,8 +201,8 @@ def test_a_process_with_more_threads_is_refused():
     assert done.returncode == 1 and "RuntimeError: a wall binds one thread" in done.stderr, done.stderr
 
 
-def test_limits_hold_behind_a_wall(place):
-    """What a process was limited to before it is walled in it is limited to afterwards."""
+def test_resource_limits_still_apply_behind_a_wall(place):
+    """The limits that a process had before the wall also apply behind it."""
     wall = walls.of_python() | Wall(writes=(str(place),))
     line = "import resource; print(resource.getrlimit(resource.RLIMIT_CORE)[0], resource.getrlimit(1)[0])"
     words = wall.around([sys.executable, "-I", "-c", line])
@@ -213,8 +213,8 @@ def test_limits_hold_behind_a_wall(place):
     assert done.stdout == f"0 {children.FILE}\n", done.stderr
 
 
-def test_what_cannot_be_run_has_a_status_of_its_own(place):
-    """As in shells: a script needs a program that may not be executed."""
+def test_a_program_that_cannot_be_executed_has_its_own_status(place):
+    """The status is 126, as in shells: the script needs an interpreter that it may not execute."""
     (place / "script").write_text("#!/bin/sh\necho 1\n")
     (place / "script").chmod(0o755)
     done = children.finished(walls.of_program(place / "script").around([str(place / "script")]), 60)
@@ -222,7 +222,7 @@ def test_what_cannot_be_run_has_a_status_of_its_own(place):
 
 
 def test_a_home_folder_is_never_readable_as_a_whole():
-    """Of tools and of this Python that lie in it only their own folders are."""
+    """Tools or a Python inside the home folder make only their own folders readable."""
     home = Path.home().resolve()
     for wall in (walls.of_python(), walls.of_c_compiler("cc"), walls.of_tool(home / "bin" / "tool")):
         assert not [path for path in wall.reads if home.is_relative_to(path)], wall

@@ -1,4 +1,4 @@
-"""Users' own codes of something else than normals: measured as the catalogue's are, and what is wrong in a line."""
+"""Users' encodings of other quantities than normals: measured like the catalogue's, with one-line errors."""
 
 import json
 import re
@@ -36,13 +36,13 @@ def test_every_kind_has_a_shape_and_is_tried():
 
 
 def figures(out: str, name: str) -> list[dict]:
-    """The rows of a code without what names it."""
-    found = [row for row in json.loads(out) if row["encoding"] == name]
-    return [{column: value for column, value in row.items() if column not in KEYS} for row in found]
+    """Return the rows of a code without the columns that name it."""
+    rows = [row for row in json.loads(out) if row["encoding"] == name]
+    return [{column: value for column, value in row.items() if column not in KEYS} for row in rows]
 
 
 def test_codes_in_0_to_1_are_held_as_they_are(run, tmp_path):
-    """In UNORM these are those in [-1, 1]; half as many numbers of SNORM and floats are left, and no code for rest."""
+    """In UNORM such codes equal codes in [-1, 1]; SNORM keeps half of the numbers, and no exact code for rest."""
     (tmp_path / "biased.hlsl").write_text(
         "float2 EncodeVelocity(float2 v) { return v * 0.5 + 0.5; }"
         "float2 DecodeVelocity(float2 e) { return e * 2.0 - 1.0; }"
@@ -60,7 +60,7 @@ def test_codes_in_0_to_1_are_held_as_they_are(run, tmp_path):
 
 @pytest.mark.parametrize("scale, reach", [(1.0, 1.0), (0.25, 4.0), (1 / 0.4985, 0.4985)])
 def test_a_code_without_a_range_has_its_own(tmp_path, scale, reach):
-    """The largest motion whose code is 1."""
+    """The range is the motion whose code is 1."""
     file = tmp_path / "own.hlsl"
     file.write_text(
         f"float2 EncodeMotion(float2 v) {{ return v * {scale}; }}"
@@ -77,8 +77,8 @@ def test_an_encoder_that_clips_by_itself_has_the_range_that_comes_back(tmp_path)
         "float2 EncodeMotion(float2 v) { return saturate(v * 2 + 0.5); }"
         "float2 DecodeMotion(float2 e) { return (e - 0.5) / 2; }"
     )
-    found = own_code(MOTION, file).found
-    assert found["own_range"] == pytest.approx(0.25, rel=2e-3) and found["is_unit"] and not found["wrong"]
+    look = own_code(MOTION, file).found
+    assert look["own_range"] == pytest.approx(0.25, rel=2e-3) and look["is_unit"] and not look["wrong"]
 
 
 PAIR = "float2 DecodeVelocity(float2 e) { return e; }"
@@ -113,7 +113,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("text", BROKEN)
-def test_what_cannot_be_measured_is_a_line_that_spares_others(run, tmp_path, text):
+def test_unmeasurable_file_is_a_one_line_error_and_others_are_measured(run, tmp_path, text):
     file = tmp_path / "mine.hlsl"
     file.write_text(text)
     with pytest.raises(UsageError, match=BROKEN[text]):
@@ -124,16 +124,16 @@ def test_what_cannot_be_measured_is_a_line_that_spares_others(run, tmp_path, tex
         assert {row["encoding"] for row in json.loads(out)} == {"linear"}
 
 
-def test_of_several_pairs_the_one_that_undoes_itself_is_taken(tmp_path):
+def test_pair_that_round_trips_is_chosen_from_several(tmp_path):
     file = tmp_path / "mine.hlsl"
     names = {"EncodeMotionA": "v", "DecodeMotionA": "2 * v", "EncodeMotionB": "v * 0.5", "DecodeMotionB": "v * 2"}
-    file.write_text("".join(f"float2 {name}(float2 v) {{ return {made}; }}\n" for name, made in names.items()))
+    file.write_text("".join(f"float2 {name}(float2 v) {{ return {body}; }}\n" for name, body in names.items()))
     assert own_code(MOTION, file).made.named == "EncodeMotionB:DecodeMotionB"
     assert own_code(MOTION, f"{file}:EncodeMotionA:DecodeMotionB").found["error_max"] == 1
 
 
 def test_rows_by_jax_need_a_twin(run):
-    """They are left out with a line, as those of normals are."""
+    """Without a twin the rows are left out with a message, as for normals."""
     words = ("--storage", "rg16", "--speed", "1", "--count", "64")
     status, out, err = run("vectors", "--encoding", str(INPUTS / "velocity.wgsl"), *words)
     assert status == 0 and "jax" not in out
@@ -144,20 +144,20 @@ def test_rows_by_jax_need_a_twin(run):
 
 @pytest.mark.parametrize("ending", ["hlsl", "slang", "glsl", "wgsl"])
 def test_a_copy_of_a_depth_code_has_its_rows(run, ending):
-    """Each is the catalogue's window, its planes behind the depth, before it or in a structure."""
+    """Each file is the catalogue's `window`, with the planes after the depth, before it or in a structure."""
     file = INPUTS / f"depth.{ending}"
     words = ("--storage", "depth16,packed24,r16f", "--rebuild", "eye_ray", "--near", "0.1", "--distance", "1,100")
     words += ("--count", "256", "--backend", "glsl", "--format", "json")
     status, out, err = run("depth", "--depth", f"{file},window", *words)
     assert status == 0 and not err, err
-    found = {name: [row for row in json.loads(out) if row["depth"] == name] for name in (file.name, "window")}
-    assert len(found["window"]) == 9
-    for ours, theirs in zip(found[file.name], found["window"], strict=True):
+    rows = {name: [row for row in json.loads(out) if row["depth"] == name] for name in (file.name, "window")}
+    assert len(rows["window"]) == 9
+    for ours, theirs in zip(rows[file.name], rows["window"], strict=True):
         assert ours["error_max"] == theirs["error_max"] and ours["error_mean"] == theirs["error_mean"]
         assert ours["bound"] is None and theirs["bound"] > 0
 
 
-def test_a_depth_code_without_planes_is_tried_where_it_undoes_itself(run, tmp_path):
+def test_depth_code_without_planes_is_measured_in_its_own_range(run, tmp_path):
     (tmp_path / "own.hlsl").write_text(
         "float EncodeDepth(float d) { return saturate((d - 2.0) / 248.0); }"
         "float DecodeDepth(float e) { return e * 248.0 + 2.0; }"
@@ -184,28 +184,28 @@ OWN_DEPTHS = {"own.hlsl": set(DEPTH_STORAGES), "units.hlsl": {"r16f", "r32f"}}
 
 @pytest.mark.parametrize("ending", ["hlsl", "slang", "glsl", "wgsl"])
 def test_a_copy_of_a_curve_gives_its_quantities(ending):
-    """Each is the catalogue's squared, in half types, with an out parameter, with a range and without one."""
+    """Each file is the catalogue's `squared`: in half types, with an out parameter, with or without a range."""
     (ours, theirs) = own_codes_named(CURVE, f"{INPUTS / f'roughness.{ending}'},squared", CURVE_ENCODINGS)
     given = np.linspace(0, 1, 4096, dtype=np.float32).reshape(64, 64)
     for name in ("r8", "r16", "r16f", "rgba8_snorm"):
-        found = []
+        decoded = []
         for encoding in (ours, theirs):
             with CurvePasses(device(), CurveCodec(encoding, CURVE_STORAGES[name])) as passes:
-                found.append(passes.round_trip(np.stack([given, 0 * given], axis=-1)))
-        np.testing.assert_array_equal(*found)
+                decoded.append(passes.round_trip(np.stack([given, 0 * given], axis=-1)))
+        np.testing.assert_array_equal(*decoded)
     assert ours.storages == CURVE_ENCODINGS["linear"].storages and ours.inverse_error < 1e-6
 
 
-def test_a_curve_that_leaves_its_range_or_moves_its_ends_is_told(tmp_path):
+def test_curve_that_leaves_its_range_or_moves_its_ends_is_reported(tmp_path):
     file = tmp_path / "own.hlsl"
     file.write_text(
         "float EncodeRoughness(float r) { return 0.9999 * r * 1.5 + 0.0001; }"
         "float DecodeRoughness(float e) { return (e - 0.0001) / 1.5; }"
     )
-    found = own_code(CURVE, file).found
-    (wrong,) = found["wrong"]
+    look = own_code(CURVE, file).found
+    (wrong,) = look["wrong"]
     assert wrong == "component 1 of the code leaves [0, 1], the range of fixed-point storages: 1.5 for 1"
-    assert [line.split(",")[0] for line in found["notes"]] == ["1 does not come back exactly"]
+    assert [line.split(",")[0] for line in look["notes"]] == ["1 does not come back exactly"]
 
 
 LIGHTS = ("lights", "--sum", "1,4", "--counts", "8", "--format", "json")
@@ -216,14 +216,14 @@ OF_MODEL = {"model", "error", "model_rms", "model_max", "bound", "rounds", "agre
 
 
 def lit(out: str, name: str) -> list[dict]:
-    """The rows of a light buffer, of what the device does."""
-    found = [row for row in json.loads(out) if row["light_buffer"] == name]
-    return [{key: value for key, value in row.items() if key not in {*OF_MODEL, "light_buffer"}} for row in found]
+    """Return the device's figures in the rows of a light buffer."""
+    rows = [row for row in json.loads(out) if row["light_buffer"] == name]
+    return [{key: value for key, value in row.items() if key not in {*OF_MODEL, "light_buffer"}} for row in rows]
 
 
 @pytest.mark.parametrize("ending", ["hlsl", "slang", "frag", "wgsl"])
 def test_a_copy_of_a_light_code_has_its_rows_on_the_device(run, ending):
-    """Each is the catalogue's RGBM. There is no model without a twin."""
+    """Each file is the catalogue's RGBM; without a twin it has no model."""
     file = INPUTS / f"light.{ending}"
     status, out, err = run(*LIGHTS, "--experiment", "equal,random", "--light-buffer", f"{file},rgbm")
     assert status == 0 and not err, err
@@ -244,19 +244,19 @@ BLENDED = {
 
 
 @pytest.mark.parametrize("encode", BLENDED)
-def test_how_texels_are_added_is_found_out(tmp_path, encode):
-    """By the sum or the product of codes, or as lights; and the most light that the format holds."""
+def test_blending_of_texels_is_detected(tmp_path, encode):
+    """Texels are added as codes, multiplied as codes or added as lights; the largest light is also found."""
     decode, storage, blend, limit = BLENDED[encode]
     file = tmp_path / "own.hlsl"
     file.write_text(
         f"float4 EncodeLight(float4 l) {{ return {encode}; }} float4 DecodeLight(float4 e) {{ return {decode}; }}"
     )
-    (found,) = light_codecs_named(str(file))
-    assert (found.storage.name, found.blend, found.has_alpha) == (storage, blend, True)
-    assert found.limit == pytest.approx(limit, rel=0.05)
+    (codec,) = light_codecs_named(str(file))
+    assert (codec.storage.name, codec.blend, codec.has_alpha) == (storage, blend, True)
+    assert codec.limit == pytest.approx(limit, rel=0.05)
 
 
-def test_a_cleared_texel_that_glows_is_told(tmp_path):
+def test_glowing_cleared_texel_is_reported(tmp_path):
     file = tmp_path / "own.hlsl"
     file.write_text(
         "float3 EncodeLight(float3 l) { return (l + 0.5) / 8; } float3 DecodeLight(float3 e) { return e * 8 - 0.5; }"
@@ -270,14 +270,14 @@ FRAMES = ("frames", "--count", "4096", "--backend", "glsl", "--format", "json")
 
 @pytest.mark.parametrize("ending", ["hlsl", "slang", "glsl", "wgsl"])
 def test_a_copy_of_a_code_of_frames_has_its_rows(run, ending):
-    """Each is the catalogue's hexadecachoral: of vectors and a hand, of structures, of three vectors in [0, 1], and
-    of a quaternion without a hand, which is a rotation's alone."""
+    """Each file is the catalogue's `hexadecachoral`: with vectors and a hand, with structures, with three vectors in
+    [0, 1], or with a quaternion without a hand, which describes only a rotation."""
     file = INPUTS / f"frame.{ending}"
     status, out, err = run(*FRAMES, "--encoding", f"{file},hexadecachoral", "--storage", "rgb10a2,rgba16,rgba8")
     assert status == 0 and ("its decoder returns no handedness" in err) == (ending == "wgsl"), err
-    found = {name: [r for r in json.loads(out) if r["encoding"] == name] for name in (file.name, "hexadecachoral")}
-    assert len(found["hexadecachoral"]) == 3
-    storages = {name: {r["storage"]: r for r in some} for name, some in found.items()}
+    rows = {name: [r for r in json.loads(out) if r["encoding"] == name] for name in (file.name, "hexadecachoral")}
+    assert len(rows["hexadecachoral"]) == 3
+    storages = {name: {r["storage"]: r for r in some} for name, some in rows.items()}
     for storage, theirs in storages["hexadecachoral"].items():
         ours = storages[file.name][storage]
         angles = {key for key in theirs if key.startswith(("normal", "tangent", "rotation")) and theirs[key]}
@@ -290,7 +290,7 @@ def test_a_copy_of_a_code_of_frames_has_its_rows(run, ending):
 
 
 def test_a_usual_storage_is_one_that_fits(tmp_path):
-    """Two bits are for a number of few values: this code's fourth has many."""
+    """Two bits suit only a number of few values, but the fourth number of this code has many."""
     file = tmp_path / "own.hlsl"
     file.write_text(
         "float4 EncodeRotation(float4 q) { return q; } float4 DecodeRotation(float4 q) { return normalize(q); }"
@@ -300,14 +300,14 @@ def test_a_usual_storage_is_one_that_fits(tmp_path):
     assert code.levels == (0, 0, 0, 0) and not code.is_unit
 
 
-def test_hands_that_come_back_as_the_other_are_told(tmp_path):
+def test_flipped_handedness_is_reported(tmp_path):
     file = tmp_path / "own.hlsl"
     text = (INPUTS / "frame.hlsl").read_text()
     file.write_text(text.replace("e.w >= 0.0 ? 1.0 : -1.0", "e.w >= 0.0 ? -1.0 : 1.0"))
     assert own_code(FRAME, file).found["wrong"] == ["100% of the tangent frames come back with the other handedness"]
 
 
-def test_axes_that_come_back_swapped_are_told(tmp_path):
+def test_swapped_axes_are_reported(tmp_path):
     file = tmp_path / "own.hlsl"
     text = (INPUTS / "frame.hlsl").read_text()
     file.write_text(text.replace("PackFrame(float3 normal, float3 tangent", "PackFrame(float3 tangent, float3 normal"))
@@ -334,7 +334,7 @@ def test_axes_that_come_back_swapped_are_told(tmp_path):
         ("EncodeNormal", ""),
     ],
 )
-def test_what_a_function_is_of_is_in_its_name(name, kind):
+def test_kind_of_a_function_follows_from_its_name(name, kind):
     assert kind_spoken_of(name) is BY_NAME.get(kind)
 
 
@@ -348,13 +348,13 @@ def test_two_curves_in_a_file_are_named(tmp_path):
     assert code.name == "mine.hlsl:EncodeMetalness"
 
 
-def test_a_format_is_of_light_alone(run):
+def test_format_applies_only_to_light_buffers(run):
     status, _, err = run(*VECTORS, "--encoding", f"{INPUTS / 'velocity.hlsl'}:format=rg16f")
     assert status == 2 and "format applies only to light buffers; for others use --storage" in err
 
 
 def test_structures_of_wgsl_are_bound(tmp_path):
-    """What a structure has besides is a half, as in other languages."""
+    """Other fields of a structure are set to 0.5, as in other languages."""
     file = tmp_path / "mine.wgsl"
     file.write_text(
         "struct Motion { weight: f32, v: vec2f }\n"
@@ -362,5 +362,5 @@ def test_structures_of_wgsl_are_bound(tmp_path):
         "fn encode_velocity(m: Motion) -> vec2f { return m.v * (0.5 * m.weight); }\n"
         "fn decode_velocity(e: vec2f) -> Back { return Back(e * 4.0); }\n"
     )
-    found = own_code(MOTION, file).found
-    assert found["error_max"] == 0 and found["own_range"] == pytest.approx(4)
+    look = own_code(MOTION, file).found
+    assert look["error_max"] == 0 and look["own_range"] == pytest.approx(4)

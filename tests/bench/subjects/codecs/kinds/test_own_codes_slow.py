@@ -1,4 +1,4 @@
-"""Users' own codes of something else than normals: measured as the catalogue's are, and what is wrong in a line."""
+"""Users' encodings of other quantities than normals: measured like the catalogue's, with one-line errors."""
 
 import json
 
@@ -11,7 +11,7 @@ pytestmark = pytest.mark.usefixtures("gl", "slang")
 
 @pytest.mark.parametrize("ending", ["hlsl", "slang", "glsl", "wgsl"])
 def test_a_copy_of_a_motion_code_has_its_rows(run, ending):
-    """Each is the catalogue's sqrt, in another form: with a range, a structure, an out parameter, a stage around it."""
+    """Each file is the catalogue's `sqrt`: with a range, a structure, an out parameter or a stage around it."""
     file = INPUTS / f"velocity.{ending}"
     words = ("--storage", "rg16,rg8_snorm,rg16f", "--range", "0.5,1")
     status, out, err = run(*VECTORS, "--encoding", f"{file},sqrt", *words)
@@ -20,7 +20,7 @@ def test_a_copy_of_a_motion_code_has_its_rows(run, ending):
     assert figures(out, file.name) == figures(out, "sqrt")
 
 
-def test_a_decoder_that_is_another_ones_is_measured_and_told(run, tmp_path):
+def test_decoder_of_another_encoder_is_measured_and_reported(run, tmp_path):
     file = tmp_path / "mine.hlsl"
     file.write_text(PAIR.replace("return e", "return 2 * e") + "float2 EncodeVelocity(float2 v) { return v; }")
     status, out, err = run(*VECTORS, "--encoding", str(file), "--storage", "rg16")
@@ -28,7 +28,7 @@ def test_a_decoder_that_is_another_ones_is_measured_and_told(run, tmp_path):
     assert "encode and decode do not undo each other: (1, 0) comes back 1 screens off" in err
 
 
-def test_a_format_is_named_behind_the_file(run, tmp_path):
+def test_format_follows_the_file_name(run, tmp_path):
     file = tmp_path / "own.hlsl"
     file.write_text("float3 EncodeLight(float3 l) { return l; } float3 DecodeLight(float3 e) { return e; }")
     words = (*LIGHTS, "--experiment", "equal", "--light-buffer")
@@ -44,7 +44,7 @@ def test_a_format_is_named_behind_the_file(run, tmp_path):
 
 
 def test_a_direction_to_a_light_is_still_measured_as_a_normal(tmp_path):
-    """Its code has two numbers, which no light has."""
+    """The code has two numbers, which no light code has."""
     file = tmp_path / "mine.hlsl"
     file.write_text(
         "float2 EncodeLightDir(float3 n) { return n.xy; }"
