@@ -82,9 +82,9 @@ def _loaded_encoding(kind: Kind, name: str) -> Any:
     except Exception as error:  # whatever a user's own file raises
         raise CatalogueError(f"{place}: {type(error).__name__}: {error}") from error
     if getattr(encoding, "kind", None) is not kind:
-        raise CatalogueError(f"{place}: its ENCODING is not of {kind.plural}")
+        raise CatalogueError(f"{place}: ENCODING is not an encoding of {kind.plural}")
     if encoding.name != name:
-        raise CatalogueError(f"{place}: its ENCODING is named {encoding.name!r}, not {name!r}")
+        raise CatalogueError(f"{place}: ENCODING has the name {encoding.name!r} instead of {name!r}")
     return encoding
 
 
@@ -125,5 +125,5 @@ LIGHT_BUFFERS: Mapping[str, LightCodec] = MappingProxyType(
 
 
 def is_in_catalogue(encoding: Encoding) -> bool:
-    """Whether an encoding is one of these: not tuned, and no user's."""
+    """Whether an encoding is itself an entry of ENCODINGS: not a variant of an entry, and not a user's encoding."""
     return ENCODINGS.get(encoding.name) is encoding

@@ -60,13 +60,13 @@ def _horner(coefficients, s):
 
 
 def atan_pi(t):
-    """atan(t) / pi for t in [-1, 1], within a unit in the last place of 1/4."""
+    """Return atan(t) / pi for t in [-1, 1]: float32 within a unit in the last place of 1/4, float64 by JAX."""
     t = jnp.asarray(t)
     return t * _horner(ATAN_PI, t * t) if t.dtype == jnp.float32 else jnp.arctan(t) / math.pi
 
 
 def quadrant_pi(y, x):
-    """atan2(y, x) / pi in [0, 1/2] for y and x from 0 on; 0 at the origin."""
+    """Return atan2(y, x) / pi, in [0, 1/2], for arrays y and x that are not negative; 0 at the origin."""
     if x.dtype != jnp.float32:
         return select((x == 0.0) & (y == 0.0), 0.0, jnp.arctan2(y, x) / math.pi)
     a = atan_pi(minimum(x, y) / maximum(maximum(x, y), TINY))
@@ -115,7 +115,7 @@ def log2_of(x):
 
 
 def exp2_of(x):
-    """2^x for x in [-126, 127]: of float32 within 2 units in the last place; of float64 by JAX."""
+    """Return 2^x for x in [-126, 127]: float32 within 2 units in the last place, float64 by JAX."""
     if x.dtype != jnp.float32:
         return jnp.exp2(x)
     octave = jnp.floor(x + 0.5)

@@ -19,7 +19,7 @@ WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z0-9]+")
 
 
 def words_in(name: str) -> set[str]:
-    """Return the words of a name, in lower case."""
+    """Return the words of a name, written in camel case or with separators, in lower case."""
     return {word.lower() for word in WORD.findall(name)}
 
 
@@ -96,7 +96,7 @@ BY_NAME: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in KIND
 
 
 def kind_spoken_of(name: str) -> Kind | None:
-    """Return the kind that a function's name is of, other than normals; None where it names none of these."""
+    """Return the first of KINDS, never normals, that a function's name indicates; None if it indicates no kind."""
     return next((kind for kind in KINDS if kind.is_in(name)), None)
 
 

@@ -51,7 +51,7 @@ def quaternion_of(frame: Frame) -> Vec4:
 
 
 def rotated_frame(q: Vec4, hand) -> Frame:
-    """The frame of a unit quaternion's rotation."""
+    """Return the frame that a unit quaternion rotates to: its unit normal and tangent, with `hand` as given."""
     t = Vec3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + q.z * q.w), 2.0 * (q.x * q.z - q.y * q.w))
     n = Vec3(2.0 * (q.x * q.z + q.y * q.w), 2.0 * (q.y * q.z - q.x * q.w), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))
     return Frame(n, t, hand)

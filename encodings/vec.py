@@ -46,7 +46,7 @@ class _Operators:
 
     def _map(self, function, other):
         if isinstance(other, _Operators) and not isinstance(other, type(self)):
-            raise TypeError(f"{type(self).__name__} and {type(other).__name__} do not mix")
+            raise TypeError(f"{type(self).__name__} and {type(other).__name__} cannot be combined")
         others = other if isinstance(other, type(self)) else (other,) * len(self)  # type: ignore[arg-type]
         return type(self)(*(function(a, b) for a, b in zip(self, others, strict=True)))  # type: ignore[call-overload]
 
@@ -258,7 +258,7 @@ def from_array(array) -> Vec3:
     """
     array = jnp.asarray(array, jnp.float32)
     if array.ndim == 0 or array.shape[-1] != 3:
-        raise ValueError(f"normals have shape (..., 3), not {array.shape}")
+        raise ValueError(f"normals must have the shape (..., 3), not {array.shape}")
     return direction_or_forward(Vec3(array[..., 0], array[..., 1], array[..., 2]))
 
 

@@ -55,11 +55,11 @@ class Display:
         return TONE_MAPPINGS[self.tone_mapping](exposed)
 
     def image(self, linear: np.ndarray) -> np.ndarray:
-        """The image in [0, 1], not yet in 8 bits."""
+        """Return linear light exposed, tone mapped, clipped to [0, 1] and on the sRGB curve; not in 8 bits."""
         return displayed(self.light(linear))
 
     def clipped(self, linear: np.ndarray) -> float:
-        """The share of pixels, (count, 3), that lose a channel to clipping."""
+        """Return the share of pixels, (count, 3), with a channel above 1 after tone mapping; 0 without pixels."""
         return float(np.mean(self.light(linear).max(axis=-1) > 1.0)) if len(linear) else 0.0
 
 
@@ -74,7 +74,8 @@ def displayed(linear: np.ndarray) -> np.ndarray:
 
 
 def measured_exposure(linear: np.ndarray) -> float:
-    """The exposure in stops that uses the display's range and clips at most CLIPPED of the pixels, (count, 3)."""
+    """Return the highest exposure in stops, a multiple of STEP, that clips at most CLIPPED of the pixels, (count, 3),
+    with finite light above 0; it is limited to MAX_EXPOSURE either way, and 0 if no pixel has such light."""
     highest = np.asarray(linear, np.float64).max(axis=-1)
     highest = highest[np.isfinite(highest) & (highest > 0)]
     if not len(highest):

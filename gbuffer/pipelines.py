@@ -20,13 +20,13 @@ from .passes.transparent import transparent
 _ALL = (
     Pipeline(
         "forward",
-        "every surface once, under all lights",
+        "draws every surface once, with all lights",
         "Jo Kyeong-jun, Forward Rendering, Single Pass",
         (shadow_map(), forward(), transparent()),
     ),
     Pipeline(
         "forward_multipass",
-        "every surface once for each light that reaches it",
+        "draws every surface once for each light that reaches it",
         "Jo Kyeong-jun, Forward Rendering, Multi Pass",
         (shadow_map(), ambient(), forward_lights(), transparent()),
     ),
@@ -45,14 +45,14 @@ _ALL = (
     ),
     Pipeline(
         "prepass",
-        "light pre-pass: lights from normal and depth, then every surface again",
+        "light pre-pass: lighting from normal and depth, then every surface again",
         "Engel 2008; M. Drobot, Architektury Deferred",
         (shadow_map(), geometry(TERMS), linear_depth(), lights(TERMS), material("opaque"), transparent()),
         usual_layout="normal_depth_material",
     ),
     Pipeline(
         "inferred",
-        "light pre-pass with a G-buffer and light buffer of their own size, transparent surfaces by stipple",
+        "light pre-pass with a G-buffer and a light buffer of a separate size; stippled transparent surfaces",
         "Kircher and Lawrance 2009; Jo Kyeong-jun, Inferred Rendering",
         (
             shadow_map(),
@@ -66,7 +66,7 @@ _ALL = (
     ),
     Pipeline(
         "hybrid",
-        "deferred shading for general materials, light pre-pass for special ones, by the Deferred ID",
+        "deferred shading for general materials, light pre-pass for special materials, by the Deferred ID",
         "Jo Kyeong-jun, Hybrid Deferred Rendering",
         (
             shadow_map(),

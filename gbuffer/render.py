@@ -77,7 +77,7 @@ class Covered(NamedTuple):
     normals: np.ndarray
 
     def with_normals(self, surfaces: Sequence[np.ndarray], normals: np.ndarray) -> list[np.ndarray]:
-        """Return the surfaces with other normals."""
+        """Return the surfaces with other normals, (pixels, 3), in the covered pixels; the inputs are not changed."""
         first, *others = surfaces
         texels = first[::-1].copy()
         texels[self.pixels, :3] = normals
@@ -158,7 +158,7 @@ class Rendering:
         return self.light(upto)
 
     def light(self, upto: str = "") -> np.ndarray:
-        """Run the passes after the geometry's on the surfaces that are there; the image, as `lit`."""
+        """Run the passes after the geometry pass on the surfaces in the textures; return the image, as `lit` does."""
         names = list(self.passes)
         for name in names[names.index(GEOMETRY) + 1 : names.index(upto) if upto else None]:
             self.passes[name]()
@@ -185,7 +185,8 @@ class Rendering:
         return [read_pixels(texture)[::-1] for texture in self.frame.textures(resource)]
 
     def timings(self, repeats: int) -> tuple[dict[str, Timing], str]:
-        """Time each pass, and the whole as "frame", over repeated frames after at least one; also return the clock."""
+        """Return the times of each pass, by its name, and of the whole as "frame", over repeated frames after at
+        least one; and the name of the clock."""
         clock = clock_of(self._device)
         if not self._is_warm:
             self.draw()
@@ -201,7 +202,7 @@ class Rendering:
         return timings, clock.name
 
     def triangles(self) -> dict[str, int]:
-        """Triangles that each pass sends to the rasteriser, counted by the device."""
+        """Return the device's count of the triangles that each pass sends to the rasteriser, by the pass's name."""
         counted = {}
         self.frame.advance()
         for name, run in self.passes.items():
@@ -248,7 +249,8 @@ def check(device: Device, pipeline: Pipeline, plan: Plan, is_metal_rough: bool =
     if len(layout.targets) + beside > device.max_targets:
         more = ", plus a light buffer" if beside else ""
         raise LayoutError(
-            f"layout {layout.name} has {len(layout.targets)} targets{more}; {device.renderer} has {device.max_targets}"
+            f"layout {layout.name} has {len(layout.targets)} targets{more}; "
+            f"{device.renderer} supports {device.max_targets}"
         )
 
 
@@ -256,8 +258,8 @@ def check_metal_rough(pipeline: Pipeline) -> None:
     """Raise LayoutError if a pipeline does not support metallic-roughness materials; one line."""
     if pipeline.told.get("LIGHT_HOLDS") == TERMS:
         raise LayoutError(
-            f"{pipeline.name} cannot be used with metallic-roughness materials: its light buffer keeps no light by "
-            "Fresnel's term; "
+            f"{pipeline.name} cannot be used with metallic-roughness materials: its light buffer stores no light "
+            "weighted by Fresnel's term; "
             "use forward, forward_multipass, deferred or hybrid"
         )
 

@@ -90,13 +90,13 @@ class SampledScene:
         return self._made.light()[::-1][: len(normals)]
 
     def _upload(self, textures: Sequence[Any], columns: Sequence[np.ndarray]) -> None:
-        """Write the same numbers, (count, channels), into each row."""
+        """Write each array of numbers, (count, channels), into every row of its texture."""
         for texture, numbers in zip(textures, columns, strict=True):
             texture.write(np.broadcast_to(numbers, (self._rows, *numbers.shape)).astype(np.float32).tobytes())
 
 
 def _pipeline(positions: np.ndarray) -> Pipeline:
-    """Deferred shading of pixels whose surfaces are given."""
+    """Return a pipeline of deferred shading for pixels at these positions; their surfaces are given, not drawn."""
     given = Pass(
         GEOMETRY, (), (GBUFFER, DEPTH, LIGHT, PLACES), _build_given, tells={"LIGHT_HOLDS": COLOURS, "FILTERS": 0}
     )
@@ -158,7 +158,8 @@ class LightsOnColumns:
 
 
 def _rectangles(columns: np.ndarray, count: int) -> np.ndarray:
-    """Return triangles over runs of sorted columns, and those between close runs: float32 of shape (corners, 2)."""
+    """Return triangles, in clip space, over each run of sorted pixel columns whose neighbours are at most GAP apart:
+    float32 of shape (corners, 2)."""
     (breaks,) = np.nonzero(np.diff(columns) > GAP)
     begins, ends = columns[np.append(0, breaks + 1)], columns[np.append(breaks, len(columns) - 1)] + 1
     left, right = (edges * 2 / count - 1 for edges in (begins, ends))

@@ -56,23 +56,24 @@ class Column:
 
     @property
     def definition(self) -> str:
-        """Its definition, with its unit."""
+        """The column's definition, followed by its unit if it has a unit."""
         return f"{self.says} Unit: {self.unit}." if self.unit else self.says
 
     def is_called(self, name: str) -> bool:
-        """Whether a row's column is this one."""
+        """Whether a name in a row matches the column's name, which may be a pattern such as `ms_*`."""
         return fnmatchcase(name, self.name)
 
 
 def column_called(name: str, columns: Iterable[Column]) -> Column | None:
-    """Return the column for a name in a row or a summary; None if no column has that name."""
+    """Return the column with the longest name of all that match a name in a row or a summary; None if no column
+    matches."""
     matches = [column for column in columns if column.is_called(name)]
     # `ms_frame` is itself and not one of `ms_*`.
     return max(matches, key=lambda column: len(column.name), default=None)
 
 
 def undefined(name: str) -> Column:
-    """A column that no table has."""
+    """Return a column without a definition, for a name that no table defines."""
     return Column(name, "")
 
 

@@ -23,7 +23,7 @@ NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?(e[-+]?\d+)?( ?%)?|inf)")
 
 
 def text_of(value: Any) -> str:
-    """Return a value as text for people: numbers with four digits, None and NaN as empty text."""
+    """Return a value as text for people: floats with four digits, None and NaN empty, control characters escaped."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if isinstance(value, float) and math.isfinite(value):
@@ -50,7 +50,7 @@ def title_of(name: str) -> str:
 
 
 def visible(text: str) -> str:
-    """Text whose control characters, which a terminal would obey, are written as escapes."""
+    """Return text with its control characters, which a terminal would obey, written as escapes."""
     return CONTROL.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
 
 
@@ -65,17 +65,18 @@ MARKED = re.compile(r"[^\w\s.,;:%°()+'?-]|^[-+]|(?<=[a-zA-Z])\.(?=\w)|(?<![^\W_
 
 
 def markdown_sentence(text: str) -> str:
-    """A sentence in which Markdown and HTML read nothing: letters, digits and common marks stay, others are escaped."""
+    """Return a sentence for Markdown and HTML: letters, digits and common marks stay, others become references."""
     return re.sub(MARKED, lambda match: f"&#{ord(match[0])};", visible(text))
 
 
 def code_text(text: str) -> str:
-    """Text as Markdown's code."""
+    """Return text as Markdown's code, in backticks: backticks in it become apostrophes, white space single spaces."""
     return f"`{' '.join(text.replace('`', chr(39)).split())}`"
 
 
 def _plain(value: Any) -> Any:
-    """A value as JSON can hold it: no infinities (an identical image is marked `exact`), no NumPy scalars."""
+    """Return a value for JSON: None instead of NaN and infinity (an identical image is marked `exact`), and Python's
+    numbers instead of NumPy's."""
     if hasattr(value, "item"):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value
@@ -86,13 +87,13 @@ def is_numeric(rows: Sequence[dict[str, Any]], column: str) -> bool:
 
 
 def to_json(rows: Sequence[dict[str, Any]]) -> str:
-    """A list of flat rows, in which every control character is an escape of JSON."""
+    """Return rows as a JSON list of flat objects, with every control character written as an escape of JSON."""
     text = json.dumps([{k: _plain(v) for k, v in row.items()} for row in rows], indent=1)
     return text.replace("\x7f", "\\u007f") + "\n"
 
 
 def to_csv(rows: Sequence[dict[str, Any]]) -> str:
-    """A header and a line for each row."""
+    """Return rows as CSV: a header, and a line for each row."""
     import pandas as pd
 
     records = [{_no_formula(name): _no_formula(value) for name, value in row.items()} for row in rows]
@@ -100,19 +101,21 @@ def to_csv(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _no_formula(value: Any) -> Any:
-    """A spreadsheet shows text behind an apostrophe, and computes nothing."""
+    """Return a value that no spreadsheet computes: text that begins like a formula gets a leading apostrophe, unless
+    it is a number."""
     text = storable(value)
     is_formula = isinstance(text, str) and text.startswith(FORMULA) and not NUMBER.fullmatch(text)
     return f"'{text}" if is_formula else text
 
 
 def storable(value: Any) -> Any:
-    """A value; of text, half characters, which a file's name may have, as escapes: no file could hold them."""
+    """Return a value unchanged, except that lone surrogates in text, which may be in a file's name, become escapes:
+    no file could hold them."""
     return value.encode(errors="backslashreplace").decode() if isinstance(value, str) else value
 
 
 def to_markdown(rows: Sequence[dict[str, Any]], total: str = "") -> str:
-    """A table for a pull request, columns aligned as text so that the source reads too; `total` as in `written`."""
+    """Return rows as a Markdown table, with columns aligned to be readable as source; `total` as in `written`."""
     rows, caption = _captioned(rows, total)
     columns = list(rows[0])
     cells = [[markdown_text(text_of(row[c])).replace("|", "\\|") for c in columns] for row in rows]
@@ -128,7 +131,8 @@ def to_markdown(rows: Sequence[dict[str, Any]], total: str = "") -> str:
 
 
 def _captioned(rows: Sequence[dict[str, Any]], total: str) -> tuple[list[dict[str, Any]], str]:
-    """The columns that a table shows, and the line below it."""
+    """Return the rows with the columns that a table shows, and the line below it: `total` or, if that is empty, the
+    constant values."""
     if not total:
         return without_constants(rows)
     return [{k: v for k, v in row.items() if any(text_of(other[k]) for other in rows)} for row in rows], total
@@ -149,7 +153,8 @@ def without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, An
 
 
 def _fitting(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[str]) -> list[str]:
-    """Return the columns that fit a width without breaking a number; expendable columns go in order."""
+    """Return the columns that remain when expendable columns are dropped, in order, until the table fits a width or
+    no more can be dropped."""
     columns = list(rows[0])
     spared = [column for column in expendable if column in columns]
     while spared and sum(_widths(rows, columns)) + GAP * (len(columns) - 1) > width:
@@ -194,7 +199,7 @@ def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence
     console = Console(file=stream, width=wide, highlight=False, emoji=False, color_system=None)
     console.print(table)
     left_out = [column for column in shown[0] if column not in columns]
-    notes = [caption, f"not shown in this width: {', '.join(left_out)}" if left_out else ""]
+    notes = [caption, f"not shown at this width: {', '.join(left_out)}" if left_out else ""]
     for note in filter(None, notes):
         console.print(escape(note), style="dim")
     return "\n".join(line.rstrip() for line in stream.getvalue().splitlines()) + "\n"
@@ -230,7 +235,8 @@ def written(
 
 
 def _lead(lead: str, format: str) -> list[str]:
-    """Return the text above a table, with an empty line below it; in Markdown each of its lines is a paragraph."""
+    """Return a list with the text above a table, empty without text. An empty line follows it; in Markdown each of
+    its lines is a paragraph."""
     if not lead:
         return []
     lines = [markdown_sentence(line) if format == "markdown" else line for line in lead.split("\n")]

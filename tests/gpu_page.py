@@ -27,53 +27,57 @@ CODECS = (
 )
 PAGE_TEXT = """# On a GPU
 
-How do real GPUs differ from these figures?
+How do real GPUs differ from the figures of this manual?
 
-Two NVIDIA GPUs, an H100 and an H200, were compared on {measured} with the software rasteriser that measured this
-manual's figures (driver 580.159, OpenGL 4.3 through EGL, Linux). The rows are in
+Two NVIDIA GPUs, an H100 and an H200 (driver 580.159, OpenGL 4.3 through EGL, Linux), were compared on {measured} with
+the software rasteriser on which this manual's figures were measured. The rows are in
 [`measured/nvidia.json`](measured/nvidia.json).
 
 ## Rounding
 
 {stores}
 
-Direct3D specifies this for all hardware: floats are rounded toward zero to a smaller float, and UNORM and SNORM may
-round to any integer within 0.6 ([data conversion rules][rules]). If each fraction from 0.5 to 0.56 went down, the mean
-squared error of UNORM would be 4% larger, which is 0.2 dB. Half floats lose 6 dB: for Direct3D use
-`--rounding truncate`, unless your shader rounds first.
+Direct3D specifies this for all hardware: conversion to a smaller float rounds toward zero, and conversion to UNORM or
+SNORM may give any integer within 0.6 ([data conversion rules][rules]). If every fraction from 0.5 to 0.56 were rounded
+down, the mean squared error of UNORM would be 4% larger, which is 0.2 dB. Half floats lose 6 dB, so use
+`--rounding truncate` for Direct3D, unless your shader rounds first.
 
-The figures of this program do not depend on the device: where it does not round as asked, the shader rounds first.
+The figures of this program do not depend on the device: if it does not round as requested, the shader rounds first.
 {agree}
 
-Quotients, roots and sines are not rounded to nearest: about two codes in a thousand differ by one. Direct3D and this
-GPU treat numbers below 2^-126 as 0, so `normalize(n.xy + 1e-20)` is infinite at the pole.
+Quotients, roots and sines are not rounded to nearest, so about two codes in a thousand differ by one step. Direct3D and
+this GPU treat numbers below 2^-126 as 0, so `normalize(n.xy + 1e-20)` is infinite at the pole.
 
 ## Encoding and decoding times
 
-Nanoseconds per megapixel on the H100, minus an empty shader (`normalbench cost --time`). Only 4 of its 132
-multiprocessors run fragment shaders (NVIDIA H100 whitepaper, 2022), so the times only rank encodings:
+The table shows nanoseconds per megapixel on the H100, minus the time of an empty shader (`normalbench cost --time`).
+Only 4 of the GPU's 132 multiprocessors run fragment shaders (NVIDIA H100 whitepaper, 2022), so the times only rank
+encodings:
 
 {cost}
 
 ## Frame times
 
-Milliseconds per frame of 1024 x 768 pixels with 64 lights and shadows on the H100 (`normalbench sweep`):
+The table shows milliseconds per frame of 1024 x 768 pixels, with 64 lights and shadows, on the H100
+(`normalbench sweep`):
 
 {frames}
 
-Read how each pipeline grows, but do not rank pipelines: their layouts differ, and the shader rounds each target.
+Compare how the time of each pipeline grows, but do not rank pipelines: their layouts differ, and the shader rounds each
+target.
 
 ## Half arithmetic
 
-RMS angle in degrees over the sphere if the encoder and the decoder compute in 16 bits ([half](half.md)). Emulation
-rounds every step. The GPU keeps more digits of some. Encodings of the whole sphere:
+The table shows the RMS angle in degrees over the sphere if the encoder and the decoder compute in 16 bits
+([half](half.md)). Emulation rounds every step. The GPU keeps more digits in some steps. All encodings are of the whole
+sphere:
 
 {half}
 
 ## Lost GPUs
 
 A driver may lose its GPU silently and return arbitrary values. After each step this program reads back a texel of a
-random colour. If that fails, the command ends with one line and discards the step's rows.
+random colour. If the colour is wrong, the command ends with one line and discards the step's rows.
 
 [rules]: https://learn.microsoft.com/en-us/windows/win32/direct3d10/d3d10-graphics-programming-guide-resources-data-conversion
 """
@@ -102,12 +106,12 @@ def _stores(rows: dict[str, Any]) -> str:
     lines = [
         (
             "UNORM, SNORM",
-            f"nearest, but {100 * share:.0f}% of numbers round down with a fraction of 0.50 to {down:.2f}",
+            f"nearest, but {100 * share:.0f}% of numbers round down although their fraction is 0.50 to {down:.2f}",
         ),
         ("half floats, R11G11B10F", "truncated"),
         ("16-bit depth", "nearest; ties round down"),
         ("24-bit depth", "nearest; ties round either way"),
-        ("reading an integer", "divided by the scale; llvmpipe takes the reciprocal, 2^-23 apart"),
+        ("integers that are read", "divided by the scale; llvmpipe multiplies by the reciprocal, 2^-23 apart"),
     ]
     return _table(("format", "rounding on an H200"), lines).replace("---:", "---")
 
@@ -122,8 +126,8 @@ def _agree(rows: dict[str, Any]) -> str:
     by_both = [row for row in rows["whole"] if "psnr_db_by_llvmpipe" in row]
     off = math.ceil(1e2 * max(abs(row["psnr_db"] - row["psnr_db_by_llvmpipe"]) for row in by_both)) / 1e2
     return (
-        f"{len(apart)} rows of `quality` by GLSL on the H200 are within {bound:.4f} dB of those by JAX. Images\n"
-        f"through {len(by_both)} engines' whole layouts are within {off:.2f} dB of the software rasteriser's."
+        f"On the H200, {len(apart)} GLSL rows of `quality` are within {bound:.4f} dB of the JAX rows. Images with\n"
+        f"the whole layouts of {len(by_both)} engines are within {off:.2f} dB of the software rasteriser's images."
     )
 
 

@@ -53,7 +53,7 @@ def gate_by(python: Path, folder: Path) -> subprocess.CompletedProcess[str]:
     folder.mkdir()
     for name, text in NAMED.findall(PAGES[README]):
         (folder / name).write_text(text)
-    (packages,) = re.findall(r"`pip install (.+?)`", PAGES[README])
+    (packages,) = re.findall(r"After `pip install (.+?)`", PAGES[README])
     subprocess.run([python, "-m", "pip", "install", "-q", *packages.split()], check=True)
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     command = [python, "-m", "pytest", "-p", "no:cacheprovider", "test_mine.py"]

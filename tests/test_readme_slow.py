@@ -38,6 +38,8 @@ def test_every_command_runs_as_written(command, readers_folder, monkeypatch, cap
         request.getfixturevalue("nvidia")
     for name in {"before", "after"} & set(words) if words[1] != "run" else ():
         shutil.copytree(request.getfixturevalue("results")[0], readers_folder / name)
+    if "--layouts" in words:
+        shutil.rmtree(readers_folder / "layouts")
     if words[0] == "python":
         done = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr

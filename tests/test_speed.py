@@ -80,11 +80,11 @@ def test_a_row_without_an_opengl_driver_states_the_reason(monkeypatch):
 @pytest.mark.parametrize(
     "words, said",
     [
-        (["throughput", "--counts", "3"], f"--counts 3: whole numbers from {WHOLE} to"),
+        (["throughput", "--counts", "3"], f"--counts 3: expected whole numbers from {WHOLE} to"),
         (["throughput", "--encoding", "no"], "unknown encoding 'no'"),
         (["growth", "--over", "pixels"], "unknown kind 'pixels'"),
         (["growth", "--sizes", "5"], "--sizes 5: sizes are of one kind; name it, such as --over normals"),
-        (["growth", "--over", "lights", "--sizes", "0"], "--sizes 0: whole numbers from 1 to"),
+        (["growth", "--over", "lights", "--sizes", "0"], "--sizes 0: expected whole numbers from 1 to"),
         (["simulate", "--record", "no"], "unknown table 'no'"),
     ],
 )

@@ -97,13 +97,13 @@ def measure(send: Send, folder: Path, own: Sequence[Asking], others: Sequence[As
 
 
 def _write(ask: Asked, sent: Sent, send: Send) -> None:
-    """Measure a table where rows are missing, and write its files."""
+    """Measure the missing rows of a table, write its files, and send a message that they are written."""
     ask.table.work.write(measured(ask, sent), lambda _: None)
     send(Written(ask.table.name))
 
 
 def _write_others(asks: Iterable[Asked], sent: Sent, send: Send) -> None:
-    """The files of tables that the first process has measured by now."""
+    """Write the files of each table whose steps the first process has all measured by now; leave out other tables."""
     for ask in asks:
         if all(sent.find(ask.table.name, step) is not None for step in ask.steps):
             _write(ask, sent, send)

@@ -39,7 +39,7 @@ LONGEST = 60
 ROUNDED = (NORMAL, MOTION, CURVE, FRAME)
 ROUNDED_WORDS = "normals, motion, curves and tangent frames"
 # What the head of code says that was not run.
-NOT_COMPARED = "not in this run; the command below runs it and compares it with the catalogue"
+NOT_COMPARED = "not in this run; the command below runs the code and compares it with the catalogue"
 
 
 def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
@@ -86,16 +86,17 @@ def _check_prefix(prefix: str) -> None:
     is_name = re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", prefix) and not prefix.lower().startswith("gl_")
     if prefix and not (is_name and len(prefix) <= LONGEST):
         raise UsageError(
-            f"--prefix {prefix[:LONGEST]!r}: use letters, digits and single underscores between them, a letter first, "
-            f"at most {LONGEST} characters, such as engine_normal"
+            f"--prefix {prefix[:LONGEST]!r}: use at most {LONGEST} letters, digits and single underscores between "
+            "them, beginning with a letter but not with gl_, such as engine_normal"
         )
 
 
 def _codecs(options: CodeOptions) -> list[Any]:
-    """The codecs of every kind that is named; a kind that does not take the options is named on standard error.
+    """Return the codecs of every kind that is named; a kind that does not take the options is reported on standard
+    error.
 
     Raises:
-        UsageError: none does, or an unknown name.
+        UsageError: no kind takes the options, or a name is unknown.
     """
     codecs: list[Any] = []
     complaints: list[str] = []
@@ -139,7 +140,8 @@ def _prefix(codec: Any, codecs: Sequence[Any], options: CodeOptions) -> str:
 
 
 def _write_codec(codec: Any, languages: Sequence[str], prefix: str, output: Path | None) -> int:
-    """A codec in each language; 1 where one differs from the catalogue's."""
+    """Write a codec's code in each language, or report why it is not written; see `_why_not`. Return the exit status:
+    1 if any code is not written."""
     status = 0
     for proof in proven(codec, languages, prefix):
         language = proof.code.language
@@ -170,7 +172,8 @@ class Proven:
 
 
 def proven(codec: Any, languages: Sequence[str], prefix: str = "") -> Iterator[Proven]:
-    """A codec's code in each language, run and compared. Raises UsageError where it can be written in none."""
+    """Yield a codec's code in each language, run and compared with the catalogue. Raises UsageError if it can be
+    written in no language."""
     # Measured once, and only where something is written.
     cached_figures = cache(partial(figures, codec) if isinstance(codec, Codec) else list)
     own = replace(codec, encoding=getattr(codec.encoding, "own", None) or codec.encoding)
@@ -231,7 +234,8 @@ def _command(codec: Any, language: str, prefix: str) -> str:
 
 
 def verified(code: Code) -> Row:
-    """A row: how a file's results compare with the catalogue's, by running it."""
+    """Run a file, and return a row: the codec, the language, and how its results compare with the catalogue's; see
+    `compared`."""
     codec = code.codec
     row: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": rounding_of(codec)}
 

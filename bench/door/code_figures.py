@@ -65,7 +65,7 @@ def _licence(codec: Any) -> str:
 
 
 def figures(codec: Codec) -> list[str]:
-    """Errors and instructions, a paragraph each."""
+    """Measure a codec, and return paragraphs on its errors and its instruction counts."""
     return [*_errors(codec), *_instructions(codec)]
 
 
@@ -87,7 +87,8 @@ def _errors(codec: Codec) -> Iterator[str]:
 
 
 def _largest(supremum: float | None, met: float) -> str:
-    """Return the supremum as text, and the largest sampled error if that is larger or the supremum is unknown."""
+    """Return text of the supremum, and of the largest sampled error if that is larger or the supremum is None; in
+    degrees."""
     if supremum is None:
         return f"largest sampled error {met:.4g} degrees"
     text = f"supremum {supremum:.4g} degrees"

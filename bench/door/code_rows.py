@@ -38,7 +38,12 @@ CodeT = TypeVar("CodeT", Code, GBufferCode)
 def compared(
     agreement: Callable[[], verify.Agreement | layout_verify.Agreement], language: str, more: Sequence[str] = ()
 ) -> Row:
-    """Run a file and return its verdict, its figures (with `more` from its agreement), and a description of them."""
+    """Run a file by `agreement`, and return a row of its "verdict" (VERIFIED, DIFFERS or NOT_RUN) and a description,
+    "says". If it ran, the row also has "values", "differing", "steps" and "run_by".
+
+    Args:
+        agreement: a function that runs the file and compares its results.
+        more: names of other columns, which are attributes of the agreement."""
     try:
         agrees, how = agreement(), runner(language).how()
     except (MissingError, NoDeviceError) as error:
@@ -70,7 +75,7 @@ def save(code: Code | GBufferCode, head: Sequence[str], output: Path | None) -> 
     there are several files and no folder."""
     files = code.files(head)
     if output is None and len(files) > 1:
-        raise UsageError(f"{code.name} needs files of lookup tables; name a folder with -o")
+        raise UsageError(f"{code.name} comes with lookup table files; name a folder with -o")
     if output is None:
         say(code.text(head))
         return
@@ -109,7 +114,8 @@ def check_codes(
 
 
 def _by_language(rows: Sequence[Row], about: Sequence[str]) -> list[Row]:
-    """A row for each codec or layout, with a column for each language: how many values have another texel."""
+    """Return one row for each codec or layout: the columns `about`, and for each language "equal", how many values
+    differ, or the verdict if it is not VERIFIED."""
     lines: dict[tuple[Any, ...], Row] = {}
     for row in rows:
         line = {name: row[name] for name in about}

@@ -93,7 +93,7 @@ def examine_encoding(
             raise
         given = {"plot": plot, "storage": storage, "domain": domain}
         if option := next((name for name, value in given.items() if value), ""):
-            raise UsageError(f"{shader}: --{option} requires normals; this file is of {kind.kind.plural}") from None
+            raise UsageError(f"{shader}: --{option} requires normals; this file encodes {kind.kind.plural}") from None
         return _examine_own(shader, kind, format, output)
     codec = Codec(examination.encoding, kept)
     if storage and codec.misfit:
@@ -111,7 +111,7 @@ def examine_encoding(
         if is_meant
         else ([*examination.wrong, *worse], examination.notes)
     )
-    failing = [f"{pair} is not a pair: {why}; name it to see more" for pair, why in examination.failing.items()]
+    failing = [f"{pair} is not a pair: {why}; name it for details" for pair, why in examination.failing.items()]
     wrong, notes = [*wrong, *no_numbers(kept, row), *failing], [*notes, *halves]
     about = {
         "file": shader.path.name,
@@ -127,11 +127,12 @@ def examine_encoding(
 
 
 def _examine_own(file: UserFile, kind: OwnKind, format: str, output: Path | None) -> int:
-    """Write the same for an encoding of something other than normals, and return the exit status."""
+    """Write the verdict, findings and notes for an encoding of something other than normals. Return the exit status:
+    1 if anything is likely wrong."""
     own = examined_code(kind, file)
     command = kind.kind.command.format(command_line([file.plain]))
     about = {"file": file.path.name, "encoding": own.made.name, "domain": kind.kind.plural}
-    measures = [] if "broken" in own.found else [f"`{command}` measures it"]
+    measures = [] if "broken" in own.found else [f"to measure it, run `{command}`"]
     wrong, notes = own.found.get("wrong", []), [*notes_of(own), *measures]
     _write(about | {"functions": own.made.named}, wrong, notes, format, output)
     return int(bool(wrong))
@@ -159,7 +160,7 @@ def word_of(file: Path, sources: Mapping[str, Any]) -> str:
 
 
 def _text(about: Mapping[str, str], wrong: Sequence[str], notes: Sequence[str], format: str) -> str:
-    """The verdict in a line, findings below it, and notes by themselves."""
+    """Return the report as text: the verdict, a line of facts about the file, the findings and the notes."""
     verdict = f"{len(wrong)} finding{'s' * (len(wrong) > 1)}" if wrong else RIGHT
     parts = [verdict, ", ".join(f"{what} {value}" for what, value in about.items())]
     parts += [bulleted(wrong, format)] if wrong else []
@@ -168,7 +169,7 @@ def _text(about: Mapping[str, str], wrong: Sequence[str], notes: Sequence[str], 
 
 
 def bulleted(lines: Sequence[str], format: str) -> str:
-    """Return lines as a list."""
+    """Return the text of a bulleted list of lines, in Markdown or wrapped to the terminal's width."""
     if format == "markdown":
         return "\n".join(f"- {tables.markdown_sentence(line)}" for line in lines)
     width = shutil.get_terminal_size((120, 40)).columns
@@ -190,7 +191,11 @@ def _domain(examination: Examined) -> str:
 
 
 def no_numbers(storage: Storage, row: Mapping[str, Any]) -> list[str]:
-    """Report how many rounded codes decode to NaN or infinity, whatever exact codes do, by a row of `quality`."""
+    """Return a list of one line on how many rounded codes decode to NaN or infinity, whatever exact codes do; empty
+    if none does.
+
+    Args:
+        row: a row of `quality`."""
     if not row.get("invalid"):
         return []
     share = f"{row['invalid']} of {row['count']} rounded codes ({100 * row['invalid'] / row['count']:.2g}%)"
@@ -199,7 +204,8 @@ def no_numbers(storage: Storage, row: Mapping[str, Any]) -> list[str]:
 
 
 def _compared(examination: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str]:
-    """Return a line on how much worse an encoding is than the catalogue version of it; empty if it is as good."""
+    """Return a list of one line on how much worse an encoding is than the catalogue's version of it; empty if it is
+    as good, matches no encoding of the catalogue, or is so much worse that it is another encoding."""
     if not examination.like:
         return []
     # Codes in [0, 1] fill a storage without a sign, and half of one that has a sign.
@@ -209,13 +215,16 @@ def _compared(examination: Examined, codec: Codec, row: Mapping[str, Any]) -> li
     if not WORSE < own[0] / its[0] < ANOTHER:
         return []
     how = f"mean {own[0]:.3g} degrees instead of {its[0]:.3g}, largest {own[1]:.3g} instead of {its[1]:.3g}"
-    why = "; codes in [0, 1] use half of the range; store s = 2 c - 1 and decode (s + 1) / 2" if is_half_used else ""
+    why = (
+        "; codes in [0, 1] use only half of the range; store s = 2 c - 1 and decode (s + 1) / 2" if is_half_used else ""
+    )
     percent = 100 * (own[0] / its[0] - 1)
     return [f"in {codec.storage.name} this is {examination.like}, but {percent:.0f}% worse: {how}{why}"]
 
 
 def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
-    """Return a note on the errors in half precision of an encoding whose file declares it; empty for others."""
+    """Return a list of one line on the errors in half precision of an encoding whose file declares it; empty for
+    other encodings."""
     if not codec.encoding.is_also_half:
         return []
     half = Codec(in_half(codec.encoding), codec.storage)
@@ -230,13 +239,14 @@ def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
 
 
 def _rounded_for(examination: Examined, codec: Codec) -> str:
-    """To which steps the encoder rounds by itself, where the storage has others; else empty."""
+    """Return text on the steps to which the encoder itself rounds, with a storage that has these steps; empty if it
+    does not round, or if the codec's storage has them."""
     lattice, size = examination.lattice, codec.encoding.components
     if lattice is None or lattice.is_of(codec.storage, size):
         return ""
     fitting = [storage for storage in STORAGES.values() if storage.channels >= size and lattice.is_of(storage, size)]
     named = min(fitting, key=lambda candidate: candidate.channels, default=None)
-    return f"encode itself rounds to 1/{lattice.steps}" + (f"; try --storage {named.name}" if named else "")
+    return f"encode itself rounds to steps of 1/{lattice.steps}" + (f"; try --storage {named.name}" if named else "")
 
 
 def _means(row: Mapping[str, Any]) -> tuple[float, float]:
@@ -245,13 +255,14 @@ def _means(row: Mapping[str, Any]) -> tuple[float, float]:
 
 
 def row_of(codec: Codec) -> dict[str, Any]:
-    """Return a row of the quality table."""
+    """Measure a codec on COUNT directions of its sphere or hemisphere, and return its row of the quality table."""
     chosen = NORMAL_SETS["sphere" if codec.encoding.domain == "sphere" else "hemisphere"](COUNT, 0)
     return measure(QualityCase(codec, chosen, "glsl"))
 
 
 def _picture(codec: Codec, examination: Examined) -> Any:
-    """The error over the sphere, with each direction marked that comes back elsewhere."""
+    """Return a chart of the mean error over the sphere, with a mark at each direction that decodes to another
+    direction; without marks for a hemisphere other than z >= 0."""
     name, shown = codec.name, sphere_map(codec).mean_deg
     halves = ("z >= 0, towards the viewer", "z < 0")
     if examination.domain.is_turned:

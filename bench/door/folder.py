@@ -92,7 +92,7 @@ class Pair:
 
     @property
     def functions(self) -> str:
-        """ENCODE:DECODE."""
+        """Names of the pair's functions, ENCODE:DECODE."""
         return self.looked.functions
 
 
@@ -181,7 +181,8 @@ def _save(path: Path, text: str) -> None:
 
 
 def files_below(folder: Path) -> Iterator[Path]:
-    """Yield the shader files below a folder in order, leaving out hidden folders and third-party packages.
+    """Yield the shader files below a folder in order, leaving out hidden folders, build folders and third-party
+    packages.
 
     Raises:
         UsageError: there are too many files.
@@ -230,7 +231,8 @@ def _looked(folder: Path, storage: Storage | None, word: str) -> list[Pair | Oth
 
 
 def _of_normals(folder: Path, storage: Storage | None, word: str) -> list[Pair | Other]:
-    """The pairs of a file, or why it has none; nothing where it only seemed to have one."""
+    """Return the pairs for normals in a file, or an `Other` with the reason why it has none; empty if the file only
+    seemed to have a pair."""
     path = UserFile(word).path
     file = path.relative_to(folder).as_posix()
     try:
@@ -254,7 +256,8 @@ def _names_a_pair(path: Path) -> bool:
 
 
 def _of_pairs(folder: Path, storage: Storage | None, word: str, pairs: Sequence[str]) -> list[Pair | Other]:
-    """Return the entries of some pairs of a file."""
+    """Return the entries of pairs of a file, each given as ENCODE:DECODE; pairs beyond the first MOST_PAIRS are not
+    measured."""
     words = [UserFile(word).with_pair(pair).word for pair in pairs]
     measured = (each for pair in words[:MOST_PAIRS] for each in _of_normals(folder, storage, pair))
     file = UserFile(word).path.relative_to(folder).as_posix()
@@ -279,7 +282,7 @@ def _of_kind(file: str, shader: UserFile, kind: OwnKind) -> Other:
         own = examined_code(kind, shader)
     except (UsageError, MissingError) as error:
         return Other(file, _without(shader.path, error))
-    why = f"of {kind.kind.plural}; `{kind.kind.command.format(command_line([shader.plain]))}` measures it"
+    why = f"encodes {kind.kind.plural}; to measure it, run `{kind.kind.command.format(command_line([shader.plain]))}`"
     return Other(file, why, own.made.named, findings=own.found.get("wrong", []))
 
 
@@ -308,7 +311,8 @@ def implied_storage(looked: Examined) -> Storage:
 def _across_files(
     folder: Path, storage: Storage | None, others: Sequence[Other], pairs: Sequence[Pair]
 ) -> Iterator[Pair]:
-    """Pairs of an encoder and a decoder in two files. Readers that are not of their writer's code get a finding."""
+    """Yield pairs of an encoder and a decoder in two files, matched by name. Add a finding to a decoder that does not
+    undo its encoder, or that reads another encoding than an encoder of its name writes."""
     lone = [(each, each.lone) for each in others if each.lone]
     for other, reader in ((other, candidate) for other, candidate in lone if candidate.side == "decode"):
         writers = [
@@ -324,7 +328,7 @@ def _across_files(
             yield _pair(f"{writer.file}, {other.file}", word, storage)
             writer.why = other.why = ""
         except (UsageError, MissingError) as error:
-            other.findings.append(f"{reader.function} does not undo {wrote.function} of {writer.file}: {error}")
+            other.findings.append(f"{reader.function} does not invert {wrote.function} in {writer.file}: {error}")
 
 
 def _shared_folders(file: str, other: str) -> int:
@@ -336,7 +340,7 @@ def _disagreements(reader: OneFunctionError, pairs: Sequence[Pair]) -> Iterator[
     for pair in pairs:
         writes, wrote = pair.functions.partition(":")[0], pair.looked.like
         if stem(writes) == stem(reader.function) and wrote and reader.like and wrote not in reader.like:
-            yield f"{reader.function} reads {reader.like[0]}, but {writes} of {pair.file} writes {wrote}: they disagree"
+            yield f"{reader.function} decodes {reader.like[0]}, but {writes} in {pair.file} encodes {wrote}"
 
 
 def _of_target(path: Path, functions: str) -> Iterator[str]:
@@ -344,14 +348,15 @@ def _of_target(path: Path, functions: str) -> Iterator[str]:
     text, decode = _text(path), functions.rpartition(":")[2].partition("(")[0]
     if match := re.search(_FILTERED.format(re.escape(decode)), text, re.I):
         line = text.count("\n", 0, match.start()) + 1
-        yield f"line {line}: {match[1]} filters codes before {decode}, giving wrong normals across seams; load texels"
+        yield f"line {line}: {match[1]} filters codes before {decode}, giving wrong normals at seams; load texels"
     if match := _SRGB.search(text):
         line = text.count("\n", 0, match.start()) + 1
-        yield f"line {line}: {match[1]} for normals; sRGB formats change codes when they are written and read"
+        yield f"line {line}: {match[1]} is used for normals; sRGB formats change codes when they are written and read"
 
 
 def _measure(pairs: Sequence[Pair]) -> None:
-    """Measure errors and costs, and find the best encoding of the catalogue in the same storage."""
+    """Fill in each pair's row: its errors, its cost and the best encoding of the catalogue in the same storage. Add
+    findings to pairs that do not fit their storage or decode to NaN."""
     by_question: dict[tuple[str, str], list[Pair]] = {}
     for pair in pairs:
         codec = Codec(pair.looked.encoding, pair.storage)
@@ -372,7 +377,7 @@ def _measure(pairs: Sequence[Pair]) -> None:
 
 
 def _picked(storage: str, domain: str | None, pairs: Sequence[Pair]) -> list[Row]:
-    """The rows of `pick` in a storage, with pairs to compare with, by their angles alone."""
+    """Return rows of `pick` in a storage, ranked by angles alone, for the catalogue's encodings and for `pairs`."""
     encodings = (pair.looked.encoding for pair in pairs)
     against = tuple(Given(encoding.name, encoding) for encoding in encodings)
     (cases,) = questions(PickOptions(storage=(storage,), against=against, domain=domain, count=COUNT))

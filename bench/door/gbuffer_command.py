@@ -30,14 +30,15 @@ def is_of_layouts(options: CodeOptions) -> bool:
 
 
 def check_no_layout(options: CodeOptions) -> None:
-    """Raise UsageError if a layout's name is among the names of encodings."""
+    """Raise UsageError if `options` name a layout where an encoding is expected, without `--of`."""
     for word in map(str, options.codec):
         if not options.of and word in LAYOUTS and word not in ENCODINGS:
-            raise UsageError(f"{word} is a layout: normalbench code {word} --of {LAYOUT}")
+            raise UsageError(f"{word} is a layout; use: normalbench code {word} --of {LAYOUT}")
 
 
 def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str, output: Path | None) -> int:
-    """Write the code or, with `check`, a table of how it was verified. Return the exit status: 1 if code differs.
+    """Write the code of layouts or, with `check`, a table of how it was verified. Return the exit status: 1 if code
+    differs.
 
     Raises:
         UsageError: a name is unknown, a layout is not supported, or a file cannot be written.
@@ -83,7 +84,8 @@ def _command(code: GBufferCode, options: CodeOptions) -> str:
 
 
 def verified(code: GBufferCode) -> Row:
-    """A row: how a file's results compare with the renderer's, by running it."""
+    """Run a file, and return a row: the layout, the language, and how its results compare with the renderer's; see
+    `compared`."""
     row: Row = {"layout": code.layout.name, "bytes_per_pixel": code.layout.bytes_per_pixel, "language": code.language}
     if code.language in NEVER_RUN:
         return row | {"verdict": NOT_RUN, "says": f"not run here: layouts cannot be run in {code.language}"}

@@ -44,7 +44,8 @@ def patch_of(folder: Path, pairs: Sequence[Pair]) -> str:
 
 
 def _is_of_normals(pair: Pair) -> bool:
-    """Whether a pair is clearly for normals: its functions' names say so, or its encoding is in the catalogue."""
+    """Whether a pair is clearly for normals: its functions' names say so, or its encoding is in the catalogue. If
+    not, report on standard error that the pair is not in the patch."""
     is_sure = bool(pair.looked.like) or name_speaks_of_normals(pair.functions)
     if not is_sure:
         tell(f"{pair.file} {pair.functions} is not in the patch: the names of its functions do not mention normals")
@@ -52,7 +53,8 @@ def _is_of_normals(pair: Pair) -> bool:
 
 
 def _part_of(folder: Path, file: str, pairs: Sequence[Pair]) -> str:
-    """The part of a file."""
+    """Return the part of a patch for one file: a line on each changed pair, then the changes. Report pairs that
+    cannot be changed on standard error; empty if the file cannot be read."""
     try:
         text = was = "" if "," in file else (folder / file).read_bytes().decode("utf-8")
     except (OSError, ValueError) as error:
@@ -89,18 +91,18 @@ def _mean_of(patched: str, path: Path, pair: Pair) -> float:
 
 
 def patched_text(text: str, pair: Pair) -> str:
-    """Return a file's text with the best code in both functions of a pair.
+    """Return a file's text with the code of the best encoding, and both functions of a pair calling it.
 
     Raises:
-        UsageError: it cannot be changed so; a sentence.
+        UsageError: the pair cannot be changed in this way; the message is a sentence.
     """
     if "," in pair.file:
         raise UsageError("its functions are in two files")
     looked, best = pair.looked, ENCODINGS.get(pair.row["best"])
     if best is None or (best.components, best.sign_bits) != (looked.encoding.components, 0):
-        raise UsageError(f"{pair.row['best']} has another number of components")
+        raise UsageError(f"{pair.row['best']} has a different number of components")
     if shader_text(text, Path(pair.file).suffix.lower()) != text or "PROGRAM" in text:
-        raise UsageError("its functions are in a shader block of another format")
+        raise UsageError("its functions are embedded in a file of another format")
     language = {"GLSL": "glsl", "WGSL": "wgsl"}.get(name_of(UserFile(pair.word)), "hlsl")
     prefix = f"nb_{best.name}"
     code = code_of(Codec(best, pair.storage), language, prefix).body.partition(_PACKING)[0].rstrip()
@@ -111,7 +113,7 @@ def patched_text(text: str, pair: Pair) -> str:
     places = {item.name: item for item in items(bare) if item.function}
     names = [name.rpartition("::")[2] for name in pair.functions.split(":") if name]
     if len(names) != 2 or not {*names} <= {*places}:
-        raise UsageError("its functions are not in this file, or take more than a normal or a code")
+        raise UsageError("its functions are not in this file, or take parameters besides the normal or the code")
     out, back = (" * 0.5 + 0.5", " * 2.0 - 1.0") if looked.encoding.is_unit else ("", "")
     encode, decode = (places[name] for name in names)
     calls = {
@@ -131,7 +133,7 @@ def patched_text(text: str, pair: Pair) -> str:
 
 
 def _parameter(bare: str, item: Item) -> str:
-    """The name of a function's first parameter, in a text without comments."""
+    """Return the name of a function's first parameter in a text without comments. Raises UsageError."""
     match = _PARAMETER.search(bare[item.start : item.body])
     if not match:
         raise UsageError(f"the first parameter of {item.name} has no name")
@@ -139,6 +141,6 @@ def _parameter(bare: str, item: Item) -> str:
 
 
 def _line_start(bare: str, item: Item) -> int:
-    """Return the start of the line with a function's name, in a text without comments."""
+    """Return the offset of the start of the line with a function's name, in a text without comments."""
     name = re.compile(rf"\b{item.name}\s*\(").search(bare, item.start)
     return bare.rfind("\n", 0, name.start() if name else item.start) + 1

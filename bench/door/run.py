@@ -55,7 +55,8 @@ def given(request: Any) -> dict[str, Any]:
 
 
 def options_of(table: Table, options: Mapping[str, Any]) -> list[Any]:
-    """Return a table's options in a run: the usual values, replaced by those that were given."""
+    """Return a table's options in a run, one set for each of its usual sets, with the given values in place of the
+    usual values."""
     known = fields_of(table.options)
     own = {name: value for name, value in options.items() if name in known and known[name].option.in_run}
     # A layout is measured as it is where nothing is said to put into it.
@@ -67,7 +68,7 @@ def options_of(table: Table, options: Mapping[str, Any]) -> list[Any]:
 
 
 def _read_so(values: dict[str, Any]) -> dict[str, Any]:
-    """Options, less how users' files are read where none is named."""
+    """Return options unchanged if they name files; otherwise without the options for how files are read."""
     return values if names_files(values) else {name: option for name, option in values.items() if name not in SETTINGS}
 
 
@@ -113,7 +114,8 @@ def _takes(table: Table, name: str) -> bool:
 
 
 def _asked(table: Table, options: Mapping[str, Any], folder: Path) -> Asked:
-    """Return the request for one table, each step once."""
+    """Return the request for one table, each step once. Raises UsageError, and MissingError if this machine lacks
+    what the table needs."""
     if missing := table.work.missing():
         raise MissingError(missing)
     return asked_together(table, options_of(table, options), in_folder(table, table.outputs(), folder))
@@ -235,7 +237,8 @@ def _beside(asks: Iterable[Asked]) -> list[Asked]:
 
 
 def _measure_others(run: Run, asks: Iterable[Asked], others: Sequence[Asked], shown: Shown, second: Second) -> None:
-    """The tables that the second process does not measure; the `others`, which it measures, are shown once it has."""
+    """Measure and show the tables `asks`, timed tables last while nothing else runs. Show the tables `others`, which
+    the second process measures, as they are finished."""
     # What takes times is measured when nothing else runs.
     for ask in sorted(asks, key=_takes_times):
         if _takes_times(ask):
@@ -247,7 +250,7 @@ def _measure_others(run: Run, asks: Iterable[Asked], others: Sequence[Asked], sh
 
 
 def _add_written(run: Run, asks: Iterable[Asked], shown: Shown, second: Second) -> None:
-    """The tables that the second process has finished meanwhile."""
+    """Show those of the tables `asks` that the second process has written and that are not shown yet."""
     for ask in asks:
         if ask.table.name in second.written - shown.written:
             shown.written.add(ask.table.name)
@@ -275,7 +278,8 @@ class Shown:
         self._left = deque(asks)
 
     def add(self, ask: Asked, done: Measured) -> None:
-        """A table that is measured; shown once those before it are."""
+        """Record what was measured for a table, and show each table whose turn it is: all tables before it are
+        measured. Set `failed` if a row fails."""
         self.done[ask.table.name] = done
         give_back_what_a_table_needed()
         while self._left and self._left[0].table.name in self.done:
@@ -284,7 +288,7 @@ class Shown:
 
 
 def _show(table: Table, rows: Sequence[Row]) -> bool:
-    """Write a table's verdict, and warn of its rows; return whether one fails."""
+    """Report a table's skipped rows, warnings, failures and verdict. Return whether any row fails."""
     say_skipped(table, rows)
     say_lines(table.warnings(rows))
     failed = say_lines(table.work.failures(rows))
@@ -293,7 +297,8 @@ def _show(table: Table, rows: Sequence[Row]) -> bool:
 
 
 def _complete(run: Run, shown: Shown) -> None:
-    """Tables for others, the pictures and the page; then the run is finished."""
+    """Write a run's tables, their remaining files, the code and the page with its charts. Mark the run as finished,
+    and print the page's path."""
     from ..show.report import CHARTS, CHARTS_OF_A_RUN, write_report
     from .run_code import keep_code
 

@@ -30,7 +30,8 @@ MOST, MOST_PROVEN = 400, 1
 
 
 def keep_code(folder: Path, done: Done) -> None:
-    """The code of a finished run's codecs, in its folder; nothing where none is the catalogue's."""
+    """Write the code of a finished run's codecs of the catalogue, at most MOST of them, to its folder. Write
+    nothing if no such codec has code."""
     finished = {name: done.finished_rows(name) for name in done.tables if ENCODING in TABLES[name].columns}
     codecs = _codecs(row for rows in finished.values() for row in rows)
     best = _codecs(row for name, rows in finished.items() for row in _best(name, rows))
@@ -40,7 +41,7 @@ def keep_code(folder: Path, done: Done) -> None:
 
 
 def _codecs(rows: Iterable[Row]) -> dict[str, Codec]:
-    """The catalogue's codecs of rows, by label."""
+    """Return the codecs that rows name, by label. Rows without a codec of the catalogue that fits are skipped."""
     codecs: dict[str, Codec] = {}
     for row in rows:
         key = CodecKey.said_by(row)
@@ -50,7 +51,7 @@ def _codecs(rows: Iterable[Row]) -> dict[str, Codec]:
 
 
 def _best(name: str, rows: list[Row]) -> Iterator[Row]:
-    """The rows that answers begin with."""
+    """Yield the first MOST_PROVEN rows of each sheet of a table's answer; nothing if the section does not lead."""
     if TABLES[name].section.leads:
         for sheet in TABLES[name].work.summary(rows):
             yield from ({**sheet.keys, **row} for row in sheet.rows[:MOST_PROVEN])

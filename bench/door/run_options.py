@@ -22,7 +22,7 @@ def _shared() -> dict[str, Field]:
 
 def _options_class() -> type:
     others = ", ".join(name for name, table in TABLES.items() if not table.in_all)
-    help_text = f"{', '.join(TABLES)}; comma-separated, or all, meaning all except {others}."
+    help_text = f"Tables to measure, comma-separated: {', '.join(TABLES)}; or all, which leaves out {others}."
     tables = Annotated[Names, Option("--tables", help_text)]
     typed: list[tuple[str, Any, Any]] = [("tables", tables, field(default=("all",)))]
     for name, option_field in _shared().items():

@@ -91,7 +91,7 @@ def in_folder(table: Table, outputs: Any, folder: Path) -> Any:
 
 
 def _work(table: Table) -> Row:
-    """Return the facts that must match for kept rows to be reused."""
+    """Return what must match for kept rows to be reused: the table's name, a digest of the sources, the platform."""
     return {"table": table.name, "sources": sources(), "machine": platform.platform()}
 
 
@@ -102,7 +102,7 @@ def _measured(ask: Asked, kept: Beside | None, where: Place) -> Measured:
     if kept:
         kept_count = sum(kept.find(ask.table.name, step) is not None for step in with_parts(ask.steps))
         if kept_count < len(kept):
-            other = f"{kept.path} has {len(kept)} steps of another {ask.table.name} command"
+            other = f"{kept.path} has {len(kept)} steps of a different {ask.table.name} command"
             raise UsageError(f"{other}; finish that command, delete the file, or name another file")
         tell(f"{kept_count} of {total} steps are already measured")
     try:
@@ -136,7 +136,9 @@ def _show(table: Table, done: Measured, format: str, output: Path | None) -> boo
 
 
 def _plot(table: Table, done: Measured) -> None:
-    """Draw the table's charts into the file of --plot, if one is given. Raises UsageError if there are no charts."""
+    """Draw the table's charts into the file of --plot, if a file is given and the table has charts.
+
+    Raises UsageError if there is nothing to draw although the machine lacks nothing that the table needs."""
     path, work = getattr(done.outputs, "plot", None), table.work
     if not path or not work.has_charts:
         return
@@ -148,17 +150,17 @@ def _plot(table: Table, done: Measured) -> None:
             draw.write(charts, (partial, path.suffix[1:].lower()))
         tell(f"the chart is in {path}")
     elif not table.lacking(done):
-        raise UsageError(f"--plot: nothing to plot: {_why_nothing(table, done.rows)}")
+        raise UsageError(f"--plot: nothing to plot; {_why_nothing(table, done.rows)}")
 
 
 def _why_nothing(table: Table, rows: Sequence[Row]) -> str:
     """Return why rows have no chart: the first reason that a row gives, or that they have too few figures."""
-    few = f"too few figures for a chart in {len(rows)} row{'s' * (len(rows) != 1)}; ask for more: {table.example}"
+    few = f"too few figures for a chart in {len(rows)} row{'s' * (len(rows) != 1)}; for example, run: {table.example}"
     return next((row["skipped"] for row in rows if row.get("skipped")), few)
 
 
 def _bring(table: Table, outputs: Any, folder: Path) -> None:
-    """Copy outputs that were written elsewhere into a run's folder."""
+    """Copy output files and folders that were written elsewhere into a run's folder, unless it has them already."""
     for name, inside in table.files.items():
         target = getattr(outputs, name, None)
         if target is not None and target.exists() and not (folder / inside).exists():

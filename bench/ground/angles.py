@@ -6,7 +6,8 @@ import numpy as np
 
 
 def angles_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Degrees between rows, in float64: atan2(|a x (b - a)|, a . b). Vectors of length 0 and NaN are the caller's.
+    """Return the angles between vectors in degrees, float64 of shape (...): atan2(|a x (b - a)|, a . b). Vectors
+    of length 0 and NaN are the caller's concern.
 
     Args:
         a, b: of shape (..., 3).

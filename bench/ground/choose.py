@@ -36,7 +36,8 @@ def choose(what: str, names: Iterable[Word], known: Mapping[str, T]) -> list[T]:
 
 
 def choose_one(what: str, name: str, known: Collection[str]) -> str:
-    """The known name that is meant, however it is spelled. Raises UsageError for an unknown one, and for several."""
+    """Return the known name that a word stands for, however it is spelled. Raises UsageError for an unknown name,
+    and for several names."""
     key = spelled(what, name.strip(), known)
     if key is None and "," in name:
         raise UsageError(f"one {what} at a time, not {name}; known: {', '.join(known)}")
@@ -69,7 +70,7 @@ def choose_or_read(
     called = [file.name for file in files]
     twice = [name for name in called if called.count(name) > 1]
     if twice:
-        raise UsageError(f"two files are called {twice[0]}, which rows could not tell apart; rename one")
+        raise UsageError(f"two files have the same name, {twice[0]}, so their rows could not be told apart; rename one")
     others = [word for word in words if Path(str(word)).suffix.lower() not in endings or isinstance(word, Given)]
     try:
         chosen = choose(what, others, known) if others or not files else []
@@ -91,7 +92,7 @@ def names_a_file(word: str) -> bool:
 
 
 def names_a_folder(word: str) -> bool:
-    """Whether a folder of this name exists."""
+    """Whether a folder of this name exists; False for an empty name, and for a name that no folder can have."""
     with suppress(OSError, ValueError):
         return bool(word) and Path(word).is_dir()
     return False

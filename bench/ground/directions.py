@@ -25,7 +25,7 @@ def directions() -> np.ndarray:
 
 
 def circles() -> np.ndarray:
-    """Directions in which a number is exactly 0, all around: float32 of shape (count, 3)."""
+    """Return directions around the three circles where one coordinate is exactly 0: float32 of shape (count, 3)."""
     turn = np.arange(AROUND) * (2 * np.pi / AROUND)
     return np.concatenate(
         [np.insert(np.stack([np.cos(turn), np.sin(turn)], axis=1), axis, 0.0, axis=1) for axis in range(3)]

@@ -63,7 +63,7 @@ ALIKE, SHORT, SHORT_ALIKE = 0.75, 4, 0.65
 
 
 def plain(word: str) -> str:
-    """A name in lower case without hyphens, underscores and spaces."""
+    """Return a name in lower case without hyphens, underscores and spaces."""
     return "".join(letter for letter in word.lower() if letter not in "-_ ")
 
 
@@ -80,7 +80,8 @@ def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
 
 
 def channels_of(word: str) -> tuple[str, ...]:
-    """The channels of a format with their bits, red first, and how they hold numbers; none of another word."""
+    """Return a format's channels with their bits, red first, and then its kind of numbers: ("r16", "g16",
+    "f") for RG16F. An empty tuple stands for any other word."""
     match = _FORMAT.fullmatch(_API.sub("", word.lower()))
     if not match:
         return ()
@@ -90,7 +91,8 @@ def channels_of(word: str) -> tuple[str, ...]:
 
 
 def meant(word: str, known: Iterable[str], what: str = "") -> str:
-    """Return what an unknown word may have meant, as the end of a sentence; empty if nothing is similar.
+    """Return a hint for an unknown word, such as "did you mean rg8?" or how to separate several names; empty if
+    no known name is similar.
 
     Args:
         what: the kind of name; some kinds have alternative words.

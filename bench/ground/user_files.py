@@ -70,7 +70,8 @@ def _match(word: str) -> re.Match[str] | None:
 
 
 def _match_of_text(word: str) -> re.Match[str] | None:
-    """Match a word for an existing text file, whatever its ending, except the endings of other kinds of files."""
+    """Return the match of a word that names an existing text file, whatever its ending; None for the endings of
+    other kinds of files, and for files that are not text."""
     match = _OTHER.fullmatch(word)
     ending = Path(match["file"]).suffix.lower() if match else ""
     if not match or ending in _NO_SHADERS or ending in OTHER_LANGUAGES or not is_file(Path(), match["file"]):
@@ -105,7 +106,7 @@ _MACRO = re.compile(r"[A-Za-z_]\w*(?:=.*)?")
 
 
 def _root(text: str) -> tuple[str, str]:
-    """Return the prefix of names and the folder, from FOLDER or VIRTUAL=FOLDER."""
+    """Return the prefix of names (empty if none is given) and the folder, from FOLDER or VIRTUAL=FOLDER."""
     virtual, mark, folder = text.partition("=")
     return (virtual.strip("/"), folder) if mark else ("", text)
 
@@ -125,12 +126,12 @@ class UserFile:
 
     @cached_property
     def path(self) -> Path:
-        """The file; of two, the encoder's."""
+        """The path of the file; if the word names two files, of the encoder's."""
         return file_of(self.word)
 
     @cached_property
     def paths(self) -> list[Path]:
-        """The file; of one that names two, the encoder's and the decoder's."""
+        """The path of the file; if the word names two files, the paths of the encoder's and the decoder's."""
         match = _match(self.word)
         return [self.path, *([Path(match["other"])] if match and match.re is _TWO else [])]
 
@@ -154,13 +155,13 @@ class UserFile:
 
     @property
     def functions(self) -> tuple[str, str] | None:
-        """The two functions that are meant; None where none is named."""
+        """The names of the encoder and the decoder that the word gives; None if it gives no names."""
         match = _match(self.word)
         return (match["encode"], match["decode"]) if match and match["encode"] else None
 
     @property
     def plain(self) -> str:
-        """The name without its settings."""
+        """The word without its settings."""
         match = _match(self.word)
         return self.word[: match.start("settings")] if match else self.word
 
@@ -176,7 +177,7 @@ class UserFile:
         return self.path.suffix.lower() != GLSL or bool(match and (match["encode"] or match["settings"]))
 
     def with_pair(self, pair: str) -> UserFile:
-        """Return it with two functions, ENCODE:DECODE, that it does not name."""
+        """Return the file with two functions, ENCODE:DECODE, in place of any that the word names."""
         match = _match(self.word)
         if not match:
             return UserFile(f"{self.word}:{pair}")
@@ -188,13 +189,13 @@ class UserFile:
 
 
 def with_settings(words: Iterable[Word], **settings: Iterable[Word]) -> Names:
-    """Return names with settings behind each of those that are users' files.
+    """Return all words as a tuple, with settings appended to each word that is a user's file.
 
     Args:
-        settings: by one of SETTINGS.
+        settings: the values of each of SETTINGS, by its name.
 
     Raises:
-        UsageError: a value that no word can have.
+        UsageError: a value contains a colon, which would end the setting.
     """
     more = [f":{kind}={value}" for kind, values in settings.items() for value in values]
     if wrong := next((setting for setting in more if ":" in setting[1:]), ""):
@@ -216,13 +217,13 @@ def _with_settings(word: str, more: Sequence[str]) -> str:
 
 
 def is_a_users_file(word: Word) -> bool:
-    """Tell whether a word is a user's file of an encoder, by itself or in a chain."""
+    """Whether a word names a user's file of an encoder, by itself or in a chain."""
     return isinstance(word, str) and _with_settings(word, [":"]) != word
 
 
 def file_names(text: str, folder: Path = Path()) -> tuple[str, ...]:
-    """Split comma-separated names, each once; a comma in a file's name is a part of it, and one between an encoder and
-    its decoder in two files joins them.
+    """Split comma-separated names into a tuple, each once. A comma in a file's name is a part of it, and a comma
+    between an encoder and its decoder in two files joins them.
 
     Args:
         folder: where files are looked for.
@@ -250,7 +251,8 @@ def _is_only_an_ending(word: str) -> bool:
 
 
 def file_of(word: str) -> Path:
-    """The file of a word: mine.hlsl of mine.hlsl:EncodeNormal:DecodeNormal, mesh.glb of mesh.glb#vertices."""
+    """Return the path of the file in a word: mine.hlsl of mine.hlsl:EncodeNormal:DecodeNormal, mesh.glb of
+    mesh.glb#vertices."""
     match = _match(word)
     return Path(match["file"] if match else whole_file_of(word))
 
@@ -278,7 +280,7 @@ def files_in(word: str, folder: Path = Path()) -> list[str]:
 
 
 def is_file(folder: Path, text: str) -> bool:
-    """Whether a text names a plain file."""
+    """Whether a text names an existing plain file in a folder; False for text that cannot be a file's name."""
     try:
         return bool(text) and (folder / text).is_file()
     except (OSError, ValueError):  # no name that a file could have
@@ -286,7 +288,7 @@ def is_file(folder: Path, text: str) -> bool:
 
 
 def with_files(word: str, others: Mapping[str, str]) -> str:
-    """A word with other files in place of those that `files_in` found in it."""
+    """Return a word with other files in place of those that `files_in` found in it; `others` maps old to new."""
     if not others:
         return word
     known = "|".join(map(re.escape, sorted(others, key=len, reverse=True)))
@@ -294,7 +296,7 @@ def with_files(word: str, others: Mapping[str, str]) -> str:
 
 
 def lacks_a_function(word: str) -> bool:
-    """Whether a word names a file, and not both of the functions in it: mine.hlsl:EncodeNormal."""
+    """Whether a word names a file and only one of the two functions in it, such as mine.hlsl:EncodeNormal."""
     head, mark, _ = word.partition(":")
     return bool(mark) and Path(head).suffix.lower() in ENDINGS and not names_an_encoder(word)
 

@@ -39,7 +39,7 @@ def answered(key: str, command: Callable[[], int]) -> int:
     if kept and all(state_of(Path(path)) == state for path, state in kept["files"].items()):
         for is_error, text in kept["said"]:
             (errors.tell if is_error else say)(text)
-        errors.tell(f"cached on {kept['date']}; to measure again, use --anew")
+        errors.tell(f"answer cached on {kept['date']}; to measure again, use --anew")
         return kept["status"]
     with errors.hearing() as messages:
         status = command()
@@ -74,13 +74,13 @@ def _may_be_a_file(value: Value) -> bool:
 
 
 def _packages() -> list[str]:
-    """Return the names and versions of installed packages, from the names of their folders."""
+    """Return the installed packages by the names of their folders, such as numpy-2.1.0.dist-info, in order."""
     folders = {Path(sysconfig.get_path(name)) for name in ("purelib", "platlib")}
     return sorted(path.name for folder in folders for path in folder.glob("*.dist-info"))
 
 
 def _libraries() -> dict[str, list[int] | None]:
-    """Return the state of each library that this process has loaded, drivers among them, and of the folders that they
-    are in, which a newer one would be put into."""
+    """Return, by path, the state of each library that this process has loaded, drivers among them, and of the
+    folders that they are in, which a newer one would be put into. Libraries in the cache are left out."""
     paths = {Path(path) for path in loaded() if ".so" in path and not Path(path).is_relative_to(cache.folder())}
     return {str(path): state_of(path) for path in sorted(paths | {path.parent for path in paths})}

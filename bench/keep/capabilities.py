@@ -32,7 +32,7 @@ CAPABILITIES: Mapping[str, Callable[[], object]] = MappingProxyType(
         "instructions on Radeons (cost --isa, pick)": require_radeons,
         "instructions on Intel (cost --isa --family intel)": require_intel,
         "instructions on NVIDIA (cost --isa --family nvidia)": require_nvidia,
-        "glTF files that Draco or meshoptimizer packed": _require_unpackers,
+        "glTF files compressed with Draco or meshoptimizer": _require_unpackers,
         "quality --arithmetic half by GLSL": half_device,
         "quality by WGSL (wgpu and a Vulkan driver)": wgsl.device,
         "code in C, and fast rows of quality (cc)": c.compiler,

@@ -44,7 +44,8 @@ def what_matters(before: Done, after: Done, changes: Sequence[Row]) -> list[str]
 
 
 def sentences(before: Done, after: Done, changes: Sequence[Row]) -> list[str]:
-    """Return the sentences of `what_matters` for changes where either run may lack a row."""
+    """Return the sentences of `what_matters`, also for runs without a common row: at most SENTENCES, and then how
+    many more there are."""
     counts = _rows_of_each(before, after)
     groups: dict[str, list[Row]] = {}
     for change in changes:
@@ -64,7 +65,7 @@ def _row_names(done: Done) -> set[tuple]:
 
 
 def _rows_of_each(before: Done, after: Done) -> Counter[str]:
-    """Count the rows of each encoding, without those that give the same reason for missing figures in both runs."""
+    """Count the rows of each encoding, without rows that give the same reason for missing figures in both runs."""
     counts = Counter[str]()
     for name in dict.fromkeys([*before.tables, *after.tables]):
         table = TABLES[name]
@@ -81,7 +82,7 @@ def _reasons(table: Table, rows: Sequence[Row]) -> list[tuple]:
 
 
 def _subject(table: str, keys: Mapping[str, object]) -> str:
-    """Return the subject of a row: an encoding of any kind, else its table."""
+    """Return the subject of a row as text: the name of its encoding of any kind, else of its table."""
     return str(next((keys[name] for name in SUBJECTS if keys.get(name)), table))
 
 
@@ -103,15 +104,16 @@ def _share_text(some: int, count: int) -> str:
 
 
 def _figures_said(row: Sequence[Row], name: str) -> str:
-    """Return a row's name and its figures in degrees and decibels before and after; empty if none of them changed."""
+    """Return text that begins "; most in", with a row's name and its figures in degrees and decibels before and
+    after; empty if none of these figures changed."""
     where = " ".join(row[0]["row"].replace(name, " ", 1).split())
     known = (f"{change['column']} {_before_and_after(change)}" for change in known_figures(row, UNITS))
     figure_text = ", ".join(known)
-    return f"; most in {row[0]['table']} {where}: {figure_text}" if figure_text else ""
+    return f"; largest change in {row[0]['table']} {where}: {figure_text}" if figure_text else ""
 
 
 def _before_and_after(change: Row) -> str:
-    before, after = (text_of(change[when]) or "nothing" for when in ("before", "after"))
+    before, after = (text_of(change[when]) or "no value" for when in ("before", "after"))
     return f"from {before} to {after} {change['unit']}"
 
 
@@ -159,7 +161,7 @@ def _worst_row(group: Sequence[Row]) -> Row:
 
 
 def total(changes: Sequence[Row]) -> str:
-    """Return how many rows and figures changed, and how many of the rows are worse, better, gone and so on."""
+    """Return a line of text: how many rows and figures changed, and how many rows are worse, better, gone or new."""
     rows = rows_of(changes)
     counts = Counter(map(_verdict_word, rows))
     summary = ", ".join(f"{_count_text(counts[verdict], 'row')} {verdict}" for verdict in VERDICTS if counts[verdict])
@@ -169,7 +171,7 @@ def total(changes: Sequence[Row]) -> str:
 
 
 def _verdict_word(row: Sequence[Row]) -> str:
-    """Return the first of VERDICTS that applies to the changes of a row."""
+    """Return the first of VERDICTS that applies to the changes of a row; if none does, the last."""
     verdicts = {SLIGHTLY[change["verdict"]] if is_small(change) else change["verdict"] for change in row}
     verdicts |= {NEW for change in row if presence(change) == ONLY[False]}
     return next((verdict for verdict in VERDICTS if verdict in verdicts), VERDICTS[-1])

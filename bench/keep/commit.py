@@ -14,11 +14,11 @@ SHORT, CHANGED = 8, "+"
 
 
 def commit_of(named: str | None, folder: Path) -> Row:
-    """Return the facts that a run records about its commit; empty if a folder is not in a repository and the change
-    has no name.
+    """Return the facts that a run records about its commit: only `name` if the change is named; empty if it has no
+    name and the folder is not in a repository.
 
-    `name`, `time` in seconds, `subject`, whether files of the repository were `changed` since, and `rank`, which
-    orders commits of the same second, such as those of a rebase.
+    Else `name`, `time` in seconds, `subject`, whether files of the repository were `changed` since, and `rank`,
+    which orders commits of the same second, such as those of a rebase.
     """
     if named:
         return {"name": named}

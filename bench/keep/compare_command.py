@@ -32,7 +32,7 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
     ours, theirs = (read_to_show(folder, needs_rows=True) for folder in (before, after))
     changes = compared(ours, theirs)
     if ours.facts.get("machine") != theirs.facts.get("machine"):
-        tell("the machines differ; times are not compared")
+        tell("the machines differ, so timings are not compared")
     if apart := _settings_apart(ours.facts.get("machine") or {}, theirs.facts.get("machine") or {}):
         tell(f"figures may differ because settings changed: {'; '.join(apart)}")
     if otherwise := measured_otherwise(ours, theirs):
@@ -53,7 +53,7 @@ def compare_command(before: Path, after: Path, fail_on: str, format: str, output
 
 
 def _settings_apart(earlier: Mapping[str, Any], other: Mapping[str, Any]) -> list[str]:
-    """Return the external settings that differ between two runs, in words."""
+    """Return a text for each external setting that differs between two runs: "NAME was VALUE and is VALUE"."""
     names = sorted(name for name in {*earlier, *other} if name.startswith(SETTING) or name == ROWS_BY)
     values = ((name.removeprefix(SETTING), earlier.get(name, "not set"), other.get(name, "not set")) for name in names)
-    return [f"{name} was {before} and is {after}" for name, before, after in values if before != after]
+    return [f"{name} was {before} and is now {after}" for name, before, after in values if before != after]

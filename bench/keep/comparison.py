@@ -40,13 +40,13 @@ NOT_MEASURED, NEW = "not measured", "new"
 
 
 def compared(before: Done, after: Done) -> list[Row]:
-    """A row for each figure that differs, and for each row that only one of the runs has; the worst first."""
+    """Return a row for each figure that differs, and for each row that only one of the runs has; the worst first."""
     same_machine = before.facts.get("machine") == after.facts.get("machine")
     return in_order([row for tables in _tables_and_rows(before, after) for row in row_changes(*tables, same_machine)])
 
 
 def _tables_and_rows(before: Done, after: Done) -> Iterator[tuple[Table, Mapping[Any, Row], Mapping[Any, Row]]]:
-    """Yield each table that either run has, and its rows in both runs by name."""
+    """Yield each table that either run has, with its rows in the first and in the second run, as by `named_rows`."""
     ours, theirs = before.tables, after.tables
     for name in dict.fromkeys([*ours, *theirs]):
         before_rows, after_rows = (named_rows(TABLES[name], rows.get(name, [])) for rows in (ours, theirs))
@@ -54,14 +54,14 @@ def _tables_and_rows(before: Done, after: Done) -> Iterator[tuple[Table, Mapping
 
 
 def measured_otherwise(before: Done, after: Done) -> list[str]:
-    """Return the conditions that differ between the same rows of both runs, in words; the most frequent first."""
+    """Return a text for each condition that differs between the same rows of both runs; the most frequent first."""
     counts: Counter[tuple[str, Any, Any]] = Counter()
     for _, ours, theirs in _tables_and_rows(before, after):
         for row, other in ((row, theirs[key]) for key, row in ours.items() if key in theirs):
             known = [column for column in CONDITIONS if None not in (row.get(column), other.get(column))]
             counts.update((column, row[column], other[column]) for column in known if row[column] != other[column])
     return [
-        f"{column} was {previous} and is {other} in {count} row{'s' * (count > 1)}"
+        f"{column} was {previous} and is now {other} in {count} row{'s' * (count > 1)}"
         for (column, previous, other), count in counts.most_common()
     ]
 
@@ -77,7 +77,7 @@ def in_order(changes: Sequence[Row]) -> list[Row]:
 
 
 def rows_of(changes: Sequence[Row]) -> list[list[Row]]:
-    """The changes of each row."""
+    """Return the changes of each row as a list, in the order in which the rows first occur."""
     rows: dict[tuple, list[Row]] = {}
     for change in changes:
         rows.setdefault(by_row(change), []).append(change)
@@ -85,18 +85,18 @@ def rows_of(changes: Sequence[Row]) -> list[list[Row]]:
 
 
 def by_row(change: Row) -> tuple:
-    """Return a key that tells a row from all others."""
+    """Return the key of the row that a change belongs to: its table, its name and its `presence`."""
     return change["table"], change["row"], presence(change)
 
 
 def presence(change: Row) -> str:
-    """Whether only one of the runs has the row, and which; empty where both have it."""
+    """Return text that tells which run alone has the row of a change; empty if both runs have it."""
     return change["change"] if change["change"] in ONLY.values() else ""
 
 
 def headline(row: Sequence[Row]) -> Row:
-    """Return the first of a row's changes in decibels, else in degrees, of the same kind as its worst; else the
-    worst."""
+    """Return the first of a row's changes in decibels, else in degrees, of the same kind as its worst change; else
+    the worst change."""
     worst = min(row, key=rank_key)
     return next(known_figures(row, ERRORS), worst)
 
@@ -110,18 +110,18 @@ def known_figures(row: Sequence[Row], units: Sequence[str]) -> Iterator[Row]:
 
 
 def _by_column(row: Sequence[Row]) -> list[Row]:
-    """The changes of one row in the order of its table's columns."""
+    """Return the changes of one row in the order of its table's columns; columns that the table lacks come last."""
     names = [column.name for column in TABLES[row[0]["table"]].columns]
     return sorted(row, key=lambda change: names.index(change["column"]) if change["column"] in names else len(names))
 
 
 def rank_key(change: Row) -> tuple[int, float]:
-    """The key that sorts changes: their group, then the largest first."""
+    """Return the key that sorts changes, the worst first: by group, then by severity, the largest first."""
     return _group_index(change), -abs(change["severity"])
 
 
 def _group_index(change: Row) -> int:
-    """The place of a kind of change among the others."""
+    """Return the number of a change's group in the order of `in_order`: 0 for a lost figure, 6 for small changes."""
     severity = change["severity"]
     if severity == math.inf:
         return 0
@@ -133,17 +133,17 @@ def _group_index(change: Row) -> int:
 
 
 def is_small(change: Row) -> bool:
-    """Whether a figure is better or worse by so little that only a program cares."""
+    """Whether a figure is better or worse by less than SMALL, if it is an error, or else by less than SMALL_OTHER."""
     return 0 < abs(change["severity"]) < (SMALL if change["unit"] in ERRORS else SMALL_OTHER)
 
 
 def named_rows(table: Table, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
-    """Return rows by name, and rows of the same name by their order."""
+    """Return rows by name and index, which counts rows of the same name from 0."""
     return in_turn(rows, table.name_of)
 
 
 def in_turn(rows: Sequence[Row], name_of: Callable[[Row], T]) -> dict[tuple[T, int], Row]:
-    """Return rows by name, and those of the same name by their order."""
+    """Return rows by what `name_of` gives and an index, which counts rows of the same name from 0."""
     by_name: dict[tuple[T, int], Row] = {}
     counts: dict[T, int] = {}
     for row in rows:
@@ -154,7 +154,8 @@ def in_turn(rows: Sequence[Row], name_of: Callable[[Row], T]) -> dict[tuple[T, i
 
 
 def row_changes(table: Table, ours: Mapping[Any, Row], theirs: Mapping[Any, Row], same_machine: bool) -> Iterator[Row]:
-    """Yield the differences between the rows of one table."""
+    """Yield a change for each figure that differs between the rows of one table, and for each row that only one
+    run has. Times are compared only on the same machine."""
     for key in dict.fromkeys([*ours, *theirs]):
         if key in ours and key in theirs:
             yield from _column_changes(table, key[0], ours[key], theirs[key], same_machine)
@@ -167,7 +168,7 @@ def row_changes(table: Table, ours: Mapping[Any, Row], theirs: Mapping[Any, Row]
 def _change_row(
     table: Table, row: Row, called: str, column: str, before: Any, after: Any, severity: float = 0.0
 ) -> Row:
-    """A line; `severity` is above 0 where it is worse, and the larger the worse."""
+    """Return a change as a row of the comparison; `severity` is above 0 if the figure is worse, below 0 if better."""
     verdict = "worse" if severity > 0 else "better" if severity < 0 else ""
     keys = {c.name: row.get(c.name) for c in table.of_role(Role.KEY)}
     known = table.column(column) if column else None
@@ -192,21 +193,21 @@ def _column_changes(table: Table, called: str, earlier: Row, other: Row, same_ma
 
 
 def is_slower_or_faster(before: float, after: float) -> bool:
-    """Whether two medians differ by more than anyone cares for."""
+    """Whether two medians differ by at least LEAST_EFFECT of the first; False if the first is 0."""
     return bool(before) and abs(after / before - 1) >= LEAST_EFFECT
 
 
 def time_change(table: Table, row: Row, called: str, column: str, before: float, after: float) -> Row:
-    """A line of a time that changed."""
+    """Return the change of a time or a speed as a row of the comparison, with the difference in percent."""
     known = table.column(column)
     grows = 20 * math.log10(after / before)
     severity = -grows if known and known.better == "more" else grows
-    change = f"{100 * (after / before - 1):+.1f} %"
+    change = f"{100 * (after / before - 1):+.1f}%"
     return _change_row(table, row, called, column, before, after, severity) | {"change": change}
 
 
 def gives_reason(table: Table, row: Row) -> bool:
-    """Whether a row says why it lacks figures."""
+    """Whether a row gives a reason why it lacks figures."""
     return any(row.get(column.name) for column in table.of_role(Role.REASON))
 
 
@@ -242,10 +243,10 @@ def same(figure: Any, other: Any) -> bool:
 
 
 def difference(before: Any, after: Any) -> str:
-    """Return the difference between two figures, as text."""
+    """Return the difference between two figures as text: signed if both are numbers, else a word, such as "new"."""
     if isinstance(before, int | float) and isinstance(after, int | float):
         return f"{after - before:+.3g}"
-    return NOT_MEASURED if after is None else NEW if before is None else "another"
+    return NOT_MEASURED if after is None else NEW if before is None else "different"
 
 
 def mann_whitney(sample: Sequence[float], other: Sequence[float]) -> float:

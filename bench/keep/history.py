@@ -53,12 +53,12 @@ class Series:
 
     @cached_property
     def reasons(self) -> set[str]:
-        """The columns that say why figures are missing."""
+        """The names of the columns that give reasons why figures are missing."""
         return {column.name for column in self.table.of_role(Role.REASON)}
 
     @property
     def judged(self) -> list[str]:
-        """The columns of figures, times and speeds that have a better direction."""
+        """The names of the columns of figures, times and speeds that have a better direction."""
         names = dict.fromkeys(name for _, row in self.rows for name in row)
         columns = ((name, self.table.column(name)) for name in names)
         return [
@@ -66,11 +66,11 @@ class Series:
         ]
 
     def values(self, column: str) -> list[tuple[int, Any]]:
-        """A column's value, and the first run that has it so."""
+        """Return (run index, value) pairs of a column: for each version of the row, the first run that has it."""
         return [(run, row.get(column)) for run, row in self.rows]
 
     def over_all(self, column: str) -> list[tuple[int, Any]]:
-        """A column's value in every run that has the row."""
+        """Return (run index, value) pairs of a column: for every run that has the row."""
         pairs, rest = [], list(self.rows)
         for run in self.runs:
             while len(rest) > 1 and rest[1][0] <= run:
@@ -97,7 +97,7 @@ class Change:
 
 
 def series_of(runs: Sequence[Past]) -> list[Series]:
-    """Return each row over some runs in their order."""
+    """Return the history of each row over some runs, which are referred to by their index."""
     asked = [_asked_text(past) for past in runs]
     by_key: dict[tuple[str, tuple[Called, int]], Series] = {}
     read = Rows()
@@ -128,7 +128,7 @@ class Rows:
         self._last: dict[str, tuple[list[int], dict[tuple[Called, int], Row]]] = {}
 
     def of(self, past: Past) -> Iterator[tuple[Table, dict[tuple[Called, int], Row]]]:
-        """Yield each table of a run with its rows."""
+        """Yield each table of a run with its rows, by name, conditions and an index among rows of the same name."""
         steps: dict[str, list[Row]] = {}
         for step in past.done.steps:
             steps.setdefault(step["table"], []).append(step)
@@ -148,7 +148,8 @@ class Rows:
 
 
 def _close_gap(series: Series, run_index: int, asked: Sequence[str], regained: int | None) -> None:
-    """Note which run first lacked a row, of those before `run_index` with the same options as the last that has it."""
+    """Add a gap to a series if a run before `run_index` lacks its row, although its options were those of the last
+    run that has it. `regained` is the run that has the row again, or None."""
     last = series.runs[-1]
     lacking = (run for run in range(last + 1, run_index) if asked[run] and asked[run] == asked[last])
     if (lost := next(lacking, None)) is not None:
@@ -156,7 +157,7 @@ def _close_gap(series: Series, run_index: int, asked: Sequence[str], regained: i
 
 
 def _add(series: Series, run_index: int, row: Row, machine: str) -> None:
-    """The row of one run more."""
+    """Add the row of another run to a series; a row that is the same object as before adds no new version."""
     series.runs.append(run_index)
     if not series.rows or series.rows[-1][1] is not row:
         series.rows.append((run_index, row))
@@ -166,7 +167,7 @@ def _add(series: Series, run_index: int, row: Row, machine: str) -> None:
 
 
 def _clocks(table: Table, row: Row) -> Iterator[str]:
-    """The columns of a row that have a time or a speed."""
+    """Yield the names of a row's columns with a time or a speed above 0 that has a better direction."""
     for name, value in row.items():
         column = table.column(name) if is_value(value) and value > 0 else None
         if column and column.role is Role.TIME and column.better:
@@ -204,7 +205,8 @@ def _is_told(series: Series, line: Row, run_index: int, column: Column) -> bool:
 
 
 def _mended_at(series: Series, line: Row, run_index: int, column: Column) -> int | None:
-    """Return the first run after `run_index` in which a figure is no longer worse, or little worse after much."""
+    """Return the first run after `run_index` in which a figure is no longer worse, or little worse after much;
+    None if there is no such run, or the figure became better."""
     for run, value in series.values(line["column"]):
         severity = severity_of(column, line["before"], value, has_reason=True)
         is_as_good = severity <= 0 or (not is_small(line) and is_small(line | {"severity": severity}))
@@ -247,5 +249,5 @@ def _is_better(line: Row, earlier: float) -> bool:
 
 
 def is_value(value: Any) -> bool:
-    """Whether a chart has a place for it."""
+    """Whether a value is a finite number, which a chart can show."""
     return is_number(value) and math.isfinite(value)

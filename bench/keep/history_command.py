@@ -49,7 +49,7 @@ class Group:
 
     @property
     def lines(self) -> list[Row]:
-        """The changes as `compare` has them, the worst first."""
+        """The changes as `compare` reports them, the worst first."""
         return in_order([change.line for change in self.changes])
 
 
@@ -67,7 +67,7 @@ def history_command(folders: Sequence[Path], wanted: Wanted, by: str, format: st
     _tell_what_else(runs, groups)
     is_for_people = format in ("table", "markdown")
     if by == COMMIT and not figures:
-        tell("no figure changed; name one with --column")
+        tell("no figure changed; name a column with --column")
     if by == COMMIT:
         write((_across if is_for_people else _long)(runs, figures), format, output, total=_left_out(figures))
     elif is_for_people:
@@ -85,7 +85,7 @@ def history_command(folders: Sequence[Path], wanted: Wanted, by: str, format: st
 
 
 def _chosen(series: Sequence[Series], wanted: Wanted) -> list[Series]:
-    """The wanted rows. Raises UsageError for a name that no row has."""
+    """Return the histories of the wanted rows. Raises UsageError for an unknown name, or if no row has all names."""
     remaining = list(series)
     for what in ("tables", "encoding", "storage"):
         names: Names | None = getattr(wanted, what)
@@ -103,7 +103,7 @@ def _name(series: Series, what: str) -> Any:
 
 
 def _columns(series: Sequence[Series], wanted: Wanted) -> set[str]:
-    """The names of the wanted columns; none for all. Raises UsageError for a name that no row has."""
+    """Return the names of the wanted columns; empty for all columns. Raises UsageError for a name that no row has."""
     known = dict.fromkeys(name for row_series in series for name in row_series.judged)
     return set(choose("column", wanted.column, {name: name for name in known})) if wanted.column else set()
 
@@ -127,7 +127,8 @@ def _ranked(changes: Sequence[Change]) -> list[Change]:
 
 
 def _figures(groups: Sequence[Group], series: Sequence[Series], columns: set[str]) -> list[tuple[Series, str]]:
-    """Return the figures to show over the runs: the most telling one of each row that changed, or those named."""
+    """Return the figures to show over the runs, each as a series and a column: the columns that are named or, if
+    none is named, the most telling figure of each row that changed."""
     if columns:
         return [(shown_series, name) for shown_series in series for name in shown_series.judged if name in columns]
     figures: dict[tuple[Any, ...], tuple[Series, str]] = {}
@@ -153,15 +154,16 @@ def _tell_what_else(runs: Sequence[Past], groups: Sequence[Group]) -> None:
     apart = list(named_apart(runs))
     for index in dict.fromkeys(group.at for group in groups):
         if apart[index]:
-            tell(f"at {runs[index].name} these changed too: {apart[index]}")
+            tell(f"also changed at {runs[index].name}: {apart[index]}")
 
 
 def _lead(runs: Sequence[Past], series: Sequence[Series], groups: Sequence[Group]) -> str:
-    """Return the runs, the number of rows not compared, and a sentence for each commit that made something worse."""
+    """Return the text above the table: the runs, the number of rows not compared, and a sentence for each commit
+    that made something worse."""
     first, last = runs[0], runs[-1]
     lines = [f"{len(runs)} run{'s' * (len(runs) > 1)}, from {_called(first)} to {_called(last)}"]
     others = len(series) - len({(each.table.name, each.called) for each in series})
-    lines += [f"not compared, because their counts of normals differ: {others} rows"] if others else []
+    lines += [f"{others} rows not compared, because their counts of normals differ"] if others else []
     worse = [group for group in groups if group.kind != BETTER]
     lines += [_sentence(runs, group) for group in worse[:SENTENCES]]
     more = len(worse) - SENTENCES
@@ -194,12 +196,12 @@ def _lines(runs: Sequence[Past], groups: Sequence[Group]) -> list[Row]:
 
 
 def _total(runs: Sequence[Past], series: Sequence[Series], groups: Sequence[Group]) -> str:
-    more = f"; {len(groups) - LINES} more changes are in --format json" if len(groups) > LINES else ""
+    more = f"; for {len(groups) - LINES} more changes, use --format json" if len(groups) > LINES else ""
     return f"{len(series)} rows over {len(runs)} runs{more}"
 
 
 def _line(runs: Sequence[Past], change: Change) -> Row:
-    """A line for programs."""
+    """Return a change as a row for programs, with facts of its commit."""
     about = _about(runs[change.at])
     kept = {name: change.line[name] for name in ("table", "row", "column", "before", "after", "change", "verdict")}
     return about | kept | {"mended": runs[change.mended].full_name if change.mended is not None else None}
@@ -219,7 +221,7 @@ def _across(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list
 
 
 def _long(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list[Row]:
-    """A line for each figure in each run."""
+    """Return a row for each figure in each run that has it, with facts of the run's commit."""
     return [
         _about(runs[index]) | {"table": row_series.table.name, "row": row_series.called, "column": name, "value": value}
         for row_series, name in figures
@@ -230,5 +232,5 @@ def _long(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list[R
 def _left_out(figures: Sequence[tuple[Series, str]]) -> str:
     if not figures:
         return ""
-    more = f"; {len(figures) - MOST} more figures are left out; name some with --encoding and --column"
+    more = f"; {len(figures) - MOST} more figures are left out; select figures with --encoding and --column"
     return f"runs with the same figures as the line above are left out{more * (len(figures) > MOST)}"

@@ -46,7 +46,7 @@ class Journal:
         start, rest = self._file.seek(0, os.SEEK_END), json.dumps(line).encode() + b"\n"
         try:
             if not os.fstat(self._file.fileno()).st_nlink:
-                raise OSError(errno.ENOENT, "it was deleted meanwhile")
+                raise OSError(errno.ENOENT, "the file was deleted meanwhile")
             while rest:
                 rest = rest[self._file.write(rest) :]
             os.fsync(self._file.fileno())
@@ -57,7 +57,7 @@ class Journal:
         self.lines.append(line)
 
     def replace(self, lines: Sequence[Line]) -> None:
-        """Put other lines in place of all there are, at once or not at all. Raises UsageError."""
+        """Replace all lines by others, at once or not at all. Raises UsageError."""
         data = data_of(lines)
         partial, file = partial_of(self.path), None
         try:
@@ -78,7 +78,7 @@ class Journal:
         self.lines = list(lines)
 
     def remove(self) -> None:
-        """Take the file away. Raises OSError."""
+        """Delete the file. Raises OSError."""
         remove(self.path, self._file)
 
     def close(self) -> None:
@@ -87,7 +87,7 @@ class Journal:
 
 
 def data_of(lines: Sequence[Line]) -> bytes:
-    """Lines as a journal holds them."""
+    """Return lines as the bytes of a journal: JSON, each on a line of its own."""
     return b"".join(json.dumps(line).encode() + b"\n" for line in lines)
 
 
@@ -144,5 +144,5 @@ def _parsed_line(place: str, line: bytes) -> Line:
     except (ValueError, RecursionError):
         record = None
     if not isinstance(record, dict):
-        raise UsageError(f"{place} is damaged: it is not a line of JSON; delete it to measure it again")
+        raise UsageError(f"{place} is damaged: not a JSON object; delete this line to measure it again")
     return record

@@ -28,7 +28,7 @@ PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "pandas", "matp
 
 
 def processor() -> str:
-    """The processor's name."""
+    """Return the processor's name as text."""
     names = [line.split(":", 1)[1].strip() for line in processor_lines() if line.startswith("model name")]
     return next(iter(names), platform.processor() or platform.machine())
 
@@ -58,18 +58,18 @@ def _gl_facts() -> dict[str, str]:
         "GL largest texture": str(gl.max_size),
         "GL targets at once": str(gl.max_targets),
         "GL samples a pixel": str(gl.max_samples),
-        "GL loops": f"ended after {most} turns" if (most := loop_limit(gl)) else f"make {MANY} turns and more",
+        "GL loops": f"stop after {most} iterations" if (most := loop_limit(gl)) else f"run {MANY} iterations or more",
         **{f"GL rounds {s.name}": ROUNDS[gl.native_rounding(s)] for s in STORAGES.values()},
     }
 
 
 def compilers() -> dict[str, str]:
-    """Return the compilers of GPU drivers and of shaders; for a missing compiler, what to install."""
+    """Return the versions of the compilers of GPU drivers and of shaders, by kind; if missing, what to install."""
     return isa.driver_versions() | _compiler_facts()
 
 
 def _compiler_facts() -> dict[str, str]:
-    """Return the compilers of shaders; for a missing compiler, what to install."""
+    """Return the versions of the compilers of shaders, by kind; if a compiler is missing, what to install."""
     glslang, optimiser = spirv.version(spirv.COMPILER), spirv.version(spirv.OPTIMISER)
     return {
         "GLSL compiler": spirv.title(glslang) if glslang else spirv.NO_COMPILER,

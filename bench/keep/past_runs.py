@@ -37,22 +37,22 @@ class Past:
 
     @property
     def day(self) -> str:
-        """The day of it."""
+        """The day (UTC) of the run's commit or, without a commit, of the run, as YYYY-MM-DD."""
         return datetime.fromtimestamp(self.seconds, UTC).strftime("%Y-%m-%d")
 
     @property
     def full_name(self) -> str:
-        """The commit's name for programs."""
+        """The commit's name for programs: of a hash, all digits. Without a commit, the name of the run's folder."""
         return str(self.commit.get("name", self.name))
 
     @property
     def subject(self) -> str:
-        """The first line of its commit's message."""
+        """The first line of the commit's message; empty without a commit."""
         return str(self.commit.get("subject", ""))
 
     @property
     def order(self) -> tuple[float, int, float]:
-        """The key that sorts runs."""
+        """The key that sorts runs: the time of the commit, its rank, and the time of the run."""
         return self.seconds, int(_number(self.commit.get("rank"), 0)), self.ran
 
 
@@ -73,12 +73,13 @@ def past_runs(folders: Sequence[Path]) -> list[Past]:
 
 
 def _run_folders(folder: Path) -> list[Path]:
-    """A run's folder; or the runs in a folder, and in the folders of it."""
+    """Return the folder if it holds a run, else the folders of the runs in it and in its folders. Raises
+    UsageError if there are none."""
     if (folder / RUN).exists():
         return [folder]
     runs = sorted(path.parent for pattern in ("*", "*/*") for path in folder.glob(f"{pattern}/{RUN}"))
     if not runs:
-        raise UsageError(f"{folder} contains no run: there is no {RUN} in it or in its folders")
+        raise UsageError(f"{folder} contains no run: no {RUN} in it or in its subfolders")
     return runs
 
 
@@ -96,7 +97,7 @@ def _number(value: object, usual: float) -> float:
 
 
 def _seconds(text: str) -> float:
-    """Return a date as `run` writes it, in seconds; 0 if the text is not a date."""
+    """Return the time of a date as `run` writes it, in seconds since 1970; 0 if the text is not a date."""
     try:
         return max(0.0, datetime.strptime(text, "%Y-%m-%dT%H:%M:%S%z").timestamp())
     except ValueError:
@@ -104,8 +105,8 @@ def _seconds(text: str) -> float:
 
 
 def named_apart(runs: Sequence[Past]) -> Iterator[str]:
-    """Yield what differs between each run and the one before, besides the commit: facts of the machine, and
-    normalbench itself."""
+    """Yield a text for each run with what differs from the run before, besides the commit: names of facts of the
+    machine, and normalbench itself. The text is empty for the first run, or if nothing differs."""
     yield ""
     for previous, other in pairwise(runs):
         there, here = (past.done.facts.get("machine") or {} for past in (previous, other))

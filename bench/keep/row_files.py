@@ -59,8 +59,8 @@ def _columns_of(data: bytes) -> list[str]:
 
 
 def _lines_of(data: bytes) -> list[list[str]]:
-    """Split each line of a plain-text table into cells; return [] where a line starts with "#", as notes in Markdown
-    do."""
+    """Return the cells of each line of a plain-text table, with underscores for spaces; empty if a line starts
+    with "#", as notes in Markdown do."""
     lines = [] if re.search(rb"^#", data, re.M) else data[:MOST].decode(errors="replace").splitlines()
     return [[cell.replace(" ", "_") for cell in BETWEEN.split(line.strip()) if cell] for line in lines]
 

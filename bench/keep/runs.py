@@ -96,7 +96,7 @@ class Done:
 
     @property
     def left_out(self) -> str:
-        """The rows that `tables` lacks, as a sentence without its end; empty if it has all."""
+        """A sentence without its full stop on the rows that `tables` lacks; empty if it has all rows."""
         names = dict.fromkeys(step["table"] for step in self.steps if step["table"] not in TABLES)
         return f"Rows of {', '.join(names)} are left out, because this version has no such table" if names else ""
 
@@ -126,7 +126,7 @@ class Shared:
         self._identified: dict[int, list[tuple[str, Row]]] = {}
 
     def identified(self, step: Row) -> list[tuple[str, Row]]:
-        """Return the same as `Done.identified`, for a step among `lines`; the same rows each time."""
+        """Return the same as `Done.identified`, for a step among `lines`; the same objects each time."""
         if id(step) not in self._identified:
             self._identified[id(step)] = _identified(step)
         return self._identified[id(step)]
@@ -180,7 +180,7 @@ def _check_steps(folder: Path, lines: Sequence[Row], checked: set[int]) -> None:
 
 
 def _seal_columns(data: bytes) -> Row:
-    """Return the number of lines and the digest of rows, by which a finished run detects changes."""
+    """Return the number of lines and the SHA-256 digest of rows, by which changes to a finished run are detected."""
     return {"lines": data.count(b"\n"), "digest": hashlib.sha256(data).hexdigest()}
 
 
@@ -222,7 +222,7 @@ class Run:
         return len(read_lines(self.folder / ROWS))
 
     def find(self, table: str, step: Step) -> list[Row] | None:
-        """The rows of a step; None where they are not kept."""
+        """Return the kept rows of a step; None if they are not kept."""
         return self._kept.get(key_text(table, step.key))
 
     def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
@@ -251,13 +251,13 @@ class Run:
             self._journal.replace(lines)
 
     def finish(self) -> None:
-        """Write that every step has its rows."""
+        """Record that every step has its rows, with the number of lines and the digest of the rows."""
         self.facts |= {"finished": True, **_seal_columns((self.folder / ROWS).read_bytes())}
         _write_facts(self.folder, self.facts)
 
 
 def _step_of(part: Row) -> str:
-    """The step that a part's line is of, as `key_text` has it."""
+    """Return text that identifies the step to which a part's line belongs, as `key_text` does."""
     return key_text(part["table"], {name: value for name, value in part["key"].items() if name != PART})
 
 
@@ -283,7 +283,7 @@ class Amended:
         self.lines: Sequence[Row] = kept.lines
 
     def replace(self, lines: Sequence[Row]) -> None:
-        """Put other steps in place of all there are, at once or not at all. Raises UsageError."""
+        """Replace all steps by others, at once or not at all. Raises UsageError."""
         seal = _seal_columns(data_of(lines)) if self._facts.get("finished") else {}
         # Whoever is killed between two of these leaves a run that is whole: its rows are the old or the next ones.
         if seal:
@@ -297,7 +297,7 @@ class Amended:
 
 @contextmanager
 def amended(folder: Path) -> Iterator[Amended]:
-    """Open an existing run, whatever its sources and its machine, to put other rows into it.
+    """Yield an existing run, whatever its sources and its machine, into which other rows can be put.
 
     Raises:
         UsageError: the run is missing, another process writes it, or its rows were changed after it finished.
@@ -308,12 +308,13 @@ def amended(folder: Path) -> Iterator[Amended]:
     with journal(folder / ROWS) as kept:
         facts = _facts(folder)
         if damage := _damage_text(folder, facts):
-            raise UsageError(f"{damage}; nothing is added to it")
+            raise UsageError(f"{damage}; nothing was added to the run")
         yield Amended(folder, _settled(folder, facts), kept)
 
 
 def _settled(folder: Path, facts: Row) -> Row:
-    """Facts of the rows that are there, also where somebody was killed who was about to put others in their place."""
+    """Return the facts that belong to the rows in the folder. If a process was killed while it replaced the rows,
+    the facts are updated and written."""
     if "next" in facts:
         facts = {name: value for name, value in facts.items() if name != "next"} | _seal_columns(
             (folder / ROWS).read_bytes()
@@ -323,7 +324,7 @@ def _settled(folder: Path, facts: Row) -> Row:
 
 
 def same_work(facts: Row, others: Row) -> bool:
-    """Whether two runs ask for the same of the same sources on the same machine."""
+    """Whether two runs have the same request, sources and machine."""
     return all(facts.get(name) == others.get(name) for name in ("request", "sources", "machine"))
 
 
@@ -348,12 +349,13 @@ def _is_different(facts: Row, others: Row, name: str) -> bool:
 
 
 def _there_and_here(facts: Row, others: Row, name: str) -> str:
-    there, here = (str(run_facts.get(name, "nothing")) for run_facts in (facts, others))
+    there, here = (str(run_facts.get(name, "not recorded")) for run_facts in (facts, others))
     return f"{_short_text(there, here)} there, {_short_text(here, there)} here"
 
 
 def _short_text(text: str, other: str) -> str:
-    """A text, where it is long a part of it: where it begins to be another than the other text."""
+    """Return a text unchanged if it is short, else SHORT characters of it around the first difference from the
+    other text, with "..." where it is cut."""
     differing = (i for i, (letter, another) in enumerate(zip(text, other, strict=False)) if letter != another)
     apart = next(differing, min(len(text), len(other)))
     start = max(0, min(apart - SHORT // 4, len(text) - SHORT))
@@ -375,7 +377,8 @@ def unfinished(parent: Path, facts: Row) -> Path | None:
 
 
 def _holds_something_else(folder: Path) -> bool:
-    """Whether a folder holds anything but a run, which may have been stopped before it wrote its facts."""
+    """Whether a folder holds files but no run, not even an interrupted run without facts; True if it cannot be
+    read."""
     try:
         names = {path.name for path in folder.iterdir()} if folder.exists() else set()
     except OSError:
@@ -402,7 +405,8 @@ def opened(folder: Path, facts: Row) -> Iterator[Run]:
 
 
 def _begun_facts(folder: Path, facts: Row) -> Row:
-    """The facts of a folder, written if it is new. Raises UsageError where it holds other work."""
+    """Return the facts of a folder; write them if the folder is new or the request is another. Raises UsageError
+    if the folder holds a run of other sources or another machine, or changed rows."""
     if not (folder / RUN).exists():
         _write_facts(folder, facts)
         return dict(facts)

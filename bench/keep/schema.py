@@ -96,7 +96,7 @@ WRONG = {
 
 
 def check_facts(facts: Any, place: str) -> None:
-    """Raise UsageError if `run.json` does not hold a run's facts, or holds those of another version."""
+    """Raise UsageError if `facts`, the parsed `run.json`, is malformed or has another schema version."""
     _check(FACTS, facts, [place])
     if facts.get("schema") != SCHEMA:
         raise UsageError(f"{place}: another version of normalbench measured this run; measure it again")
@@ -107,10 +107,11 @@ Keys = dict[tuple[str, str], tuple[bool, str]]
 
 
 def check_step(line: Any, place: str, keys: Keys) -> None:
-    """Raise UsageError if a line of a run is not a step, a figure is not a number, or a key is text in one row and a
-    number in another.
+    """Raise UsageError if a parsed line of `rows.jsonl` is not a step, a figure or a time is not a number, or a key
+    is text in one row and a number in another.
 
     Args:
+        place: named first in messages.
         keys: the keys of the lines before; those of this line are added.
     """
     _check(STEP, line, [place])
@@ -135,13 +136,14 @@ def check_kept(line: Any, place: str) -> None:
 
 
 def check_entry(entry: Any, place: str) -> None:
-    """Raise UsageError if an entry of a baseline is malformed, or a figure is not a number."""
+    """Raise UsageError if a parsed entry of a baseline is malformed, or a figure or a time is not a number."""
     _check(ENTRY, entry, [place])
     _check_row(entry["table"], entry["row"], [place])
 
 
 def _check_row(name: str, row: Row, place: Sequence[str]) -> None:
-    """Raise UsageError if a column holds an invalid value. Columns that the table does not have may hold anything."""
+    """Raise UsageError if a column holds an invalid value: a list, an object, too large an integer, or text for a
+    figure or a time. Columns that the table does not have may hold anything."""
     table = TABLES.get(name)
     known = {name: column for name in row if (column := table.column(name))} if table else {}
     roles = {name: column.role for name, column in known.items()}
@@ -165,7 +167,8 @@ def _check(adapter: TypeAdapter[Any], value: Any, place: Sequence[str]) -> None:
 
 
 def _short_text(value: Any) -> str:
-    """The beginning of a value's text; a number may have more digits than Python prints."""
+    """Return the first 40 characters of a value's `repr`, with an ellipsis if it is longer; "a number" for an integer
+    with more digits than Python prints."""
     try:
         text = repr(value)
     except ValueError:

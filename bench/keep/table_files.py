@@ -11,7 +11,7 @@ from .runs import Done, Row
 
 
 def write_tables(folder: Path, done: Done, names: Iterable[str]) -> None:
-    """The rows of a run's tables as files for others. Raises UsageError."""
+    """Write a run's tables into a folder for other programs, each as NAME.json and NAME.csv. Raises UsageError."""
     for name in names:
         _write_table(folder / name, done.finished_rows(name))
 

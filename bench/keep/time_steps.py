@@ -20,8 +20,10 @@ FROM_MEDIAN = 1.4826
 
 
 def time_steps(times: Sequence[float], tests: int) -> list[int]:
-    """Return where steps begin: fit piecewise constant ranks by least squares, as Lung-Yut-Fong, Lévy-Leduc and
-    Cappé (2015) do, and keep the steps that the comparison of two runs takes for changes.
+    """Return the indices at which `times` steps up or down, in order; empty if all differences are noise.
+
+    Fit piecewise constant ranks by least squares, as Lung-Yut-Fong, Lévy-Leduc and Cappé (2015) do, and keep the
+    steps that the comparison of two runs takes for changes.
 
     Args:
         tests: the number of places where a step was looked for, in this series and the others.
@@ -33,7 +35,8 @@ def time_steps(times: Sequence[float], tests: int) -> list[int]:
 
 
 def _placed(times: Sequence[float], begins: Sequence[int]) -> list[int]:
-    """Steps where each time is nearest to the median of its piece: ranks do not tell how far apart two times are."""
+    """Return the beginnings of pieces, each moved to the index where each time is nearest to the median of its piece:
+    ranks do not tell how far apart two times are."""
     placed = [0, *begins, len(times)]
     for index in range(1, len(placed) - 1):
         first, begin, end = placed[index - 1 : index + 2]
@@ -46,7 +49,7 @@ def _placed(times: Sequence[float], begins: Sequence[int]) -> list[int]:
 
 
 def _pieces(times: Sequence[float]) -> list[int]:
-    """Return where pieces begin, except for the first."""
+    """Return the index at which each piece begins, except for the first piece, in the best fit of constant ranks."""
     import numpy as np
 
     ordered, count = np.sort(times), len(times)
@@ -75,7 +78,7 @@ def _doubts(times: Sequence[float], begins: Sequence[int], tests: int) -> list[f
 
 
 def _doubt(earlier: Sequence[float], other: Sequence[float], tests: int) -> float:
-    """0 where the times of two pieces differ beyond noise; the more doubtful, the larger."""
+    """Return 0 if the times of two pieces differ beyond noise, else 1 or more; the more doubtful, the larger."""
     chance = mann_whitney(earlier, other) * tests
     return 0.0 if chance <= CHANCE and _is_large(earlier, other) else 1.0 + chance
 

@@ -41,12 +41,13 @@ class Recorded:
     sources: Sequence[str]
 
     def find(self, name: str, codec: Codec) -> Mapping[str, Any] | None:
-        """Return the figures recorded under a name; None if they were not computed from the current code."""
+        """Return the figures recorded under a name; None if nothing is recorded, the encoding is not the catalogue's,
+        or the code that computes the figures has changed since."""
         known = _figures(self.file).get(name)
         return known if known and is_in_catalogue(codec.encoding) and known["key"] == self.key(codec) else None
 
     def key(self, codec: Codec) -> str:
-        """Return a key that differs if the code of anything that decides a figure does; comments do not count."""
+        """Return a short text that changes with the code of anything that decides a figure; comments do not count."""
         module = sys.modules[codec.encoding.encode.__module__].__file__ or ""
         shared = "\n".join(code_of(ROOT / path) for path in (*self.sources, *OF_CODECS))
         return key_of(shared, code_of(Path(module)), codec.name)[:16]
@@ -54,7 +55,7 @@ class Recorded:
 
 @cache
 def code_of(path: Path) -> str:
-    """Return a module without comments and docstrings."""
+    """Return the dump of a module's syntax tree, without comments and docstrings."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for node in _documented(tree):
         node.body = node.body[1:] or [ast.Pass()]

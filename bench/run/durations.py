@@ -16,7 +16,7 @@ PAGE_S = 12.0
 
 
 def expected(asks: Sequence[Asked], beside: Sequence[Asked]) -> dict[str, tuple[int, float]]:
-    """Return for each table the number of its steps and the seconds of each step, and the same for the page.
+    """Return for each table the number of its parts and the expected seconds of each, and the same for the page.
 
     Args:
         beside: the tables that a second process measures meanwhile; only the time by which it exceeds this process
@@ -32,12 +32,12 @@ def expected(asks: Sequence[Asked], beside: Sequence[Asked]) -> dict[str, tuple[
 
 
 def seconds_of(ask: Asked) -> float:
-    """Return how long a table is expected to take."""
+    """Return how many seconds a table is expected to take."""
     return _ticks(ask) * _seconds(ask)
 
 
 def keep(ask: Asked, ticks: int, seconds: float) -> None:
-    """Keep how long steps took."""
+    """Keep the mean seconds of a table's `ticks` parts in the cache, for later estimates; nothing for 0 parts."""
     if ticks:
         cache.write(_key(ask), {"seconds": seconds / ticks})
 

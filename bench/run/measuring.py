@@ -50,7 +50,7 @@ class Kept(Protocol):
     """Rows that were measured before, and where new ones are kept."""
 
     def find(self, table: str, step: Step) -> list[Row] | None:
-        """The rows of a step; None where they are not kept."""
+        """Return the kept rows of a step; None if they are not kept."""
         ...
 
     def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
@@ -145,7 +145,7 @@ def measured(ask: Asked, kept: Kept, place: Place = HERE) -> Measured:
 
 
 def _measured_steps(ask: Asked, kept: Kept, place: Place) -> list[list[Row]]:
-    """The rows of each step, not finished yet."""
+    """Measure and keep the steps that are not kept yet, and return the rows of each step, not finished."""
     name = ask.table.name
     rows_by_id = {id(step): kept.find(name, step) for step in ask.steps}
     absent = [step for step in ask.steps if rows_by_id[id(step)] is None]
@@ -179,8 +179,8 @@ def with_parts(steps: Iterable[Step]) -> Iterator[Step]:
 
 
 def files_of(options: Any) -> Row:
-    """Return fingerprints of all files that options name, each with those read next to it, {"files": [...]}, and how
-    captures are read if an option says so, {"read": {...}}; {} for no files."""
+    """Return {"files": [...]}, a fingerprint for each file that options name, together with those read next to it. If
+    an option says how captures are read, return {"read": {...}} as well; return {} for no files."""
     words = {part for words in words_of(options).values() for word in words for part in parts_of(word)}
     digests = sorted(filter(None, map(_fingerprint, words)))
     reading = fields_of(Reading).values() if isinstance(options, Reading) else ()
@@ -190,14 +190,14 @@ def files_of(options: Any) -> Row:
 
 
 def words_of(options: Any) -> dict[str, list[str]]:
-    """Return by option the words that may name files."""
+    """Return by the option's name the words that may name files, for all options that take files."""
     known = fields_of(type(options))
     values = {name: getattr(options, name) or () for name, field in known.items() if field.option.files}
     return {name: [word for word in words_in(value) if isinstance(word, str)] for name, value in values.items()}
 
 
 def _fingerprint(word: str) -> str:
-    """Return a fingerprint of a file, its companions and how it is read, wherever they are; empty for no file."""
+    """Return a hash of a file, its companions and how it is read, wherever they are; empty if it cannot be read."""
     path, shader = file_of(word), UserFile(word)
     try:
         if not path.is_file():
@@ -213,8 +213,8 @@ def _fingerprint(word: str) -> str:
 
 
 def companions(word: str | Path) -> list[Path]:
-    """Return the files that are read with the file that a word names: those with the same stem, and those that a file
-    of its kind refers to."""
+    """Return, sorted, the files that are read with the file that a word names: parts of a scene or a frame, a
+    layout's files, and an encoder's twin and included files."""
     path = file_of(str(word))
     patterns = COMPANIONS.get(path.suffix.lower(), ())
     beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
@@ -230,7 +230,7 @@ def companions(word: str | Path) -> list[Path]:
 
 
 def _parts_of_gltf(path: Path) -> list[Path]:
-    """The files that a glTF file's buffers and pictures are in; none of a file that cannot be read."""
+    """Return the files of a glTF file's buffers and images; empty if it cannot be read."""
     # It imports NumPy, which start-up does without.
     from ...gbuffer.scenes.files.source import checked_address
 
@@ -244,7 +244,7 @@ def _parts_of_gltf(path: Path) -> list[Path]:
 
 
 def _files_of_frame(path: Path) -> list[Path]:
-    """The images that the description of a captured frame names."""
+    """Return the images that the description of a captured frame names."""
     # It imports JAX, which start-up does without.
     from ..subjects.scenes.frame_file import files_of_frame
 
@@ -260,7 +260,7 @@ def _files_of_layout(path: Path) -> list[Path]:
 
 
 def _included(word: str | Path) -> list[Path]:
-    """The files that a user's encoder includes; none of one that cannot be read."""
+    """Return the files that a user's encoder includes; empty if it cannot be read."""
     try:
         from ..shaders.languages.source import Source
 
@@ -270,7 +270,7 @@ def _included(word: str | Path) -> list[Path]:
 
 
 def file_digest(path: Path) -> bytes:
-    """The SHA-256 of a file's content. Raises OSError."""
+    """Return the SHA-256 of a file's content, 32 bytes. Raises OSError."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").digest()
 
@@ -296,7 +296,7 @@ class Beside:
 
 
 def _checked(kept: Journal) -> list[Row]:
-    """The lines below the first. Raises UsageError where one is not a step."""
+    """Return the lines of a journal below the first. Raises UsageError if one of them is not a step."""
     if lines := kept.lines[1:]:
         from ..keep.schema import check_kept
 

@@ -68,8 +68,8 @@ class Piped:
         return self._process.poll()
 
     def call(self, function: Callable[..., None], *arguments: Any) -> None:
-        """Have the process call a function with a function that sends values here, and with arguments. A process that
-        has ended calls nothing."""
+        """Have the process call a function, whose first argument is a function that sends values here, and return at
+        once. A process that has ended calls nothing."""
         # Bytes within a pickle: importing what they name is left to its main thread.
         call = pickle.dumps(pickle.dumps((function, arguments)))
         assert self._process.stdin
@@ -86,7 +86,7 @@ class Piped:
         self.ended.set()
 
     def end(self) -> None:
-        """Ask it to end; `wait` sees to it that it does."""
+        """Ask the process to end, without waiting for it; `wait` makes sure that it does."""
         assert self._process.stdin
         with suppress(OSError):
             self._process.stdin.close()
@@ -119,7 +119,7 @@ def _own_ends() -> tuple[IO[bytes], IO[bytes]]:
 
 
 def _take(calls: IO[bytes], waiting: SimpleQueue[bytes]) -> None:
-    """Queue calls as they come, and end this process when nobody can call any more."""
+    """Queue calls as they come, and end this process when the stream of calls ends."""
     with suppress(EOFError, pickle.UnpicklingError):
         while True:
             waiting.put(pickle.load(calls))
@@ -127,7 +127,7 @@ def _take(calls: IO[bytes], waiting: SimpleQueue[bytes]) -> None:
 
 
 def _call(call: bytes, send: Send) -> None:
-    """Call a function, and send any error that it raises."""
+    """Call a pickled function with `send` and its arguments, and send any error that it raises."""
     try:
         function, arguments = pickle.loads(call)
         function(send, *arguments)
@@ -138,7 +138,7 @@ def _call(call: bytes, send: Send) -> None:
 
 
 def main() -> None:
-    """Call the functions that arrive through standard input."""
+    """Call the functions that arrive through standard input, until that ends and this process with it."""
     look_for_garbage_seldom()
     signal.signal(signal.SIGTERM, _end_now)
     calls, values = _own_ends()

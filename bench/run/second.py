@@ -42,7 +42,7 @@ class Finished:
 
 
 def is_worth_it(tables: Sequence[Table]) -> bool:
-    """Whether there is something to measure at the same time, and a core for it."""
+    """Whether a second process can measure at the same time: two or more tables, and two or more cores."""
     return cores() > 1 and len(tables) > 1
 
 
@@ -61,7 +61,7 @@ class Second:
         self._process = Piped(first, self._take)
 
     def measure(self, run: Run, asks: Iterable[Asked], function: Callable[..., None], *arguments: Any) -> None:
-        """Have it call a function that measures tables, whose rows are kept in a run."""
+        """Have the process call a function that measures tables; the rows that it sends are kept in `run`."""
         steps = ((ask.table.name, step) for ask in asks for step in with_parts(ask.steps))
         self._run, self._steps = run, {key_text(name, step.key): (name, step) for name, step in steps}
         self._process.call(function, *arguments)

@@ -30,7 +30,8 @@ BODY = r"\b{name}\([^)]*\)\s*\{{\n(.*?)^\}}"
 
 
 def about_codecs(sections: Sequence[TableSection]) -> dict[str, Any]:
-    """Encodings by name, codecs by label, and for each table the options that name a codec."""
+    """Return what a page's cards show, as a dictionary: `encodings` by name, `codecs` by label, and `takes`, for each
+    table the options that name a codec."""
     shown = [section for section in sections if _is_of_normals(section)]
     rows = [row for section in shown for row in section.rows]
     keys = dict.fromkeys(key for row in rows if (key := CodecKey.said_by(row)))
@@ -54,14 +55,14 @@ def _is_of_normals(section: TableSection) -> bool:
 
 
 def _takes(table: str, option: str) -> bool:
-    """Whether `run` passes an option on to a table."""
+    """Whether a table has an option of this name that `run` passes on to it."""
     known = fields_of(TABLES[table].options)
     return option in known and known[option].option.in_run
 
 
 def _codec_record(key: CodecKey) -> dict[str, Any]:
-    """Return a codec's storage in words, its bits, the bits that its codes are worth if fewer, its numbers and its
-    domain; empty for an unknown codec."""
+    """Return a codec's `storage` in words, its `bits`, `codes`, the bits that its codes are worth if fewer, its
+    `numbers` and its `domain`; empty for an unknown codec."""
     if not (codec := codec_of(key)):
         return {}
     numbers = f"{rule_of_first(codec.storage, codec.encoding.components)} {codec.rounding}"
@@ -98,13 +99,14 @@ def _encoding_record(encoding: Encoding) -> dict[str, Any]:
 
 
 def _first_sentence(documented: Any) -> str:
-    """The first paragraph of a docstring, on a line."""
+    """Return the first paragraph of a module's or a function's docstring, on one line; empty without a docstring."""
     text = inspect.getdoc(documented) or ""
     return " ".join(text.partition("\n\n")[0].split())
 
 
 def _formula(encoding: Encoding, what: str) -> list[str]:
-    """Return the lines of a function's formula: the first sentence of its docstring, then the comments of its GLSL."""
+    """Return the lines of the formula of `what`, "encode" or "decode": the first paragraph of its docstring, then the
+    comments of its GLSL."""
     source = encoding.glsl.read_text(encoding="utf-8")
     match = re.search(BODY.format(name=f"{encoding.prefix}_{what}"), source, re.MULTILINE | re.DOTALL)
     comments = (COMMENT.fullmatch(line) for line in (match[1] if match else "").splitlines())
@@ -112,7 +114,7 @@ def _formula(encoding: Encoding, what: str) -> list[str]:
 
 
 def _engines(encoding: Encoding) -> Iterator[tuple[str, int, str]]:
-    """The engines whose layouts keep normals by an encoding, in its own axes or turned; the year, and the storage."""
+    """Yield (engine, year, storage) of each engine layout that keeps normals by an encoding, also in turned axes."""
     for layout in sorted(LAYOUTS.values(), key=lambda preset: (preset.engine.lower(), preset.year)):
         if layout.engine and layout.encoding.name.partition(":")[0] == encoding.name:
             yield layout.engine, layout.year, layout.normal_storage

@@ -24,10 +24,12 @@ Identity = tuple[Any, Any]
 
 
 def import_command(files: Sequence[Path], folder: Path | None) -> int:
-    """Add device files to a run. Of one GPU in one browser the newest file stays.
+    """Add device files to a run, write a line on each, and return exit status 0. Of one GPU in one browser the newest
+    file stays.
 
     Raises:
-        UsageError: a file is not a device's, the folder is not a run's, or it cannot be written. Nothing is added then.
+        UsageError: a file is not a device's, the folder is not a run's, or it cannot be written. Nothing is added
+            then.
     """
     if folder is None:
         raise UsageError("name the run's folder with -o RUN")
@@ -46,14 +48,15 @@ def import_command(files: Sequence[Path], folder: Path | None) -> int:
     for device in candidates:
         called = replace(device, name=names[device.file.renderer]).called
         if device in new and run.sources not in ("", device.file.sources):
-            tell(f"{called}: measured on a page from other sources, so its codes may differ from this run's")
+            tell(f"{called}: measured on a page of a different version, so its codes may differ from this run's")
         say(f"{called}: {_said(device.file, there.get(device.file.identity))}\n")
-    say(f"To write the page with them: normalbench report {folder}\n")
+    say(f"To write the page with these devices: normalbench report {folder}\n")
     return 0
 
 
 def read_all(paths: Sequence[Path]) -> list[Read]:
-    """Device files. Raises UsageError where one is wrong, once every one that is wrong was told."""
+    """Return the contents of device files. Raises UsageError if any is faulty, for the last such file; the others are
+    reported on standard error first."""
     reads, wrong = list[Read](), list[UsageError]()
     for path in paths:
         try:
@@ -89,7 +92,7 @@ def _said(file: DeviceFile, there: Mapping[str, Any] | None) -> str:
         return f"added {what}, replacing those from {there.get('made')}"
     if file.made < str(there.get("made")):
         return f"nothing added; the run has a newer file, from {there.get('made')}"
-    other = "" if file.digest == there.get("digest") else ", with other figures; the run keeps its own"
+    other = "" if file.digest == there.get("digest") else ", with different figures; the run keeps its own"
     return f"nothing added; the run already has the file from {file.made}{other}"
 
 
@@ -108,7 +111,7 @@ def _lines(device: Device) -> Iterator[Row]:
 
 
 def _renamed(lines: Sequence[Row]) -> Iterator[Row]:
-    """Steps whose devices are told apart: two GPUs may come to share a short name only now."""
+    """Yield a run's steps with names that tell its devices apart: two GPUs may come to share a short name."""
     names = told_apart(str(line["key"]["renderer"]) for line in lines if _is_ours(line))
     for line in lines:
         if not _is_ours(line):

@@ -52,14 +52,14 @@ class Shared:
         self._places: dict[str, int] = {}
 
     def places(self, text: str) -> list[int]:
-        """The places of a text's pieces."""
+        """Return the indices in `pieces` of the pieces that make up a text; new pieces are added there."""
         head, *rest = PIECES.split(text)
         pieces = [*LINES.split(head), *rest]
         return [self._places.setdefault(piece, len(self._places)) for piece in pieces if piece]
 
     @property
     def pieces(self) -> list[str]:
-        """All pieces, by place."""
+        """All pieces so far, by index."""
         return list(self._places)
 
 
@@ -72,11 +72,11 @@ class Written(NamedTuple):
 
 
 def write_code(folder: Path, languages: Mapping[str, str], codecs: Mapping[str, Written]) -> None:
-    """Keep codes in a run's folder.
+    """Write the code of codecs to its file in a run's folder.
 
     Args:
-        languages: titles by name.
-        codecs: by label.
+        languages: titles of languages, by name.
+        codecs: the texts of codecs, by the codec's label.
     """
     shared = Shared()
     records = {
@@ -89,7 +89,8 @@ def write_code(folder: Path, languages: Mapping[str, str], codecs: Mapping[str, 
 
 
 def read_code(folder: Path) -> dict[str, Any]:
-    """The codes of a run; empty where it keeps none, or its file is damaged."""
+    """Return the kept code of a run: `languages`, `pieces` and `codecs`, with texts as indices of pieces; empty if
+    the run keeps no code, or its file is damaged."""
     try:
         kept = KEPT.validate_python(parsed_json(file_bytes(folder / FILE, MOST_BYTES)))
     except (OSError, ValueError, ValidationError):

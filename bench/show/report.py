@@ -45,7 +45,12 @@ CHARTS_OF_A_RUN = 3
 def report_command(
     folder: Path, as_markdown: bool, pictures_beside: bool, charts_beside: bool, output: Path | None
 ) -> None:
-    """Write a page of a run, or a text for a pull request; the run stays as it is.
+    """Write a page of a run and print its path, or write a Markdown text for a pull request; the run stays as it is.
+
+    Args:
+        pictures_beside, charts_beside: whether the page's pictures, and its charts as files, go into folders next to
+            it.
+        output: the file to write; None for the page in the run's folder, and for the text on standard output.
 
     Raises:
         UsageError: the folder is not a run's, or the page cannot be written.
@@ -61,7 +66,8 @@ def report_command(
 
 
 def _check_output(output: Path, as_markdown: bool) -> None:
-    """Raise UsageError for a file that cannot be written, or whose name says that it is something else."""
+    """Raise UsageError for a file that cannot be written, or whose name or contents are of another kind than is
+    written."""
     check_writable(output, mark=b"" if as_markdown else MARK)
     if not as_markdown:
         check_page(output)
@@ -70,7 +76,7 @@ def _check_output(output: Path, as_markdown: bool) -> None:
 
 
 def _cleaned(done: Done) -> Done:
-    """A run of plain text and numbers, whatever its files hold."""
+    """Return a copy of a run in which all facts and rows are plain text and numbers, whatever its files hold."""
     steps = [{"table": plain_text(step["table"]), "key": {}, "rows": _clean(step["rows"])} for step in done.steps]
     whole = {name: _clean(rows) for name, rows in done.whole.items()}
     return Done(plain_text(done.facts), steps, done.damage, whole=whole)
@@ -136,12 +142,13 @@ def drawn_page(
 
 
 def library_of(specs: Mapping[str, wire.Spec]) -> str:
-    """Return the script that draws charts; empty if there are no charts."""
+    """Return the text of the script that draws charts; empty if there are no charts."""
     return wire.library() if specs else ""
 
 
 def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
-    """Write the scripts that hold pictures, replacing those of an earlier page."""
+    """Write the scripts that hold pictures, text by file name, to a folder; delete those of an earlier page. Do
+    nothing without scripts."""
     if not files:
         return
     for name, path in files_of(folder).items():
@@ -171,15 +178,15 @@ def _drawn(run: Found, folder: Path | None, most: int | None) -> tuple[dict[str,
 
 
 def _write_chart(drawing: drawings.Drawing, folder: Path) -> None:
-    """A chart as files of either format."""
+    """Write a chart to a folder, as an SVG file and as a PNG file."""
     svg, png = (folder / f"{drawing.name}.{ending}" for ending in ("svg", "png"))
     with whole_file(svg) as vectors, whole_file(png) as pixels:
         drawings.write(drawing, (vectors, "svg"), (pixels, "png"))
 
 
 def gathered(folder: Path, done: Done, name: str = "") -> Found:
-    """Everything that a page shows of a run, which is called by its folder unless `name` is given; nothing is
-    measured."""
+    """Return everything that a page shows of a run, which is called by its folder unless `name` is given; nothing is
+    measured. Problems become remarks."""
     done = _cleaned(done)
     # In the order of the page, whichever was measured first.
     tables = {name: done.tables[name] for name in TABLES if name in done.tables}
@@ -206,16 +213,16 @@ def gathered(folder: Path, done: Done, name: str = "") -> Found:
 
 
 def _other_version(facts: Row) -> str:
-    """Return a remark that names the version that measured a run, and the version of this page."""
+    """Return a sentence that names the version that measured a run, and the version that makes this page."""
     machine = facts.get("machine")
     version = plain_text(str(machine.get("normalbench") or "")) if isinstance(machine, dict) else ""
     there = plain_text(str(facts.get("sources") or "unknown"))
     program = f"normalbench {version}".strip()
-    return f"This run was measured by {program} (sources {there}); this page was made by sources {sources()}."
+    return f"This run was measured by {program} (sources {there}); this page was generated with sources {sources()}."
 
 
 def _clean_code(kept: dict[str, Any]) -> dict[str, Any]:
-    """Kept code with the control characters of its pieces but for ends of lines as spaces."""
+    """Return kept code in which the control characters of its pieces, except ends of lines, are spaces."""
     pieces = ["\n".join(map(str, map(plain_text, piece.split("\n")))) for piece in kept.get("pieces", ())]
     return kept | {"pieces": pieces} if kept else {}
 
@@ -228,7 +235,7 @@ def _encodings(tables: Mapping[str, Sequence[Row]]) -> frozenset[str]:
 
 
 def _section(folder: Path, run: Found, done: Done, table: Table, remarks: list[str]) -> TableSection:
-    """A table as the page shows it."""
+    """Return a table's section of the page; problems with its rows are added to the remarks."""
     rows = _finished(done, table) if table.name in run.tables else ()
     return TableSection(
         key=table.name,
@@ -244,7 +251,7 @@ def _section(folder: Path, run: Found, done: Done, table: Table, remarks: list[s
 
 
 def _summary(done: Done, table: Table, remarks: list[str]) -> list[Sheet]:
-    """Return the sheets that sum up a table; none, and a remark is added, where its rows are of another version."""
+    """Return the sheets that sum up a table. If its rows are of another version, add a remark and return none."""
     try:
         return summary(table, done.finished_rows(table.name))
     except UNEXPECTED:
@@ -271,17 +278,18 @@ def _finished(done: Done, table: Table) -> Sequence[Row]:
 
 
 def _films(folder: Path, table: Table, rows: Sequence[Row], remarks: list[str]) -> list[tuple[str, str]]:
-    """A table's animations that are there, as a page holds them."""
+    """Return the caption and the data URI of each animation of a table whose file exists. If the rows do not fit, add
+    a remark and return none."""
     try:
         films = list(table.work.films(folder / table.files["images"], rows)) if "images" in table.files else []
     except UNEXPECTED as error:
-        remarks.append(f"The animations of {table.name} cannot be found from these rows: {type(error).__name__}.")
+        remarks.append(f"The animations of {table.name} cannot be determined from these rows: {type(error).__name__}.")
         return []
     return [(film.said, uri) for film in films if (uri := film_uri(film.path))]
 
 
 def _clean(rows: Sequence[Row]) -> list[Row]:
-    """Flat rows of plain text and numbers, whatever they hold."""
+    """Return rows of plain text and numbers, whatever they hold: lists, dictionaries and huge numbers become text."""
     return [{column: _flat(value) for column, value in plain_text(row).items()} for row in rows]
 
 
@@ -291,14 +299,14 @@ def _flat(value: Any) -> Any:
 
 
 def _command(facts: Row) -> str:
-    """Return the command that measured a run, without its output folder."""
+    """Return the command line that measured a run, without its output folder."""
     words = [str(word) for word in facts.get("command") or ("run",)]
     output_index = next((i for i, word in enumerate(words) if word in ("-o", "--output")), len(words))
     return command_line(["normalbench", *words[:output_index], *words[output_index + 2 :]])
 
 
 def _asked(facts: Row) -> set[str]:
-    """The tables that a run was asked for, at any time."""
+    """Return the names of the tables that a run was asked for, by its last command or by an earlier one."""
     before = facts.get("before")
     requests = [
         facts.get("request"),
@@ -313,24 +321,25 @@ def _asked(facts: Row) -> set[str]:
 
 
 def _subjects(folder: Path, done: Done, names: Iterable[str], remarks: list[str]) -> Iterator[Subject]:
-    """Yield the subjects of the run's pictures."""
+    """Yield the subjects of the pictures of these tables; where rows do not fit, add a remark instead."""
     for name in names:
         if "images" in TABLES[name].files:
             try:
                 pictures = folder / TABLES[name].files["images"]
                 yield from TABLES[name].work.subjects(pictures, done.finished_rows(name))
             except UNEXPECTED as error:
-                remarks.append(f"The pictures of {name} cannot be found from these rows: {type(error).__name__}.")
+                remarks.append(f"The pictures of {name} cannot be determined from these rows: {type(error).__name__}.")
 
 
 def _extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> dict[str, Any]:
-    """Collect the extras that tables show besides their rows, by attributes of `found.Found`."""
+    """Return the extras that tables show besides their rows, by attributes of `found.Found`. Problems become
+    remarks."""
     extras: dict[str, Any] = {}
     for name in tables:
         try:
             extras |= TABLES[name].work.extras(folder, tables, remarks)
         except UNEXPECTED as error:
-            remarks.append(f"The extras of {name} cannot be found from these rows: {type(error).__name__}.")
+            remarks.append(f"Additional data of {name} cannot be determined from these rows: {type(error).__name__}.")
     return extras
 
 

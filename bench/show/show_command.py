@@ -14,17 +14,17 @@ from .showing import say_verdict, show_summary
 
 
 def show_command(folder: Path, tables: Names) -> None:
-    """Print the verdicts of a run; if tables are named, their summaries.
+    """Print the verdict of each table of a run; if tables are named, their summaries instead.
 
     Args:
-        tables: empty for the verdicts of all.
+        tables: the names of tables; empty for the verdicts of all tables.
 
     Raises:
         UsageError: the folder is not a run's, it has no such table, or its rows are of another version.
     """
     done = read_to_show(folder, needs_rows=True)
     if not done.facts.get("finished", True):
-        tell(f"{folder} is not finished, so verdicts cover only the rows so far; to finish it, run its command again")
+        tell(f"{folder} is not finished, so verdicts cover only the rows so far; to finish it, repeat its command")
     here = {name: table for name, table in TABLES.items() if name in done.tables}
     say = show_summary if tables else say_verdict
     for table in choose("table of the run", tables or ("all",), here):

@@ -23,7 +23,8 @@ SENTENCE_WIDTH = 100
 
 
 def show(table: Table, done: Measured, format: str, output: Path | None) -> None:
-    """Write the rows to a file, or to standard output. Raises UsageError where they cannot be written."""
+    """Write the rows to a file or, without a file, to standard output. Raises UsageError if they cannot be
+    written."""
     if output is None:
         width = shutil.get_terminal_size((120, 40)).columns
         say(written(table, done, format, width))
@@ -34,7 +35,11 @@ def show(table: Table, done: Measured, format: str, output: Path | None) -> None
 
 
 def written(table: Table, done: Measured, format: str, width: int, spares: bool = True) -> str:
-    """The rows as text; `spares` leaves out columns where the width does not do."""
+    """Return the rows as text in a format.
+
+    Args:
+        width: the number of letters in a line, for formats that people read.
+        spares: whether columns may be left out to keep to the width."""
     if format == "json":
         return tables.written(_with_lists(table, done.rows), format)
     if format not in FOR_PEOPLE:
@@ -43,19 +48,19 @@ def written(table: Table, done: Measured, format: str, width: int, spares: bool 
 
 
 def _flat(table: Table, rows: Sequence[Row]) -> list[Row]:
-    """Rows of single values: without histograms."""
+    """Return rows without the columns of histograms."""
     hidden = {column.name for column in table.columns if column.is_histogram}
     return [{name: value for name, value in row.items() if name not in hidden} for row in rows]
 
 
 def _with_lists(table: Table, rows: Sequence[Row]) -> list[Row]:
-    """Rows with histograms as lists of a bin's lower edge and its count."""
+    """Return rows in which each histogram is a list of (lower edge, count), one for each bin."""
     names = [column.name for column in table.columns if column.is_histogram]
     return [row | {name: bins(row[name]) for name in names if row.get(name) is not None} for row in rows]
 
 
 def bins(text: str) -> list[tuple[float, int]]:
-    """The lower edge and the count of each bin of a text of `from:count` words."""
+    """Return (lower edge, count) for each bin of a text such as `0:12 0.5:3`."""
     pairs = (word.split(":") for word in text.split())
     return [(float(edge), int(count)) for edge, count in pairs]
 
@@ -85,7 +90,8 @@ def _sheet(sheet: Sheet, format: str, width: int, spares: bool) -> str:
 
 
 def _said(sheet: Sheet, width: int) -> str:
-    """Return the paragraphs of a sheet: the first as it is, the others as a list, for a terminal and for Markdown."""
+    """Return the paragraphs of a sheet as one text for a terminal and for Markdown: the first as it is, the others as
+    a list; empty if it has none."""
     if not sheet.said:
         return ""
     first, *rest = (*sheet.said, *sheet.aside)
@@ -95,7 +101,7 @@ def _said(sheet: Sheet, width: int) -> str:
 
 
 def with_verdict(table: Table, rows: Sequence[Row], sheets: Iterable[Sheet]) -> Iterator[Sheet]:
-    """Sheets, the first below the table's verdict."""
+    """Yield the sheets; in the first sheet the table's verdict comes before the sheet's own paragraphs."""
     verdict = tuple(table.work.verdict(rows))
     for number, sheet in enumerate(sheets):
         yield replace(sheet, said=(*verdict, *sheet.said)) if verdict and not number else sheet
@@ -115,7 +121,8 @@ def show_summary(table: Table, rows: Sequence[Row]) -> None:
 
 
 def say_verdict(table: Table, rows: Sequence[Row]) -> None:
-    """Write the first sentence of each of a table's answers to standard output, below its name."""
+    """Write NAME: SENTENCE to standard output for each sheet of a table's summary, with the first sentence that the
+    sheet has."""
     width = min(shutil.get_terminal_size((120, 40)).columns, SENTENCE_WIDTH)
     for sheet in summary(table, rows):
         if sheet.said:
@@ -123,10 +130,11 @@ def say_verdict(table: Table, rows: Sequence[Row]) -> None:
 
 
 def say_skipped(table: Table, rows: Sequence[Row], known: Iterable[str] = ()) -> None:
-    """Why rows have no figures, each reason once, to standard error; not the `known` ones.
+    """Write each reason why rows have no figures once to standard error, except reasons that contain a `known`
+    phrase.
 
     Raises:
-        UsageError: no row has any.
+        UsageError: no row has figures, in a table whose rows must have all.
     """
     reasons = dict.fromkeys(row["skipped"] for row in rows if row.get("skipped"))
     told = [reason for reason in reasons if not any(phrase in reason for phrase in known)]
@@ -137,21 +145,19 @@ def say_skipped(table: Table, rows: Sequence[Row], known: Iterable[str] = ()) ->
 
 
 def _but_its_backend(table: Table, row: Row) -> tuple[object, ...]:
-    """Return the key of a row without its backend."""
+    """Return the values of a row's key columns, except its backend."""
     return tuple(row.get(column.name) for column in table.of_role(Role.KEY) if column.name != "backend")
 
 
 def _kind_of_skip(table: Table, rows: Sequence[Row], reason: str) -> str:
-    """Describe the rows that lack figures for this reason. A missing twin is not a failure if another backend measures
-    the encoding."""
+    """Return words for the rows that lack figures for this reason. A missing twin is not a failure if another backend
+    measures the encoding."""
     skipped = [row for row in rows if row.get("skipped") == reason]
     measured = {_but_its_backend(table, row) for row in rows if not row.get("skipped")}
     if lacks_twin(reason) and all(_but_its_backend(table, row) in measured for row in skipped):
-        return "measured by OpenGL alone"
+        return "measured only by OpenGL"
     return (
-        "rows without some of their figures"
-        if any(_has_figures(table, row) for row in skipped)
-        else "rows without figures"
+        "rows with some figures missing" if any(_has_figures(table, row) for row in skipped) else "rows without figures"
     )
 
 
@@ -161,7 +167,7 @@ def _has_figures(table: Table, row: Row) -> bool:
 
 
 def say_lines(lines: Iterable[str]) -> bool:
-    """Lines to standard error; whether there are any."""
+    """Write lines to standard error, each with single spaces, and return whether there are any."""
     sentences = [" ".join(line.split()) for line in lines]
     for line in sentences:
         tell(f"{line}")

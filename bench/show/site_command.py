@@ -29,7 +29,7 @@ CHOOSE, LAYOUTS = "choose.html", "layouts.html"
 LABORATORY, ENCODINGS, DEVICES = "Laboratory", "Every encoding", "Devices"
 TITLE = "Normal encodings for G-buffers"
 DESCRIPTION = (
-    "See on your own GPU what an encoding of normals does to reflections, and find the best one for your bits."
+    "See on your own GPU how an encoding of normals affects reflections, and find the best encoding for your bit count."
 )
 
 
@@ -67,18 +67,18 @@ def _counted(html_pages: dict[str, str], all_devices: Sequence[Device], is_run: 
 
 
 def _devices_in(folders: Sequence[Path], imported: Sequence[Read]) -> tuple[list[Device], int]:
-    """The devices of folders and those imported, and how many files are not theirs. Raises UsageError where folders
-    have none."""
+    """Return the devices of folders and the imported devices, and the number of the folders' other files. Raises
+    UsageError if there are folders but no device file in them."""
     read, wrong = _device_files(checked_number([path for folder in folders for path in _files_in(folder)]))
     if folders and not read:
-        raise UsageError(f"{folders[0]}: no device file in it; {SAVED}")
+        raise UsageError(f"{folders[0]} contains no device file; {SAVED}")
     return devices([*imported, *read]), wrong
 
 
 def _files_in(folder: Path) -> list[Path]:
     """Return the paths of all *.json files in a folder and its subfolders. Raises UsageError."""
     if not folder.is_dir():
-        raise UsageError(f"{folder}: there is no such folder" if not folder.exists() else f"{folder} is not a folder")
+        raise UsageError(f"{folder}: no such folder" if not folder.exists() else f"{folder} is not a folder")
     paths = [Path(root) / name for root, _, names in os.walk(folder) for name in names if name.endswith(".json")]
     # A site may lie among them, with its marker.
     return sorted(path for path in paths if not path.name.startswith("."))
@@ -92,12 +92,13 @@ def _device_files(paths: list[Path]) -> tuple[list[Read], int]:
             reads.append(read_device_file(path))
         except UsageError as error:
             wrong += 1
-            tell(f"{error}; it is left out")
+            tell(f"{error}; file skipped")
     return reads, wrong
 
 
 def _pages_of_run(folder: Path, done: Done, all_devices: Sequence[Device]) -> dict[str, str]:
-    """A run's page, which begins with the laboratory, and the pages that need no scripts."""
+    """Return the HTML of a site by path: a run's page, which begins with the laboratory, and pages that need no
+    scripts."""
     run, gallery, specs = drawn_page(gathered(folder, done))
     names = page.codecs(run, specs)
     views, devices_there = _views(run), f"{FOLDER}/{INDEX}"
@@ -112,16 +113,17 @@ def _pages_of_run(folder: Path, done: Done, all_devices: Sequence[Device]) -> di
 
 
 def _views(run: Found) -> list[ViewPage]:
-    """The views whose text and tables a reader without scripts finds, less those that the run has nothing of."""
+    """Return the pages of the views for readers without scripts: the recommendation and the layouts, without a view
+    that the run has no rows for."""
     choose, layouts = _parts(run, View.CHOOSE), _parts(run, View.LAYOUTS)
     views = []
     if choose:
         about = "The encoding of normals to use for each storage, its error in degrees and its cost in issue slots."
-        link = (f"{INDEX}#v1/{View.CHOOSE}", "Ask another question, and see charts and pictures")
+        link = (f"{INDEX}#v1/{View.CHOOSE}", "Ask a different question, and see charts and images")
         question = "Which encoding of normals should I use?"
         views.append(ViewPage(CHOOSE, "Recommendation", about, question, _answer(choose), link, choose))
     if layouts:
-        about = "How image quality changes when normals and the rest of the G-buffer are stored in few bits."
+        about = "How image quality changes when normals and the rest of the G-buffer are stored in fewer bits."
         link = (f"{INDEX}#v1/{View.LAYOUTS}", "See the charts")
         question = "How does the G-buffer layout affect image quality?"
         views.append(ViewPage(LAYOUTS, "Layouts", about, question, _answer(layouts), link, layouts))
@@ -129,7 +131,7 @@ def _views(run: Found) -> list[ViewPage]:
 
 
 def _answer(parts: Sequence[page.PageSection]) -> str:
-    """The first answer of these sections; empty where they have none."""
+    """Return the first sentence of the first table in these sections that has any; empty without any."""
     return next((table.said[0] for part in parts for table in part.tables if table.said), "")
 
 

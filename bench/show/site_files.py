@@ -24,11 +24,11 @@ INDEX, FOLDERS = "index.html", ("codecs", "devices")
 
 
 def write_site(folder: Path, files: Mapping[str, str]) -> None:
-    """Put the files of a site, text by path, in place of an earlier site's.
+    """Write the files of a site, text by path, in place of an earlier site's.
 
     Raises:
-        UsageError: a file of that name is not this program's, the marker is damaged, or it cannot be written; then the
-            folder is as it was.
+        UsageError: a file of that name is not this program's, the marker is damaged, or it cannot be written; then
+            the folder is as it was.
     """
     before = _files_before(folder)
     check_folder(folder)
@@ -45,21 +45,22 @@ def write_site(folder: Path, files: Mapping[str, str]) -> None:
 
 
 def _files_before(folder: Path) -> list[str]:
-    """Return the names of the files that this program wrote there before. Raises UsageError."""
+    """Return the paths of the files that this program wrote to a folder before; empty without its marker there.
+    Raises UsageError."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder; name a folder")
     # Behind a link lies somebody else's folder.
     if any((folder / name).is_symlink() for name in (MARKER, INDEX, *FOLDERS)):
-        raise UsageError(f"{folder} has a link where the site's files go; name another folder")
+        raise UsageError(f"{folder} has a symbolic link where the site's files go; name another folder")
     if not (folder / MARKER).exists():
         return []
     try:
         files = file_json(folder / MARKER)["files"]
         if not all(isinstance(name, str) and OWN.fullmatch(name) for name in files):
-            raise ValueError("it lists files that no site has")
+            raise ValueError("it lists files that are not part of a site")
     except (OSError, ValueError, TypeError, KeyError) as error:
         reason = (
-            error if isinstance(error, OSError | ValueError) and not isinstance(error, KeyError) else "files is missing"
+            error if isinstance(error, OSError | ValueError) and not isinstance(error, KeyError) else "no list of files"
         )
         raise UsageError(f"{folder / MARKER}: {reason}; delete it, or name another folder") from None
     return files

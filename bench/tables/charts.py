@@ -19,7 +19,7 @@ LINES = ("layout", "light_buffer", "light_targets", "pipeline", "shadow", "expos
 
 
 def having(rows: Sequence[Row], *columns: str) -> list[Row]:
-    """Rows with a finite figure in each of the columns."""
+    """Return the rows with a finite figure in each of the columns."""
     return [row for row in rows if all(is_number(row.get(c)) and math.isfinite(row[c]) for c in columns)]
 
 
@@ -49,7 +49,7 @@ def _code_name(row: Row) -> Any:
 
 
 def backends_of(rows: Sequence[Row]) -> str:
-    """Return the backends of rows as a title names them, whatever the order of the rows."""
+    """Return the backends of rows for a title, joined by "or", whatever the order of the rows."""
     names = dict.fromkeys(str(row.get("backend")) for row in rows)
     return " or ".join(sorted(names, key=_place))
 

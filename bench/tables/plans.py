@@ -36,10 +36,11 @@ def with_codecs(chosen: Iterable[Layout], codecs: Sequence[Codec], complaints: l
 def suited(
     device: Device, pipeline: Pipeline, plans: list[Plan], complaints: list[str], is_metal_rough: bool = False
 ) -> list[Plan]:
-    """The plans that make a difference to a pipeline and suit it; why others do not is appended to `complaints`.
+    """Return the plans that suit a pipeline, each once, without what makes no difference to the pipeline; append to
+    `complaints` why the others do not suit it.
 
     Args:
-        is_metal_rough: whether the scene's materials are.
+        is_metal_rough: whether the scene's materials are metallic-roughness.
     """
     suited_plans: dict[Plan, None] = {}
     for plan in plans:

@@ -114,7 +114,10 @@ class Bench(ABC, Generic[CaseT, FrameT]):
         return self._kept(case.reference)
 
     def _kept(self, case: CaseT, frames: list[FrameT] | None = None) -> list[FrameT]:
-        """The frames of a case that is a reference, kept; `frames` are its own where they are rendered already."""
+        """Return the frames of a case that is a reference, and keep them.
+
+        Args:
+            frames: its frames if they are rendered already; None to render them."""
         if case not in self._references:
             frames = self.frames(case) if frames is None else frames
             display = self.display(case, frames)
@@ -122,7 +125,8 @@ class Bench(ABC, Generic[CaseT, FrameT]):
         return self._references[case]
 
     def measure(self, case: CaseT) -> tuple[Row, FrameT | None]:
-        """Return one row, and its first frame; one that the device cannot give has its reason in `skipped`, and none.
+        """Return the row of a case and its first frame. If the case cannot be measured, the reason is in `skipped`
+        and the frame is None.
 
         Raises:
             UsageError: the scene draws nothing.
@@ -150,14 +154,16 @@ def _made_scene(maker: SceneMaker, setting: Setting) -> Scene:
 
 
 def image_figures(frames: Sequence[Frame], exact: Sequence[Frame]) -> Row:
-    """Compare images as displayed, with the mean over frames: `mse`, `psnr_db`, and how many pixels are not finite."""
+    """Return columns that compare images as displayed: `mse`, the mean over frames, its `psnr_db`, and `invalid`, the
+    number of pixels of all frames that are not finite."""
     errors = [squared_error(frame.shown, other.shown) for frame, other in zip(frames, exact, strict=True)]
     mse = float(np.mean([error for error, _ in errors]))
     return {"mse": mse, "psnr_db": psnr_db(mse), "invalid": sum(broken for _, broken in errors)}
 
 
 def time_columns(timings: Mapping[str, Timing], clock: str) -> Row:
-    """Return the medians of each pass and the frame, its quartiles' distance, all in milliseconds, and the clock."""
+    """Return columns of times in milliseconds: `ms_` and the median for each pass and the frame, `ms_frame_spread`,
+    the distance between the frame's quartiles; and `clock`."""
     row: Row = {f"ms_{name}": timing.median for name, timing in timings.items()}
     return row | {"ms_frame_spread": timings["frame"].spread, "clock": clock}
 
@@ -192,7 +198,10 @@ def require_surface(maker: SceneMaker, is_seen: bool) -> None:
 
 
 def says_little(scene: str, covered: float) -> Iterator[str]:
-    """Yield a remark on a scene that covers too few percent of its image; nothing for one that fills it."""
+    """Yield a remark on a scene whose surfaces cover some of its image, but only a few percent.
+
+    Args:
+        covered: covered part of the image, in percent."""
     if 0 < covered < LEAST_COVERED:
         what = f"{scene}: surfaces cover only {covered:.0f}% of the image"
         yield f"{what}; move the camera in the file closer for more pixels to compare"
@@ -227,7 +236,11 @@ class Shot:
 
 
 def shot_steps(bench: Any, cases: Sequence[Any], images: Path | None, key: Callable[[Any], Row]) -> list[Step]:
-    """Make a step of each case. Raises UsageError where pictures cannot be written."""
+    """Return a step for each case. Raises UsageError if pictures cannot be written.
+
+    Args:
+        images: the folder for pictures; None for no pictures.
+        key: function from a case to the step's key columns."""
     if images:
         check_folder(images)
     return [Step(key(case), Shot(bench, case, images), case.name) for case in cases]
@@ -266,5 +279,5 @@ def by_shots(write: Callable[[Path, Row, Any, Any], None]) -> Callable[[Sequence
 
 
 def name_of_file(effects: str) -> str:
-    """Names of effects as a part of a file's name."""
+    """Return the names of effects as part of a file's name: `_` replaces all but letters, digits, `_` and `.`."""
     return re.sub(r"[^\w.]+", "_", effects)

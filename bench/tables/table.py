@@ -102,7 +102,7 @@ def _none(*_: Any) -> None:
 
 
 def _by_backend(step: Step) -> frozenset[str]:
-    """A step without a back end draws."""
+    """Return what the backend of a step needs; a step without a backend draws, as in GLSL."""
     return BACKENDS_NEED[step.key.get("backend", "glsl")]
 
 
@@ -178,7 +178,7 @@ class Work:
 
     @property
     def has_charts(self) -> bool:
-        """Whether its charts are values."""
+        """Whether the table defines charts, in `charts` or `plotted`."""
         return self.charts is not _no_items or self.plotted is not None
 
 
@@ -260,11 +260,11 @@ class Table:
         return _column_of(self, name)
 
     def of_role(self, *roles: Role) -> list[Column]:
-        """The columns of some roles."""
+        """Return the columns of some roles."""
         return [column for column in self.columns if column.role in roles]
 
     def as_now(self, row: Row) -> Row:
-        """A row, also one that a version wrote which lacked a column that tells rows apart."""
+        """Return a row with the key columns that it lacks from an older version, at their values of then."""
         return row | {c.name: c.before for c in self.of_role(Role.KEY) if c.before and c.name not in row}
 
     def name_of(self, row: Mapping[str, Any]) -> str:
@@ -283,7 +283,7 @@ class Table:
         return list(dict.fromkeys(self.work.lacking(done)))
 
     def drops(self, rows: Sequence[Row]) -> tuple[str, ...]:
-        """The columns of rows that a narrow terminal leaves out, the first first."""
+        """Return the names of the columns that a narrow terminal leaves out, the first to go first."""
         ranks = {name: column.drops for name in (rows[0] if rows else ()) if (column := self.column(name))}
         return tuple(sorted((name for name, rank in ranks.items() if rank), key=lambda name: ranks[name]))
 
@@ -295,12 +295,16 @@ class Table:
 
 @cache
 def _column_of(table: Table, name: str) -> Column | None:
-    """Kept, because rows are many and patterns of names take long."""
+    """Return the column of a table by its name; None if no column has it. Cached, because rows are many and patterns
+    of names take long."""
     return column_called(name, (*table.columns, *table.also))
 
 
 def each(measure_case: Callable[[Any], Sequence[Row]]) -> Callable[[Sequence[Step], Tick], Iterator[list[Row]]]:
-    """A Work's `measure` for a table that is measured a case at a time."""
+    """Return the `measure` function of a Work that measures one case at a time.
+
+    Args:
+        measure_case: function from a case to its rows."""
 
     def measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
         for step in steps:

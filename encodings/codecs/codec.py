@@ -41,17 +41,17 @@ def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
 
 
 def fewer_bits(bits: int | None, code_bits: float | None) -> int | None:
-    """Return how many whole bits a codec's codes are worth; None unless fewer than the bits that they use."""
+    """Return `code_bits`, rounded to a whole number, if it is below `bits`; else None, also if one is missing."""
     return round(code_bits) if bits and code_bits and round(code_bits) < bits else None
 
 
 def codec_name(encoding_name: str, storage_name: str, rounding: str) -> str:
-    """Return the name of a codec; rounding to nearest is left out."""
+    """Return the name of a codec, `encoding/storage/rounding`, where rounding to nearest is left out."""
     return f"{encoding_name}/{storage_name}" + ("" if rounding == "nearest" else f"/{rounding}")
 
 
 def rounding_misfit(storage: Storage, rounding: str) -> str | None:
-    """Why the numbers of a storage cannot be rounded so, by one of ROUNDINGS or DITHERED; None where they can."""
+    """Return why a storage's numbers cannot have a rounding, one of ROUNDINGS or DITHERED; None if they can."""
     if storage.kind == "float" and rounding == DITHERED:
         return f"{storage.title}: float steps are uneven; use noise only with fixed point"
     if storage.kind == "float" and rounding == "truncate_half":
@@ -60,7 +60,8 @@ def rounding_misfit(storage: Storage, rounding: str) -> str | None:
 
 
 def dither_of(storage: Storage, levels: Sequence[int], frame: int) -> Dither:
-    """Return noise of one step for numbers of any value (count 0), none for others. See `Dither.frame`."""
+    """Return noise of one step of the storage for each component whose value count in `levels` is 0, and no noise for
+    the others. See `Dither.frame`."""
     return Dither(tuple(0.0 if count else storage.step(channel) for channel, count in enumerate(levels)), frame)
 
 
@@ -127,7 +128,8 @@ class Codec:
 
     @property
     def _not_in_half(self) -> str:
-        """Why half arithmetic cannot be asked of the encoding; empty where it can."""
+        """The reason why the encoding does not support half arithmetic, to precede "for half arithmetic" in a
+        message; empty if it supports it."""
         if self.encoding.is_packed:
             return "a 32-bit integer code is not supported"
         if self.encoding.before:
@@ -141,7 +143,7 @@ class Codec:
 
     @property
     def undithered(self) -> str | None:
-        """Why no noise is added to its numbers before they are rounded; None where it can be."""
+        """The reason why noise cannot be added to its numbers before rounding, requested or not; None if it can."""
         encoding = self.encoding
         if encoding.is_packed or (encoding.levels and all(encoding.levels)):
             return "its code is an integer, such as an index, and noise would select a different one"
@@ -190,7 +192,8 @@ class Codec:
         return math.log2(self.codes) if is_fixed else None
 
     def numbers(self, component: int) -> Float[np.ndarray, " numbers"]:
-        """Return every number in [-1, 1] that the storage can return for a component, ascending; float64."""
+        """Return every number in [-1, 1] that a component can have after storage, ascending; float64. If it has a
+        fixed number of values, these are the stored numbers nearest to them; a sign bit has -1 and 1."""
         if component >= self.encoding.components:
             return np.array([-1.0, 1.0])
         levels = self.encoding.levels_of(component)
@@ -231,7 +234,8 @@ class Codec:
         return self.store(self._nearest_of(code, n, view) if self.encoding.is_precise else code)
 
     def around(self, code) -> list:
-        """The codes around a code (Vec2 or Vec3), every number rounded down or up; of fixed-point formats."""
+        """Return the 2^n codes around a code (Vec2 or Vec3) of n numbers, each number rounded down or up by a
+        fixed-point format. Components with a fixed number of values keep their number."""
         around = [
             (c,) * 2 if self.encoding.levels_of(i) else numbers_around(c, self.storage, i) for i, c in enumerate(code)
         ]
@@ -257,6 +261,6 @@ class Codec:
 def _nearer(
     a: tuple[Float[Array, "*shape"], Code], b: tuple[Float[Array, "*shape"], Code]
 ) -> tuple[Float[Array, "*shape"], Code]:
-    """Return the nearer of two codes, each with its distance; the first if both are equally near."""
+    """Return, element by element, the nearer of two (distance, code) pairs; the first if both are equally near."""
     is_nearer = b[0] < a[0]
     return select(is_nearer, b[0], a[0]), select(is_nearer, b[1], a[1])

@@ -71,7 +71,7 @@ class CurveEncoding:
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """The signatures of the functions in its GLSL file."""
+        """The GLSL signatures of its encoder and its decoder, without the semicolon."""
         return (
             f"float {self.prefix}_encode_curve(float x, float range)",
             f"float {self.prefix}_decode_curve(float e, float range)",

@@ -96,7 +96,7 @@ class DepthEncoding:
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """The signatures of the functions in its GLSL file."""
+        """The GLSL signatures of its encoder and its decoder, without the semicolon."""
         if self.bytes:
             return f"vec4 {self.prefix}_encode_bytes(float number)", f"float {self.prefix}_decode_bytes(vec4 texel)"
         return (
@@ -165,7 +165,8 @@ class DepthCodec:
         return self.encoding.projection is not None
 
     def far(self, far: Float[ArrayLike, "*shape"]) -> Float[ArrayLike, "*shape"]:
-        """The far plane as the encoding is given it: at 1 where the storage holds the depth in the scene's units."""
+        """Return the far plane that the encoding is given: 1 if the storage holds the depth in the scene's units,
+        else `far` unchanged."""
         return jnp.ones_like(far) if self.encoding.own_units and self.storage.is_open else far
 
     def stored(
@@ -238,7 +239,8 @@ class DepthCodec:
             return np.asarray(jnp.maximum(*errors))
 
     def _rounded_by(self, number: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
-        """Return the largest rounding error of float64 numbers: half a step of the storage to nearest, else a step."""
+        """Return the largest rounding error of each float64 number: half a step of the storage if it rounds to
+        nearest, else a step; infinite if a float format cannot hold the number."""
         share = 0.5 if self.rounding == "nearest" else 1.0
         if self.storage.format.kind != "float":
             return np.full_like(number, share * self.step)
@@ -251,19 +253,22 @@ class DepthCodec:
 def by_inverse_projection(
     _: DepthCodec, number: Float[Array | np.ndarray, "*shape"], place: Vec2, seen: CameraTerms
 ) -> Vec3:
-    """Positions of stored numbers by the inverse projection; the encoding has a projection."""
+    """Return view-space positions of stored window depths by the inverse projection; the encoding must have a
+    projection. `place` is the position on the screen, from -1 to 1."""
     return position_from_window_depth(place, number, seen.clip, seen.clip_to_view)
 
 
 def by_projection_terms(
     _: DepthCodec, number: Float[Array | np.ndarray, "*shape"], place: Vec2, seen: CameraTerms
 ) -> Vec3:
-    """Positions of stored numbers by the two terms of the projection; the encoding has a projection."""
+    """Return view-space positions of stored window depths by the two terms of the projection; the encoding must have
+    a projection. `place` is the position on the screen, from -1 to 1."""
     return position_from_projection_terms(place, number, seen.clip, seen.terms, seen.rays)
 
 
 def by_eye_ray(codec: DepthCodec, number: Float[Array | np.ndarray, "*shape"], place: Vec2, seen: CameraTerms) -> Vec3:
-    """Positions of stored numbers by the decoder and the eye's ray."""
+    """Return view-space positions of stored numbers: the decoded depth, without its sign, times the eye's ray through
+    `place`, a position on the screen from -1 to 1."""
     return position_from_linear_depth(place, abs(codec.depths(number, seen.near, seen.far)), seen.rays)
 
 

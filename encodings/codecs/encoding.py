@@ -149,7 +149,7 @@ class Encoding:
 
     @property
     def is_also_half(self) -> bool:
-        """Whether it is measured in half arithmetic as well, unless an arithmetic is asked for."""
+        """Whether it is also measured in half arithmetic if the user selects no arithmetic."""
         return self.declares_half and not self.is_packed and not self.is_half
 
     @property
@@ -164,7 +164,7 @@ class Encoding:
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """The signatures of the functions in its GLSL file."""
+        """The GLSL signatures of its encoder and its decoder, without the semicolon."""
         code = f"vec{self.components + self.sign_bits}"
         return (
             f"{code} {self.prefix}_encode(vec3 n, vec3 view)",
@@ -193,7 +193,7 @@ class Encoding:
 
     @property
     def reach_deg(self) -> float:
-        """The largest angle from the line of sight of the normals that it holds, if its domain is "view"."""
+        """The largest angle, in degrees, between a normal and the line of sight, if its domain is "view"."""
         return self.published.get("cap", 90.0)
 
     @property

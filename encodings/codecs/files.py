@@ -89,7 +89,7 @@ def why_no_file(path: Path) -> str:
 
 
 def file_text(path: Path) -> str:
-    """Return the text of a UTF-8 file without its byte-order mark.
+    """Return the text of a UTF-8 file without its byte-order mark; every line end becomes a line feed.
 
     Raises:
         FileError: see file_bytes.
@@ -132,7 +132,8 @@ TWICE = ("overwrite", "twice", "immutable", "redefine")
 
 
 def _not_toml(message: str) -> str:
-    """Return what is wrong with TOML, given a message such as `Cannot overwrite a value (at line 3, column 22)`."""
+    """Return a short reason, with its place, for a message of `tomllib` such as `Cannot overwrite a value (at line 3,
+    column 22)`: invalid TOML, or a key or table that is given twice."""
     place = re.search(r"line (\d+), column (\d+)", message)
     where = f"line {place[1]}, column {place[2]}" if place else "its end"
     what = "a key or a table is given twice" if any(word in message for word in TWICE) else "this is not TOML"
@@ -153,7 +154,7 @@ Pairs = Callable[[list[tuple[str, Any]]], dict[str, Any]]
 
 
 def parsed_json(data: str | bytes, pairs: Pairs | None = None) -> Any:
-    """Parse JSON that others wrote; all numbers in it are finite.
+    """Return the value of JSON from outside, text or UTF-8 bytes; all numbers in it are finite.
 
     Args:
         pairs: makes an object from its names and values; its exceptions pass through.
@@ -173,7 +174,8 @@ def parsed_json(data: str | bytes, pairs: Pairs | None = None) -> Any:
 
 
 def _whole(digits: str) -> int | float:
-    """A whole number; infinity for one that no float holds, which may have more digits than Python reads."""
+    """Return the whole number of a text as an int, or as a float, which may be infinite, if it is longer than
+    LONG_NUMBER: Python refuses to convert very long texts to an int."""
     return int(digits) if len(digits) <= LONG_NUMBER else float(digits)
 
 
@@ -192,7 +194,7 @@ def _with_finite_numbers(document: Any) -> Any:
 
 
 def _is_finite(value: float) -> bool:
-    """Whether a float can be this number, which may be a whole one of any size."""
+    """Whether a number is finite as a float; False for an int that is too large for a float."""
     try:
         return math.isfinite(value)
     except OverflowError:

@@ -37,7 +37,8 @@ def fingerprint(glsl: Path, values: object, tables: Mapping[str, Any], twin: Pat
 
 
 def _texts(path: Path, seen: set[Path]) -> Iterator[bytes]:
-    """A shader file and every file that it includes, each once."""
+    """Yield the contents of a shader file and of every file that it includes, directly or not, each once; add their
+    paths to `seen`, and skip included files that are already in it."""
     seen.add(path)
     yield (text := file_bytes(path, MOST_TEXT))
     for name in _INCLUDE.findall(text):

@@ -75,7 +75,7 @@ class FrameCodec:
         return "nearest" if has_levels else rounds_to(self.rounding)
 
     def store(self, code: Vec4) -> Vec4:
-        """Return a code (float32, any shape) as the storage returns it."""
+        """Return a code (float32, any shape) as the storage returns it; components beyond the encoding's are 0."""
         return Vec4(
             *(
                 store_number(c, self.storage, i, self.rounding_of(i)) if i < self.encoding.components else 0.0 * c

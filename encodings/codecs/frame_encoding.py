@@ -72,7 +72,7 @@ class FrameEncoding:
 
     @property
     def signatures(self) -> tuple[str, ...]:
-        """The signatures of the functions in its GLSL file."""
+        """The GLSL signatures of its encoder, its decoder and, if it has one, its `settle`, without the semicolon."""
         settle = (f"vec4 {self.prefix}_settle(Frame frame, vec4 stored)",) if self.settle else ()
         return (
             f"vec4 {self.prefix}_encode(Frame frame, float least)",

@@ -33,7 +33,8 @@ IDEAL = Blending()
 
 
 def blended(codec: LightCodec, texel: Vec4, light: Vec4, blending: Blending = IDEAL) -> Vec4:
-    """Return the contents of a texel (any shape) after one more light."""
+    """Return the contents of a texel (any shape) after one more light is added in the codec's way: decoded, added and
+    encoded again, or blended by a sum or a product of codes."""
     storage = codec.storage
     if codec.blend == "read":
         total = light_or_none(codec.decode(texel) + light)
@@ -57,12 +58,12 @@ def _shifted(a: Float[Array, "*shape"], b: Float[Array, "*shape"], scale: int) -
 
 
 def accumulate(codec: LightCodec, lights: Vec4, count: Int[ArrayLike, ""], blending: Blending = IDEAL) -> Vec4:
-    """Texels after lights have been added one by one, in their order.
+    """Return texels after the first `count` lights have been added one by one, in their order.
 
     Args:
         lights: float32 planes of shape (lights, ...), linear.
-        count: how many of them are added; may be traced.
-        blending: how.
+        count: number of lights to add; may be traced.
+        blending: how the device rounds each sum or product.
 
     Returns:
         planes of shape (...); `codec.decode` makes light of them.

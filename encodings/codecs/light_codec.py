@@ -26,7 +26,7 @@ class LightCodec:
 
     @property
     def name(self) -> str:
-        """The encoding's; the format's where a texel is the light itself."""
+        """The name of the encoding in this format; the format's own name if a texel is the light itself."""
         return self.storage.name if self.encoding.is_plain else self._named[0]
 
     @property
@@ -78,7 +78,7 @@ class LightCodec:
 
     @property
     def limit(self) -> float:
-        """The most white light that it holds."""
+        """The brightest white light that it holds."""
         return self.storage.largest if self.encoding.is_plain else self.encoding.limit
 
     @property
@@ -93,11 +93,11 @@ class LightCodec:
 
     @property
     def glsl(self) -> Path:
-        """The GLSL of its encoding."""
+        """The path of its encoding's GLSL file."""
         return self.encoding.glsl
 
     def encode(self, light: Vec4) -> Vec4:
-        """Light (not negative, finite, any shape) to a texel, as the format is given it."""
+        """Return the texel of light (not negative, finite, any shape), before the format stores it."""
         return self.encoding.encode(light)
 
     def store(self, texel: Vec4, rounding: str = "nearest") -> Vec4:

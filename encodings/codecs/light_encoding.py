@@ -79,5 +79,5 @@ class LightEncoding:
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """The signatures of the functions in its GLSL file."""
+        """The GLSL signatures of its encoder and its decoder, without the semicolon."""
         return f"vec4 {self.prefix}_encode(vec4 light)", f"vec4 {self.prefix}_decode(vec4 e)"

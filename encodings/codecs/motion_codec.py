@@ -75,7 +75,7 @@ class MotionEncoding:
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """The signatures of the functions in its GLSL file."""
+        """The GLSL signatures of its encoder and its decoder, without the semicolon."""
         return (
             f"vec2 {self.prefix}_encode_motion(vec2 motion, float range)",
             f"vec2 {self.prefix}_decode_motion(vec2 e, float range)",
@@ -131,7 +131,8 @@ class MotionCodec:
         return is_ranged and not (self.encoding.own_units and self.storage.kind == "float")
 
     def ranges(self, asked: Sequence[float]) -> Sequence[float]:
-        """The ranges that it is measured over, of those that are asked for."""
+        """Return the ranges over which it is measured: its own range if it has one; else all of `asked` if
+        `needs_range` is true, and only the first of them otherwise."""
         if self.encoding.own_range is not None:
             return (self.encoding.own_range,)
         return asked if self.needs_range else asked[:1]

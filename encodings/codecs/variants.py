@@ -17,10 +17,10 @@ HALF_NAME = f"{MARK}arithmetic={HALF}"
 
 
 def settings_in(word: str) -> tuple[str, dict[str, str]]:
-    """The name and the settings of a word such as NAME:KEY=VALUE:KEY=VALUE.
+    """Return the name and the settings of a word such as NAME:KEY=VALUE:KEY=VALUE, with the values as text by key.
 
     Raises:
-        ValueError: a setting has no value, or is there twice; a sentence.
+        ValueError: a setting has no value, or is given twice; the message is one sentence.
     """
     # A mark in front of a slash is of a drive: table=C:\scales.npy.
     name, *settings = re.split(rf"{MARK}(?![\\/])", word)
@@ -34,7 +34,7 @@ def settings_in(word: str) -> tuple[str, dict[str, str]]:
 
 
 def known_settings(encoding: Encoding) -> dict[str, str]:
-    """The settings of an encoding, each with a value as an example."""
+    """Return the names of an encoding's settings, each with an example of a value as text."""
     known = {name: f"{value:g}" for name, value in encoding.published.items()}
     known |= {TABLE: "FILE.npy"} if encoding.look_up else {}
     known |= {"axis": "y", "sign": "-1"} if encoding.can_turn else {}
@@ -42,11 +42,11 @@ def known_settings(encoding: Encoding) -> dict[str, str]:
 
 
 def variant(encoding: Encoding, values: Mapping[str, str]) -> Encoding:
-    """An encoding with settings: its own parameters by number, `axis` and `sign` where it holds every direction, and
-    `arithmetic`.
+    """Return an encoding with settings applied: its own parameters by number, `axis` and `sign` if it holds every
+    direction, and `arithmetic`. A setting `table` is accepted but not applied.
 
     Raises:
-        ValueError: an unknown setting, or a value that it cannot have; a sentence.
+        ValueError: an unknown setting, or a value that it cannot have; the message is one sentence.
     """
     for key in values:
         if key not in known_settings(encoding):
@@ -63,7 +63,7 @@ def variant(encoding: Encoding, values: Mapping[str, str]) -> Encoding:
 
 
 def in_half(encoding: Encoding) -> Encoding:
-    """The encoding computed in floats of 16 bits."""
+    """Return the encoding computed in 16-bit floats, with HALF_NAME appended to its name."""
     return encoding.in_half(HALF_NAME)
 
 

@@ -17,7 +17,7 @@ def encode(x, range):
 
 
 def decode(e, range):
-    """The quantity of a number, of its shape."""
+    """Return the quantity of a number, of its shape, by a cubic polynomial that only approximates the inverse."""
     # x = e (e (e a + b) + c) range
     a, b, c = BACK
     return e * (e * (e * a + b) + c) * range
@@ -25,7 +25,7 @@ def decode(e, range):
 
 ENCODING = CurveEncoding(
     name="fast_srgb",
-    title="the sRGB curve without its line, a polynomial back",
+    title="the sRGB curve without its linear segment, decoded by a polynomial",
     encode=encode,
     decode=decode,
     storages=("r8", "rgba8"),

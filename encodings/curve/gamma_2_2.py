@@ -9,20 +9,20 @@ GAMMA = 2.2
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to (x / range)^(1 / GAMMA)."""
     # e = (x / range)^(1 / gamma)
     return (maximum(x, 0.0) / range) ** (1.0 / GAMMA)
 
 
 def decode(e, range):
-    """The quantity of a number, of its shape."""
+    """Return the quantity of a number, of its shape: e^GAMMA range."""
     # x = e^gamma range
     return e**GAMMA * range
 
 
 ENCODING = CurveEncoding(
     name="gamma_2_2",
-    title="the share of the range to the power 1 / 2.2",
+    title="the fraction of the range to the power 1 / 2.2",
     encode=encode,
     decode=decode,
     storages=("r8", "rgba8"),

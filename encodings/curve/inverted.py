@@ -13,14 +13,14 @@ def encode(x, range):
 
 
 def decode(e, range):
-    """The quantity of a number, of its shape."""
+    """Return the quantity of a number, of its shape: (1 - e) range."""
     # x = (1 - e) range
     return (1.0 - e) * range
 
 
 ENCODING = CurveEncoding(
     name="inverted",
-    title="1 less the share of the range",
+    title="1 minus the fraction of the range",
     encode=encode,
     decode=decode,
     storages=("r8", "rgba8_snorm", "rgb10a2"),

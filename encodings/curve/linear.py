@@ -6,20 +6,20 @@ from ..codecs.curve_codec import CurveEncoding
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape, not negative) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape, not negative) to x / range, in [0, 1] up to the range."""
     # e = x / range
     return x / range
 
 
 def decode(e, range):
-    """The quantity of a number, of its shape."""
+    """Return the quantity of a number, of its shape: e range."""
     # x = e range
     return e * range
 
 
 ENCODING = CurveEncoding(
     name="linear",
-    title="the share of the range",
+    title="the fraction of the range",
     encode=encode,
     decode=decode,
     storages=("r8", "r16", "r16f", "rgba16_snorm"),

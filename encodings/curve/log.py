@@ -9,24 +9,24 @@ RANGE = 31.0
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape; negative and NaN as 0) to log2(1 + x) / log2(1 + range)."""
     # e = log2(1 + x) / log2(1 + range)
     return log2(1.0 + maximum(x, 0.0)) / log2(1.0 + range)
 
 
 def decode(e, range):
-    """The quantity of a number, of its shape."""
+    """Return the quantity of a number, of its shape: (1 + range)^e - 1."""
     # x = 2^(e log2(1 + range)) - 1
     return exp2(e * log2(1.0 + range)) - 1.0
 
 
 ENCODING = CurveEncoding(
     name="log",
-    title="the logarithm of one more than the quantity",
+    title="the logarithm of 1 plus the value",
     encode=encode,
     decode=decode,
     storages=("r8", "rgba8"),
-    citation="A. Kapoulkine, niagara: emission as log2(1 + r) / 5, which is a range of 31",
+    citation="A. Kapoulkine, niagara: emission as log2(1 + r) / 5, a range of 31",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(4, 16),
     ulps_reason="a logarithm and a power of two, and a division",

@@ -20,7 +20,7 @@ def encode(x, range):
 
 
 def decode(e, range):
-    """The quantity of a byte, of its shape."""
+    """Return the quantity of a byte over 255, of its shape: its number of rays over RAYS, times the range."""
     # x = log2(1 + 255 e) / 8 range
     k = floor(log2(1.0 + maximum(floor(e * BYTE + 0.5), 0.0)) + 0.5)
     return k * (1.0 / RAYS) * range
@@ -28,7 +28,7 @@ def decode(e, range):
 
 ENCODING = CurveEncoding(
     name="ray_bits",
-    title="eight rays, a bit each",
+    title="eight rays, one bit each",
     encode=encode,
     decode=decode,
     storages=("r8", "rgba8"),

@@ -9,7 +9,7 @@ DIELECTRIC = 0.04
 
 
 def encode(x, range):
-    """A quantity (float32 or float64, any shape, not negative) to [0.04, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape, not negative) linearly to [0.04, 1] up to the range."""
     # e = d + (1 - d) x / range
     return DIELECTRIC + (1.0 - DIELECTRIC) * (x / range)
 
@@ -22,11 +22,11 @@ def decode(e, range):
 
 ENCODING = CurveEncoding(
     name="reflectivity",
-    title="what a metalness reflects of white, 0.04 to 1",
+    title="reflectance of a white surface of this metalness, 0.04 to 1",
     encode=encode,
     decode=decode,
     storages=("r8", "rgba8"),
-    citation="Unity URP 14, UnityGBuffer.hlsl (373861b): metalness is found again from it",
+    citation="Unity URP 14, UnityGBuffer.hlsl (373861b): metalness is recovered from it",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(4, 8),
     ulps_reason="a product and a sum, which GLSL may join; a quotient",

@@ -7,20 +7,20 @@ from ..vec import maximum, sqrt
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to sqrt(x / range)."""
     # e = sqrt(x / range)
     return sqrt(maximum(x, 0.0) / range)
 
 
 def decode(e, range):
-    """The quantity of a number, of its shape."""
+    """Return the quantity of a number, of its shape: e^2 range."""
     # x = e^2 range
     return e * e * range
 
 
 ENCODING = CurveEncoding(
     name="square_root",
-    title="the root of the share of the range",
+    title="the square root of the fraction of the range",
     encode=encode,
     decode=decode,
     storages=("r8", "rgba8", "rgb10a2"),

@@ -7,21 +7,21 @@ from ..vec import maximum, sqrt
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to (x / range)^2."""
     # e = (x / range)^2
     share = maximum(x, 0.0) / range
     return share * share
 
 
 def decode(e, range):
-    """The quantity of a number, of its shape."""
+    """Return the quantity of a number, of its shape: sqrt(e) range."""
     # x = sqrt(e) range
     return sqrt(e) * range
 
 
 ENCODING = CurveEncoding(
     name="squared",
-    title="the square of the share of the range",
+    title="the square of the fraction of the range",
     encode=encode,
     decode=decode,
     storages=("r8", "rgba8"),

@@ -16,7 +16,7 @@ def encode(x, range):
 
 
 def decode(e, range):
-    """The quantity of a number, of its shape."""
+    """Return the quantity of a number, of its shape, by the inverse of the sRGB curve, times the range."""
     # x = e / slope range up to the knee, else ((e + offset) / (1 + offset))^power range
     line = e * (1.0 / SRGB_SLOPE)
     curved = ((e + SRGB_OFFSET) / (1.0 + SRGB_OFFSET)) ** SRGB_POWER
@@ -25,7 +25,7 @@ def decode(e, range):
 
 ENCODING = CurveEncoding(
     name="srgb",
-    title="the sRGB curve, by the shader",
+    title="the sRGB curve, computed in the shader",
     encode=encode,
     decode=decode,
     storages=("r8", "rgba8"),

@@ -13,7 +13,7 @@ def encode(depth, near, far):
 
 
 def decode(number, near, far):
-    """The depth of a share."""
+    """Return the depth of a share of `far`."""
     # d = l far
     return number * far
 

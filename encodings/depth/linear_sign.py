@@ -7,13 +7,13 @@ from ..vec import with_sign_of
 
 
 def encode(depth, near, far):
-    """Signed depth to its share of `far`, under the same sign, zeros too."""
+    """Map signed depth to its share of `far`, with the sign bit of the depth, also for zeros."""
     # l = sign |d| / far
     return with_sign_of(abs(depth) / far, depth)
 
 
 def decode(number, near, far):
-    """The signed depth of a share."""
+    """Return the depth of a share of `far`, with the sign bit of the share."""
     # d = sign |l| far
     return with_sign_of(abs(number) * far, number)
 

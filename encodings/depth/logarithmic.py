@@ -14,7 +14,7 @@ def encode(depth, near, far):
 
 
 def decode(number, near, far):
-    """The depth of a logarithm."""
+    """Return the depth of a number that `encode` made: near (far / near)^number."""
     # d = near 2^(l log2(far / near))
     return near * exp2_of(number * log2_of(far / near))
 

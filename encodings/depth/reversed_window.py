@@ -21,7 +21,7 @@ def decode(number, near, far):
 
 
 def clip_row(near, far):
-    """(a z + b) / -z is 1 at z = -near and 0 at z = -far."""
+    """Return a and b of the projection's row for z, for which (a z + b) / -z is 1 at z = -near and 0 at z = -far."""
     return near / (far - near), near * far / (far - near)
 
 

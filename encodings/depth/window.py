@@ -21,7 +21,7 @@ def decode(number, near, far):
 
 
 def clip_row(near, far):
-    """(a z + b) / -z is -1 at z = -near and 1 at z = -far."""
+    """Return a and b of the projection's row for z, for which (a z + b) / -z is -1 at z = -near and 1 at z = -far."""
     return (near + far) / (near - far), 2 * near * far / (near - far)
 
 

@@ -13,7 +13,8 @@ from ..vec import TINY, Vec2, Vec3, Vec4, dot, inversesqrt, maximum, minimum, no
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """The axis on the octahedral square, and the angle in half turns times the hand."""
+    """Return the rotation's axis as a point of the octahedral square, x and y; in z the angle in half turns, at least
+    `least`, times the hand; in w 0."""
     q = quaternion_of(frame)
     v = q.xyz * sign_not_zero(q.w)
     # p = v.xy / (|v.x| + |v.y| + |v.z|), and for v.z < 0 (1 - |p.yx|) sign(p)
@@ -26,7 +27,7 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """The rotation about a point of the square by an angle, under a hand."""
+    """Return the frame turned about the axis of e.xy by |e.z| half turns, with the sign of e.z as its hand."""
     # k = (e, 1 - |e.x| - |e.y|), and for k.z < 0 k.xy - sign(e) (-k.z)
     xy = Vec2(e.x, e.y)
     z = 1.0 - abs(xy.x) - abs(xy.y)
@@ -39,7 +40,7 @@ def decode(e: Vec4, least) -> Frame:
 
 ENCODING = FrameEncoding(
     name="axis_angle",
-    title="axis and angle of the rotation, the hand its sign",
+    title="axis and angle of the rotation, with the handedness as the sign",
     encode=encode,
     decode=decode,
     hand_in=2,

@@ -11,7 +11,7 @@ from ..vec import Vec4, dot, inversesqrt, maximum, sign_not_zero
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """Three components in the octahedron |x| + |y| + |z| <= 1, and the hand."""
+    """Return three components in the octahedron |x| + |y| + |z| <= 1, and in w the hand; `least` is ignored."""
     # p = sign(q.w) q.xyz / (|q.x| + |q.y| + |q.z| + |q.w|)
     q = quaternion_of(frame)
     a = abs(q)
@@ -20,7 +20,7 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """The frame of three components and a hand."""
+    """Return the frame of three components and a hand, the sign of e.w; `least` is ignored."""
     # q = (p, 1 - |p.x| - |p.y| - |p.z|) at length 1
     q = Vec4(e.x, e.y, e.z, maximum(1.0 - abs(e.x) - abs(e.y) - abs(e.z), 0.0))
     return rotated_frame(q * inversesqrt(dot(q, q)), sign_not_zero(e.w))

@@ -17,14 +17,14 @@ SEAM = -0.3
 
 
 def point(n: Vec3) -> Vec2:
-    """A unit normal's point of the octahedral square."""
+    """Return the point of the octahedral square [-1, 1]^2 for a unit normal."""
     # p = n.xy / (|n.x| + |n.y| + |n.z|), and for z < 0 (1 - |p.yx|) sign(p)
     p = n.xy * (1.0 / (abs(n.x) + abs(n.y) + abs(n.z)))
     return select(n.z < 0.0, (1.0 - abs(p.yx)) * sign_not_zero(p), p)
 
 
 def fixed(p: Vec2) -> Frame:
-    """The normal of a point of the square, and its fixed tangent."""
+    """Return the frame of a point of the octahedral square: the unit normal, its fixed tangent, and hand 1."""
     # n = (p, 1 - |p.x| - |p.y|), and for z < 0 n.xy - sign(p) (-n.z)
     z = 1.0 - abs(p.x) - abs(p.y)
     xy = p - sign_not_zero(p) * maximum(-z, 0.0)
@@ -36,7 +36,8 @@ def fixed(p: Vec2) -> Frame:
 
 
 def settle(frame: Frame, stored: Vec4) -> Vec4:
-    """Return the normal's stored numbers, the tangent's angle around it in half turns, and the hand."""
+    """Return the code with the normal's numbers as stored in x and y; in z the tangent's angle around the stored
+    normal in half turns, in w the hand."""
     f = fixed(Vec2(stored.x, stored.y))
     # a = atan2(t' . (n x t), t' . t) / pi
     angle = atan2_pi(dot(frame.tangent, cross(f.normal, f.tangent)), dot(frame.tangent, f.tangent))
@@ -44,13 +45,14 @@ def settle(frame: Frame, stored: Vec4) -> Vec4:
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """The point of the normal on the square, the tangent's angle in half turns, and the hand."""
+    """Return the normal's point on the octahedral square in x and y, in z the tangent's angle around the normal in
+    half turns, in w the hand; `least` is ignored."""
     p = point(frame.normal)
     return settle(frame, Vec4(p.x, p.y, 0.0, 0.0))
 
 
 def decode(e: Vec4, least) -> Frame:
-    """The frame of a point of the square, an angle and a hand."""
+    """Return the frame of a point of the square, an angle in half turns and a hand, the sign of e.w."""
     f = fixed(Vec2(e.x, e.y))
     # t' = cos(pi a) t + sin(pi a) (n x t)
     sine, cosine = sincos_pi(e.z)

@@ -12,7 +12,7 @@ from ..vec import TINY, Vec4, dot, inversesqrt, maximum, select, sign_not_zero, 
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """Return the quaternion with the hand as its sign, and |w| at least `least`."""
+    """Return the frame's quaternion with |w| at least `least`; the sign of w is the hand."""
     q = quaternion_of(frame)
     q = q * sign_not_zero(q.w)
     # for w < least: (q.xyz sqrt(1 - least^2), least); e = hand q
@@ -22,7 +22,7 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """The frame of a quaternion of any length; +z and +x of none."""
+    """Return the frame of a quaternion of any length, with w's sign as its hand; normal +z, tangent +x for zero."""
     # q = e / |e|
     q = e * inversesqrt(maximum(dot(e, e), TINY))
     return rotated_frame(q, sign_not_zero(e.w))
@@ -30,7 +30,7 @@ def decode(e: Vec4, least) -> Frame:
 
 ENCODING = FrameEncoding(
     name="qtangent",
-    title="quaternion, the hand its sign",
+    title="quaternion, with the handedness as its sign",
     encode=encode,
     decode=decode,
     hand_in=3,

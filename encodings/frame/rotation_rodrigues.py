@@ -12,7 +12,7 @@ from ..vec import Vec3, Vec4, dot, sign_not_zero
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """The projection of the quaternion whose w is positive."""
+    """Return q.xyz / (1 + w) of the frame's quaternion with w >= 0, and 0 in w; the hand is not kept."""
     q = quaternion_of(frame)
     # e = q.xyz / (1 + w)
     e = q.xyz * (sign_not_zero(q.w) / (1.0 + abs(q.w)))
@@ -20,7 +20,8 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """The rotation of a point; outside the ball it is one of those inside."""
+    """Return the frame, of hand 1, that a point e.xyz encodes; a point outside the unit ball gives the same frame as
+    some point inside it."""
     v = Vec3(e.x, e.y, e.z)
     # q = (2 e, 1 - |e|^2) / (1 + |e|^2)
     square = dot(v, v)
@@ -31,7 +32,7 @@ def decode(e: Vec4, least) -> Frame:
 
 ENCODING = FrameEncoding(
     name="rotation_rodrigues",
-    title="rotation, its modified Rodrigues parameters",
+    title="rotation as modified Rodrigues parameters",
     encode=encode,
     decode=decode,
     hand_in=None,

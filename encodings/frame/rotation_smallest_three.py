@@ -14,7 +14,8 @@ RANGE = math.sqrt(0.5)
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """Three components over their range; the largest's index of 0 to 3."""
+    """Return the three smaller components of the frame's quaternion over RANGE; w holds the index, 0 to 3, of the
+    largest as a number in [-1, 1]. The hand is not kept."""
     q = quaternion_of(frame)
     a = abs(q)
     xy, zw = maximum(a.x, a.y), maximum(a.z, a.w)
@@ -27,7 +28,8 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """The rotation of three components and the fourth's index; numbers that no quaternion has give no unit vectors."""
+    """Return the frame, of hand 1, of three components and the largest one's index; numbers that no unit quaternion
+    has give no unit vectors."""
     # q_i = sqrt(1 - |e.xyz|^2 / 2)
     s = Vec3(e.x, e.y, e.z) * RANGE
     largest = sqrt(maximum(1.0 - dot(s, s), 0.0))
@@ -39,7 +41,7 @@ def decode(e: Vec4, least) -> Frame:
 
 ENCODING = FrameEncoding(
     name="rotation_smallest_three",
-    title="rotation, its quaternion's smallest three",
+    title="rotation as the smallest three components of its quaternion",
     encode=encode,
     decode=decode,
     hand_in=None,

@@ -12,7 +12,7 @@ from ..vec import TINY, Vec3, Vec4, dot, inversesqrt, maximum, minimum, sign_not
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """The axis times the angle, in half turns."""
+    """Return the rotation's axis times its angle in half turns, and 0 in w; the hand is not kept."""
     q = quaternion_of(frame)
     v = q.xyz * sign_not_zero(q.w)
     # e = axis 2 atan2(|v|, w) / pi
@@ -23,7 +23,7 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """The rotation about a vector by its length in half turns, one at most."""
+    """Return the frame, of hand 1, rotated about e.xyz by its length in half turns, at most one half turn."""
     v = Vec3(e.x, e.y, e.z)
     # q = (v / |v| sin(pi |v| / 2), cos(pi |v| / 2))
     square = maximum(dot(v, v), TINY)
@@ -35,7 +35,7 @@ def decode(e: Vec4, least) -> Frame:
 
 ENCODING = FrameEncoding(
     name="rotation_vector",
-    title="rotation, its axis times its angle",
+    title="rotation as its axis times its angle",
     encode=encode,
     decode=decode,
     hand_in=None,

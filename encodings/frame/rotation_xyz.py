@@ -13,14 +13,14 @@ from ..vec import Vec3, Vec4, dot, inversesqrt, maximum, sign_not_zero, sqrt
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """x, y and z under the sign of w."""
+    """Return x, y and z of the frame's quaternion with w >= 0, and 0 in w; the hand is not kept."""
     q = quaternion_of(frame)
     e = q.xyz * sign_not_zero(q.w)
     return Vec4(e.x, e.y, e.z, 0.0 * e.x)
 
 
 def decode(e: Vec4, least) -> Frame:
-    """The rotation of three components; of some that are longer than 1 a half turn."""
+    """Return the frame, of hand 1, of a quaternion's x, y and z, with w >= 0; if longer than 1, a half turn."""
     # w = sqrt(1 - |e|^2)
     v = Vec3(e.x, e.y, e.z)
     square = dot(v, v)
@@ -30,7 +30,7 @@ def decode(e: Vec4, least) -> Frame:
 
 ENCODING = FrameEncoding(
     name="rotation_xyz",
-    title="rotation, three components of its quaternion",
+    title="rotation as three components of its quaternion",
     encode=encode,
     decode=decode,
     hand_in=None,

@@ -16,7 +16,8 @@ RANGE = math.sqrt(0.5)
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """Three components over their range, the third as hand and magnitude; the largest's index of 0 to 3."""
+    """Return the three smaller components of the frame's quaternion over RANGE, where z is remapped to a magnitude of
+    at least `least` whose sign is the hand; w holds the index, 0 to 3, of the largest as a number in [-1, 1]."""
     q = quaternion_of(frame)
     a = abs(q)
     xy, zw = maximum(a.x, a.y), maximum(a.z, a.w)
@@ -31,7 +32,8 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """The frame of three components and the fourth's index; numbers that no quaternion has give no unit vectors."""
+    """Return the frame of three components and the largest one's index, with the sign of e.z as its hand; numbers
+    that no unit quaternion has give no unit vectors."""
     # s.z = 2 (|e.z| - least) / (1 - least) - 1; q_i = sqrt(1 - |s|^2 / 2)
     third = (abs(e.z) - least) / (1.0 - least) * 2.0 - 1.0
     s = Vec3(e.x, e.y, third) * RANGE
@@ -44,7 +46,7 @@ def decode(e: Vec4, least) -> Frame:
 
 ENCODING = FrameEncoding(
     name="smallest_three",
-    title="quaternion, the smallest three",
+    title="the smallest three components of the quaternion",
     encode=encode,
     decode=decode,
     hand_in=2,

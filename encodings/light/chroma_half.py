@@ -14,7 +14,8 @@ MOST, MOST_BITS, STEPS = FORMS[16].largest, 31.0 * 1024.0 - 1.0, 65535.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Map light to [0, 1]; negative light and NaN are treated as 0, light above 65504 as 65504."""
+    """Map light to [0, 1]: the roots of the colour over its largest channel, and in w that channel's half-float bits.
+    Negative light and NaN are treated as 0, light above 65504 as 65504."""
     c = Vec3(*(minimum(maximum(channel, 0.0), MOST) for channel in light.xyz))
     half = maximum(maximum(c.x, c.y), c.z).astype(jnp.float16)
     bits, m = half.view(jnp.uint16).astype(jnp.float32), half.astype(jnp.float32)
@@ -35,7 +36,7 @@ def decode(e: Vec4) -> Vec4:
 
 ENCODING = LightEncoding(
     name="chroma_half",
-    title="roots of colours 8:8:8 and a half float, five bytes",
+    title="square roots of colours 8:8:8 and a half float, in five bytes",
     encode=encode,
     decode=decode,
     storages=("rgb16_8_8_8_16",),

@@ -14,7 +14,8 @@ HUES, SATURATIONS = 63.0, 3.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Map light to [0, 1]: 0 for negative values and NaN; the format clamps values above 16."""
+    """Map light to hue, saturation and the root of the largest channel in [0, 1], and 0 in w. Negative light and NaN
+    are treated as 0; the format clamps values above 16."""
     c = light_or_none(light).xyz
     v = maximum(maximum(c.x, c.y), c.z)
     d = v - minimum(minimum(c.x, c.y), c.z)
@@ -44,7 +45,7 @@ def decode(e: Vec4) -> Vec4:
 
 ENCODING = LightEncoding(
     name="hue_saturation",
-    title="hue 6, saturation 2 and a root 8 in two bytes, to 16",
+    title="hue in 6 bits, saturation in 2 and a square root in 8, up to 16",
     encode=encode,
     decode=decode,
     storages=("rg8_6_2_8",),

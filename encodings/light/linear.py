@@ -21,7 +21,7 @@ def encode(light: Vec4, limit: float = RANGE) -> Vec4:
 
 
 def decode(e: Vec4, limit: float = RANGE) -> Vec4:
-    """A texel's light."""
+    """Return the light of a texel: e times the range."""
     # L = e range
     return e * limit
 
@@ -31,7 +31,7 @@ def _name_and_title(name: str, limit: float) -> tuple[str, str]:
 
 
 def ranged(limit: float) -> LightEncoding:
-    """The encoding over another range, in both languages."""
+    """Return the encoding over the range 0 to `limit`, in both languages, named `linear:<limit>`."""
     return replace(
         ENCODING,
         name=f"linear:{limit:g}",

@@ -14,13 +14,13 @@ LEAST = 1.0 / 255.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Map light to (0, 1]; negative light and NaN become 1."""
+    """Map light to 2^-L, in (0, 1]; negative light and NaN become 1."""
     # e = 2^-L
     return Vec4(*(exp2(-c) for c in light_or_none(light)))
 
 
 def decode(e: Vec4) -> Vec4:
-    """A texel's light."""
+    """Return the light of a texel, -log2(e); e is treated as at least 1/255."""
     # L = -log2(e), e at least 1/255
     return Vec4(*(-log2(maximum(c, LEAST)) for c in e))
 

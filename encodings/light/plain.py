@@ -8,18 +8,18 @@ from ..vec import Vec4
 
 
 def encode(light: Vec4) -> Vec4:
-    """The light itself."""
+    """Return the light unchanged."""
     return light
 
 
 def decode(e: Vec4) -> Vec4:
-    """The texel itself."""
+    """Return the texel unchanged."""
     return e
 
 
 ENCODING = LightEncoding(
     name="plain",
-    title="light as it is",
+    title="light, unchanged",
     encode=encode,
     decode=decode,
     storages=("rgba32f", "rgba16f", "r11g11b10f"),

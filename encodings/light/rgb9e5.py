@@ -41,7 +41,7 @@ def decode(e: Vec4) -> Vec4:
 
 ENCODING = LightEncoding(
     name="rgb9e5",
-    title="RGB9E5, its bits in RGBA8",
+    title="RGB9E5, packed into RGBA8",
     encode=encode,
     decode=decode,
     storages=("rgba8",),

@@ -17,7 +17,8 @@ SLACK = 2.0**-10
 
 
 def encode(light: Vec4, limit: float = RANGE) -> Vec4:
-    """Map light to [0, 1]: 0 for negative values and NaN; values above the range are clamped."""
+    """Map light to [0, 1]: the colour over M times the range, and M in w. Negative light and NaN are treated as 0;
+    values above the range are clamped by the format."""
     # m = ceil(255 max(L) / range - slack) / 255, at least 1/255 and at most 1
     rgb = light_or_none(light).xyz
     largest = maximum(maximum(rgb.x, rgb.y), rgb.z)
@@ -35,11 +36,11 @@ def decode(e: Vec4, limit: float = RANGE) -> Vec4:
 
 
 def ranged(limit: float) -> LightEncoding:
-    """The encoding over another range, in both languages."""
+    """Return the encoding over the range 0 to `limit`, in both languages, named `rgbm:<limit>`."""
     return replace(
         ENCODING,
         name=f"rgbm:{limit:g}",
-        title=f"RGBM in RGBA8, to {limit:g}",
+        title=f"RGBM in RGBA8, up to {limit:g}",
         encode=partial(encode, limit=limit),
         decode=partial(decode, limit=limit),
         limit=limit,
@@ -49,7 +50,7 @@ def ranged(limit: float) -> LightEncoding:
 
 ENCODING = LightEncoding(
     name="rgbm",
-    title="RGBM in RGBA8, to 6",
+    title="RGBM in RGBA8, up to 6",
     encode=encode,
     decode=decode,
     storages=("rgba8",),

@@ -14,21 +14,21 @@ def root(share):
 
 
 def encode(motion: Vec2, range) -> Vec2:
-    """Motion to [-1, 1] up to the range, and beyond."""
+    """Map motion to the signed cube root of its share of the range: [-1, 1] up to the range, larger beyond it."""
     # c = sign(v) (|v| / range)^(1/3)
     share = abs(motion) / range
     return sign_not_zero(motion) * Vec2(root(share.x), root(share.y))
 
 
 def decode(e: Vec2, range) -> Vec2:
-    """The motion of two numbers."""
+    """Return the motion of two numbers: e^3 range."""
     # v = c^3 range
     return e * e * e * range
 
 
 ENCODING = MotionEncoding(
     name="cube_root",
-    title="the cube root of the share of the range",
+    title="the cube root of the fraction of the range",
     encode=encode,
     decode=decode,
     storages=("rg8", "rg8_centred", "rg16", "rg16_centred"),

@@ -7,27 +7,27 @@ from ..vec import Vec2
 
 
 def encode(motion: Vec2, range) -> Vec2:
-    """Motion to [-1, 1] up to the range, and beyond."""
+    """Map motion to its share of the range: [-1, 1] up to the range, larger numbers beyond it."""
     # c = v / range
     return motion / range
 
 
 def decode(e: Vec2, range) -> Vec2:
-    """The motion of two numbers."""
+    """Return the motion of two numbers: e range."""
     # v = c range
     return e * range
 
 
 ENCODING = MotionEncoding(
     name="linear",
-    title="a share of the range; in floats the motion itself",
+    title="the fraction of the range; in floats the motion itself",
     encode=encode,
     decode=decode,
     storages=(
         *("rg16f", "rg16", "rg16_centred", "rg16_snorm", "rgb10a2", "rgb10a2_centred"),
         *("rg8", "rg8_centred", "rg8_snorm"),
     ),
-    citation="Unity, HDRP, BuiltinData.hlsl: 16:16 float as it is; Epic Games, Unreal Engine 4.18, Common.ush: UNORM "
+    citation="Unity, HDRP, BuiltinData.hlsl: 16:16 float, unchanged; Epic Games, Unreal Engine 4.18, Common.ush: UNORM "
     "16:16 with no motion at 32767 / 65535",
     glsl=Path(__file__).with_suffix(".glsl"),
     ulps=(1, 1),

@@ -25,7 +25,7 @@ def encode(motion: Vec2, range) -> Vec2:
 
 
 def decode(e: Vec2, range) -> Vec2:
-    """The motion of two numbers."""
+    """Return the motion of two numbers: the inverse of `encode`, with a limit so that large numbers stay finite."""
     # v = sign(c) (2^(|c| log2(1 + k)) - 1) range / k
     x = Vec2(*(minimum(share * OCTAVES, MOST) for share in abs(e)))
     return sign_not_zero(e) * (Vec2(exp2_of(x.x), exp2_of(x.y)) - 1.0) * (range / K)
@@ -33,7 +33,7 @@ def decode(e: Vec2, range) -> Vec2:
 
 ENCODING = MotionEncoding(
     name="log",
-    title="the logarithm of 1 and 2047 times the share of the range",
+    title="the logarithm of 1 plus 2047 times the fraction of the range",
     encode=encode,
     decode=decode,
     storages=("rg16", "rg16_centred", "rg16_snorm", "rgb10a2_centred", "rg8", "rg8_centred", "rg8_snorm"),

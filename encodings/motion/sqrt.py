@@ -14,14 +14,14 @@ def encode(motion: Vec2, range) -> Vec2:
 
 
 def decode(e: Vec2, range) -> Vec2:
-    """The motion of two numbers."""
+    """Return the motion of two numbers: e |e| range."""
     # v = c |c| range
     return e * abs(e) * range
 
 
 ENCODING = MotionEncoding(
     name="sqrt",
-    title="the root of the share of the range",
+    title="the square root of the fraction of the range",
     encode=encode,
     decode=decode,
     storages=("rg16", "rg16_centred", "rg16_snorm", "rgb10a2_centred", "rg8", "rg8_centred", "rg8_snorm"),

@@ -78,13 +78,13 @@ def centres(levels: int = LEVELS) -> np.ndarray:
 
 
 def tables() -> dict[str, np.ndarray]:
-    """The table for UNORM8."""
+    """Return the table for UNORM8 by its sampler's name: best scales, float32 of shape (SIZE, SIZE, 1)."""
     return {"best_fit_scale": centres()}
 
 
 def fit(normals: np.ndarray, levels: int, prior: float) -> np.ndarray:
     """Return the table whose scales have the smallest squared error on each texel's normals, for numbers of
-    `levels` values.
+    `levels` values; float32 of shape (SIZE, SIZE, 1), as `centres`.
 
     Args:
         normals: float64 of shape (count, 3), unit.
@@ -114,7 +114,7 @@ def _summed(x, y, starts: np.ndarray, centre_x, centre_y, prior: float, k: int) 
 
 
 def _place(x, y, z):
-    """The texel's row and column, as `_texel` has it."""
+    """Return the row and the column of the table's texel for sorted components x <= y <= z, as `_texel` does."""
     x, y, z = ((c * FIXED).astype(np.uint32) for c in (x, y, z))
     return np.minimum(x * SIZE // np.maximum(y, 1), SIZE - 1), np.minimum(y * SIZE // z, SIZE - 1)
 
@@ -132,9 +132,9 @@ def _texel(a: Vec3):
 
 
 def encode(n: Vec3, view: Vec3, table: Any = None) -> Vec3:
-    """Unit normal to the vector along it whose UNORM8 code points best; its largest component is the table's scale.
+    """Map a unit normal to the vector along it whose UNORM8 code points best; its largest component is the scale.
 
-    Another `table` than the published one is float32 of shape (SIZE, SIZE, 1).
+    Another `table` of scales than the published one is float32 of shape (SIZE, SIZE, 1).
     """
     # with |n|'s components sorted, x <= y <= z: c = n s(y / z, x / y) / z
     a = _sorted(abs(n))

@@ -22,7 +22,7 @@ def _code(n: Vec3, k) -> Vec3:
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Unit normal to the vector of odd multiples of 1/255 along it that points best; of equals the longest."""
+    """Map a unit normal to the vector of odd multiples of 1/255 along it that points best; of equals the longest."""
     from jax.lax import fori_loop  # a second to import, which `normalbench list` does not take
 
     def tried(step, carry):

@@ -14,7 +14,7 @@ from ..vec import Vec2, Vec3, dot, maximum, sqrt, unit
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to a point of the unit disk, +z at the centre; -z, which is the whole rim, gets its point (1, 0)."""
+    """Map a unit normal to a point of the unit disk, +z at the centre; -z, which is the whole rim, becomes (1, 0)."""
     # enc = normalize(n.xy) sqrt(-n.z/2 + 1/2)
     return unit(n.xy) * sqrt(maximum(0.5 - n.z * 0.5, 0.0))
 

@@ -8,7 +8,7 @@ from ..vec import TINY, Vec2, Vec3, maximum, select, sign_not_zero, sqrt
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to the square [-1, 1]^2, +z at its centre, -z at its corners."""
+    """Map a unit normal to a point of the square [-1, 1]^2, +z at its centre, -z at its corners."""
     # r = sqrt(1 - |n.z|) = sqrt((n.x^2 + n.y^2) / (1 + |n.z|))
     r = sqrt((n.x * n.x + n.y * n.y) / (1.0 + abs(n.z)))
     # v = 2 r atan(|n.y| / |n.x|) / pi, u = r - v; for n.z < 0 (1 - v, 1 - u)

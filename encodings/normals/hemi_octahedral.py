@@ -7,7 +7,8 @@ from ..vec import Vec2, Vec3, normalize
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal with z >= 0 to the square [-1, 1]^2, +z at its centre, z = 0 on its edges; z < 0 loses its sign."""
+    """Map a unit normal with z >= 0 to a point of the square [-1, 1]^2, +z at its centre, z = 0 on its edges; the
+    sign of a negative z is lost."""
     # p = n.xy / (|n.x| + |n.y| + |n.z|), e = (p.x + p.y, p.x - p.y)
     p = n.xy * (1.0 / (abs(n.x) + abs(n.y) + abs(n.z)))
     return Vec2(p.x + p.y, p.x - p.y)

@@ -7,7 +7,7 @@ from ..vec import Vec2, Vec3, maximum, normalize, select, sign_not_zero
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to the square [-1, 1]^2, +z at its centre, -z at its corners."""
+    """Map a unit normal to a point of the square [-1, 1]^2, +z at its centre, -z at its corners."""
     # p = n.xy / (|n.x| + |n.y| + |n.z|), and for z < 0 (1 - |p.yx|) sign(p)
     p = n.xy * (1.0 / (abs(n.x) + abs(n.y) + abs(n.z)))
     return select(n.z < 0.0, (1.0 - abs(p.yx)) * sign_not_zero(p), p)

@@ -51,12 +51,12 @@ def rings() -> np.ndarray:
 
 
 def tables() -> dict[str, np.ndarray]:
-    """The rings as a texture of one row."""
+    """Return the rings by the sampler's name, as a texture of one row: float32 of shape (1, RINGS, 2)."""
     return {"optimised_rings_table": rings()[None]}
 
 
 def _ring(ring, dtype) -> tuple:
-    """The points of a ring, and those before it."""
+    """Return, for an array of ring numbers, the points of each ring and of all rings before it, as two arrays."""
     return tuple(jnp.asarray(column, dtype)[ring.astype(jnp.int32)] for column in rings().T)
 
 
@@ -69,7 +69,8 @@ def _point(ring, share) -> Vec3:
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to the high and the low byte of the number of the nearest point of the two rings around."""
+    """Map a unit normal to the number of the nearest point of the two rings around it: its high and its low byte,
+    each as a number in [-1, 1]."""
     # ring = theta (RINGS - 1) / pi, share = phi / (2 pi)
     theta = atan2_pi(sqrt(n.x * n.x + n.y * n.y), n.z)
     turn = 0.5 * atan2_pi(n.y, n.x)
@@ -88,7 +89,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The point of a number, at unit length."""
+    """Return the unit normal of the point whose number the two bytes hold."""
     i = index_of(e.x, BYTE) * BYTE + index_of(e.y, BYTE)
     # the last ring that begins at i or before
     ring = jnp.searchsorted(jnp.asarray(rings()[:, 1]), i.astype(jnp.float32), side="right") - 1

@@ -7,7 +7,7 @@ from ..vec import Vec2, Vec3, normalize, sign_not_zero
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Unit normal to the square [-1, 1]^2 and the sign of z, 1 or -1, 1 for z = 0."""
+    """Map a unit normal to a point of the square [-1, 1]^2 and the sign of z, 1 or -1, 1 for z = 0."""
     # p = n.xy / (|n.x| + |n.y| + |n.z|), e = (p.x + p.y, p.x - p.y, sign n.z)
     p = n.xy * (1.0 / (abs(n.x) + abs(n.y) + abs(n.z)))
     return Vec3(p.x + p.y, p.x - p.y, sign_not_zero(n.z))

@@ -11,7 +11,7 @@ from ..vec import Vec2, Vec3, dot, minimum, select, sqrt
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to a point of the unit disk, +z at the centre; -z, which is the whole rim, gets its point (1, 0)."""
+    """Map a unit normal to a point of the unit disk, +z at the centre; -z, which is the whole rim, becomes (1, 0)."""
     # f = sqrt(8 n.z + 8), enc = n.xy / f in [-1/2, 1/2]
     f = sqrt(8.0 * n.z + 8.0)
     return select(n.z > -1.0, n.xy * (2.0 / f), Vec2(1.0, 0.0))

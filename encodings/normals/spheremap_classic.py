@@ -11,7 +11,7 @@ from ..vec import Vec2, Vec3, dot, maximum, select, sqrt
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to a point of the unit disk, +z at the centre; -z, which is the whole rim, gets its point (1, 0)."""
+    """Map a unit normal to a point of the unit disk, +z at the centre; -z, which is the whole rim, becomes (1, 0)."""
     # p = sqrt(n.x^2 + n.y^2 + (n.z + 1)^2), enc = n.xy / p
     p2 = dot(n.xy, n.xy) + (n.z + 1.0) * (n.z + 1.0)
     return select(p2 > 0.0, n.xy / sqrt(p2), Vec2(1.0, 0.0))

@@ -19,7 +19,8 @@ def encode(n: Vec3, view: Vec3, bias: float = BIAS, scale: float = SCALE) -> Vec
 
 
 def decode(e: Vec2, view: Vec3, bias: float = BIAS, scale: float = SCALE) -> Vec3:
-    """The unit normal of the angle pi e.x at height scale e.y + bias; +z or -z where that is beyond 1."""
+    """Return the unit normal of the angle pi e.x at height z = scale e.y + bias. A height beyond 1 or -1 is kept,
+    with x and y at 0: the vector is then longer than 1."""
     s, c = sincos_pi(e.x)
     # sin(phi) = sqrt(1 - cos^2(phi)), cos(phi) = scale e.y + bias
     z = e.y * scale + bias

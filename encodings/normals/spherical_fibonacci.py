@@ -35,7 +35,8 @@ def _point(i) -> Vec3:
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to the high and the low byte of the number of the lattice's nearest point."""
+    """Map a unit normal to the number of the lattice's nearest point: its high and its low byte, each as a number in
+    [-1, 1]."""
     # k = max(2, floor(log(N pi sqrt(5) (1 - n.z^2)) / log(PHI^2))): here steps of F_k and F_k+1 are the shortest
     around = maximum(n.x * n.x + n.y * n.y, TINY)
     k = maximum(floor((log2_of(around) + OCTAVES) * (1.0 / PER_STEP)), 2.0).astype(jnp.int32)
@@ -57,7 +58,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The lattice's point of a number, at unit length."""
+    """Return the unit normal of the lattice's point whose number the two bytes hold."""
     return _point(index_of(e.x, BYTE) * BYTE + index_of(e.y, BYTE))
 
 

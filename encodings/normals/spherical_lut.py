@@ -17,7 +17,8 @@ LAST = 255.0  # the last texel of a row, and of a column
 
 @cache
 def tables() -> dict[str, np.ndarray]:
-    """The angle atan2(y, x) / pi over (x, y), and (cos, sin) of the angle times sqrt(1 - z^2) over (angle, z)."""
+    """Return two lookup tables by sampler name, float32 (rows, columns, channels): atan2(y, x) / pi over (x, y), and
+    (cos, sin) of the angle times sqrt(1 - z^2) over (angle / pi, z)."""
     axis = np.linspace(-1.0, 1.0, int(LAST) + 1)
     x, y = np.meshgrid(axis, axis)
     r = np.sqrt(1.0 - y * y)
@@ -32,13 +33,13 @@ def _texel(p: Vec2):
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Unit normal to (angle / pi, z), the angle read at the texel nearest (x, y)."""
+    """Map a unit normal to (angle / pi, z); the angle is the table's at the texel nearest to (x, y)."""
     angle = jnp.asarray(tables()["spherical_lut_angle"][..., 0], n.z.dtype)
     return Vec2(angle[_texel(n.xy)], n.z)
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The normal at height e.y, its x and y read at the texel nearest the code."""
+    """Return the normal of height e.y, with the table's x and y at the texel nearest to the code; not normalised."""
     xy = jnp.asarray(tables()["spherical_lut_xy"], e.y.dtype)
     texel = _texel(e)
     return Vec3(xy[..., 0][texel], xy[..., 1][texel], e.y)

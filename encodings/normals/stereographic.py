@@ -17,7 +17,7 @@ SCALES = 0.0088, 114.0
 
 
 def encode(n: Vec3, view: Vec3, scale: float = SCALE) -> Vec2:
-    """Unit normal to the plane, +z at the origin; -z, which is infinitely far out, gets (1, 0)."""
+    """Map a unit normal to a point of the plane, +z at the origin; -z, which is infinitely far, becomes (1, 0)."""
     # enc = n.xy / (n.z + 1) / scale
     return select(n.z > -1.0, n.xy / ((n.z + 1.0) * scale), Vec2(1.0, 0.0))
 

@@ -12,7 +12,8 @@ SIDE, UP = math.sqrt(2 / 3), math.sqrt(1 / 3)
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Unit normal to the disk of radius 0.943 about the nearest face's normal, and the face, from 0 to 3."""
+    """Map a unit normal to a point of the disk of radius 0.943 about the nearest face's normal, and the face, 0 to 3,
+    as a number in [-1, 1]."""
     # is_upper = SIDE |n.x| + UP n.z > SIDE |n.y| - UP n.z, side = sign of the n.x or n.y that counts
     is_upper = SIDE * abs(n.x) + UP * n.z > SIDE * abs(n.y) - UP * n.z
     deciding = select(is_upper, n.x, n.y)

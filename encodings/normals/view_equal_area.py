@@ -24,7 +24,8 @@ def height_of(cap: float) -> float:
 
 
 def encode(n: Vec3, view: Vec3, cap: float = CAP_DEG) -> Vec2:
-    """Unit normal to the square [-1, 1]^2, the line of sight at its centre; beyond the cap, to its edge."""
+    """Map a unit normal to a point of the square [-1, 1]^2, the line of sight at its centre. Normals beyond the cap,
+    an angle in degrees, go to its edge."""
     x, y, z = view_frame(view)
     m = Vec3(dot(x, n), dot(y, n), dot(z, n))
     # r = min(sqrt((1 - m.z) / height), 1), where 1 - m.z = (m.x^2 + m.y^2) / (1 + m.z)

@@ -24,7 +24,8 @@ def foot(cap: float) -> tuple[float, float]:
 
 
 def encode(n: Vec3, view: Vec3, cap: float = CAP_DEG) -> Vec2:
-    """Unit normal to the square [-1, 1]^2, the line of sight at its centre; beyond the foot, to its edge."""
+    """Map a unit normal to a point of the square [-1, 1]^2, the line of sight at its centre. Normals beyond the
+    pyramid's foot, at `cap` degrees, go to its edge."""
     height, half = foot(cap)
     x, y, z = view_frame(view)
     m = Vec3(dot(x, n), dot(y, n), dot(z, n))

@@ -7,7 +7,7 @@ from ..vec import Vec2, Vec3, dot, maximum, sign_not_zero, sqrt
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Unit normal to X, Y and the sign of Z (1 or -1, 1 for z = 0)."""
+    """Map a unit normal to X, Y and the sign of Z (1 or -1, 1 for z = 0)."""
     return Vec3(n.x, n.y, sign_not_zero(n.z))
 
 

@@ -7,7 +7,7 @@ from ..vec import Vec3
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Unit normal to itself; exact."""
+    """Return a unit normal unchanged: the code is exact until it is stored."""
     return n
 
 

@@ -7,7 +7,7 @@ from ..vec import Vec3, maximum, unit
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Unit normal to the surface of the cube [-1, 1]^3."""
+    """Map a unit normal to the point of the surface of the cube [-1, 1]^3 in its direction."""
     # e = n / max(|n.x|, |n.y|, |n.z|)
     a = abs(n)
     return n * (1.0 / maximum(maximum(a.x, a.y), a.z))

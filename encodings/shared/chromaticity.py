@@ -25,5 +25,5 @@ def chromaticity(c: Vec3) -> Vec3:
 
 
 def coloured(diffuse: Vec3, specular) -> Vec3:
-    """Specular light of the colour of the diffuse, from its luminance: chroma(D) A."""
+    """Return specular light, given by its luminance alone, in the colour of the diffuse light: chroma(D) A."""
     return chromaticity(diffuse) * specular

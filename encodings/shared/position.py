@@ -67,7 +67,8 @@ class Camera:
         return up * self.aspect, up
 
     def clip_to_view(self, projection: Projection | None) -> Float[np.ndarray, "4 4"]:
-        """The inverse of a projection, float64, for column vectors; of none the identity."""
+        """Return the inverse of a projection's matrix for this camera, float64, for column vectors; the identity if
+        the projection is None."""
         if projection is None:
             return np.eye(4)
         right, up = self.rays
@@ -77,11 +78,11 @@ class Camera:
         return np.linalg.inv(matrix)
 
     def terms(self, projection: Projection | None) -> tuple[float, float]:
-        """The two terms of a projection's row for z, a and b; of none 0 and 1."""
+        """Return a and b of a projection's row for z, a z + b, for this camera; 0 and 1 if the projection is None."""
         return projection.row(self.near, self.far) if projection else (0.0, 1.0)
 
     def seen(self, projection: Projection | None) -> CameraTerms:
-        """The camera as a shader knows it."""
+        """Return the camera's values for a projection, in float32, as a shader is given them."""
         near, far, *rays = map(jnp.float32, (self.near, self.far, *self.rays))
         clip = Vec2(*map(jnp.float32, projection.clip if projection else (1.0, 0.0)))
         terms = Vec2(*map(jnp.float32, self.terms(projection)))
@@ -91,10 +92,10 @@ class Camera:
 def position_from_window_depth(
     place: Vec2, depth: Float[Array | np.ndarray, "*shape"], clip: Vec2, clip_to_view: Float[Array, "4 4"]
 ) -> Vec3:
-    """The position of a depth buffer's depth, from 0 to 1, by the inverse projection.
+    """Return the view-space position of a depth buffer's depth, from 0 to 1, by the inverse projection.
 
     Args:
-        place: on the screen, arrays of one shape with `depth`.
+        place: position on the screen, -1 to 1 to the right and up; arrays of one shape with `depth`.
         clip: how clip space counts depth, see `Projection`.
         clip_to_view: the inverse projection, float32.
     """

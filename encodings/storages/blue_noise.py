@@ -26,7 +26,7 @@ class _Pattern:
             self.turn(int(pixel))
 
     def turn(self, pixel: int) -> None:
-        """Set a pixel, or take one away that is set."""
+        """Set a pixel, given by its index row by row, or clear it if it is set."""
         y, x = divmod(pixel, SIZE)
         around = self._filter[SIZE - y : 2 * SIZE - y, SIZE - x : 2 * SIZE - x].ravel()
         self._crowd += -around if self.pixels[pixel] else around
@@ -34,12 +34,12 @@ class _Pattern:
 
     @property
     def cluster(self) -> int:
-        """The pixel that is crowded most, of those that are set."""
+        """The index of the most crowded pixel of those that are set."""
         return int(np.argmax(np.where(self.pixels, self._crowd, -np.inf)))
 
     @property
     def void(self) -> int:
-        """The least crowded pixel that is not set."""
+        """The index of the least crowded pixel of those that are not set."""
         return int(np.argmin(np.where(self.pixels, np.inf, self._crowd)))
 
 
@@ -62,7 +62,7 @@ def blue_noise() -> np.ndarray:
 
 
 def _spread_pattern() -> np.ndarray:
-    """A few pixels, drawn at random and moved from clusters to voids until none is left to move."""
+    """Return the indices of a few pixels, drawn at random and moved from clusters to voids until none moves."""
     drawn = np.random.default_rng(SEED).choice(SIZE * SIZE, round(SHARE * SIZE * SIZE), replace=False)
     pattern = _Pattern(drawn)
     while True:

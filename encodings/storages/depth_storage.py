@@ -107,7 +107,7 @@ def fixed(
 
 
 def from_fixed(integer: UInt[Array, "*shape"], scale: int, is_signed: bool) -> Float[Array, "*shape"]:
-    """Return the number that an unsigned integer (uint32) represents."""
+    """Return the number (float32) that an unsigned integer (uint32) represents: the inverse of `fixed`."""
     half = scale // 2
     if not is_signed:
         return _share(integer, scale)

@@ -48,5 +48,5 @@ def laid_out(noise: np.ndarray, width: int, count: int) -> np.ndarray:
 
 
 def _tile_from(place: int) -> np.ndarray:
-    """The tile from a pixel on, the first one for place 0."""
+    """Return the blue-noise tile, shifted cyclically by an amount that depends on `place`; unshifted for place 0."""
     return np.roll(blue_noise(), [-int(SIZE * (place / RATIO**axis % 1.0)) for axis in (1, 2)], axis=(0, 1))

@@ -125,7 +125,7 @@ def store_float(
 
 
 def to_srgb(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.ndarray, "*shape"]:
-    """Linear light in [0, 1] (float32, any shape) by the sRGB curve."""
+    """Return linear light in [0, 1] (float32, any shape) on the sRGB curve."""
     curved = (1.0 + SRGB_OFFSET) * maximum(x, SRGB_KNEE) ** (1.0 / SRGB_POWER) - SRGB_OFFSET
     return select(x <= SRGB_KNEE, x * SRGB_SLOPE, curved)
 
@@ -159,7 +159,7 @@ class Fixed(Storage):
 
 
 def scales_of(storage: Storage, number: type[np.floating] = np.float32) -> tuple[Scale, ...]:
-    """The scales of a fixed-point format, as float32 or as float64, to be given to a traced function."""
+    """Return the scales of all channels of a fixed-point format, in float32 or float64, for a traced function."""
     scales = (scale_of(storage.scale(channel)) for channel in range(storage.channels))
     return tuple(Scale(*map(number, scale)) for scale in scales)
 
@@ -230,7 +230,8 @@ def store_number(
 
 
 def numbers_around(c: Float[Array, "*shape"], storage: Storage, channel: int) -> tuple[Float[Array, "*shape"], ...]:
-    """The two numbers that a fixed-point channel can hold around c (float32, any shape), the lower one first."""
+    """Return the two numbers that a fixed-point channel can hold around c (float32, any shape), the lower one first;
+    they are equal if c is at the upper end."""
     scale = _scale(storage, channel)
     x = minimum(maximum(c * 0.5 + 0.5, 0.0) if storage.is_biased else maximum(c, -1.0), 1.0)
     below = jnp.floor(x * scale.one)

@@ -100,10 +100,11 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
 
 
 def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
-    """Floats of an exponent and a mantissa, as many as a texel of 64 bits holds, four at most.
+    """Return the storage of floats, with a sign unless `kind` is "ufloat": as many as a texel of 64 bits holds, four
+    at most.
 
     Raises:
-        ValueError: no such floats; a line.
+        ValueError: `bits` are not those of an exponent and a mantissa, or are out of range; the message is one line.
     """
     text = ":".join((kind, *map(str, bits)))
     if len(bits) != 2 or not (2 <= bits[0] <= MOST_EXPONENT and 1 <= bits[1] <= MOST_MANTISSA):
@@ -132,7 +133,8 @@ def _floats(form: FloatForm, count: int) -> Storage:
 
 
 def rule_of(storage: Storage) -> str:
-    """Return the rule that names a storage's bits: snorm:16:16; for floats, the bits of each channel."""
+    """Return the rule that names a storage's bits, as text: snorm:16:16; for floats the exponent and mantissa bits
+    that its channels have, such as `ufloat:5:6 and 5:5`."""
     if storage.kind != "float":
         kind = "centred" if storage.is_centred else "snorm_full" if storage.is_full else storage.kind
         kind = {"unorm": "uint", "snorm": "sint"}[kind] if storage.is_word else kind
@@ -143,18 +145,18 @@ def rule_of(storage: Storage) -> str:
 
 
 def rule_of_first(storage: Storage, count: int) -> str:
-    """Return the bits of its first numbers, and whether they are laid across channels. Codes of these numbers are
-    the same in every storage for which this is the same: RG8 and RGBA8 for two."""
+    """Return, as text, the bits of a storage's first `count` numbers, and whether they are laid across channels.
+    Codes of these numbers are the same in every storage for which this is the same: RG8 and RGBA8 for two."""
     first = rule_of(replace(storage, bits=storage.bits[:count]))
     return f"{first} across channels of {storage.part} bits" if storage.is_packed else first
 
 
 def storage_of(name: str) -> Storage | None:
-    """The storage of a name: one of the catalogue's, numbers by rule as in `unorm:9:7`, or laid across channels as
-    `rg8_9_7` has them; else None.
+    """Return the storage of a name: one of the catalogue's, numbers by rule as in `unorm:9:7`, or numbers laid across
+    channels as in `rg8_9_7`; None if the name has none of these forms.
 
     Raises:
-        ValueError: by rule or laid across channels, but not so; a line.
+        ValueError: the name has such a form, but such a storage cannot exist; the message is one line.
     """
     if by := BY_RULE.fullmatch(name):
         return by_rule(by["kind"], tuple(map(int, by["bits"].split(":"))))

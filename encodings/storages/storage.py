@@ -24,7 +24,7 @@ ROUNDINGS_AND_DITHERED = (*ROUNDINGS, DITHERED)
 
 
 def rounds_to(rounding: str) -> str:
-    """Return how a number is rounded after noise was added, if it is: one of ROUNDINGS."""
+    """Return one of ROUNDINGS: "nearest" for DITHERED, because noise is added before; other roundings unchanged."""
     return "nearest" if rounding == DITHERED else rounding
 
 
@@ -127,7 +127,7 @@ class Storage:
 
     @property
     def largest(self) -> float:
-        """The largest finite number of a texel that every channel holds."""
+        """The largest finite number of a texel that every channel can hold: 1 unless the channels are floats."""
         if self.kind != "float":
             return 1.0
         return min(self.float_form(channel).largest for channel in range(self.channels))
@@ -205,13 +205,14 @@ def _packed_storage(name: str, title: str, kind: str, *bits: int) -> Storage:
 
 
 def centred_storage(like: Storage) -> Storage:
-    """A UNORM format that holds the integers of SNORM."""
+    """Return a UNORM format as the storage of SNORM integers, whose zero is in the middle of its range."""
     name, title = f"{like.name}{CENTRED}", f"{like.title} centred"
     return replace(like, name=name, title=title, kind="snorm", is_centred=True)
 
 
 def of_unit(storage: Storage) -> Storage:
-    """A storage as an encoder fills it whose codes are in [0, 1]: nothing between the code and the texel."""
+    """Return a storage as filled by an encoder whose codes are in [0, 1]: its texels hold the codes themselves.
+    A biased storage is returned unchanged."""
     return storage if storage.is_biased else replace(storage, holds_unit=True)
 
 

@@ -16,20 +16,24 @@ from ..gl.shader import ShaderError
 from .harness import Passes, check_functions, dithering, exact, takes_view
 
 # What a renderer of 32 bits does not draw.
-BY_JAX = "quality, mix and motion measure"
+BY_JAX = "use quality, mix or motion with JAX"
 KINDS = ("unorm", "snorm", "float")
 
 
 def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, object]:
-    """The macros that make `code.glsl` speak of an encoding; `as_half` where it is compiled in 16-bit types.
+    """Return the macros that adapt `code.glsl` to an encoding.
+
+    Args:
+        as_half: whether the shader is compiled in 16-bit types, as encodings in half arithmetic need it.
 
     Raises:
-        ShaderError: its GLSL file cannot be read or lacks one of the two functions, or it is of half arithmetic.
+        ShaderError: its GLSL file cannot be read or lacks one of the two functions; it is a chain of codecs; or it is
+            in half arithmetic without `as_half`.
     """
     if encoding.before:
-        raise ShaderError(f"{encoding.name}: a chain of codecs cannot be drawn into a G-buffer; {BY_JAX} it by JAX")
+        raise ShaderError(f"{encoding.name}: a chain of codecs cannot be drawn into a G-buffer; {BY_JAX}")
     if encoding.is_half and not as_half:
-        raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; {BY_JAX} half arithmetic by JAX")
+        raise ShaderError(f"{encoding.name}: OpenGL computes shaders in 32 bits; for half arithmetic {BY_JAX}")
     check_functions(encoding.glsl, encoding.signatures)
     return {
         "CODE": f"vec{encoding.components + encoding.sign_bits}",
@@ -89,7 +93,8 @@ def rounding_defines(
 
 
 def storage_defines(storage: Storage, roundings: Sequence[str], shader_rounds: bool) -> dict[str, object]:
-    """The macros that make `storage.glsl` speak of a storage; `roundings` is of each of its channels."""
+    """Return the macros that adapt `storage.glsl` to a storage with a rounding from ROUNDINGS for each channel; the
+    shader rounds if `shader_rounds`, else the device."""
     channels = [i % storage.channels for i in range(4)]
     scales = [storage.scale(i) for i in channels]
     return {
@@ -150,7 +155,10 @@ class CodecPasses(Passes):
         super().__exit__(*error)
 
     def round_trip(self, normals: np.ndarray, views: np.ndarray) -> Decoded:
-        """Normals and view-space positions, float32 of shape (height, width, 4), encoded, stored and decoded.
+        """Return normals, given with view positions, after encoding, storage and decoding; and the stored codes.
+
+        Args:
+            normals, views: float32 of shape (height, width, 4).
 
         Raises:
             FormatError: the device cannot render to the storage's format.
@@ -162,7 +170,7 @@ class CodecPasses(Passes):
 
 
 def _unit_pixels(normals: np.ndarray) -> np.ndarray:
-    """Directions of shape (height, width, 3), as pixels of four numbers at length 1."""
+    """Return directions, (height, width, 3), at length 1, with a fourth number 0: (height, width, 4)."""
     length = np.sqrt(np.sum(normals * normals, axis=-1, keepdims=True))
     return np.concatenate([normals / np.maximum(length, vec.TINY), np.zeros_like(length)], axis=-1)
 

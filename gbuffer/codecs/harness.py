@@ -29,20 +29,21 @@ def check_functions(glsl: Path, signatures: Iterable[str]) -> None:
 
 
 def takes_view(glsl: Path, function: str) -> bool:
-    """Whether a function of a GLSL file has a second parameter."""
+    """Whether a function of a GLSL file takes more than a vec2 or vec3, such as a view position after a normal."""
     text = re.sub(r"//[^\n]*|/\*.*?\*/", " ", read_shader(glsl), flags=re.S)
     return not re.search(rf"\bvec[23]\s+{function}\s*\(\s*(?:(?:const|in)\s+)*vec[23]\s+\w+\s*\)", text)
 
 
 def set_uniforms(program: Any, values: Mapping[str, Any]) -> None:
-    """Uniforms by name; those the compiler dropped are left out."""
+    """Set a program's uniforms by name; skip names that the compiled program does not have."""
     for name, value in values.items():
         if name in program:
             program[name].value = value
 
 
 def dithering(noise: np.ndarray | None) -> tuple[dict[str, object], Tables]:
-    """The macro of `dither.glsl` and its look-up table, of noise of shape (height, width, 4) or of none."""
+    """Return the macro DITHERED of `dither.glsl` and a function that returns its lookup table by name: noise of shape
+    (height, width, 4). Without noise the macro is 0 and there are no tables."""
     return {"DITHERED": int(noise is not None)}, lambda: {} if noise is None else {"dither": noise}
 
 
@@ -83,7 +84,8 @@ class Passes:
         self._stack.close()
 
     def _through(self, results: Sequence[Storage], **given: np.ndarray) -> list[np.ndarray]:
-        """Write arrays of shape (height, width, channels) to the targets; return the decoding pass's output.
+        """Write arrays of shape (height, width, channels), given by sampler name, to the codec's targets; return the
+        decoding pass's outputs as arrays, one for each format in `results`.
 
         Raises:
             FormatError: the device cannot render to a format.
@@ -97,7 +99,7 @@ class Passes:
             return [read_pixels(texture) for texture in targets]
 
     def _written_textures(self, stack: ExitStack, sources: Textures) -> Textures:
-        """Return the targets after the encoding pass; they are released with the stack."""
+        """Return the targets, by name, after the encoding pass has filled them; they are released with the stack."""
         device, size = self._device, next(iter(sources.values())).size
         kept = {name: device.owned(stack, device.target(size, storage)) for name, storage in self._formats.items()}
         device.render(self._encode, list(kept.values()), **sources, **self._tables)
@@ -105,7 +107,7 @@ class Passes:
 
 
 def uploaded(device: Device, stack: ExitStack, arrays: Mapping[str, np.ndarray]) -> Textures:
-    """Arrays as textures by name, released with the stack."""
+    """Return arrays as textures with the same names, released with the stack."""
     return {name: device.owned(stack, device.upload(array)) for name, array in arrays.items()}
 
 
@@ -119,7 +121,8 @@ def exact(
     tables: Tables = dict,
     **uniforms: Any,
 ) -> list[np.ndarray]:
-    """Return a compute shader's results on float32 arrays of shape (count, 4), without storage, in the same shape."""
+    """Run a compute shader on float32 arrays of shape (count, 4), without storage, with macros `defines`, included
+    files `names` and uniforms; return its `outputs` results, arrays of the same shape."""
     with ExitStack() as stack:
         compute: Any = device.owned(stack, device.compute_pass(shader, defines, names))
         bind(compute, uploaded(device, stack, tables()))

@@ -33,7 +33,7 @@ _NO_CODE = re.compile(r"//[^\n]*|/\*.*?\*/|^[ \t]*#(?:[^\n\\]|\\\n|\\)*", re.S |
 
 
 def loop_limit(device: Device) -> int | None:
-    """After how many turns the device ends a loop; None where it makes MANY."""
+    """Return the number of turns after which the device ends a loop; None if it makes MANY turns."""
     (turns,) = exact(device, "loop_turns.comp", {}, {}, [np.zeros((1, 4), np.float32)], 1, asked_turns=MANY)
     return None if turns[0, 0] >= MANY else int(turns[0, 0])
 
@@ -84,7 +84,8 @@ def turns_made(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarr
 
 
 def _counted_text(source: Source) -> tuple[str, int]:
-    """A shader's text with each condition of the encoding's loops counted, and how many these are."""
+    """Return a shader's text in which a call counts each evaluation of the encoding's loop conditions, and the number
+    of these loops. Loops of the renderer and the storages are not counted."""
     text = source.text
     code = _NO_CODE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     is_counted = [not any(path.is_relative_to(room) for room in _NOT_COUNTED) for path in source.files]

@@ -50,7 +50,7 @@ class Operation:
 
     @property
     def defines(self) -> dict[str, object]:
-        """The macros of a kernel around it."""
+        """The macros of a kernel that runs the operation."""
         sizes = {"GIVEN": self.given, "BESIDE": self.beside, "MADE": self.made}
         kinds = {name: f"vec{size}" if 2 <= size <= 4 else f"float[{size}]" for name, size in sizes.items()}
         beside = {"BESIDE_PLANE": max(4, self.given)}
@@ -62,7 +62,8 @@ class Operation:
         return {**self.own_names, "OPERATION": Path(shaders().get(str(self.glsl), self.glsl))}
 
     def source(self, shader: str) -> Source:
-        """The operation in one of the kernels. Raises ShaderError where a file cannot be read."""
+        """Return the source of a kernel that runs the operation; `shader` names the kernel. Raises ShaderError if a
+        file cannot be read."""
         return Source(shader, self.defines, self.names)
 
 
@@ -90,6 +91,6 @@ def _number_count(encoding: Encoding) -> int:
 
 
 def _read(encoding: Encoding) -> tuple[Any, ...]:
-    """Return the macros of an encoding, the files that its macros name and the function that makes its tables."""
+    """Return the macros of an encoding, the files that its macros name and the function that returns its tables."""
     as_it_stands = {"AS_IT_STANDS": 1} if encoding.is_packed else {}
     return encoding_defines(encoding) | as_it_stands, {"ENCODING": encoding.glsl}, encoding.tables

@@ -72,7 +72,8 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool
 
 
 def curve_files(layout: Layout) -> tuple[Path, ...]:
-    """The GLSL files of a layout's curves and codes of light."""
+    """Return the paths of the GLSL files of the encodings in `layout.kept`, and of the sRGB curve if a target's
+    format applies it; each path once."""
     files = [kept.encoding.glsl for kept in layout.kept.values()]
     return tuple(dict.fromkeys((*files, *([SRGB.glsl] if _curved_components(layout) else []))))
 
@@ -125,7 +126,8 @@ def curve_defines(layout: Layout) -> dict[str, object]:
 
 
 def _integer_defines(storages: Sequence[Storage]) -> dict[str, object]:
-    """Return the macros of integer targets: the outputs of a fragment shader and the reads of a pixel."""
+    """Return the macros of integer targets: the outputs of a fragment shader and the reads of a pixel. If no target
+    is an integer, only HAS_WORDS is returned, as 0."""
     defines: dict[str, object] = {"HAS_WORDS": int(any(storage.is_integer for storage in storages))}
     if not defines["HAS_WORDS"]:
         return defines
@@ -147,7 +149,7 @@ FIRST_OF_MOTION = "motion.x"
 
 
 def _motion_line(encoding: MotionEncoding, way: str, largest: float) -> str:
-    """Return the statement that encodes the two numbers of a motion in `numbers`, or decodes them."""
+    """Return the GLSL statement that, by `way`, encodes or decodes a motion's two numbers in place in `numbers`."""
     x, y = (f"numbers[{COMPONENTS.index(f'motion.{axis}')}]" for axis in "xy")
     code = f"vec2 code_of_motion = {encoding.prefix}_{way}_motion(vec2({x}, {y}), {glsl_value(largest)});"
     return f"{{ {code} {x} = code_of_motion.x; {y} = code_of_motion.y; }}"

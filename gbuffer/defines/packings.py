@@ -44,7 +44,7 @@ class Packing(Protocol):
         ...
 
     def unpack(self) -> Operation:
-        """A texel back to the numbers."""
+        """Return the operation from a texel back to the numbers."""
         ...
 
 
@@ -132,7 +132,7 @@ class WordPacking:
 
 
 def packings_of(storage: Storage) -> tuple[Packing, ...]:
-    """A storage for two numbers, and for three where it has room for them."""
+    """Return the packings of two and of three numbers into a storage that has the channels; () for one channel."""
     return tuple(StoragePacking(storage, numbers) for numbers in (2, 3) if numbers <= storage.channels)
 
 
@@ -155,5 +155,5 @@ SIGN = (PACKINGS["depth24_sign"][0], PACKINGS["depth24"][0])
 
 
 def packing_of(codec: Codec) -> Packing:
-    """Return the packing of a codec's numbers, without its sign bits."""
+    """Return the packing of a codec's numbers, at least two, into its storage, without its sign bits."""
     return StoragePacking(codec.storage, max(codec.encoding.components, 2))

@@ -31,7 +31,8 @@ class Number:
     says: str
 
     def read(self, text: str) -> Value:
-        """The value that a text names. Raises ValueError with the values that are possible."""
+        """Return the number that a text gives. Raises ValueError, with the valid range as its message, if the text is
+        no number of the type of `usual` from `least` to `most`."""
         kind = type(self.usual)
         try:
             value = kind(text)
@@ -54,7 +55,7 @@ class Choice:
         return self.words[0]
 
     def read(self, text: str) -> Value:
-        """The word that a text names. Raises ValueError with the words that are possible."""
+        """Return the text if it is one of `words`. Raises ValueError, with `words` as its message, if not."""
         if text not in self.words:
             raise ValueError(" or ".join(self.words))
         return text
@@ -106,7 +107,7 @@ class ChosenEffect:
 
 
 def chosen(effect: Effect, given: Mapping[str, str]) -> ChosenEffect:
-    """An effect with settings given as text; the others are as usual.
+    """Return an effect with settings given as text by name; settings that are not given have their usual values.
 
     Raises:
         EffectError: it has no such setting, or the value is out of range.
@@ -114,7 +115,7 @@ def chosen(effect: Effect, given: Mapping[str, str]) -> ChosenEffect:
     settings = effect.settings
     for name, text in given.items():
         if name not in settings:
-            known = f"; known: {', '.join(settings)}" if settings else "; it has none"
+            known = f"; known: {', '.join(settings)}" if settings else "; it has no settings"
             raise EffectError(f"effect {effect.name} has no setting {name!r}{known}")
         try:
             settings[name].read(text)

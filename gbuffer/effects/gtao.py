@@ -37,9 +37,9 @@ def _falloff_weights(distance: np.ndarray) -> np.ndarray:
 SETTINGS = {
     "size": SIZE,
     "radius": RADIUS,
-    "slices": Number(3, 1, 128, "Slices through the line of sight."),
-    "steps": Number(3, 1, 128, "Taps in each slice, on either side."),
-    "power": Number(1.0, 0.1, 10.0, "Power of the result; XeGTAO's is 2.2."),
+    "slices": Number(3, 1, 128, "Number of slices through the line of sight."),
+    "steps": Number(3, 1, 128, "Number of taps per slice on each side."),
+    "power": Number(1.0, 0.1, 10.0, "Exponent of the result; XeGTAO uses 2.2."),
     "seed": SEED,
 }
 EFFECT = AmbientOcclusion(

@@ -22,9 +22,9 @@ def _falloff_weights(distance: np.ndarray) -> np.ndarray:
 SETTINGS = {
     "size": SIZE,
     "radius": RADIUS,
-    "directions": Number(8, 1, 64, "Directions on the screen."),
-    "steps": Number(4, 1, 64, "Taps in each direction."),
-    "bias": Number(0.1, 0.0, 0.9, "Sine of the angle over the tangent plane below which a tap does not occlude."),
+    "directions": Number(8, 1, 64, "Number of directions on the screen."),
+    "steps": Number(4, 1, 64, "Number of taps per direction."),
+    "bias": Number(0.1, 0.0, 0.9, "Sine of the angle above the tangent plane below which a tap does not occlude."),
     "seed": SEED,
 }
 EFFECT = AmbientOcclusion(

@@ -34,14 +34,14 @@ def _falloff_weights(distance: np.ndarray) -> np.ndarray:
 SETTINGS = {
     "size": SIZE,
     "radius": RADIUS,
-    "taps": Number(11, 1, 1024, "Taps on the spiral."),
-    "bias": Number(0.01, 0.0, 1.0, "Metres over the tangent plane below which a tap does not occlude."),
-    "strength": Number(1.0, 0.0, 100.0, "The paper's sigma, in metres; it goes with the radius."),
+    "taps": Number(11, 1, 1024, "Number of taps on the spiral."),
+    "bias": Number(0.01, 0.0, 1.0, "Height above the tangent plane, in metres, below which a tap does not occlude."),
+    "strength": Number(1.0, 0.0, 100.0, "The paper's sigma, in metres; scale it with the radius."),
     "seed": SEED,
 }
 EFFECT = AmbientOcclusion(
     "sao",
-    "scalable ambient obscurance, without its mipmaps of depth",
+    "scalable ambient obscurance, without depth mipmaps",
     "McGuire, Mara and Luebke 2012",
     VISIBILITY,
     _passes,

@@ -22,13 +22,13 @@ def _falloff_weights(distance: np.ndarray) -> np.ndarray:
 SETTINGS = {
     "size": SIZE,
     "radius": RADIUS,
-    "taps": Number(16, 1, 1024, "Points in the hemisphere over each pixel."),
-    "bias": Number(0.01, 0.0, 1.0, "Metres that a point must be behind a surface to be occluded."),
+    "taps": Number(16, 1, 1024, "Number of points in the hemisphere above each pixel."),
+    "bias": Number(0.01, 0.0, 1.0, "Distance in metres that a point must be behind a surface to be occluded."),
     "seed": SEED,
 }
 EFFECT = AmbientOcclusion(
     "ssao",
-    "ambient occlusion by points in the hemisphere over a surface",
+    "ambient occlusion by points in the hemisphere above a surface",
     "Mittring, Finding Next Gen: CryEngine 2, 2007; points flipped into the hemisphere of the normal",
     VISIBILITY,
     _passes,

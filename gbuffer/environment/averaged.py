@@ -21,7 +21,7 @@ def averaged(radiance: np.ndarray, height: int) -> np.ndarray:
 
 
 def _means(values: np.ndarray, edges: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Means between `wanted` edges of values that are constant between `edges`, both along the first axis."""
+    """Return the means between `wanted` edges, along the first axis, of values that are constant between `edges`."""
     sums = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values * np.diff(edges)[:, None], axis=0)])
     index = np.clip(np.searchsorted(edges, wanted, side="right") - 1, 0, len(values) - 1)
     up_to = sums[index] + values[index] * (wanted - edges[index])[:, None]

@@ -8,7 +8,7 @@ import numpy as np
 
 from .made import drawn, mixed, rises
 
-STRIPS, LAMP = "a dim room hung with thin strips of light", "one small round lamp in a dim room"
+STRIPS, LAMP = "a dim room with thin strips of light", "one small round lamp in a dim room"
 DIM, STRIP, BULB = np.array([0.03, 0.03, 0.035]), np.array([4.0, 4.0, 4.0]), np.array([150.0, 146.0, 138.0])
 # Degrees: from strip to strip, along longitudes and latitudes, the half width of one, and how far its edge fades.
 APART, HALF, FADE = (15.0, 20.0), 0.9, 0.7

@@ -62,7 +62,8 @@ def _microfacets(n_v: np.ndarray, alpha: np.ndarray) -> tuple[np.ndarray, np.nda
 
 @functools.cache
 def _nodes() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Shares in [0, 1] and their weights; cosines of longitudes and their weights, which make 1 together."""
+    """Return four arrays with an entry per node: its share in [0, 1], the share's weight, the cosine of its longitude
+    and the longitude's weight. The products of both weights sum to 1."""
     (shares, of_shares), (turns, of_turns) = (np.polynomial.legendre.leggauss(count) for count in NODES)
     # On the far side light ends earlier, and for grazing viewers suddenly: no node reaches across.
     longitudes = np.concatenate([(turns + 1) * np.pi / 4, (turns + 3) * np.pi / 4])

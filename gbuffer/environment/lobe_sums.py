@@ -71,7 +71,7 @@ class Grid:
 
 
 def lobe(cosine: np.ndarray, alpha: float) -> np.ndarray:
-    """D n.l for n = v = r, by r.l, up to a factor; it overwrites its input."""
+    """Return D n.l for n = v = r, by r.l, up to a factor; the result overwrites `cosine`."""
     density = cosine * (0.5 * (alpha**2 - 1))
     density += 0.5 * (1 + alpha**2)
     np.square(density, out=density)
@@ -109,7 +109,8 @@ def _spectra(grid: Grid, radiance: np.ndarray) -> np.ndarray:
 
 
 def _width(grid: Grid) -> np.ndarray:
-    """The spectrum of a texel along its row: a peak in its middle, or an area."""
+    """Return the spectrum of a texel along its row, (height + 1,): of a peak in its middle if the lobe is resolved,
+    which is 1 everywhere, or of its area."""
     frequencies = np.arange(grid.height + 1)
     return np.ones(len(frequencies)) if grid.is_resolved else np.sinc(frequencies / grid.width)
 
@@ -122,7 +123,7 @@ def _sums(grid: Grid, latitudes: np.ndarray, spectra: np.ndarray) -> tuple[np.nd
 
 
 def _pixels(grid: Grid, spectrum: np.ndarray) -> np.ndarray:
-    """Rows of directions, (rows, width / step, 3), from spectra with frequencies first."""
+    """Return rows of directions, (rows, width / step, 3), from their spectra, (frequencies, rows, 3)."""
     turned = spectrum * np.exp(-2j * np.pi * grid.offset / grid.width * np.arange(len(spectrum)))[:, None, None]
     every = np.asarray(fft.irfft(turned, grid.width, axis=0, workers=1))
     return every[grid.step // 2 :: grid.step].swapaxes(0, 1)
@@ -141,7 +142,8 @@ def _lobe_spectra(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
 
 
 def _transformed(grid: Grid, lobes: np.ndarray) -> np.ndarray:
-    """The spectrum of a lobe from half of its longitudes, which is real: around a texel's middle or its edge."""
+    """Return the spectra of lobes, which are real, from half of their longitudes, the first axis; lobes are centred
+    on a texel's middle or its edge."""
     if not grid.offset:
         return np.asarray(fft.dct(lobes, 1, axis=0, workers=1))
     spectrum = np.asarray(fft.dct(lobes, 2, axis=0, workers=1))
@@ -150,7 +152,7 @@ def _transformed(grid: Grid, lobes: np.ndarray) -> np.ndarray:
 
 
 def _far_lobes(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
-    """Integrals over texels' heights at the middle longitude of each, (longitudes, directions, rows)."""
+    """Return integrals of the lobe over texels' heights at middle longitudes, (longitudes, directions, rows)."""
     turns = np.cos((np.arange(grid.height + (not grid.offset)) + grid.offset) * grid.texel)
     nodes, weights = _gauss(np.arange(grid.height + 1) * grid.texel, 1 if grid.is_resolved else 2)
     nodes, weights = nodes.T.ravel(), (weights * np.sin(nodes)).T.ravel()
@@ -166,7 +168,7 @@ def _far_lobes(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
 
 
 def _near_lobes(grid: Grid, latitude: float) -> tuple[slice, np.ndarray]:
-    """Rows near a direction's, and integrals over their texels, (longitudes, rows)."""
+    """Return the slice of rows near a direction's latitude, and (longitudes, rows) integrals of the lobe there."""
     place = latitude / grid.texel
     first, end = max(0, int(np.ceil(place - NEAR - 0.5))), min(grid.height, int(place + NEAR + 0.5))
     edges = np.arange(first, end + 1) * grid.texel
@@ -182,9 +184,9 @@ def _near_lobes(grid: Grid, latitude: float) -> tuple[slice, np.ndarray]:
 
 
 def _pieces(edges: np.ndarray, middle: float, scale: float, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Nodes and weights of integrals between edges, and where each integral's nodes begin.
+    """Return nodes and weights of integrals between neighbouring edges, and the index of each integral's first node.
 
-    The pieces are half of `scale` wide at the lobe's middle and double from there; two nodes do beyond `reach`.
+    The pieces are half of `scale` wide at the lobe's middle and double from there; beyond `reach` each has two nodes.
     """
     doublings = np.arange(1 + max(0, int(np.ceil(np.log2(2 * (edges[-1] - edges[0]) / scale)))))
     graded = scale / 2 * 2.0**doublings

@@ -32,11 +32,11 @@ def _row(formula: Formula, row: int, height: int) -> np.ndarray:
 
 
 def rises(value: np.ndarray, start: float, end: float) -> np.ndarray:
-    """0 before `start`, 1 from `end` on, smooth between."""
+    """Return a smooth step of values: 0 before `start`, 1 from `end` on."""
     share = np.clip((value - start) / (end - start), 0, 1)
     return share * share * (3 - 2 * share)
 
 
 def mixed(first: np.ndarray, second: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """The second colour's share of the first."""
+    """Return the mix of two colours, (..., 3), by shares, (...): the first colour at 0, the second at 1."""
     return first + (second - first) * share[..., None]

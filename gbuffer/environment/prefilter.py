@@ -58,7 +58,7 @@ _keepers: list[Keep] = [_made_now]
 
 
 def keep_levels_by(keep: Keep) -> None:
-    """Set the function that keeps the prefiltered levels that frames use from now on."""
+    """Set the function that stores and returns the prefiltered levels for all later frames."""
     _keepers[:] = [keep]
 
 
@@ -77,7 +77,8 @@ def prefiltered(environment: Environment, keep: Keep = _made_now) -> Prefiltered
     height, width = radiance.shape[:2]
     if width != 2 * height or height % STEP:
         raise ValueError(
-            f"{environment.name}: {width} x {height} texels; width is twice the height, a multiple of {STEP}"
+            f"{environment.name}: {width} x {height} texels; the width must be twice the height, and the "
+            f"height a multiple of {STEP}"
         )
     levels = keep(key_of(radiance), lambda: _levels(radiance))
     return Prefiltered(np.concatenate([radiance[None].astype(np.float32), levels["fine"]]), levels["coarse"])
@@ -91,7 +92,7 @@ def key_of(radiance: np.ndarray) -> str:
 
 
 def _levels(radiance: np.ndarray) -> Arrays:
-    """Return the levels that are not a copy of the radiance."""
+    """Return the levels besides the radiance, stacked by roughness: "fine" of its size, "coarse" smaller by STEP."""
     # SciPy's transforms: who only asks what environments there are does not wait for them.
     from .lobe_sums import seen_through_lobe
 

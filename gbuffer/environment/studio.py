@@ -9,7 +9,7 @@ import numpy as np
 
 from .made import drawn, mixed, rises
 
-TITLE = "a dark room with soft boxes, thin strips and a fine grid, in which banding of reflections shows"
+TITLE = "a dark room with soft boxes, thin strips and a fine grid, which shows banding in reflections"
 
 # Half of the room's sides, in metres, seen from its middle.
 ROOM = np.array([3.0, 2.0, 3.0])
@@ -83,7 +83,7 @@ def _with_lamps(light: np.ndarray, wall: tuple[int, int], across: np.ndarray) ->
 
 
 def _walls(place: np.ndarray) -> np.ndarray:
-    """Darker in corners, as rooms are, and lighter below."""
+    """Return the colour of the walls at places, (count, 3): darker in corners, and lighter below."""
     x, y, z = np.moveaxis(np.abs(place) / ROOM, -1, 0)
     second = np.maximum(np.minimum(x, y), np.minimum(np.maximum(x, y), z))
     floor = mixed(WALL, FLOOR, rises(-place[..., 1], 1.4, 2.0))
@@ -91,7 +91,7 @@ def _walls(place: np.ndarray) -> np.ndarray:
 
 
 def _grid(across: np.ndarray) -> np.ndarray:
-    """Share of light lines at x, y."""
+    """Return the share, 0 to 1, of the grid's light lines at positions along the wall's two axes, (count, 2)."""
     distance = np.abs((across + MESH / 2) % MESH - MESH / 2).min(-1)
     is_there = (np.abs(across[:, 0]) < 1.5 + LINE / 2) & (across[:, 1] > -1.27)
     return is_there * (1 - rises(distance, LINE / 4, 3 * LINE / 4))

@@ -43,7 +43,8 @@ def found_sun(radiance: np.ndarray, most: float = MOST) -> Sun | None:
 
 
 def without_sun(environment: Environment, most: float = MOST) -> Environment:
-    """The environment with its sun as a light of equal irradiance; itself where it has none.
+    """Return an environment with its sun replaced by a directional light of equal irradiance; the environment itself
+    if `found_sun` finds no sun.
 
     Args:
         most: radiance, of each channel, that is left of the sun.
@@ -52,7 +53,7 @@ def without_sun(environment: Environment, most: float = MOST) -> Environment:
     if sun is None:
         return environment
     x, y, z = sun.towards
-    changes = (*environment.changes, f"sun above {most:g} taken out as a light")
+    changes = (*environment.changes, f"sun above {most:g} moved to a separate light")
     dim = np.minimum(environment.radiance, np.float32(most))
     return replace(environment, radiance=dim, sun=((-x, -y, -z), sun.irradiance), changes=changes)
 

@@ -51,7 +51,7 @@ class Canvas:
             self.frame.clear(resource)
 
     def textures(self, resource: Resource, copy: int = 0) -> list[Any]:
-        """A resource's textures: of the copy in use, or `copy` before it."""
+        """Return a resource's textures, of the copy in use or of the `copy`th before it; [] if the plan has none."""
         return self.frame.textures(self._declared_resource(resource, (*self._pass.reads, *self._pass.writes)), copy)
 
     def swap(self, resource: Resource) -> None:
@@ -77,7 +77,8 @@ class Canvas:
         self._size, self._view = size, view
 
     def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
-        """Compile a pair of shaders for the frame's layout and the macros in `told`. Raises ShaderError."""
+        """Compile a pair of shaders for the frame's layout and the macros in `told` and `defines`. Raises
+        ShaderError, and PipelineError if they sample a resource that the pass does not read."""
         program = self.frame.program(vertex, fragment, **{**self.told, **defines})
         for name in program:
             if (
@@ -88,11 +89,11 @@ class Canvas:
         return program
 
     def fullscreen(self, fragment: str | Path, **defines: object) -> VertexArray:
-        """A shader to run over a whole target: `render(vertices=3)`."""
+        """Return a vertex array that runs a fragment shader over a whole target: `render(vertices=3)`."""
         return self.frame.array(self.program("fullscreen.vert", fragment, **defines), [])
 
     def geometry(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Geometry:
-        """A program to draw the scene's meshes with."""
+        """Compile a pair of shaders as `program` does; return an object that draws the scene's meshes with them."""
         return Geometry(self.frame, self.program(vertex, fragment, **defines))
 
     def over(
@@ -134,7 +135,8 @@ def _is_read(name: str, program: Program) -> bool:
 
 
 def _samplers(reads: tuple[Resource, ...], writes: tuple[Resource, ...]) -> dict[str, tuple[Resource, int]]:
-    """The samplers that resources are read by, each with its resource and copy."""
+    """Return the names of the samplers for resources, each with its resource and copy: the current copy by the
+    resource's name, and for resources of several copies the previous copy by the name with `_before`."""
     samplers = {resource.name: (resource, 0) for resource in reads}
     return samplers | {f"{r.name}_before": (r, 1) for r in (*reads, *writes) if r.copies > 1}
 
@@ -161,11 +163,11 @@ class Target:
     writes_depth: bool
 
     def use(self, view: Sight | None = None, at: int | None = None) -> None:
-        """Draw here.
+        """Bind the target, so that the draws that follow are into it.
 
         Args:
-            view: from where; the scene's camera if None.
-            at: which slice of volumes; all of them, by `gl_Layer`, if None.
+            view: view to draw from; the scene's camera if None.
+            at: index of the slice of volumes to draw into; all slices, by `gl_Layer`, if None.
         """
         frame = self.canvas.frame
         colours = [texture for resource in self.colours for texture in frame.textures(resource)]

@@ -48,12 +48,13 @@ class Pass:
 
     @property
     def begins(self) -> tuple[Resource, ...]:
-        """The resources that it writes and does not read."""
+        """Resources that the pass writes but does not read; they are cleared before it runs."""
         return tuple(resource for resource in self.writes if resource not in self.reads)
 
     @property
     def offers(self) -> tuple[Resource, ...]:
-        """Resources that later passes may read without declaring them, because of a macro."""
+        """Resources that later passes may read without declaring them: all that an effect's pass with macros writes;
+        empty for other passes."""
         return self.writes if self.after and self.tells else ()
 
 
@@ -89,7 +90,7 @@ class Pipeline:
 
     @cached_property
     def told(self) -> Mapping[str, int]:
-        """All macros that its passes set."""
+        """Values of all macros that the pipeline's passes set, by name."""
         return {name: value for stage in self.stages for name, value in stage.tells.items()}
 
     @property
@@ -99,12 +100,13 @@ class Pipeline:
 
     @property
     def has_gbuffer(self) -> bool:
-        """Whether a layout makes a difference to it."""
+        """Whether any pass writes the G-buffer, so that the layout makes a difference."""
         return GBUFFER.name in self.resources
 
     @property
     def light_targets(self) -> tuple[int, ...]:
-        """Numbers of targets that its light buffer may have; empty if it has none."""
+        """Possible target counts of the light buffer: (1,) if it holds finished colours, else (1, 2); empty without a
+        light buffer."""
         if LIGHT.name not in self.resources:
             return ()
         return (1,) if self.told["LIGHT_HOLDS"] == COLOURS else (1, 2)
@@ -120,11 +122,11 @@ class Pipeline:
         return any({GBUFFER, LIGHT} <= set(stage.writes) for stage in self.stages)
 
     def planned(self, plan: Plan) -> Plan:
-        """A plan as this pipeline takes it."""
+        """Return the plan with `apart` set to this pipeline's `scaled`."""
         return replace(plan, apart=self.scaled)
 
     def upto(self, stage: Pass) -> tuple[Pass, ...]:
-        """Return the passes before this one; all of them if the pipeline does not contain it."""
+        """Return the passes before `stage`; all passes if the pipeline does not contain `stage`."""
         return self.stages[: self.stages.index(stage)] if stage in self.stages else self.stages
 
     def with_effect(self, passes: Iterable[Pass]) -> Pipeline:
@@ -144,16 +146,18 @@ def _index_after(pipeline: str, render_pass: Pass, stages: list[Pass]) -> int:
     if not places:
         known = ", ".join(stage.name for stage in stages)
         raise PipelineError(
-            f"pipeline {pipeline}: pass {render_pass.name} comes after {' or '.join(render_pass.after)}; known: {known}"
+            f"pipeline {pipeline}: pass {render_pass.name} must come after {' or '.join(render_pass.after)}; "
+            f"known: {known}"
         )
     behind = (index for index in range(places[-1] + 1, len(stages)) if not stages[index].after)
     return next(behind, len(stages))
 
 
 def _misfits(render_pass: Pass, earlier: Sequence[Pass], stages: Sequence[Pass]) -> Iterator[str]:
-    """Why a pass does not fit behind others, reason after reason."""
+    """Yield each reason why a pass cannot follow `earlier` in a pipeline of `stages`, as a predicate such as "writes
+    nothing"; nothing if the pass fits."""
     if render_pass.name in [other.name for other in earlier]:
-        yield "has the name of another pass"
+        yield "has the same name as another pass"
     if not render_pass.writes:
         yield "writes nothing"
     for resource in (*render_pass.reads, *render_pass.writes):
@@ -167,20 +171,24 @@ def _misfits(render_pass: Pass, earlier: Sequence[Pass], stages: Sequence[Pass])
 
 
 def _written(stages: Sequence[Pass]) -> dict[str, Resource]:
-    """The resources that stages write, by name."""
+    """Return the resources that passes write, by name."""
     return {resource.name: resource for stage in stages for resource in stage.writes}
 
 
 def _resource_misfits(resource: Resource, earlier: Sequence[Pass]) -> Iterator[str]:
-    """Why a resource cannot be."""
+    """Yield each reason why a pass cannot use a resource, as a predicate: the resource is invalid, or differs from an
+    earlier pass's resource of the same name."""
     if resource.misfit:
         yield f"has the resource {resource.name}, which {resource.misfit}"
     if _written(earlier).get(resource.name, resource) != resource:
-        yield f"has a resource {resource.name} that differs from an earlier pass's"
+        yield f"has a resource {resource.name} that differs from that of an earlier pass"
 
 
 def _macro_misfits(render_pass: Pass, told: Mapping[str, int]) -> Iterator[str]:
-    """Yield the reasons why a pass cannot work with the macros of earlier passes."""
+    """Yield each reason why a pass cannot work with the macros of earlier passes, as a predicate.
+
+    Args:
+        told: the values of those macros, by name."""
     for macro, value in render_pass.tells.items():
         if told.get(macro, value) != value:
             yield f"defines {macro} as {value}, but an earlier pass defines it as {told[macro]}"

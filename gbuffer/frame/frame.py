@@ -78,7 +78,8 @@ class Frame:
     # Resources
 
     def show(self, scene: Scene) -> None:
-        """Draw the scene at another moment from here on. Raises ValueError as `SceneBuffers.show`."""
+        """Replace the scene with another moment of it for the following draws. Raises ValueError as
+        `SceneBuffers.show`."""
         self.scene_buffers.show(scene)
         self.scene = scene
         for block in self._blocks.values():
@@ -86,7 +87,8 @@ class Frame:
         self._blocks.clear()
 
     def advance(self) -> None:
-        """Begin the next frame: resources that are kept between frames move on by one copy."""
+        """Begin the next frame: switch each resource that is kept between frames to its next copy, or clear all its
+        copies if it is new."""
         for resource in self.pipeline.resources.values():
             if resource.kept and resource not in self._held:
                 for _ in range(resource.copies):
@@ -96,7 +98,8 @@ class Frame:
                 self.held(resource).move_on()
 
     def held(self, resource: Resource) -> Held:
-        """Return a resource on the device, created on first use."""
+        """Return a resource's `Held` textures, created on first use; for a shared resource, the textures of the
+        resource that it shares."""
         if resource.shares and resource.is_shared(self.plan):
             return self.held(resource.shares)
         if resource not in self._held:
@@ -104,12 +107,14 @@ class Frame:
         return self._held[resource]
 
     def textures(self, resource: Resource, copy: int = 0) -> list[Any]:
-        """A resource's textures, of the copy in use or of one before it: none where the plan has no such resource."""
+        """Return a resource's textures in the current copy, or in the copy that is `copy` steps before it; a depth
+        buffer as its texture. Empty if the plan leaves the resource out."""
         held = self.held(resource).copy(copy)
         return [target.texture if isinstance(target, raw.DepthBuffer) else target for target in held]
 
     def clear(self, resource: Resource) -> None:
-        """Clear colour to 0 (the light buffer to its code for no light), depth to 1 and stencil to 0."""
+        """Clear a resource's current copy: colour to 0 (the light buffer to its code for no light), depth to 1 and
+        stencil to 0."""
         none = self.plan.light_buffer.no_light if resource == LIGHT else 0.0
         textures, is_depth = self.textures(resource), resource.texels(self.plan)[:1] in ((DEPTH_MAP,), (DEPTH_STENCIL,))
         if not textures:
@@ -129,7 +134,15 @@ class Frame:
         writes_depth: bool = False,
         layer: int | None = None,
     ) -> Framebuffer:
-        """Return a framebuffer, made on first use; `layer` is a slice of volumes. Raises FormatError if unsupported."""
+        """Return a framebuffer for these targets, created on first use.
+
+        Args:
+            colours: textures, or volumes of one size.
+            depth: the resource whose current copy is the depth; not used with volumes.
+            layer: the slice of the volumes to draw into; None for all slices.
+
+        Raises:
+            FormatError: the device cannot render to the formats."""
         against = self.held(depth).copy(0)[0] if depth else None
         key = (*(texture.glo for texture in colours), against, writes_depth, layer)
         if key not in self._framebuffers:
@@ -162,12 +175,13 @@ class Frame:
         }
 
     def _light_defines(self) -> dict[str, object]:
-        """Return the macros of the light buffer, and of the layout's curves and encoding of light."""
+        """Return macros by name: those of the light buffer, and those of the layout's curves and encoding of light.
+        Raises LayoutError if the two have different ranges."""
         light, kept = light_defines(self.plan.light_buffer), curve_defines(self.plan.layout)
         if any(light[name] != kept[name] for name in light.keys() & kept.keys()):
             buffer = self.plan.light_buffer.name
             raise LayoutError(
-                f"layout {self.plan.layout.name}: its emissive and the light buffer {buffer} have two ranges"
+                f"layout {self.plan.layout.name}: emissive and the light buffer {buffer} have different ranges"
             )
         return {**light, **kept}
 
@@ -182,8 +196,8 @@ class Frame:
         return defines
 
     def _material_tables(self) -> dict[str, Any]:
-        """Return the tables of metallic-roughness surfaces: the split sum and the environment. They outlive the
-        frame on the device."""
+        """Return lookup textures of metallic-roughness surfaces by sampler: the split sum and, if the scene has an
+        environment, its two sets of levels. Empty for other scenes. The textures outlive the frame on the device."""
         if not self.scene.is_metal_rough:
             return {}
         device = self.device
@@ -198,7 +212,8 @@ class Frame:
         return {"dither": self.device.owned(self.stack, self.device.upload(noise.added))} if noise else {}
 
     def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
-        """A compiled pair of shaders that knows the frame's layout. Raises ShaderError."""
+        """Return a compiled vertex and fragment shader with the frame's macros and `defines`, which take precedence.
+        Raises ShaderError."""
         plan = self.plan
         names: Mapping[str, Path | tuple[Path, ...]] = {
             "ENCODING": plan.layout.codec.encoding.glsl,
@@ -209,7 +224,7 @@ class Frame:
         return self.device.shared_program(self.stack, vertex, fragment, {**self._defines, **defines}, names)
 
     def array(self, program: Program, content: list[Any], indices: Any = None) -> VertexArray:
-        """Vertices under a program, released with the frame."""
+        """Return a vertex array for a program, released with the frame; `content` and `indices` are moderngl's."""
         vertex_array = self.context.vertex_array(program, content, indices)
         # Several arrays share a program: each releases itself alone.
         self.stack.callback(vertex_array.release)
@@ -224,7 +239,7 @@ class Frame:
         bind(program, {"bumps": self.scene_buffers.bumps, **self.tables, **self._by_kind(textures)})
 
     def _by_kind(self, textures: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return textures by sampler; G-buffer textures of integer formats have a separate sampler."""
+        """Return textures by sampler, with the G-buffer's textures of integer formats moved to a separate sampler."""
         storages = [target.storage for target in self.plan.layout.targets]
         if SAMPLERS not in textures or not any(storage.is_integer for storage in storages):
             return textures
@@ -235,7 +250,8 @@ class Frame:
         return {**textures, **{name: several for name, several in parts.items() if several}}
 
     def _frame_buffer(self, size: tuple[int, int], view: Sight | None) -> Buffer:
-        """Return the buffer that `frame.glsl` declares."""
+        """Return a new uniform buffer as `frame.glsl` declares it, for a target of this size, seen from `view` or by
+        the scene's camera (None)."""
         sight, previous = view or self.scene.view, view or self.scene.previous
         picture = size if view else self.plan.sampled_from or self.plan.size
         projection, to_world = sight.projection(picture[0] / picture[1]), np.linalg.inv(sight.matrix())

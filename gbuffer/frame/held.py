@@ -22,14 +22,15 @@ class Held:
         self._used = 0
 
     def copy(self, before: int) -> list[Any]:
-        """The textures, or the depth buffer, of the copy in use or of one before it."""
+        """Return the textures of the current copy (`before` is 0) or of the copy that is `before` steps before it,
+        created on first use. Depth with stencil is one `DepthBuffer`."""
         place = (self._used - before) % self._resource.copies
         if place not in self._copies:
             self._copies[place] = [self._owned_texture(texel) for texel in self._texels]
         return self._copies[place]
 
     def move_on(self) -> None:
-        """Switch to the next copy."""
+        """Make the next copy the current copy; the last copy is followed by the first."""
         self._used = (self._used + 1) % self._resource.copies
 
     def _owned_texture(self, texel: Texel) -> Any:

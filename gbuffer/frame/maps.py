@@ -40,7 +40,8 @@ class Maps:
         ]
 
     def bind(self, program: Program, material: int) -> None:
-        """Make a material's pictures those that a program samples; those the compiler dropped are left out."""
+        """Bind the map textures of material number `material` to a program's samplers; skip samplers that the
+        compiler dropped."""
         for unit, (name, texture) in enumerate(zip(MAPS, self._bound[material], strict=True), FIRST_UNIT):
             if f"{name}_map" in program:
                 program[f"{name}_map"] = unit
@@ -48,7 +49,7 @@ class Maps:
 
 
 def _sampled(texture_map: Map) -> tuple[object, ...]:
-    """Return the identity of a map's texture: maps that differ only in their placement share one."""
+    """Return a key for a map's texture: maps that differ only in their placement have equal keys."""
     return id(texture_map.texels), texture_map.is_srgb, _repeats(texture_map)
 
 
@@ -58,7 +59,7 @@ def _repeats(texture_map: Map) -> tuple[bool, bool]:
 
 
 def metal_rough_numbers(material: MetalRough) -> list[float]:
-    """Return the numbers that `instance.glsl` declares for a metallic-roughness material."""
+    """Return the numbers of a metallic-roughness material in the order in which `instance.glsl` declares them."""
     numbers = [*material.base, material.alpha, material.metalness, material.roughness, material.reflectance]
     has_normals = float(material.normal_map is not None)
     numbers += [material.cutoff, *material.emission, 0.0]

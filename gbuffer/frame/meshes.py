@@ -21,7 +21,10 @@ class Geometry:
         ]
 
     def draw(self, name: str | int, cull: str = "back") -> None:
-        """Draw one of the scene's lists; cull the "back" or "front" faces of meshes that are not two-sided."""
+        """Draw a list of `SceneBuffers.draws`, by its name or by a light's index.
+
+        Args:
+            cull: the faces to cull, "back" or "front"; meshes that are two-sided are drawn in full."""
         buffers, device = self._frame.scene_buffers, self._frame.device
         device.context.cull_face = cull
         for draw in buffers.draws[name]:

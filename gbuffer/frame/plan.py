@@ -66,5 +66,5 @@ class Plan:
 
 
 def scaled(size: tuple[int, int], scale: float) -> tuple[int, int]:
-    """A share of a size, of one pixel or more."""
+    """Return a width and height times `scale`, rounded, each at least 1."""
     return max(round(size[0] * scale), 1), max(round(size[1] * scale), 1)

@@ -74,22 +74,24 @@ class Resource:
     shares: Resource | None = None
 
     def texels(self, plan: Plan) -> tuple[Texel, ...]:
-        """The format of each of its textures."""
+        """Return the format of each of the resource's textures: a `Storage`, DEPTH_MAP or DEPTH_STENCIL. Empty if the
+        plan leaves the resource out."""
         return PLANNED[self.format](plan) if self.format in PLANNED else (FORMATS.get(self.format, self.format),)
 
     def shape(self, plan: Plan) -> tuple[int, int, int]:
-        """Width, height, and samples of a pixel."""
+        """Return the width, the height and the samples per pixel that the resource has in a plan."""
         is_image = self.follows == IMAGE
         size, samples = (plan.size, plan.samples) if is_image else (plan.surface_size, plan.surface_samples)
         own = self.scale if isinstance(self.scale, tuple) else scaled(size, self.scale)
         return *own, samples if self.samples == AS_MANY else self.samples
 
     def is_shared(self, plan: Plan) -> bool:
-        """Whether it is the resource that it shares."""
+        """Whether the resource uses the textures of `shares`, because size and samples are the same in this plan."""
         return self.shares is not None and self.shares.shape(plan) == self.shape(plan)
 
     def bytes_per_pixel(self, plan: Plan) -> float:
-        """Return the bytes of one copy, or of all if they are kept, per pixel of the image; 0 for a size in pixels."""
+        """Return the bytes of one copy, or of all copies if `kept`, per pixel of the image, with all samples; 0 if
+        the size is given in pixels or the resource is shared."""
         if isinstance(self.scale, tuple) or self.is_shared(plan):
             return 0.0
         sizes = (sum(t.bits) // 8 if isinstance(t, Storage) else DEPTH_STENCIL_BYTES for t in self.texels(plan))
@@ -98,7 +100,7 @@ class Resource:
 
     @property
     def misfit(self) -> str | None:
-        """Why it cannot be; None where it can."""
+        """Reason why the resource is invalid, as a predicate ("has the unknown format ..."); None if valid."""
         if self.format not in KNOWN:
             return f"has the unknown format {self.format!r}; known: {', '.join(KNOWN)}"
         if self.depth and (self.samples != 1 or not isinstance(self.scale, tuple)):
@@ -106,11 +108,11 @@ class Resource:
         if self.depth and not _is_plain(FORMATS.get(self.format)):
             return f"is a volume, which cannot have the format {self.format!r}"
         if self.copies < 1 or (self.kept and self.copies < 2):
-            return f"has {self.copies} copies; what is kept needs 2"
+            return f"has {self.copies} copies; a kept resource needs 2"
         return None
 
 
 def _is_plain(storage: Storage | None) -> bool:
-    """Whether a device makes volumes of a format: channels of one size, bytes or floats."""
+    """Whether a device makes volumes of a format: every channel is unorm8, float16 or float32. False for None."""
     usual = {("unorm", 8), ("float", 16), ("float", 32)}
     return storage is not None and {(storage.kind, bits) for bits in storage.bits} <= usual

@@ -34,7 +34,7 @@ class Sight(Protocol):
         ...
 
     def rays(self, size: tuple[int, int]) -> tuple[float, float, float, float]:
-        """The corner of a picture of this size at depth 1, right and up, and the near and the far plane."""
+        """Return x and y of an image's upper right corner at depth 1, and the near and far distances."""
         ...
 
 
@@ -74,13 +74,13 @@ class SceneBuffers:
         self.show(scene)
 
     def show(self, scene: Scene) -> None:
-        """Draw the scene at another moment from here on.
+        """Replace the scene with another moment of it: make its tables and draw lists for the following draws.
 
         Raises:
-            ValueError: it has other meshes, or lights of other kinds.
+            ValueError: the scene has other meshes, lights of other kinds or other surroundings; see `what_is_built`.
         """
         if what_is_built(scene) != what_is_built(self._scene):
-            raise ValueError("only a scene of the same meshes and kinds of light is another moment of a scene")
+            raise ValueError("another moment of a scene must have the same meshes and kinds of light")
         self._moment.close()
         self._scene, self.view = scene, scene.view.matrix()
         self._material = np.concatenate([part.materials for part in scene.parts])
@@ -96,7 +96,8 @@ class SceneBuffers:
         self._seen: dict[Sight, dict[int, Buffer]] = {}
 
     def bind(self, view: Sight | None = None) -> None:
-        """Make the tables those that shaders see: instances and lights in the space of a view, else the scene's own."""
+        """Bind the tables of instances, lights and materials for shaders; instances and lights in the space of
+        `view`, or of the scene's camera (None)."""
         sight = view or self._scene.view
         if sight not in self._seen:
             matrix = sight.matrix()
@@ -106,7 +107,7 @@ class SceneBuffers:
             buffer.bind_to_storage_buffer(binding)
 
     def bind_maps(self, program: Program, material: int) -> None:
-        """Make a material's maps those that a program samples."""
+        """Bind the map textures of material number `material` to a program's samplers, if the scene has maps."""
         if self._maps:
             self._maps.bind(program, material)
 
@@ -138,7 +139,8 @@ class SceneBuffers:
         return np.array([_light_numbers(light, view) for light in self.lights], np.float32).reshape(-1, 16)
 
     def _ordered_instances(self) -> np.ndarray:
-        """Fill `draws` and return the instances in the order in which the draws list them."""
+        """Fill `draws`, and return the numbers of the instances, int32, in the order in which the draws list them. An
+        instance is repeated for each list that contains it."""
         parts, transparent = self._scene.parts, self._transparent
         mesh = np.repeat(np.arange(len(parts)), [len(part.models) for part in parts])
         special = np.array([m.kind != KINDS[0] for m in self._scene.materials])[self._material]
@@ -170,8 +172,8 @@ class SceneBuffers:
         return np.array(order, np.int32)
 
     def _listed_draws(self, instances: np.ndarray, mesh: np.ndarray, order: list[int]) -> list[Draw]:
-        """Draws of instances, one for each mesh they are of and, where there are maps, for each material, appended to
-        the order."""
+        """Append instances to `order`, grouped by mesh and, if there are maps, by material. Return one draw for each
+        group."""
         of_material = self._material if self._maps else np.zeros_like(self._material)
         kinds = np.stack([mesh[instances], of_material[instances]], axis=1)
         draws = []
@@ -196,14 +198,16 @@ def _light_numbers(light: Light, view: np.ndarray) -> list[float]:
 
 
 def what_is_built(scene: Scene) -> tuple[object, ...]:
-    """Return the parts of a scene that passes are built for, which may not change from frame to frame."""
+    """Return all that passes are built for, as a key to compare: meshes, kinds of light, material model, maps and
+    surroundings. They may not change from frame to frame."""
     meshes = ((part.mesh.positions.tobytes(), part.mesh.triangles.tobytes(), part.casts) for part in scene.parts)
     lights = sorted(light.kind for light in scene.lights)
     return *meshes, *lights, scene.is_metal_rough, scene.has_maps, scene.environment
 
 
 def bounds(scene: Scene, casters_only: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """World-space centres (instances, 3) and radii (instances,) of balls around every instance."""
+    """Return world-space bounding spheres of all instances, or only of those that cast shadows: centres,
+    (instances, 3), and radii, (instances,)."""
     centres, radii = [], []
     for part in scene.parts:
         if casters_only and not part.casts:
@@ -224,7 +228,7 @@ def sun_matrix(scene: Scene) -> np.ndarray:
         ValueError: nothing casts a shadow, or the scene has no sun.
     """
     if scene.sun is None or not any(part.casts for part in scene.parts):
-        raise ValueError("no sun, or nothing that casts a shadow")
+        raise ValueError("the scene has no sun, or nothing in it casts a shadow")
     z = np.array(scene.sun.direction)
     x = np.cross(z, np.eye(3)[np.argmin(abs(z))])
     x = x / np.linalg.norm(x)

@@ -24,13 +24,13 @@ def device_texels(device: Device, blocks: bytes, size: tuple[int, int], internal
         FormatError: the device does not support the format, or a texture of this size.
     """
     if max(size) > device.max_size:
-        raise FormatError(f"{device.renderer} has textures of up to {device.max_size} texels per side, not {max(size)}")
+        raise FormatError(f"{device.renderer} supports at most {device.max_size} texels per side, not {max(size)}")
     with ExitStack() as stack:
         device.context.error  # noqa: B018 # reading it clears what an earlier call left
         number = compressed_texture(size, internal_format, blocks)
         stack.callback(delete_texture, number)
         if (error := device.context.error) != "GL_NO_ERROR":
-            raise FormatError(f"{device.renderer} has no textures of this compressed format ({error})")
+            raise FormatError(f"{device.renderer} does not support this compressed format ({error})")
         texture = device.context.external_texture(number, size, 4, 0, "f4")
         texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         result = device.owned(stack, device.target(size, STORAGES["rgba32f"]))

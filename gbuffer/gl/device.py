@@ -42,7 +42,7 @@ POINTS = moderngl.POINTS
 INSTALL = {
     "linux": "install an OpenGL driver (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri)",
     "win32": "install the driver of the GPU's vendor",
-    "darwin": "Apple's OpenGL ends at 4.1; use quality --backend wgsl, which runs on Metal",
+    "darwin": "Apple supports OpenGL only up to 4.1; use quality --backend wgsl, which runs on Metal",
 }
 
 
@@ -112,7 +112,10 @@ class Device:
         self.context.enable_direct(FRAMEBUFFER_SRGB)
 
     def fragment_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
-        """A program that runs a fragment shader over a whole target, as a vertex array to render.
+        """Return a vertex array that runs a fragment shader over a whole target when it is rendered; see `render`.
+
+        Args:
+            path, defines, names: as of `Source`.
 
         Raises:
             ShaderError: it does not compile; the message names the file and the line.
@@ -122,7 +125,8 @@ class Device:
     def program(
         self, vertex: str | Path, fragment: str | Path, defines: Mapping[str, object] | None = None, names=None
     ):
-        """A vertex and a fragment shader under the same macros. Raises ShaderError as `fragment_pass` does."""
+        """Return a program of a vertex and a fragment shader, compiled with the same macros. Raises ShaderError as
+        `fragment_pass` does."""
         return self._compiled_program(Source(vertex, defines, names), Source(fragment, defines, names))
 
     def shared_program(
@@ -133,7 +137,8 @@ class Device:
         defines: Mapping[str, object],
         names=None,
     ) -> moderngl.Program:
-        """A program in use until the stack closes, which the device keeps for the next who asks for the same."""
+        """Return a program that is in use until the stack closes; the device keeps it for later requests of the same
+        shaders. Raises ShaderError as `fragment_pass` does."""
         sources = Source(vertex, defines, names), Source(fragment, defines, names)
         key = (sources[0].text, sources[1].text)
         return self._programs.used(stack, key, lambda: self._compiled_program(*sources))
@@ -148,13 +153,14 @@ class Device:
             raise ShaderError(second.explain(str(error))) from error
 
     def compute_pass(self, path: str | Path, defines: Mapping[str, object] | None = None, names=None):
-        """A compute shader. Raises ShaderError as `fragment_pass` does."""
+        """Return a compiled compute shader. Raises ShaderError as `fragment_pass` does."""
         source = Source(path, defines, names)
         with explained(source):
             return self.context.compute_shader(source.text)
 
     def computed(self, compute: moderngl.ComputeShader, inputs: Sequence[np.ndarray], outputs: int) -> list[np.ndarray]:
-        """Return the arrays that a compute shader, 64 to a group, fills; they have the inputs' shape, (count, 4)."""
+        """Run a compute shader in groups of 64 on float32 arrays of shape (count, 4), and return `outputs` arrays of
+        that shape. Storage buffers are bound from 0: the inputs, then the outputs."""
         count = len(inputs[0])
         with ExitStack() as stack:
             given = [self.context.buffer(np.ascontiguousarray(a, np.float32)) for a in inputs]
@@ -185,7 +191,9 @@ class Device:
         """
         if max(size) > self.max_volume:
             asked = " x ".join(map(str, size))
-            raise FormatError(f"{self.renderer} has volumes of up to {self.max_volume} texels per side, not {asked}")
+            raise FormatError(
+                f"{self.renderer} supports at most {self.max_volume} texels per side of a volume, not {asked}"
+            )
         volume = self.context.texture3d(size, storage.channels, dtype=_dtype(storage))
         volume.filter = (moderngl.NEAREST, moderngl.NEAREST)
         return volume
@@ -199,12 +207,12 @@ class Device:
 
     @staticmethod
     def smooth(texture: moderngl.Texture | moderngl.Texture3D) -> None:
-        """Make shaders blend between a texture's texels, without repeating it beyond the border."""
+        """Set a texture to linear filtering, clamped at its border."""
         texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
         texture.repeat_x = texture.repeat_y = False
 
     def mipmapped(self, texels: np.ndarray) -> moderngl.Texture:
-        """A float16 array of shape (height, width, channels) that shaders sample at every size."""
+        """Return a texture with mipmaps and trilinear filtering from a float16 array (height, width, channels)."""
         height, width, channels = texels.shape
         texture = self.context.texture((width, height), channels, texels.tobytes(), dtype="f2")
         texture.build_mipmaps()
@@ -232,7 +240,7 @@ class Device:
         return texture
 
     def layers(self, pixels: np.ndarray) -> moderngl.TextureArray:
-        """A float32 array of shape (layers, height, width, 3) to fetch texels from."""
+        """Return a float32 texture array, unfiltered, from an array (layers, height, width, channels)."""
         count, height, width, channels = pixels.shape
         data = np.ascontiguousarray(pixels, np.float32).tobytes()
         texture = self.context.texture_array((width, height, count), channels, data, dtype="f4")
@@ -245,18 +253,21 @@ class Device:
         key: Hashable,
         make: Callable[[], Sequence[moderngl.Texture | moderngl.TextureArray]],
     ) -> list[Any]:
-        """Textures in use until the stack closes, which the device keeps for the next who asks for the same."""
+        """Return the textures of a key, from `make` unless the device still has them. They are in use until the stack
+        closes, and kept for later requests of the key."""
         return self._textures.used(stack, key, lambda: list(make()))
 
     @staticmethod
     def build_mips(texture: moderngl.Texture) -> None:
-        """The levels of a target as the device makes them of its texels; shaders sample level 0 smoothly."""
+        """Generate a target's mipmaps from its texels. Set linear filtering within the nearest level, clamped at the
+        border."""
         texture.build_mipmaps()
         texture.filter = (moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR)
         texture.repeat_x = texture.repeat_y = False
 
     def given_samples(self, asked: int) -> int:
-        """Return a target's samples per pixel for a requested number: a power of two or the next the device has."""
+        """Return the samples per pixel that a target gets for a requested number, 1 or more: rounded down to a power
+        of two and to the device's maximum, and up if the device lacks that power."""
         samples = 1 << (min(asked, self.max_samples).bit_length() - 1)
         if samples == 1:
             return 1
@@ -312,7 +323,8 @@ class Device:
     def framebuffer(
         self, targets: Sequence[moderngl.Texture], depth: DepthBuffer | moderngl.Texture | None = None
     ) -> moderngl.Framebuffer:
-        """Textures to draw into, or a depth alone. Raises FormatError where the device cannot."""
+        """Return a framebuffer of colour textures and a depth, or of a depth alone. Raises FormatError if the device
+        cannot render to it."""
         try:
             if not isinstance(depth, DepthBuffer):
                 return self.context.framebuffer(list(targets), depth)
@@ -336,11 +348,17 @@ class Device:
         return framebuffer
 
     def blend(self, function: tuple[int, int] | None) -> None:
-        """Blend the following draws by source and destination factor, or not; turn the depth test off."""
+        """Set blending by source and destination factor for the following draws, None for no blending; turn off the
+        depth test and culling."""
         self.state(None, function)
 
     def state(self, depth: str | None, blend: tuple[int, int] | None = None, cull: str | None = None) -> None:
-        """Depth test, blending and culling of the draws that follow; everything else off."""
+        """Set the depth test, blending and culling of the following draws.
+
+        Args:
+            depth: the comparison, such as "<"; None for no depth test.
+            blend: the source and the destination factor; None for no blending.
+            cull: the faces to cull, "front" or "back"; None to draw both."""
         flags = moderngl.NOTHING
         if depth:
             self.context.depth_func = depth
@@ -354,11 +372,12 @@ class Device:
         self.context.enable_only(flags)
 
     def cull(self, is_on: bool) -> None:
-        """Leave out the sides that `state` or `cull_face` names, or draw both."""
+        """Turn culling of the faces that `state` or `cull_face` names on or off."""
         (self.context.enable if is_on else self.context.disable)(moderngl.CULL_FACE)
 
     def resolve(self, samples: moderngl.Texture, pixels: moderngl.Texture) -> None:
-        """A texture's samples averaged into one of a sample a pixel, as the hardware does. Raises FormatError."""
+        """Average the samples of each pixel of the texture `samples` into the texture `pixels`, as the hardware does.
+        Raises FormatError."""
         with ExitStack() as stack:
             source, target = (self.owned(stack, self.framebuffer([texture])) for texture in (samples, pixels))
             self.context.copy_framebuffer(target, source)
@@ -378,7 +397,7 @@ class Device:
 
     @staticmethod
     def owned(stack: ExitStack, thing: Owned) -> Owned:
-        """`thing`, released with the stack; a pass takes its program along, which a vertex array does not own."""
+        """Return `thing` unchanged. When the stack closes, release it and, for a vertex array, its program."""
         stack.callback(thing.release)
         program = getattr(thing, "program", None)
         if program:
@@ -415,7 +434,8 @@ class Device:
 
 
 def bind(program: Any, textures: Mapping[str, moderngl.Texture | Sequence[moderngl.Texture]]) -> None:
-    """Textures, and lists of them for arrays, to samplers by name; those the compiler dropped are left out."""
+    """Bind textures to a program's samplers by name, and lists of textures to arrays of samplers; skip those that the
+    compiler dropped."""
     unit = 0
     for name, given in textures.items():
         if name not in program:
@@ -432,7 +452,7 @@ def bind(program: Any, textures: Mapping[str, moderngl.Texture | Sequence[modern
 
 @contextmanager
 def explained(source: Source) -> Iterator[None]:
-    """Turns a compiler's complaint about a source into a ShaderError that names files and lines."""
+    """Run a block; raise a compiler's error in it as a ShaderError that names the source's files and lines."""
     try:
         yield
     except moderngl.Error as error:
@@ -452,14 +472,14 @@ def in_steps(texels: np.ndarray, storage: Storage, channel: int = 0) -> np.ndarr
 
 
 def read_pixels(texture: moderngl.Texture) -> np.ndarray:
-    """A float32 texture as an array of shape (height, width, channels)."""
+    """Return the texels of a float32 texture, read back from the device, (height, width, channels)."""
     width, height = texture.size
     return np.frombuffer(texture.read(), np.float32).reshape(height, width, texture.components)
 
 
 @cache
 def device() -> Device:
-    """The process's one GL device. Raises NoDeviceError."""
+    """Return the process's only GL device, opened at the first call. Raises NoDeviceError."""
     gl_device = Device()
     OPENED.append(gl_device)
     return gl_device

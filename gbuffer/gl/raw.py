@@ -65,7 +65,8 @@ _FINDERS = {
 
 @cache
 def _lookup() -> Callable[[bytes], int | None]:
-    """The function that finds GL's functions for the current context."""
+    """Return a function from the name of a GL function, in bytes, to its address in the current context, or None.
+    Raises OSError if no GL library can be loaded."""
     for name, function in _FINDERS.items():
         try:
             library = ctypes.CDLL(name)
@@ -90,14 +91,14 @@ def _address_within(library: ctypes.CDLL, name: str) -> int | None:
 
 @cache
 def function(name: str) -> Callable[..., Any]:
-    """A GL function by name, with its C types."""
+    """Return a GL function, with its C types, by a name in _SIGNATURES."""
     address = _lookup()(name.encode())
     arguments = [_TYPES[letter] for letter in _SIGNATURES[name]]
     return ctypes.CFUNCTYPE(ctypes.c_uint, *arguments)(address or 0)
 
 
 def samples_of(texture: moderngl.Texture) -> int:
-    """The samples a pixel that a texture of several has, which may be more than were asked for."""
+    """Return the samples per pixel of a multisample texture, which may be more than were requested."""
     samples = ctypes.c_int()
     function("glBindTexture")(TEXTURE_2D_MULTISAMPLE, texture.glo)
     function("glGetTexLevelParameteriv")(TEXTURE_2D_MULTISAMPLE, 0, TEXTURE_SAMPLES, ctypes.byref(samples))
@@ -140,7 +141,8 @@ class DepthBuffer:
             self.texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
 
     def attach(self, framebuffer: moderngl.Framebuffer) -> None:
-        """Make it a framebuffer's depth, and stencil if it has one. Raises moderngl.Error where that cannot be."""
+        """Attach the buffer to a framebuffer as its depth, and stencil if it has one; the framebuffer becomes
+        current. Raises moderngl.Error if the framebuffer is then incomplete."""
         framebuffer.use()
         function("glFramebufferTexture2D")(FRAMEBUFFER, self._attachment, self._target, self._number, 0)
         status = function("glCheckFramebufferStatus")(FRAMEBUFFER)
@@ -153,7 +155,8 @@ class DepthBuffer:
 
 
 def compressed_texture(size: tuple[int, int], internal_format: int, blocks: bytes) -> int:
-    """A texture of compressed blocks, row by row; its GL number. An unknown format leaves a GL error, and no texels."""
+    """Create a texture from compressed blocks, row by row, and return its GL number. An unknown format leaves a GL
+    error and a texture without texels."""
     number = ctypes.c_uint()
     function("glGenTextures")(1, ctypes.byref(number))
     function("glBindTexture")(TEXTURE_2D, number.value)
@@ -176,17 +179,17 @@ def attach_slice(index: int, volume: int, layer: int | None) -> None:
 
 
 def depth_stencil(context: moderngl.Context, size: tuple[int, int], samples: int) -> DepthBuffer:
-    """Depth and stencil, D32F S8."""
+    """Return a new buffer of depth and stencil, D32F S8."""
     return DepthBuffer(context, size, samples, DEPTH32F_STENCIL8, DEPTH_STENCIL_ATTACHMENT)
 
 
 def clear_depth_stencil() -> None:
-    """Depth to 1 and stencil to 0 in the framebuffer in use."""
+    """Clear depth to 1 and stencil to 0 in the current framebuffer."""
     function("glClearBufferfi")(FRAMEBUFFER_DEPTH_STENCIL, 0, 1.0, 0)
 
 
 def clear_words(attachments: Iterable[int]) -> None:
-    """Whole numbers to 0 in attachments of the framebuffer in use."""
+    """Clear integer colour attachments of the current framebuffer, by their numbers, to 0."""
     for attachment in attachments:
         function("glClearBufferuiv")(COLOR, attachment, (ctypes.c_uint * 4)())
 
@@ -201,7 +204,8 @@ def mark_volume() -> None:
 
 
 def shade_marked(again: bool = False) -> None:
-    """Draws change colour where the stencil is not 0, and set it to 0; not if another draw comes `again`."""
+    """Make draws change colour only where the stencil is not 0, and set it to 0 there; keep the stencil if another
+    draw comes `again`."""
     function("glColorMask")(1, 1, 1, 1)
     function("glStencilFunc")(NOTEQUAL, 0, 0xFF)
     after = KEEP if again else ZERO
@@ -209,7 +213,7 @@ def shade_marked(again: bool = False) -> None:
 
 
 def once_a_pixel(number: int) -> None:
-    """Draws change each sample once: where the stencil is not `number`, 1 to 255, and set it so."""
+    """Make draws change each sample once: where the stencil is not `number` (1 to 255), and set it to `number`."""
     function("glStencilFunc")(NOTEQUAL, number, 0xFF)
     function("glStencilOpSeparate")(FRONT_AND_BACK, KEEP, KEEP, REPLACE)
 
@@ -225,9 +229,8 @@ def blend_by(alpha: float) -> None:
 
 
 def compute_program(code: bytes, entry: str) -> int:
-    """Make a compute program of a module of SPIR-V, which the device must know (GL_ARB_gl_spirv); its GL number.
-
-    Raises moderngl.Error where the driver refuses it.
+    """Return the GL number of a compute program made from a module of SPIR-V, whose main function is `entry`. The
+    device must support GL_ARB_gl_spirv. Raises moderngl.Error if the driver refuses the module.
     """
     shader, program = ctypes.c_uint(function("glCreateShader")(COMPUTE)), function("glCreateProgram")()
     function("glShaderBinary")(1, ctypes.byref(shader), SPIRV, code, len(code))
@@ -238,7 +241,7 @@ def compute_program(code: bytes, entry: str) -> int:
     function("glGetProgramiv")(program, LINKED, ctypes.byref(is_linked))
     if not is_linked.value:
         function("glGetProgramInfoLog")(program, len(log), None, log)
-        raise moderngl.Error(log.value.decode(errors="replace") or "the driver does not link the SPIR-V")
+        raise moderngl.Error(log.value.decode(errors="replace") or "the driver cannot link the SPIR-V")
     return program
 
 

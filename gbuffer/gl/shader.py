@@ -36,7 +36,7 @@ def shaders() -> Mapping[str, Path]:
     shared = (path for pattern in SHARED for path in (ROOM.parent / "encodings").glob(pattern))
     for path in sorted([*ROOM.rglob("*.*"), *shared]):
         if path.suffix in SUFFIXES and path != paths.setdefault(path.name, path):
-            raise ShaderError(f"two shaders have one name: {paths[path.name]} and {path}")
+            raise ShaderError(f"two shaders have the same name: {paths[path.name]} and {path}")
     return paths
 
 
@@ -103,7 +103,7 @@ def _words(text: str) -> frozenset[str]:
 
 @cache
 def _is_own(path: Path) -> bool:
-    """Whether a file is one of this room's or of the encodings."""
+    """Whether a file is in the folder `gbuffer` or `encodings`, by a path without `..`."""
     return ".." not in path.parts and any(path.is_relative_to(ROOM.parent / room) for room in (ROOM.name, "encodings"))
 
 
@@ -131,7 +131,8 @@ def _joined_text(lines: Iterable[Line]) -> str:
 def _expanded(
     main: Path, names: Sequence[tuple[str, tuple[Path, ...]]], may_read: Callable[[Path], bool] | None = None
 ) -> tuple[list[Line], str]:
-    """Return the lines of a shader and its includes, each file once, and the text of all lines but the first."""
+    """Return the lines of a shader and its includes, each file once and each line with its file and number, and the
+    text of all lines but the first. Raises ShaderError."""
     stand_for, seen = dict(names), set()
 
     def expand(path: Path) -> list[Line]:
@@ -145,11 +146,13 @@ def _expanded(
         _, path, number = line
         named = match["name"]
         if named and named not in stand_for:
-            raise ShaderError(f"{path}:{number}: nothing is named {named}")
+            raise ShaderError(f"{path}:{number}: unknown include name {named}")
         targets = [*map(_resolved_path, stand_for[named])] if named else [_beside(path, match["file"])]
         for target in targets:
             if may_read and not (_is_own(target) or may_read(target)):
-                raise ShaderError(f"{main}: it includes {target}, which is outside its folder; move it there")
+                raise ShaderError(
+                    f"{main}: the included file {target} is outside the folder of the shader; move it there"
+                )
         return [included_line for target in targets if target not in seen for included_line in expand(target)]
 
     lines = expand(main)
@@ -162,7 +165,8 @@ _expanded_of_own = lru_cache(maxsize=256)(_expanded)
 
 @_once_of_own
 def _lines(path: Path) -> list[Parsed]:
-    """The lines of a shader's file. Raises ShaderError."""
+    """Return each line of a shader's file as (text, path, number), with the match of its #include or None. Raises
+    ShaderError."""
     lines: list[Parsed] = []
     for number, line in enumerate(read_shader(path).splitlines(), 1):
         match = _INCLUDE.match(line) if "#include" in line else None
@@ -173,7 +177,8 @@ def _lines(path: Path) -> list[Parsed]:
 
 @_once_of_own
 def _beside(path: Path, file: str) -> Path:
-    """The file that a shader at `path` includes, its path resolved."""
+    """Return the resolved path of the file that a shader at `path` includes: next to the shader, or else the shader
+    of that name in `shaders`. If neither exists, return the path next to the shader."""
     near = path.parent / file
     with suppress(OSError):  # of a name that is too long, which whoever reads it says
         if near.is_file():
@@ -190,7 +195,8 @@ def read_shader(path: Path) -> str:
 
 
 def glsl_value(value) -> str:
-    """A Python number, tuple of numbers (of ints if all are), or text as GLSL writes it."""
+    """Return a value as GLSL: a tuple as `int[n](...)` if all its numbers are ints, else as `float[n](...)`; numbers
+    and text as they are."""
     if isinstance(value, tuple) and all(isinstance(v, int) for v in value):
         return f"int[{len(value)}]({', '.join(map(str, value))})"
     if isinstance(value, tuple):

@@ -26,13 +26,14 @@ MOTION = "motion"
 
 
 def quantity_of(component: str) -> str:
-    """Return the quantity that a component of a layout belongs to: `base_color` for `base_color.r`."""
+    """Return the quantity that a component of a layout belongs to: `base_color` for `base_color.r`, `f0.rgb` for
+    `f0.r`, `f0` for `f0`."""
     base, dot, _ = component.partition(".")
     return F0_COLOUR if dot and base == F0 else base
 
 
 def channels_of(colour: str) -> tuple[str, ...]:
-    """Return the components of one of COLOURS."""
+    """Return the three components of one of COLOURS: `f0.r`, `f0.g` and `f0.b` for `f0.rgb`."""
     return tuple(f"{colour.removesuffix('.rgb')}.{channel}" for channel in "rgb")
 
 
@@ -50,12 +51,13 @@ class Kept:
 
     @property
     def is_whole(self) -> bool:
-        """Whether it keeps a light in four numbers."""
+        """Whether the encoding stores light as one code of four numbers, which fill a texel."""
         return isinstance(self.encoding, LightEncoding)
 
 
 def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
-    """Return the encoding that `name`, or `name:limit`, selects for a quantity such as `roughness` or `emissive`.
+    """Return the encoding and range that `name`, or `name:limit`, selects for a quantity such as `roughness` or
+    `emissive`. A `limit` of None is the usual range.
 
     Raises:
         ValueError: the name is unknown, it is not for that quantity, or the range is invalid; one line.
@@ -66,7 +68,7 @@ def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
         raise ValueError(f"only {', '.join((*COLOURS, *SINGLE, MOTION))} can use a curve")
     if name in WHOLE:
         if quantity != LIGHT or limit is not None:
-            raise ValueError(f"{name} stores light in a whole texel, as in {name}({LIGHT})")
+            raise ValueError(f"{name} stores light in a whole texel; write {name}({LIGHT})")
         return Kept(WHOLE[name])
     if name not in CURVE_ENCODINGS:
         raise ValueError(f"unknown curve {name!r}; known: {', '.join((*CURVE_ENCODINGS, *WHOLE))}")
@@ -75,9 +77,10 @@ def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
 
 
 def _kept_motion(name: str, limit: str | None) -> Kept:
-    """Return the encoding of motion. Raises ValueError."""
+    """Return the encoding of motion of this name with the range `limit`, a number as text; None for 1. Raises
+    ValueError."""
     if name not in MOTION_ENCODINGS:
-        raise ValueError(f"unknown encoding of motion {name!r}; known: {', '.join(MOTION_ENCODINGS)}")
+        raise ValueError(f"unknown motion encoding {name!r}; known: {', '.join(MOTION_ENCODINGS)}")
     return Kept(MOTION_ENCODINGS[name], 1.0 if limit is None else _range_of(limit))
 
 

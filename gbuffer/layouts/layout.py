@@ -105,9 +105,9 @@ class Layout:
 
     @property
     def _undithered(self) -> str | None:
-        """Why no noise is added to the normal's code; None where it can be."""
+        """Reason why noise cannot be added to the normal's code; None if it can."""
         if any(word.bits for word in self.words if word.component.startswith("normal.")):
-            return "noise needs one channel per component"
+            return "dithering needs one channel per component"
         return self.codec.undithered
 
     def _check_normal_words(self, components: Collection[str]) -> None:
@@ -134,7 +134,9 @@ class Layout:
                 continue
             is_whole = bool(words and words[0].kept and words[0].kept.is_whole)
             if is_whole != any(word.component == f"{colour}.a" for word in words) or (is_whole and len(words) < 4):
-                raise LayoutError(f"layout {self.name}: encodings of light have four components, as in rgb9e5({LIGHT})")
+                raise LayoutError(
+                    f"layout {self.name}: an encoding of light has four components; write for example rgb9e5({LIGHT})"
+                )
 
     @property
     def kept(self) -> dict[str, Kept]:
@@ -163,7 +165,7 @@ class Layout:
 
     @property
     def depth_encoding(self) -> DepthEncoding:
-        """The encoding of its depth."""
+        """The layout's encoding of depth: `depth`, or the first of the catalogue that suits the normal."""
         return self.depth or self._suitable_depths[0]
 
     def _check_names(self) -> None:
@@ -176,7 +178,8 @@ class Layout:
 
     @cached_property
     def words(self) -> tuple[Word, ...]:
-        """The positions of all components. Raises LayoutError if one does not fit."""
+        """One `Word`, with its position, for each component that is stored, in the order of the targets; free bits
+        and `other` are left out. Raises LayoutError if a word does not fit."""
         words = [word for index, target in enumerate(self.targets) for word in placed(self.name, index, target)]
         if len([word for word in words if word.sign]) > 1:
             raise LayoutError(f"layout {self.name}: a layout can have only one quantity with a sign")
@@ -194,7 +197,7 @@ class Layout:
         if bits < least:
             raise LayoutError(f"{place}: {component} needs {least} bits, not {bits}")
         if storage.kind == "float" and bits < 16 and is_signed and component == "depth":
-            raise LayoutError(f"{place}: {storage.title} has no sign, which {component} needs")
+            raise LayoutError(f"{place}: {storage.title} cannot store the sign that {component} needs")
         if component.startswith("normal."):
             self._check_normal(place, component, storage, bits)
 
@@ -219,13 +222,14 @@ class Layout:
 
     @property
     def components(self) -> frozenset[str]:
-        """Components that it stores; a roughness is a power too."""
+        """Names of the components that the layout stores; `power` is included if `roughness` is stored."""
         components = frozenset(word.component for word in self.words)
         return components | {"power"} if "roughness" in components else components
 
     @property
     def metal_rough_components(self) -> frozenset[str]:
-        """Components of a metallic-roughness surface: with metallic, the base colour is its reflectance too."""
+        """`components`, with `f0.r`, `f0.g` and `f0.b` if `metallic` is stored: the base colour is then the
+        reflectance too."""
         return self.components | ({*channels_of(F0_COLOUR)} if "metallic" in self.components else set())
 
     @property
@@ -236,19 +240,20 @@ class Layout:
 
     @property
     def normal_storage(self) -> str:
-        """The format of the normal, and its bits if they are packed into channels of another size."""
+        """Name of the normal's format, followed by the bits of each number if they are packed: "rgba8 12:12"."""
         packed = [str(word.bits) for word in self.words if "normal" in word.component and word.bits]
         return " ".join(filter(None, (self.codec.storage.name, ":".join(packed))))
 
     @property
     def normal_bits(self) -> int:
-        """The bits its normal takes, with one for each sign bit."""
+        """Number of bits that store the normal, including one for each sign that the depth or another word stores."""
         taken = (w.bits or self.targets[w.target].storage.bits[w.first] for w in self.words if "normal" in w.component)
         return sum(taken) + self.encoding.sign_bits + bool(self.carrier)
 
     @property
     def normal_scales(self) -> tuple[float, ...]:
-        """Integers that represent 1 in the first three numbers of the normal's code; 1 for a missing number."""
+        """Scale of each of the first three numbers of the normal's code: the integer that represents 1, as a float;
+        1.0 for a number that is not stored."""
         normal_words = {w.component: w for w in self.words if "normal" in w.component}
         words = [normal_words.get(f"normal.{axis}") for axis in "xyz"]
         return tuple(float(self._scale(word)) if word else 1.0 for word in words)
@@ -268,8 +273,9 @@ class Layout:
 
     @property
     def reflects_by(self) -> str:
-        """The attributes that define a surface's reflectance: the contract between materials and light. Layouts
-        with different contracts cannot be compared byte by byte. Empty if the layout is not whole."""
+        """The attributes that define a surface's reflectance: the contract between materials and light. Layouts with
+        different contracts cannot be compared byte by byte. Empty if the layout is not whole, or stores neither
+        `metallic` nor `f0.r`."""
         if not self.is_whole:
             return ""
         if "metallic" in self.components:
@@ -287,7 +293,7 @@ class Layout:
         if storage.only_measured:
             raise LayoutError(f"layout {self.name}: {storage.title}: a layout cannot store {storage.only_measured}")
         if storage.is_packed and codec.is_dithered:
-            raise LayoutError(f"layout {self.name}: {storage.title}: fields across channels are drawn without noise")
+            raise LayoutError(f"layout {self.name}: {storage.title}: fields across channels cannot be dithered")
         is_signed = storage.is_packed and storage.kind == "snorm"
         if is_signed and codec.rounding != "nearest":
             raise LayoutError(f"layout {self.name}: {storage.title}: signed fields must be rounded to nearest")
@@ -336,7 +342,8 @@ def _words_without_depth(holds: str) -> list[str]:
 
 
 def catalogue_encoding(word: str) -> Encoding:
-    """An encoding of the catalogue, or one with settings: octahedral:axis=y. Raises LayoutError."""
+    """Return the encoding of the catalogue that a word names, with settings if it has any, as in octahedral:axis=y.
+    Raises LayoutError."""
     name = word.partition(MARK)[0]
     if name not in ENCODINGS:
         raise LayoutError(f"unknown encoding {name!r}; known: {', '.join(ENCODINGS)}")
@@ -386,7 +393,7 @@ def _layout_from_data(path: Path, data: dict[str, Any], encoding_named: Callable
     if not all(isinstance(text, str) for text in texts.values()):
         raise LayoutError(f"{path}: {', '.join(texts)} must be strings, and encoding must be given")
     if not isinstance(targets, list) or not targets or not all(_is_target(target) for target in targets):
-        raise LayoutError(f"{path}: targets must be a list of tables, each with the strings format and holds")
+        raise LayoutError(f"{path}: targets must be a list of tables, each with the keys format and holds")
     named: dict[str, Any] = {"encoding": encoding_named(texts.pop("encoding"))}
     depth = texts.pop("depth")
     named |= {"depth": _known_value(path, "depth", depth, DEPTH_ENCODINGS)} if depth else {}

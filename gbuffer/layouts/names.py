@@ -47,7 +47,8 @@ class RefusedWordError(ValueError):
 
 
 def named(word: str, has_curve: bool = False) -> str:
-    """Return the name of a word in COMPONENTS, with its curve; an unknown word is returned unchanged.
+    """Return an attribute's name in a layout for an engine's name: `base_color.r` for `albedo.r`, and with its curve
+    `inverted(roughness)` for `smoothness`. An unknown word is returned unchanged.
 
     Args:
         has_curve: whether the word is inside a curve's parentheses.

@@ -67,7 +67,7 @@ _ARTICLES = (
         "base colour, AO; normal; roughness, metallic, f0, Deferred ID; emissive in the light buffer",
         targets_of("srgb8_a8: base_color ao; rg16: normal.x normal.y; rgba8: roughness metallic f0 shading_model"),
         ENCODINGS["octahedral"],
-        "this project: what engines of metallic-roughness materials usually keep",
+        "this project: the usual attributes of engines with metallic-roughness materials",
         space="world",
     ),
     Layout(

@@ -24,7 +24,7 @@ KAJIYA = (
 )
 # Decals.
 BLENDED = "blended into the targets"
-BEFORE = "gathered in buffers of their own and applied when the targets are written"
+BEFORE = "collected in separate buffers and applied when the targets are written"
 IN_SHADER = "evaluated in the material's shader"
 
 
@@ -45,7 +45,7 @@ WHOLE_ENGINES = (
         "rgba8: metallic linear:0.08(f0) roughness other:4 shading_model:4; srgb8_a8: base_color ao; "
         "rgba8: other other other other",
         "rgba16f",
-        UNREAL_4 + "; with static light AO is its irradiance, and motion has a target of its own",
+        UNREAL_4 + "; with static light AO holds its irradiance, and motion has a separate target",
         decals=BEFORE + ", or " + BLENDED,
     ),
     _whole(
@@ -64,14 +64,14 @@ WHOLE_ENGINES = (
         "Unreal Engine",
         2026,
         "unreal5_substrate",
-        "Substrate's simple slab: octahedral 11:11, roughness 10; diffuse and F0 in 7:7:6 bits on the root, a header",
+        "Substrate's simple slab: octahedral 11:11, roughness 10; diffuse and F0 as square roots 7:7:6, a header",
         ENCODINGS["octahedral"],
         "rgba8: normal.x:11 normal.y:11 roughness:10; "
         "rgba8: shading_model:4 other:12 square_root(diffuse_color.r):7 square_root(diffuse_color.g):7 other:2; "
         "rgba8: square_root(diffuse_color.b):6 square_root(f0.r):7 square_root(f0.g):7 square_root(f0.b):6 "
         "other:6",
         "rgba16f",
-        "Unreal Engine 5.8, SubstrateExport.ush; colours have noise there; the order of bits is inferred",
+        "Unreal Engine 5.8, SubstrateExport.ush; Unreal adds noise to colours; the bit order is inferred",
         decals=BEFORE,
     ),
     _whole(
@@ -83,7 +83,7 @@ WHOLE_ENGINES = (
         "srgb8_a8: diffuse_color ao; rgba8: normal.x:12 normal.y:12 roughness; "
         "rgba8: fast_srgb(f0.rgb) shading_model:3 other:5",
         "r11g11b10f",
-        f"Unity HDRP 14, Lit.hlsl, NormalBuffer.hlsl, less the step that keeps z off 0; {UNITY}",
+        f"Unity HDRP 14, Lit.hlsl, NormalBuffer.hlsl, without the step that keeps z from 0; {UNITY}",
         packing="truncate_half",
         decals=BEFORE,
     ),
@@ -91,7 +91,7 @@ WHOLE_ENGINES = (
         "Unity",
         2022,
         "unity_urp",
-        "base colour in sRGB, flags; reflectivity for metallic, AO; xyz and smoothness in SNORM8",
+        "base colour in sRGB, flags; reflectivity instead of metallic, AO; xyz and smoothness in SNORM8",
         ENCODINGS["xyz_renormalised"],
         f"{URP}; rgba8_snorm: normal.x normal.y normal.z inverted(roughness)",
         "r11g11b10f",
@@ -114,7 +114,7 @@ WHOLE_ENGINES = (
         "Bevy",
         2026,
         "bevy",
-        "four words: base colour by 2.2, roughness; emissive RGB9E5; reflectance, metallic, AO, coat; "
+        "four words: base colour with gamma 2.2, roughness; emissive RGB9E5; reflectance, metallic, AO, coat; "
         "octahedral 12:12, flags; the lighting pass",
         ENCODINGS["octahedral"],
         "rgba8: gamma_2_2(base_color) roughness; rgba8: rgb9e5(emissive); "
@@ -133,8 +133,8 @@ WHOLE_ENGINES = (
         "rgba8: base_color ao; rgb10a2: normal.x normal.y normal.z shading_model; "
         "rgba8: roughness metallic square_root:0.16(f0) -",
         "r11g11b10f",
-        "FlaxEngine (1146620), GBuffer.hlsl, RenderBuffers.h; light may be RGBA16F as well",
-        decals=BLENDED + ", normals as colours; the alpha that is AO is masked",
+        "FlaxEngine (1146620), GBuffer.hlsl, RenderBuffers.h; light can also be RGBA16F",
+        decals=BLENDED + ", normals like colours; the alpha channel, which holds AO, is masked",
     ),
     _whole(
         "Donut",
@@ -162,18 +162,18 @@ WHOLE_ENGINES = (
         "kajiya",
         2025,
         "kajiya",
-        "four words: root of colours 8:8:8; xyz 11:10:11; roughness, metallic in halves; emissive RGB9E5; "
+        "four words: square roots of colours 8:8:8; xyz 11:10:11; roughness, metallic in halves; emissive RGB9E5; "
         "geometric normal; motion in view space",
         ENCODINGS["xyz_renormalised"],
         KAJIYA,
         "",
-        "EmbarkStudios/kajiya (9fdec0f), gbuffer.hlsl, pack_unpack.hlsl; to nearest since 2022-10 (591d966)",
+        "EmbarkStudios/kajiya (9fdec0f), gbuffer.hlsl, pack_unpack.hlsl; rounds to nearest since 2022-10 (591d966)",
     ),
     _whole(
         "kajiya",
         2021,
         "kajiya_truncated",
-        "as kajiya before 2022-10: normals cut off, as colours were, which are rounded here",
+        "kajiya before 2022-10: normals truncated; colours too, but here they are rounded",
         ENCODINGS["xyz_renormalised"],
         KAJIYA,
         "",
@@ -184,13 +184,13 @@ WHOLE_ENGINES = (
         "Dagor",
         2026,
         "dagor",
-        "albedo in sRGB, AO; octahedral 10:10, there in halves, class; smoothness, reflectance, metallic; motion",
+        "albedo in sRGB, AO; octahedral 10:10 (in Dagor halves), class; smoothness, reflectance, metallic; motion",
         ENCODINGS["octahedral"],
         "srgb8_a8: base_color ao; rgb10a2: normal.x normal.y other shading_model; "
         "rgba8: inverted(roughness) square_root:0.16(f0) metallic other; "
         "rgba16f: motion.x motion.y other other",
         "",
-        "GaijinEntertainment/DagorEngine (7572366), gbuffer_pack_unpack_DNG.hlsl; its light buffer was not read",
+        "GaijinEntertainment/DagorEngine (7572366), gbuffer_pack_unpack_DNG.hlsl; its light buffer was not examined",
         decals=BLENDED,
     ),
     _whole(
@@ -202,7 +202,7 @@ WHOLE_ENGINES = (
         "rgba8: base_color other; rgba16f: normal.x normal.y normal.z shading_model; "
         "rgba8: roughness metallic other ao; rgba16f: motion.x motion.y other -",
         "",
-        "PanosK92/SpartanEngine (9d843cd), Renderer_Resources.cpp, g_buffer.hlsl; emission is a share of the colour",
+        "PanosK92/SpartanEngine (9d843cd), Renderer_Resources.cpp, g_buffer.hlsl; emissive is a fraction of the colour",
     ),
     _whole(
         "Second Life",
@@ -212,7 +212,7 @@ WHOLE_ENGINES = (
         ENCODINGS["spheremap"],
         "rgba8: base_color -; rgba8: ao roughness metallic -; rgba16: normal.x normal.y other shading_model",
         "",
-        "secondlife/viewer (d6d453b), pipeline.cpp, pbropaqueF.glsl; emission's own target is optional there",
+        "secondlife/viewer (d6d453b), pipeline.cpp, pbropaqueF.glsl; the emissive target is optional there",
         space="view",
     ),
     _whole(
@@ -224,7 +224,7 @@ WHOLE_ENGINES = (
         "rgba8: base_color -; rg16: normal.x normal.y; rg16: other other; "
         "rgba8: ao roughness metallic square_root:0.16(f0); r16f: depth; rgba16f: emissive -",
         "",
-        "Bigfoot71/r3d (af17457), r3d_target.c, geometry.frag; three numbers take four channels, as GPUs pad them",
+        "Bigfoot71/r3d (af17457), r3d_target.c, geometry.frag; three numbers take four channels, because GPUs pad them",
         decals=BLENDED + "; octahedral normals are replaced",
     ),
     _whole(
@@ -241,12 +241,12 @@ WHOLE_ENGINES = (
         "FidelityFX",
         2025,
         "fidelityfx",
-        "base colour, alpha; xyz in halves, signed here; AO, square of the roughness, metallic; motion",
+        "base colour, alpha; xyz in halves, here signed; AO, squared roughness, metallic; motion",
         ENCODINGS["xyz_renormalised"],
         "rgba8: base_color other; rgba16f: normal.x normal.y normal.z -; rgba8: ao squared(roughness) metallic -; "
         "rg16f: motion.x motion.y",
         "",
-        "FidelityFX SDK, Cauldron 2 (f4c1da8), gbufferps.hlsl: normals as x/2 + 1/2, coarser than here",
+        "FidelityFX SDK, Cauldron 2 (f4c1da8), gbufferps.hlsl: normals there are x/2 + 1/2, less precise than here",
     ),
     _whole(
         "Cocos",
@@ -278,6 +278,6 @@ WHOLE_ENGINES = (
         "rg16_snorm: normal.x normal.y; r8: roughness; rgb10a2: diffuse_color -; rgb10a2: f0.rgb -; "
         "rgba8: other other other:6 shading_model:2 other; rgba8: other other other other",
         "",
-        "NVIDIAGameWorks/dxvk-remix (574be6b), rtx_resources.cpp:1043; emission as a colour and a half is `other` here",
+        "NVIDIAGameWorks/dxvk-remix (574be6b), rtx_resources.cpp:1043; emissive, a colour and a half, is `other` here",
     ),
 )

@@ -80,17 +80,19 @@ class Target:
 
 
 def targets_of(text: str) -> tuple[Target, ...]:
-    """Targets of text such as `rg16f: normal.x normal.y; rgba8: base_color shading_model`."""
+    """Return the targets that a text lists, unchecked: `rg16f: normal.x normal.y; rgba8: base_color ao`."""
     return tuple(Target(*part.strip().split(": ", 1)) for part in text.split(";"))
 
 
 def placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
-    """Return the position of each component of a target, without the free and the unused ones; see `all_placed`."""
+    """Yield the `Word` of each component of a target, without free bits and `other`. Arguments and errors as of
+    `all_placed`."""
     return (word for word in all_placed(layout_name, index, target) if word.component != OTHER)
 
 
 def all_placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
-    """Yield each component of a target with its place, and the bits that only engines use; skip free bits.
+    """Yield the `Word` of each component of a target, and of each `other`, whose bits only engines use; skip free
+    bits.
 
     Args:
         layout_name: the layout's name, for messages.
@@ -107,7 +109,7 @@ def all_placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
             _check_packed(place, text, storage, bits, bit)
         channel = len([end for end in _ends(storage) if end <= bit])
         if not bits and bit not in (0, *_ends(storage)):
-            raise LayoutError(f"{place}: {text} starts within a channel; give it a number of bits")
+            raise LayoutError(f"{place}: {text} starts within a channel; give it a bit count")
         taken = bits or (storage.bits[channel] if channel < storage.channels else 1)
         if storage.is_integer and name not in (FREE, OTHER):
             bits = taken
@@ -115,7 +117,7 @@ def all_placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
         if bit + taken > sum(storage.bits):
             raise LayoutError(f"{place}: {target.holds!r} needs more than its {sum(storage.bits)} bits")
         if channel < storage.curved and quantity_of(name) not in (*COLOURS, OTHER, FREE):
-            raise LayoutError(f"{place}: {text}: the first three channels of {storage.title} hold colours")
+            raise LayoutError(f"{place}: {text}: the first three channels of {storage.title} can hold only colours")
         if channel < storage.curved and kept:
             raise LayoutError(f"{place}: {text}: {storage.title} already applies its own curve to colours")
         bits = taken if storage.is_integer else bits
@@ -125,17 +127,18 @@ def all_placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
 
 
 def place_of(layout_name: str, index: int, target: Target) -> str:
-    """Return the name of a target for messages."""
+    """Return text that names a target in messages: "layout NAME, target INDEX (FORMAT)"."""
     return f"layout {layout_name}, target {index} ({target.format})"
 
 
 def spelt_out(place: str, target: Target) -> Iterator[str]:
-    """The words of a target by the names of COMPONENTS, a colour without a channel as its channels."""
+    """Yield the words of a target under the names of COMPONENTS; a colour without a channel becomes a word for each
+    of its channels. Raises LayoutError if a word is ambiguous, or light as a whole does not fill its target."""
     for typed in target.holds.split():
         text, match = _by_its_name(place, typed)
         name = (match["curved"] or match["name"]) if match else ""
         if match and match["curve"] in WHOLE and name.startswith(f"{LIGHT}."):
-            raise LayoutError(f"{place}: {text}: write {match['curve']}({LIGHT}), which takes the whole target")
+            raise LayoutError(f"{place}: {text}: write {match['curve']}({LIGHT}), which uses the whole target")
         if not match or name not in COLOURS:
             yield text
             continue
@@ -148,7 +151,8 @@ def spelt_out(place: str, target: Target) -> Iterator[str]:
 
 
 def _by_its_name(place: str, typed: str) -> tuple[str, re.Match[str] | None]:
-    """A word with the name that COMPONENTS has for it, and its parts."""
+    """Return a word with its component's name in COMPONENTS, and the match of WORD; a malformed word unchanged, with
+    None. Raises LayoutError if the word is ambiguous."""
     match = WORD.fullmatch(typed)
     name = (match["curved"] or match["name"]) if match else ""
     if not match or name == OTHER or name.startswith(f"{OTHER}."):
@@ -162,7 +166,8 @@ def _by_its_name(place: str, typed: str) -> tuple[str, re.Match[str] | None]:
 
 
 def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
-    """Return a word's component, the normal's component kept as its sign, its bit count and its curve."""
+    """Return a word's component, the normal's component kept as its sign (or ""), its bit count (or 0) and its curve
+    (or None). Raises LayoutError."""
     match = WORD.fullmatch(text)
     name = (match["curved"] or match["name"]) if match else ""
     name = OTHER if name.startswith(f"{OTHER}.") else name
@@ -196,12 +201,13 @@ def _check_packed(place: str, text: str, storage: Storage, bits: int, first: int
 
 
 def _ends(storage: Storage) -> list[int]:
-    """The bit at which each channel ends."""
+    """Return the number of bits up to the end of each channel: 8, 16, 24 and 32 for `rgba8`."""
     return [sum(storage.bits[: channel + 1]) for channel in range(storage.channels)]
 
 
 def least_carried(storage: Storage, bits: int) -> float:
-    """Return the smallest share of [0, 1] at which a number with a sign is kept, so that rounding leaves the sign."""
+    """Return the smallest magnitude, as a share of [0, 1], with which a signed number is stored, so that rounding
+    keeps its sign."""
     if storage.kind == "snorm":
         return 1.0 / (2 ** (bits - 1) - 1)
     if storage.kind == "unorm":
@@ -210,7 +216,8 @@ def least_carried(storage: Storage, bits: int) -> float:
 
 
 def without_normal(holds: str) -> list[str]:
-    """Return a target's words with the normal's bits free, so that the other words keep their channels."""
+    """Return a target's words, given as one text, with the normal's words replaced by free bits and without the signs
+    that store the normal; other words keep their channels."""
     words = []
     for text in holds.split():
         if text.startswith("normal."):

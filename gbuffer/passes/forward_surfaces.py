@@ -16,7 +16,7 @@ class ForwardSurfaces:
         self.lamps = (buffers.first_lamp, len(buffers.lights))
 
     def prepare(self, base: float) -> None:
-        """Bind; `base` is the share of ambient light and the surface's own."""
+        """Bind the program and its inputs; `base` is the factor of ambient and emitted light, 0 to leave them out."""
         self._canvas.prepare(self._surfaces.program)
         self._surfaces.program["base"] = base
 

@@ -12,7 +12,7 @@ SIDES = 16
 
 
 def ball() -> Mesh:
-    """A polyhedron around the unit sphere."""
+    """Return a polyhedron that encloses the unit sphere."""
     mesh = sphere(1.0, SIDES, 10)
     corners = mesh.positions[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -23,7 +23,7 @@ def ball() -> Mesh:
 
 
 def cone() -> Mesh:
-    """A pyramid around the unit cone along +z: tip at the origin, rim of radius 1 at z = 1."""
+    """Return a pyramid that encloses the unit cone along +z: tip at the origin, rim of radius 1 at z = 1."""
     around = 2 * np.pi * np.arange(SIDES) / SIDES
     widest = 1 / np.cos(np.pi / SIDES)
     rim = np.stack([widest * np.cos(around), widest * np.sin(around), np.ones(SIDES)], axis=1)

@@ -81,7 +81,7 @@ class LightVolumes:
             self._bring_back(self._sun_back, vertices=3)
 
     def _draw(self, drawn: VertexArray, before: Resource, vertices: int = -1) -> None:
-        """Draw; bind the light from `before` if the shaders have to read it."""
+        """Draw `vertices` of a vertex array, -1 for all; bind the light from `before` if the shaders read it."""
         reads = {"light_before": self._canvas.textures(before)} if self._reads else {}
         self._canvas.prepare(drawn.program, **reads)
         drawn.render(vertices=vertices)

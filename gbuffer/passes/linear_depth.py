@@ -6,7 +6,7 @@ from ..frame.resources import DEPTH, LINEAR_DEPTH
 
 
 def linear_depth() -> Pass:
-    """View depth of every pixel."""
+    """Return the pass that resolves the native depth to linear view depth, for layouts that store no depth."""
     return Pass("linear_depth", reads=(DEPTH,), writes=(LINEAR_DEPTH,), build=_build)
 
 

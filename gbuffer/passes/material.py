@@ -51,7 +51,7 @@ def _guarded(draws: str, canvas: Canvas) -> Run:
 
 
 def _filtered(draws: str, canvas: Canvas) -> Run:
-    """Over a depth of the image's own."""
+    """Return a run that shades surfaces over the image's own depth; transparent surfaces are blended."""
     target, surfaces = canvas.target(FINAL, depth=FINAL_DEPTH), canvas.geometry("geometry.vert", "material.frag")
     blend = OVER if draws == "transparent" else None
 

@@ -6,7 +6,8 @@ from ..frame.resources import BY_KIND, COLOURS, DEPTH, FINAL, LIGHT, SHADING, SU
 
 
 def screen() -> Pass:
-    """The image of all surfaces; of special materials only the ambient light if the light buffer is BY_KIND."""
+    """Return the pass that draws the image of all surfaces; if the light buffer is BY_KIND, special materials receive
+    only ambient light."""
     expects = {"LIGHT_HOLDS": (COLOURS, BY_KIND)}
     return Pass("screen", (*SURFACE, LIGHT, DEPTH), (FINAL,), _build, expects=expects, needs=SHADING)
 

@@ -12,7 +12,8 @@ THIN_SHADOW_OFFSET = (8.0, 16.0)
 
 
 def shadow_map() -> Pass:
-    """Return the pass that draws the depth of the first surfaces that the sun reaches."""
+    """Return the pass that draws the depth of casters as the sun sees them: far sides of closed casters, both sides
+    of thin casters."""
     return Pass("shadow_map", reads=(), writes=(SHADOW_MAP,), build=_build)
 
 

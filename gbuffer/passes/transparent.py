@@ -8,7 +8,7 @@ from .forward_surfaces import ForwardSurfaces
 
 
 def transparent() -> Pass:
-    """Transparent surfaces over the image."""
+    """Return the pass that draws transparent surfaces over the image, farthest first, each under all lights."""
     return Pass("transparent", (FINAL, DEPTH, SHADOW_MAP), (FINAL,), _build)
 
 

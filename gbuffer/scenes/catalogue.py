@@ -44,14 +44,16 @@ class SceneMaker:
         return FILMIC if self.is_metal_rough else "none"
 
     def within(self, size: tuple[int, int]) -> tuple[int, int]:
-        """The size that it is drawn at where `size` is asked for: of a picture its own shape, in no more pixels."""
+        """Return the size to draw at if `size` is requested: `size` itself, or for a scene that is an image its
+        aspect ratio, with no more pixels than `size` or the image has."""
         if self.sides is None:
             return size
         share = min(1.0, (size[0] * size[1] / (self.sides[0] * self.sides[1])) ** 0.5)
         return max(1, round(self.sides[0] * share)), max(1, round(self.sides[1] * share))
 
     def display(self, linear: np.ndarray) -> Display:
-        """Return the display of images; if `exposure` is None, measure it on linear light, (..., 3)."""
+        """Return the `Display` of the scene's images: exposure and tone mapping. If `exposure` is None, measure it on
+        linear light, (..., 3)."""
         exposure = measured_exposure(linear.reshape(-1, 3)) if self.exposure is None else self.exposure
         return Display(exposure, self.tone_mapping)
 

@@ -65,7 +65,7 @@ def _tangents_placed(authored: np.ndarray, linear: np.ndarray) -> np.ndarray:
 
 
 def joined(meshes: Sequence[Mesh]) -> Mesh:
-    """Join meshes into one mesh, without authored tangents."""
+    """Join meshes into one mesh, without authored tangents and second uv sets."""
     starts = np.cumsum([0, *(len(m.positions) for m in meshes[:-1])])
     return Mesh(
         np.concatenate([m.positions for m in meshes]),
@@ -76,7 +76,8 @@ def joined(meshes: Sequence[Mesh]) -> Mesh:
 
 
 def rotation(yaw: float, pitch: float, roll: float) -> np.ndarray:
-    """Roll about z, then pitch about x, then yaw about y, for row vectors in a left-handed space; angles in radians."""
+    """Return the matrix, (3, 3), of a roll about z, then a pitch about x, then a yaw about y, for row vectors in a
+    left-handed space; angles in radians."""
 
     def turn(angle: float, a: int, b: int) -> np.ndarray:
         m = np.eye(3)
@@ -88,14 +89,16 @@ def rotation(yaw: float, pitch: float, roll: float) -> np.ndarray:
 
 
 def grid_triangles(rows: int, columns: int) -> np.ndarray:
-    """Two triangles for each cell of a (rows + 1) x (columns + 1) grid of vertices."""
+    """Return vertex indices, (triangles, 3), of two triangles for each cell of a grid of (rows + 1) x (columns + 1)
+    vertices, row by row."""
     corner = np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)
     a, b, c, d = corner, corner + 1, corner + columns + 1, corner + columns + 2
     return np.stack([a, b, c, b, d, c], axis=-1).reshape(-1, 3)
 
 
 def wound(mesh: Mesh) -> np.ndarray:
-    """The mesh's triangles, corners counter-clockwise as seen from where the normals point; (triangles, 3)."""
+    """Return the mesh's triangles, (triangles, 3), with corners in counter-clockwise order as seen from the side to
+    which the normals point."""
     corners = mesh.positions[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     inwards = np.sum(across * mesh.normals[mesh.triangles].sum(axis=1), axis=1) < 0
@@ -141,7 +144,8 @@ def smooth_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def grid_uv(rows: int, columns: int) -> np.ndarray:
-    """(u, v) of a (rows + 1) x (columns + 1) grid of vertices, u along the columns, each from 0 to 1."""
+    """Return uv, (vertices, 2), of a grid of (rows + 1) x (columns + 1) vertices, row by row: u grows from 0 to 1
+    with the column, v with the row."""
     v, u = np.meshgrid(np.linspace(0, 1, rows + 1), np.linspace(0, 1, columns + 1), indexing="ij")
     return np.stack([u.ravel(), v.ravel()], axis=1)
 
@@ -172,8 +176,8 @@ def tangents(mesh: Mesh, uv: np.ndarray | None = None) -> np.ndarray:
 
 
 def _gradients(mesh: Mesh, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the directions in which u and v grow on each triangle, (triangles, 3), times its area in uv, and that
-    area's sign, (triangles, 1)."""
+    """Return for each triangle the directions in which u and v grow, (triangles, 3) each, times twice its signed area
+    in uv, and that area's sign, (triangles, 1)."""
     corners, uv = mesh.positions[mesh.triangles], uv[mesh.triangles]
     (e1, e2), (d1, d2) = (np.moveaxis(a[:, 1:] - a[:, :1], 1, 0) for a in (corners, uv))
     # e = du T + dv B for two edges, solved for T and B; the area in uv weighs each triangle.

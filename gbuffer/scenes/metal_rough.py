@@ -73,7 +73,7 @@ class MetalRough:
 
     @property
     def maps(self) -> tuple[Map | None, ...]:
-        """Its maps, in the order of `MAPS`."""
+        """The material's maps in the order of `MAPS`; None for a map that it lacks."""
         return tuple(getattr(self, f"{name}_map") for name in MAPS)
 
 

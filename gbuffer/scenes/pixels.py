@@ -40,7 +40,7 @@ class PixelSurfaces:
 
 
 def pixel_scene(pixels: PixelSurfaces, view: View) -> Scene:
-    """The pixels as `view` sees them from the origin, without lights of their own.
+    """Return a scene of the pixels as `view` sees them, without lights of its own, in an environment.
 
     Each square looks its texel up at the texel's centre, so nothing is filtered, whatever size it is drawn at.
     """
@@ -60,7 +60,8 @@ def pixel_scene(pixels: PixelSurfaces, view: View) -> Scene:
 
 
 def _levels(reflectance: np.ndarray, covered: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The reflectances that materials have, and which of them each pixel has, (height, width); -1 where none is."""
+    """Return the different reflectances of covered pixels, rounded to REFLECTANCES steps if there are more, and the
+    index of each pixel's reflectance, (height, width); -1 where no surface covers the pixel."""
     values, index = np.unique(reflectance[covered], return_inverse=True)
     if len(values) > REFLECTANCES:
         values = np.linspace(values[0], values[-1], REFLECTANCES)
@@ -72,7 +73,7 @@ def _levels(reflectance: np.ndarray, covered: np.ndarray) -> tuple[np.ndarray, n
 
 
 def _surface(pixels: PixelSurfaces) -> MetalRough:
-    """A material of one texel for each pixel, that has all but the reflectance."""
+    """Return a material whose maps have one texel for each pixel, with all attributes except the reflectance."""
     ones = np.ones_like(pixels.roughness)
 
     def lying(*planes: np.ndarray) -> Map:
@@ -94,7 +95,7 @@ def _surface(pixels: PixelSurfaces) -> MetalRough:
 
 
 def _squares(depth: np.ndarray, chosen: np.ndarray, view: View) -> Mesh:
-    """A square for each chosen pixel, in view space: the pixel's corners at its depth."""
+    """Return a mesh of a square for each chosen pixel, in view space: the pixel's corners at its depth."""
     height, width = depth.shape
     row, column = np.nonzero(chosen)
     across, up, _, _ = view.rays((width, height))

@@ -58,11 +58,13 @@ class Rendered:
 
 
 def rasterise(mesh: Mesh, camera: Camera, is_drawn: IsDrawn | None = None) -> Rendered:
-    """A mesh in view space, both sides of its triangles, the nearest at each pixel's centre; with holes where something
-    is not drawn.
+    """Return the nearest surface at each pixel's centre of a mesh in view space; both sides of triangles are drawn.
 
-    Homogeneous rasterisation (Olano and Greer 1997): edge functions come from clip coordinates, so that triangles that
-    reach behind the eye need no clipping.
+    Homogeneous rasterisation (Olano and Greer 1997): edge functions come from clip coordinates, so that triangles
+    that reach behind the eye need no clipping.
+
+    Args:
+        is_drawn: a test of points in triangles; the mesh has holes where it fails. None to draw all points.
     """
     corners = mesh.positions[mesh.triangles]
     clip = to_clip(corners, camera)
@@ -85,7 +87,8 @@ def to_clip(corners: np.ndarray, camera: Camera) -> np.ndarray:
 
 
 def _pixel_boxes(clip: np.ndarray, camera: Camera) -> np.ndarray:
-    """First and last-plus-one column and row of each triangle, (triangles, 4); all of them where it nears the eye."""
+    """Return a box of pixels around each triangle, (triangles, 4): first column, first row, last column + 1 and last
+    row + 1. The box is the whole image if a corner is nearer than the near plane."""
     size = np.array([camera.width, camera.height])
     w = clip[..., 2:]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -98,7 +101,8 @@ def _pixel_boxes(clip: np.ndarray, camera: Camera) -> np.ndarray:
 
 
 def _squares(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Boxes cut into squares of SIDE pixels at most: the triangle of each, ascending, and its box, (squares, 4)."""
+    """Cut the boxes of triangles into squares of at most SIDE pixels. Return each square's triangle, in ascending
+    order, and its box, (squares, 4)."""
     across, down = -(-(boxes[:, 2:] - boxes[:, :2]).T // SIDE)
     triangle = np.repeat(np.arange(len(boxes)), across * down)
     within = np.arange(len(triangle)) - np.repeat(np.cumsum(across * down) - across * down, across * down)
@@ -108,8 +112,8 @@ def _squares(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _is_met(inverse: np.ndarray, boxes: np.ndarray, camera: Camera) -> np.ndarray:
-    """Whether a box has a pixel on the inner side of each of a triangle's edges: edge functions are linear, so they are
-    largest in one of its four corners."""
+    """Return for each box whether it has a pixel on the inner side of each of its triangle's edges, (boxes,). Edge
+    functions are linear, so they are largest in one of the box's four corners."""
     columns, rows = boxes[:, (0, 2, 0, 2)] - (0, 1, 0, 1), boxes[:, (1, 1, 3, 3)] - (0, 0, 1, 1)
     edges = np.einsum("cjn,njk->nck", centres(columns.T, rows.T, camera), inverse)
     edges += EDGE * edges.sum(axis=2, keepdims=True)
@@ -118,14 +122,14 @@ def _is_met(inverse: np.ndarray, boxes: np.ndarray, camera: Camera) -> np.ndarra
 
 
 def centres(column: np.ndarray, row: np.ndarray, camera: Camera) -> np.ndarray:
-    """The centres of pixels as x, y in [-1, 1] and 1: the three of them are the axis before the last."""
+    """Return the centres of pixels as (x, y, 1), with x and y in [-1, 1], y up, along the second-to-last axis."""
     x = (column + 0.5) / camera.width * 2 - 1
     y = 1 - (row + 0.5) / camera.height * 2
     return np.stack([x, y, np.ones_like(x)], axis=-2)
 
 
 def _candidates(triangle_of: np.ndarray, boxes: np.ndarray):
-    """Yields (triangle, column, row) arrays that cover every box, a bounded number at a time."""
+    """Yield (triangle, column, row) arrays of all pixels of all boxes, at most CHUNK pixels at a time."""
     widths, heights = (boxes[:, 2:] - boxes[:, :2]).T
     ends = np.cumsum(widths * heights)
     for start in range(0, int(ends[-1]) if len(ends) else 0, CHUNK):

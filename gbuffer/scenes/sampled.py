@@ -30,7 +30,7 @@ class Pyramid:
 
     @cached_property
     def levels(self) -> list[np.ndarray]:
-        """(height, width, 3) each, float32, the last of one texel."""
+        """Mip levels, (height, width, 3) each, float32 in [-1, 1]: the map first, and last a level of one texel."""
         most = np.iinfo(self._lying.texels.dtype).max
         levels = [self._lying.texels[..., :3] * np.float32(2 / most) - np.float32(1)]
         while max(levels[-1].shape[:2]) > 1:
@@ -63,7 +63,7 @@ class Pyramid:
         return total / count[:, None]
 
     def _between(self, uv: np.ndarray, level: np.ndarray) -> np.ndarray:
-        """Trilinear: between the levels below and above."""
+        """Return trilinear samples, (points, 3), between the mip levels below and above the fractional `level`."""
         samples = np.zeros((len(uv), 3))
         below = np.minimum(level.astype(int), len(self.levels) - 1)
         above = np.minimum(below + 1, len(self.levels) - 1)
@@ -75,7 +75,7 @@ class Pyramid:
 
 
 def _bilinear(texels: np.ndarray, uv: np.ndarray, wrap: tuple[Wrap, Wrap]) -> np.ndarray:
-    """Between the four texels around (u, v), (points, channels)."""
+    """Return bilinear samples of texels at `uv`, (points, channels)."""
     height, width = texels.shape[:2]
     position = uv * (width, height) - 0.5
     low = np.floor(position).astype(np.int64)
@@ -100,7 +100,8 @@ def _wrapped(index: np.ndarray, count: int, wrap: Wrap) -> np.ndarray:
 
 
 def _halved(texels: np.ndarray) -> np.ndarray:
-    """Return half as many rows, rounded down, each the mean of the rows that it covers, in whole or in part."""
+    """Return half as many rows, rounded down, each the mean of the rows that it covers, in whole or in part; a single
+    row unchanged."""
     rows = len(texels)
     half = rows // 2
     if rows == 1:
@@ -203,7 +204,8 @@ def _weights(corners: np.ndarray, column: np.ndarray, row: np.ndarray, camera: C
 
 
 def _turned(n: np.ndarray, tangent: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """x along the tangent, y against the bitangent, since a picture's v grows downwards, z along the normal."""
+    """Return unit normals after a normal map's texels: x along the tangent, y against the bitangent, because an
+    image's v grows downwards, z along the normal. A normal of no length is replaced with `n`."""
     t = tangent[:, :3] - n * np.sum(n * tangent[:, :3], axis=1, keepdims=True)
     t /= np.maximum(np.linalg.norm(t, axis=1, keepdims=True), 1e-12)
     b = np.where(tangent[:, 3:] < 0, -1.0, 1.0) * np.cross(n, t)

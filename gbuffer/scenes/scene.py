@@ -139,7 +139,7 @@ class View:
         return matrix
 
     def rays(self, size: tuple[int, int]) -> tuple[float, float, float, float]:
-        """The corner of a picture of this size at depth 1, right and up, and the near and the far plane."""
+        """Return x and y of an image's upper right corner at depth 1, and the near and far distances."""
         up = np.tan(np.radians(self.fov) / 2)
         return up * size[0] / size[1], up, self.near, self.far
 
@@ -211,7 +211,7 @@ class Scene:
 
     @property
     def has_maps(self) -> bool:
-        """Whether pictures vary its materials."""
+        """Whether any material of the scene has a map."""
         return any(
             material_map
             for material in self.materials

@@ -24,7 +24,7 @@ class Setting:
 
 
 def coloured(rng: np.random.Generator, count: int, brightness: float) -> np.ndarray:
-    """Light colours, (count, 3): every hue, a third of the way to white, of one brightness."""
+    """Return random light colours, (count, 3): any hue, a third white, with `brightness` as the largest channel."""
     hue = rng.uniform(0, 1, count)[:, None]
     wheel = np.clip(np.abs((hue + np.array([0, 2 / 3, 1 / 3])) % 1 * 6 - 3) - 1, 0, 1)
     return brightness * (0.35 + 0.65 * wheel)

@@ -91,7 +91,7 @@ class Axis:
         return tuple(count for count in COUNTS if low <= count <= high) if self.scale == Scale.COUNT else ()
 
     def along(self, value: float) -> float:
-        """A value on the axis where equal steps have equal lengths."""
+        """Return the position of a value on a scale where equal steps have equal lengths, such as its logarithm."""
         if self.scale == Scale.LOG:
             return math.log(value)
         return math.copysign(math.log1p(abs(value) / LINEAR_TO), value) if self.scale == Scale.COUNT else value
@@ -110,7 +110,7 @@ class Axis:
         return (self.along(value) - low) / (high - low)
 
     def at(self, share: float) -> float:
-        """The value at a share of the axis."""
+        """Return the value at a share of the axis: 0 is the first end of the domain, 1 the other."""
         assert self.domain
         low, high = map(self.along, self.domain)
         return self.back(low + share * (high - low))
@@ -141,7 +141,7 @@ class Names:
     is_ordered: bool = False
 
     def colours(self, is_dark: bool = False) -> list[str]:
-        """The colour of each value, on white or on dark paper: #RRGGBB."""
+        """Return the colour of each value, on white or on dark paper, as #RRGGBB."""
         if self.is_ordered:
             return _between(ORDERED_DARK if is_dark else ORDERED, len(self.values))
         return self.of(DARK if is_dark else COLOURS)
@@ -215,12 +215,12 @@ class Mark:
 
     @property
     def fields(self) -> set[str]:
-        """The fields of rows that it reads."""
+        """The fields of rows that the mark reads."""
         named = (self.x, self.y, self.x2, self.y2, self.text, self.colour, self.shape, self.dash, self.rest)
         return {*named, *self.by, *(field for field, _ in self.tips)}
 
     def groups(self, rows: Sequence[Row]) -> list[list[Row]]:
-        """The rows of each line, area or end."""
+        """Return the rows of each line, area or line end: grouped by the fields `by`."""
         groups: dict[Hashable, list[Row]] = {}
         for row in rows:
             groups.setdefault(tuple(row.get(name) for name in self.by), []).append(row)
@@ -266,13 +266,13 @@ class Chart:
         return self.height or LINE_HEIGHT * len(self.y.names or self.y.ticks) or HEIGHT
 
     def named(self, look: str, mark: Mark) -> Names | None:
-        """The names that the colour, shape or dash of a mark tells apart; None where it tells none."""
+        """Return the names that the colour, shape or dash of a mark distinguishes; None if it shows no names."""
         names = getattr(self, look)
         return names if isinstance(names, Names) and names.field == getattr(mark, look) else None
 
     @property
     def legends(self) -> list[dict[str, Names]]:
-        """The entries of a legend: for each field that is told apart, its names by colour, shape and dash."""
+        """The entries of a legend: for each field that looks distinguish, its names by colour, shape and dash."""
         fields: dict[str, dict[str, Names]] = {}
         for name in ("colour", "shape", "dash"):
             if isinstance(names := getattr(self, name), Names):
@@ -280,7 +280,7 @@ class Chart:
         return list(fields.values())
 
     def rows_of(self, mark: Mark) -> tuple[Row, ...]:
-        """The rows of a mark that have a place."""
+        """Return the rows of a mark that the axes can place."""
         axes = ((self.x, mark.x), (self.x, mark.x2), (self.y, mark.y), (self.y, mark.y2))
         used = [(axis, name) for axis, name in axes if name]
         rows = self.rows if mark.rows is None else mark.rows
@@ -291,7 +291,8 @@ class Chart:
         return [line[-1] for line in mark.groups(self.rows_of(mark))]
 
     def still(self) -> list[tuple[str, Chart]]:
-        """The panels of a file, where nothing can be chosen."""
+        """Return the named panels for a file, in which a reader cannot use a switch: the usual value is shown, or
+        each value in a panel."""
         switch = self.switch
         if not switch or switch.usual == ALL:
             return self.parts()
@@ -300,7 +301,7 @@ class Chart:
         return [(name, part._only(switch.field, switch.usual)) for name, part in self.parts()]
 
     def parts(self) -> list[tuple[str, Chart]]:
-        """A chart for each panel, by the panel's name, whose axes have domains."""
+        """Return pairs of a panel's name, empty without panels, and its chart, whose axes have domains."""
         whole = replace(self, x=self._measured("x"), y=self._measured("y"), panels=None)
         if not self.panels:
             return [("", whole)]
@@ -313,7 +314,7 @@ class Chart:
         return replace(part, x=part._measured("x"), y=part._measured("y"))
 
     def _only(self, field: str, value: Any) -> Chart:
-        """The chart of the rows that have a value in a field, or do not have the field."""
+        """Return the chart with only the rows that have this value in a field, or do not have the field."""
 
         def kept(rows: Sequence[Row]) -> tuple[Row, ...]:
             return tuple(row for row in rows if row.get(field, value) == value)
@@ -322,7 +323,7 @@ class Chart:
         return replace(self, rows=kept(self.rows), marks=tuple(marks))
 
     def _measured(self, name: str) -> Axis:
-        """An axis with the domain that its rows need."""
+        """Return the axis `x` or `y` with a domain that holds the values of its rows."""
         axis: Axis = getattr(self, name)
         if axis.domain or axis.scale == Scale.NAMES:
             return axis
@@ -371,7 +372,7 @@ def lines_apart(axis: Axis, values: Sequence[float], height: float, least: float
 
 
 def distinct(rows: Sequence[Row], field: str) -> tuple[Any, ...]:
-    """The values of a field, in the order of the rows."""
+    """Return the different values of a field, in the order of the rows."""
     return tuple(dict.fromkeys(row[field] for row in rows))
 
 
@@ -382,7 +383,7 @@ def _between(colours: Sequence[str], count: int) -> list[str]:
 
 
 def _mixed(colours: Sequence[str], place: float) -> str:
-    """The colour at a place of a sequence: 2.5 is between the third and the fourth."""
+    """Return the colour at a position in a sequence of colours: 2.5 is midway between the third and the fourth."""
     index = min(int(place), len(colours) - 2)
     pairs = ((int(colour[i : i + 2], 16) for colour in colours[index : index + 2]) for i in (1, 3, 5))
     return "#" + "".join(f"{round(a + (b - a) * (place - index)):02X}" for a, b in pairs)

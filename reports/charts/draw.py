@@ -33,8 +33,10 @@ def write(charts: Sequence[Chart], *files: tuple[Path, str]) -> None:
 
 @contextmanager
 def settings(name: str) -> Iterator[None]:
-    """Text stays text, names in the file are the same each time, and a letter that a font lacks is the reader's. A
-    matplotlibrc changes nothing: one in the current folder may be a stranger's, and could start LaTeX."""
+    """Set up matplotlib within a `with` block: text stays text, names in the file are the same each time, and a
+    letter that a font lacks gives no warning.
+
+    No matplotlibrc is used: a file in the current folder may be a stranger's, and could start LaTeX."""
     import matplotlib
 
     # Without a height for titles matplotlib lays out all labels anew at each drawing, to see what is in the way.
@@ -48,7 +50,7 @@ def settings(name: str) -> Iterator[None]:
 
 
 def figure(charts: Sequence[Chart]) -> Any:
-    """Charts as a matplotlib figure, one below the other."""
+    """Return charts as a matplotlib figure, one chart below the other."""
     sizes = [_size(chart) for chart in charts] or [(ALONE, AROUND)]
     whole = drawn_off_screen().figure(
         figsize=(max(across for across, _ in sizes), sum(down for _, down in sizes)), layout="constrained"
@@ -71,7 +73,7 @@ def _column_count(chart: Chart) -> int:
 
 
 def _size(chart: Chart) -> tuple[float, float]:
-    """Inches across and down."""
+    """Return the width and height of a chart in inches."""
     across, panels = _column_count(chart), len(chart.still())
     down = -(-panels // across)
     beside = ENDS if any(mark.kind == Kind.ENDS for mark in chart.marks) else 0.0
@@ -136,7 +138,7 @@ def _axis(axis: Any, limit: Any, chart_axis: Axis) -> None:
 
 
 def _functions(chart_axis: Axis) -> tuple[Any, Any]:
-    """A scale and its inverse, of arrays."""
+    """Return an axis's scale and its inverse as functions of arrays, for matplotlib."""
     import numpy as np
 
     return np.vectorize(chart_axis.along, otypes=[float]), np.vectorize(chart_axis.back, otypes=[float])
@@ -249,7 +251,7 @@ def _legend(place: Any, chart: Chart) -> None:
 
 
 def _look(chart: Chart, named: Mapping[str, Names], index: int) -> dict[str, Any]:
-    """A line of the legend: a colour, a shape or a dash, or several of them."""
+    """Return matplotlib's properties of a line of the legend: its colour, shape or dash, or several of them."""
     kinds = {mark.kind for mark in chart.marks if mark.colour in {names.field for names in named.values()}}
     colour = named["colour"].colours()[index] if "colour" in named else "#555555"
     if "shape" in named:

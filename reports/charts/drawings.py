@@ -34,12 +34,12 @@ class Drawing:
 
 
 def of(chart: Chart) -> Drawing:
-    """A chart, to be drawn."""
+    """Return a chart as a `Drawing`, which is drawn only when it is needed."""
     description = f"{chart.subtitle}. {chart.description}"
     return Drawing(chart.name, chart.title, description, partial(figure, (chart,)), partial(spec, chart))
 
 
 def write(drawing: Drawing, *files: tuple[Path, str]) -> None:
-    """Writes a chart to each path as its format, one of plots.FORMATS. Raises OSError."""
+    """Write a drawing to each path as its format, one of plots.FORMATS. Raises OSError."""
     with settings(drawing.name):
         save(drawing.draw(), *files)

@@ -32,7 +32,7 @@ def write_ends(axes: Any, part: Chart) -> list[Any]:
 
 
 def _lasts(part: Chart) -> list[tuple[Mark, Row]]:
-    """The last point of each line that is named at its end."""
+    """Return the last point of each line that is named at its end, with its mark."""
     ends = [mark for mark in part.marks if mark.kind == Kind.ENDS]
     return [(mark, row) for mark in ends for row in part.lasts(mark)]
 
@@ -136,7 +136,7 @@ def _overlaps(box: Any, others: np.ndarray) -> int:
 
 
 def extent(written: Any) -> Any:
-    """The box of an annotation's text alone, without the line that leads to it."""
+    """Return the box of only the text of an annotation, in pixels, without the line that leads to it."""
     from matplotlib.text import Text
 
     written.update_positions(written.figure.canvas.get_renderer())

@@ -18,12 +18,12 @@ SHADES = "viridis"
 
 
 def as_text(text: str) -> str:
-    """Text as a chart has room for it, whose dollars it does not read as mathematics."""
+    """Return text shortened to LONGEST characters, with dollar signs escaped, which would begin mathematics."""
     return plain(text if len(text) <= LONGEST else text[: LONGEST - 3] + "...")
 
 
 def plain(text: str) -> str:
-    """Text of any length, whose dollars are not read as mathematics."""
+    """Return text of any length with dollar signs escaped, which matplotlib would read as mathematics."""
     return text.replace("$", r"\$")
 
 
@@ -47,29 +47,29 @@ def colour_of(part: Chart, mark: Mark, row: Row) -> str:
 
 
 def marker_of(part: Chart, mark: Mark, row: Row) -> str:
-    """The marker of a point."""
+    """Return matplotlib's marker of a row's point."""
     names = part.named("shape", mark)
     return MARKERS[look(names, SHAPES, row) if names else mark.shape]
 
 
 def stroke_of(part: Chart, mark: Mark, row: Row) -> Any:
-    """Return the dashes of a line."""
+    """Return matplotlib's line style of a row's line."""
     names = part.named("dash", mark)
     return stroke(look(names, DASHES, row)) if names else STROKES[mark.dash]
 
 
 def stroke(lengths: Sequence[float]) -> Any:
-    """Lengths of strokes and gaps as matplotlib takes them."""
+    """Return lengths of strokes and gaps as matplotlib's line style; a solid line without lengths."""
     return (0, tuple(lengths)) if lengths else "-"
 
 
 def look(names: Names, looks: Sequence[Any], row: Row) -> Any:
-    """Return the look of a row's name."""
+    """Return the look of the name that a row has: a colour, shape or dash out of `looks`."""
     return names.of(looks)[names.values.index(row[names.field])]
 
 
 def shade(shades: Shades) -> Any:
-    """Colours of numbers, of matplotlib."""
+    """Return matplotlib's colour scale of numbers: logarithmic, between the ends of `shades`."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
 
@@ -77,8 +77,8 @@ def shade(shades: Shades) -> Any:
 
 
 def colour_map(count: int = 33) -> list[str]:
-    """Viridis from dark to bright, as many colours, evenly spaced: even steps to the eye, also for those who do not
-    see all colours."""
+    """Return `count` colours of Viridis, #rrggbb, evenly spaced from dark to bright. Steps look equal, also to people
+    who do not see all colours."""
     import matplotlib
     import numpy as np
     from matplotlib.colors import to_hex

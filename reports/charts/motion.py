@@ -14,17 +14,18 @@ from .pictures import made_by
 GAIN = 8.0
 # Each pixel is shown as a square of this many.
 ENLARGED = 2
-CAPTIONS = ("code", "exact", f"difference x {GAIN:g}")
+CAPTIONS = ("encoded", "exact", f"difference x {GAIN:g}")
 CAPTION_HEIGHT, GAP = 14, 4
 MILLISECONDS = 80
 
 
 def beside(image: np.ndarray, other: np.ndarray, title: str) -> Image.Image:
-    """A frame of an animation: a code, exact normals, and GAIN times their difference around grey.
+    """Return a frame of an animation: decoded normals, exact normals, and GAIN times their difference around grey,
+    side by side.
 
     Args:
         image, other: displayed images, (height, width, 3), 0 to 1.
-        title: above all of them.
+        title: text above all of them.
     """
     apart = 0.5 + GAIN * (np.nan_to_num(image, nan=1.0) - other)
     height, width = (size * ENLARGED for size in image.shape[:2])

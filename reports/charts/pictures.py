@@ -29,7 +29,8 @@ def _byte_pixels(values: np.ndarray) -> np.ndarray:
 def codec_pictures(
     normals: np.ndarray, encoded: np.ndarray, decoded: np.ndarray, covered: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """The four pictures, uint8 of shape (height, width, 3), black on the background.
+    """Return the images `encoded`, `decoded`, `error` and `power`, uint8 of shape (height, width, 3), black on the
+    background.
 
     Args:
         normals, encoded, decoded: float arrays of shape (height, width, 3), in [-1, 1].
@@ -52,12 +53,12 @@ def normals_picture(normals: np.ndarray, covered: np.ndarray) -> np.ndarray:
 
 
 def picture(image: np.ndarray) -> np.ndarray:
-    """An image as displayed, floats in [0, 1], in bytes."""
+    """Return a displayed image, floats in [0, 1], as bytes."""
     return _byte_pixels(image)
 
 
 def grey(values: np.ndarray) -> np.ndarray:
-    """Numbers in [0, 1], (height, width), as grey pixels."""
+    """Return numbers in [0, 1], (height, width), as grey pixels: uint8 of shape (height, width, 3)."""
     return _byte_pixels(values[..., None] * np.ones(3))
 
 
@@ -72,8 +73,9 @@ def strips(lines: Sequence[np.ndarray], height: int) -> np.ndarray:
 
 
 def depth_pictures(errors: np.ndarray, positions: np.ndarray, covered: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the errors of rebuilt positions in colour, with a scale of powers of ten, and the surface that the
-    positions make, lit by its own slope, where depth steps show as terraces. uint8 of shape (height, width, 3).
+    """Return as `position_error` the errors of rebuilt positions in colour, with a scale of powers of ten, and as
+    `shaded` the surface that the positions make, lit by its own slope, where depth steps show as terraces. Both are
+    uint8 images with a strip for a scale or caption.
 
     Args:
         errors: distances between true and rebuilt positions, (height, width).
@@ -101,7 +103,7 @@ def _coloured(powers: np.ndarray) -> np.ndarray:
 
 
 def _scale_of_colours(width: int, height: int = SCALE_HEIGHT) -> np.ndarray:
-    """Return the key of the colours: a strip of them with their powers of ten."""
+    """Return the key of the colours as a uint8 image: all colours, with their powers of ten."""
     low, high = DECADES
     strip = _coloured(np.broadcast_to(np.linspace(low, high, width), (height // 3, width)))
     image = Image.new("RGB", (width, height), "white")

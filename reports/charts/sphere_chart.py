@@ -16,7 +16,7 @@ SPHERE_COLOURS = "viridis"
 
 
 def _figure(size: tuple[float, float], **layout: Any) -> tuple[Any, Any]:
-    """A figure and its axes."""
+    """Return a new matplotlib figure and its axes."""
     return drawn_off_screen().subplots(figsize=size, layout="constrained", **layout)
 
 
@@ -44,7 +44,7 @@ def coloured(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
 
 
 def _mark(axis: Any, n: np.ndarray, cells: int) -> None:
-    """A ring around each direction, on the disc of its half."""
+    """Draw a red ring around each direction, on the disc of its half."""
     is_behind = n[:, 2] < 0
     # Lambert (1772): a distance r from the middle has |z| = 1 - r^2, and the rim is at 1.
     across = n[:, :2] / np.sqrt(1 + np.abs(n[:, 2:]))
@@ -58,11 +58,11 @@ def _marked_title(name: str, marks: Maps | None) -> str:
 
 
 def sphere_chart(maps: Maps, marks: Maps | None = None, halves: tuple[str, str] = ("", "")) -> Any:
-    """Draw angles over the sphere, two discs for each codec, on one scale of colours.
+    """Return a matplotlib figure of angles over the sphere, two discs for each codec, on one scale of colours.
 
     Args:
-        maps: by codec, degrees of shape (2, cells, cells): the half that faces the viewer and the other, in
-            Lambert's azimuthal equal-area projection; NaN where there is no angle.
+        maps: by codec, degrees of shape (2, cells, cells): the half that faces the viewer and the other, in Lambert's
+            azimuthal equal-area projection; NaN where there is no angle.
         marks: by codec, directions of shape (count, 3), each of which is marked.
         halves: captions below the two discs.
     """

@@ -45,7 +45,7 @@ class Globes:
 
 
 def _groups(maps: Sequence[SphereMap]) -> dict[int, list[SphereMap]]:
-    """Maps by bits, the number with most codecs first; those whose code is of as many bits share a scale."""
+    """Return the maps by the number of bits of their codes, the number with the most codecs first."""
     groups: dict[int, list[SphereMap]] = {}
     for sphere_map in maps:
         groups.setdefault(sphere_map.bits, []).append(sphere_map)
@@ -53,7 +53,8 @@ def _groups(maps: Sequence[SphereMap]) -> dict[int, list[SphereMap]]:
 
 
 def shown(maps: Sequence[SphereMap], most: int = MOST) -> list[SphereMap]:
-    """Return the maps that a page shows: the most accurate for each number of bits, then the second, and so on."""
+    """Return at most `most` maps for a page, in the given order: the most accurate for each number of bits is chosen
+    first, then the second, and so on."""
     ranked = [sorted(group, key=lambda sphere: float(np.nanmean(sphere.mean_deg))) for group in _groups(maps).values()]
     turns = (sphere_map for turn in zip_longest(*ranked) for sphere_map in turn if sphere_map is not None)
     kept = {sphere_map.key.label for sphere_map in islice(turns, most)}
@@ -61,7 +62,7 @@ def shown(maps: Sequence[SphereMap], most: int = MOST) -> list[SphereMap]:
 
 
 def globes(maps: Sequence[SphereMap]) -> list[Globes]:
-    """The maps as pictures, by bits."""
+    """Return the maps as images for a page, grouped by the number of bits, with a common scale in each group."""
     return [_globes(bits, group) for bits, group in _groups(maps).items()]
 
 
@@ -98,13 +99,13 @@ def _disc_pixels(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
 
 
 def colour_strip() -> str:
-    """Return the scale's colours from the smallest to the largest value, as an image."""
+    """Return the scale's colours from the smallest to the largest value, as an image in a data URI."""
     steps = np.exp(np.linspace(0, 1, 256))[None]
     return small_uri(sphere_chart.coloured(steps, (1.0, math.e)))
 
 
 def drawings(maps: Sequence[SphereMap]) -> list[Drawing]:
-    """The maps as charts for files, one for each number of bits."""
+    """Return the maps as charts for files, a chart for each number of bits."""
     description = "Mean angular error in degrees in each direction."
     return [
         Drawing(

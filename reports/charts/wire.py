@@ -70,7 +70,7 @@ STOPS = 17
 
 
 def library() -> str:
-    """d3, as a script. Raises PlotError where its package has another one."""
+    """Return the text of d3's script. Raises PlotError if its package is missing or lacks the script."""
     module_spec = find_spec(PACKAGE)
     path = (
         Path(module_spec.submodule_search_locations[0]) / LIBRARY
@@ -104,7 +104,7 @@ def spec(chart: Chart) -> Spec:
 
 
 def codecs(chart_spec: Spec) -> set[str]:
-    """The codecs that a chart draws."""
+    """Return the names of the codecs that a chart draws, from its data."""
     columns = [table["codec"] for panel in chart_spec["panels"] for table in panel["tables"] if "codec" in table]
     return {name for column in columns for name in (column["names"] if isinstance(column, dict) else column) if name}
 
@@ -130,14 +130,14 @@ def _has_words(axis: Axis) -> bool:
 
 
 def _bottom(axis: Axis) -> int:
-    """Pixels below a panel: marks or slanted names, and the title."""
+    """Return the pixels below a panel: for marks or slanted names, and for the title."""
     longest = min(MOST_DOWN, max(map(len, axis.names), default=0))
     marks = MARKS + int(DOWN * longest) if axis.scale == Scale.NAMES else MARKS
     return marks + (TITLED - MARKS if axis.title else 0)
 
 
 def _colours(names: Names) -> list[str]:
-    """The colours of names in either theme."""
+    """Return the colours of names for a light and a dark page, as CSS."""
     return [f"light-dark({light}, {other})" for light, other in zip(names.colours(), names.colours(True), strict=True)]
 
 
@@ -157,7 +157,7 @@ LOOKS = MappingProxyType({"colour": _colours, "shape": _paths, "dash": _dashes})
 
 
 def _legend(chart: Chart, named: Mapping[str, Names]) -> Spec:
-    """A line of the legend: names with a colour, a shape or a dash, or several of them."""
+    """Return the legend of a field: its title, and for each name the colour, shape and dash."""
     names = next(iter(named.values()))
     kinds = {mark.kind for mark in chart.marks if mark.colour in {look_names.field for look_names in named.values()}}
     looks = {look: LOOKS[look](look_names) for look, look_names in named.items()}
@@ -187,7 +187,7 @@ def _shades(shades: Shades) -> Spec:
 
 
 def _panel(name: str, part: Chart) -> Spec:
-    """A panel. Rows that several marks draw are there once, as columns."""
+    """Return a panel as data. Rows that several marks draw are stored once, as columns."""
     tables: list[tuple[Sequence[Row], set[str]]] = []
     marks = []
     for mark in part.marks:
@@ -244,7 +244,7 @@ def _axis(axis: Axis) -> Spec:
 
 
 def _columns(rows: Sequence[Row], fields: set[str]) -> Spec:
-    """Rows as columns; of words, the different ones and which of them each row has."""
+    """Return rows as columns, without empty columns; a column of words has each word once, and indices."""
     columns = {name: [_plain(row.get(name)) for row in rows] for name in sorted(fields)}
     return {name: _words(values) for name, values in columns.items() if any(value is not None for value in values)}
 

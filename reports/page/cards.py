@@ -41,19 +41,19 @@ def block(run: Found, names: Sequence[str]) -> str:
 
 
 def sections_of(run: Found) -> list[TableSection]:
-    """The sections whose rows are of codecs of normals."""
+    """Return the sections of tables whose rows are about codecs of normals."""
     return [section for section in run.sections if section.rows and section.key in run.cards["takes"]]
 
 
 def codecs_of(run: Found, names: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Return what is known of each codec: its storage, and the figures by which codecs are compared."""
+    """Return the facts about each codec: its storage, and the figures by which codecs are compared."""
     known = run.cards["codecs"]
     first = _first_rows(sections_of(run), known)
     return {name: first.get(name, {}) | known.get(name, {}) for name in names}
 
 
 def of_encoding(codec: str) -> str:
-    """The encoding of a codec's name."""
+    """Return the encoding in a codec's name: the part before the first space."""
     return codec.partition(" ")[0]
 
 
@@ -70,7 +70,7 @@ def _table(section: TableSection, takes: Sequence[str]) -> dict[str, Any]:
 
 
 def is_figure(column: Column) -> bool:
-    """Whether codecs are compared by it."""
+    """Whether codecs are compared by a column: it is a figure that is shown, and more or less is better."""
     return bool(column.better) and column.shown and column.role is Role.FIGURE
 
 
@@ -94,7 +94,8 @@ def _best_row(label: str, rows: Sequence[tuple[bool, bool, str, Row]]) -> Row:
 
 
 def _stored(label: str, known: Mapping[str, Any]) -> tuple[str, str]:
-    """The encoding of a codec and the numbers that it stores; itself where that is not known."""
+    """Return a key that codecs share if they store the same numbers: the encoding, with those numbers or, if they are
+    not known, the codec's own name."""
     return of_encoding(label), known[label]["numbers"] if label in known else label
 
 
@@ -110,7 +111,8 @@ def _first(row: Row, names: Sequence[str]) -> float | None:
 
 
 def _code(run: Found, names: Sequence[str]) -> dict[str, Any]:
-    """The code that the run keeps of these codecs, with the pieces that these need alone."""
+    """Return the shader code that the run keeps of these codecs, with only the pieces of text that it needs; empty
+    collections if the run keeps no code."""
     kept = run.code
     if not kept:
         return {"languages": {}, "pieces": [], "codecs": {}}

@@ -26,5 +26,5 @@ class CodecKey(NamedTuple):
 
     @property
     def label(self) -> str:
-        """The human-readable name."""
+        """The encoding, the storage and, unless it is to the nearest, the rounding, with spaces between them."""
         return " ".join([self.encoding, self.storage, *([self.rounding] if self.rounding != "nearest" else [])])

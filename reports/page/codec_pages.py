@@ -18,14 +18,14 @@ from .site import SCRIPTS, Index, Searched, Site, index_html, linked, plain_name
 FOLDER, INDEX = "codecs", "codecs/index.html"
 # The columns of the lists, and what they say.
 LISTED = {
-    "angle_mean_deg": "The mean angle between a normal and its decode. Unit: degrees.",
-    "angle_max_deg": "The largest known angle. Unit: degrees.",
+    "angle_mean_deg": "Mean angle between a normal and its decoded value. Unit: degrees.",
+    "angle_max_deg": "Largest known angle. Unit: degrees.",
     "slots": "Issue slots to encode and decode once.",
-    "normals": "The set of normals used for the angles.",
-    "bits": "Bits that a code uses.",
+    "normals": "Set of normals used for the angles.",
+    "bits": "Bits that the codec uses.",
 }
 FIGURES = {"bits": "bits", "angle_mean_deg": "mean", "angle_max_deg": "largest", "slots": "slots", "normals": "of"}
-OWN = "A user's own encoding: its formulas are in its file."
+OWN = "A user's encoding; the formulas are in its file."
 # Lines of a fact: whether it is code, and its text.
 Lines = Sequence[tuple[bool, str]]
 
@@ -47,10 +47,11 @@ class CodecPage:
 
 
 def codec_pages(run: Found, names: Sequence[str], site: Site, run_page: str) -> dict[str, str]:
-    """The pages by their paths in the site's folder; nothing where the run has no codecs.
+    """Return the HTML of a page for each encoding, and of an index, by their paths in the site's folder; empty if the
+    run has no codecs.
 
     Args:
-        names: of the codecs that the run's page shows.
+        names: names of the codecs that the run's page shows.
         run_page: the path of that page.
     """
     codecs = cards.codecs_of(run, names)
@@ -98,7 +99,7 @@ def _description(name: str, known: Mapping[str, Any], codecs: Mapping[str, Row])
 
 
 def _facts(known: Mapping[str, Any]) -> Iterator[tuple[str, Lines]]:
-    """Yield the facts about an encoding of the catalogue."""
+    """Yield titles and lines of the facts about an encoding of the catalogue; nothing for any other encoding."""
     for what in ("encode", "decode"):
         if known.get(what):
             says, *formulas = known[what]
@@ -111,7 +112,7 @@ def _facts(known: Mapping[str, Any]) -> Iterator[tuple[str, Lines]]:
 
 
 def _users(used: Sequence[tuple[str, int, str]]) -> str:
-    """Engines with the storages that they keep normals in."""
+    """Return engines with the storages in which they keep normals, as text."""
     storages: dict[str, dict[str, None]] = {}
     for engine, _, storage in used:
         storages.setdefault(engine, {})[storage] = None
@@ -119,7 +120,7 @@ def _users(used: Sequence[tuple[str, int, str]]) -> str:
 
 
 def _codec_table(title: str, codecs: Mapping[str, Row]) -> PageTable:
-    """The figures of codecs; of those that have none only where no other has any."""
+    """Return the table of the codecs' figures; codecs without figures are left out unless no codec has any."""
     rows = [
         {"codec": label, "storage": row.get("storage"), **{name: row.get(key) for name, key in FIGURES.items()}}
         for label, row in _measured(codecs).items()
@@ -146,7 +147,8 @@ def _rows(section: TableSection, name: str) -> tuple[str, str, PageTable] | None
 
 
 def _code(run: Found, codecs: Mapping[str, Row]) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
-    """The code that the run keeps of an encoding, by codec and language."""
+    """Yield each codec of an encoding with the shader code that the run keeps of it, as pairs of a language and a
+    text; codecs without code are left out."""
     kept = run.code or {"codecs": {}}
     for label in codecs:
         if label in kept["codecs"]:

@@ -61,7 +61,7 @@ def _is_nothing(value: Any) -> bool:
 
 
 def _number(value: float | None, digits: int | None) -> float | str | None:
-    """A float as JSON can hold it, with all its digits or some."""
+    """Return a float for JSON: infinity as text, NaN as None, and with all its digits unless `digits` is given."""
     if value is None or _is_nothing(value):
         return None
     if not math.isfinite(value):

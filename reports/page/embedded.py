@@ -51,7 +51,7 @@ class Gallery:
 
     @property
     def data(self) -> Record:
-        """Everything that pictures.js needs to show them."""
+        """The subjects and the constants that pictures.js needs to show them."""
         angle = {"least_log2": LEAST_LOG2, "steps_per_octave": STEPS_PER_OCTAVE, "not_a_number": NOT_A_NUMBER}
         articles = {"gain": GAIN, "power": POWER}
         pictures = {"subjects": self.subjects, "left_out": list(self.left_out)}
@@ -59,7 +59,7 @@ class Gallery:
 
 
 def data_uri(pixels: Image.Image) -> str:
-    """An image as lossless WebP in a data URI."""
+    """Return an image as lossless WebP in a data URI."""
     data = BytesIO()
     # Colours of transparent pixels are kept as well.
     pixels.save(data, format="webp", lossless=True, exact=True, method=EFFORT)
@@ -67,19 +67,19 @@ def data_uri(pixels: Image.Image) -> str:
 
 
 def small_uri(pixels: np.ndarray) -> str:
-    """Pixels of shape (height, width, 4), uint8, in a data URI."""
+    """Return uint8 pixels of shape (height, width, channels) as an image in a data URI."""
     return data_uri(Image.fromarray(pixels))
 
 
 def _bytes_uri(planes: Sequence[np.ndarray]) -> str:
-    """Up to three planes of bytes, (height, width), as the channels of a picture."""
+    """Return up to three planes of bytes, (height, width), as the channels of an image in a data URI."""
     channels = [planes[min(i, len(planes) - 1)] for i in range(3)]
     return small_uri(np.stack(channels, axis=-1))
 
 
 def _code_uris(codes: np.ndarray, bits: Sequence[int]) -> list[str]:
-    """Codes as pictures. Each component is shifted up to whole bytes; the bytes follow each other, the highest of every
-    component first, three to a picture."""
+    """Return codes as images in data URIs. Each component is shifted up to whole bytes; the bytes follow each other,
+    the highest of every component first, three to an image."""
     planes: list[np.ndarray] = []
     sizes = [-(-count // 8) for count in bits]
     for level in range(max(sizes)):
@@ -91,7 +91,7 @@ def _code_uris(codes: np.ndarray, bits: Sequence[int]) -> list[str]:
 
 
 def _planes(pixels: NormalPixels | ImagePixels, original: np.ndarray, step: int) -> Record:
-    """A codec's pixels as pictures.js reads them."""
+    """Return every `step`-th pixel of a codec, in both directions, as images in data URIs for pictures.js."""
     if isinstance(pixels, NormalPixels):
         angle, codes, decoded = (plane[::step, ::step] for plane in (pixels.angle, pixels.codes, pixels.decoded))
         coded = {"codes": _code_uris(codes, pixels.bits), "bits": list(pixels.bits)}
@@ -133,7 +133,7 @@ class _Packer:
         return len(json.dumps(planes)) + (0 if self.taken else len(self.record["original"]))
 
     def take(self, pictured: Pictured, what: Record) -> None:
-        """Show a codec."""
+        """Add a codec, with its pixels, to those that the page shows of the subject."""
         self.taken[pictured.label] = {"label": pictured.label, "codec": pictured.codec} | what
 
     @property

@@ -17,7 +17,7 @@ class Head(NamedTuple):
 
 
 def folder_html(folder: str, lead: str, rows: Sequence[Mapping[str, Any]], lines: Sequence[str], patch: str) -> str:
-    """Return the page: a sentence, a table of these rows, findings, and a patch; any of them may be empty."""
+    """Return the HTML of a page with a sentence, a table of rows, findings, and a patch; any of them may be empty."""
     shown = [dict(row) for row in rows]
     heads = [Head(tables.title_of(name), tables.is_numeric(shown, name)) for name in (shown[0] if shown else ())]
     cells = [[tables.text_of(value) for value in row.values()] for row in shown]

@@ -102,7 +102,7 @@ class Found:
 
     @property
     def sources(self) -> str:
-        """The fingerprint of the code that computed it; empty if unknown."""
+        """The fingerprint of the code that made the run; empty if unknown."""
         return str(self.facts.get("sources") or "")
 
     @property
@@ -119,7 +119,8 @@ class Found:
 
 
 def plain_text(value: Any) -> Any:
-    """A value whose text, if it is one, has no control characters, no line breaks and no halves of characters."""
+    """Return a value with the texts in it, at any depth, made safe: control characters and line breaks become spaces,
+    lone surrogates question marks."""
     if isinstance(value, dict):
         return {str(plain_text(str(name))): plain_text(inner) for name, inner in value.items()}
     if isinstance(value, list):

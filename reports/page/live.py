@@ -65,7 +65,10 @@ class Live:
     checks: Mapping[str, Any] = field(default_factory=dict)
 
     def data(self, about: Mapping[str, str]) -> str:
-        """Return all of it as text; `about` describes the page, by name."""
+        """Return the laboratory's data as JSON text.
+
+        Args:
+            about: facts about the page, by name."""
         content = {
             **about,
             "codecs": [_named(codec) for codec in self.codecs],
@@ -99,13 +102,14 @@ def _named(codec: Record) -> Record:
 
 
 def _shader(path: Path) -> str:
-    """A shader's text; a reader sees the comments of the example alone."""
+    """Return a shader's text, without comments unless it is the example, which a reader sees."""
     text = path.read_text(encoding="utf-8")
     return text if path.name == EXAMPLE else _bare(re.sub(r" +//.*", "", text))
 
 
 def script() -> str:
-    """The laboratory's scripts as one. No text of theirs has several lines."""
+    """Return the laboratory's scripts as one script, without indentation and comment lines. No string literal in them
+    may have several lines."""
     return _bare("\n".join((FOLDER / name).read_text(encoding="utf-8") for name in SCRIPTS))
 
 

@@ -19,7 +19,7 @@ CUT = "The tables do not fit in a comment; `normalbench report` shows them all.\
 
 
 def markdown(run: Found) -> str:
-    """The text, at most LONGEST characters."""
+    """Return a run as Markdown, cut after whole blocks to at most LONGEST characters."""
     safe = replace(
         run,
         name=_plain(run.name),

@@ -7,6 +7,6 @@ import zlib
 
 
 def packed(text: str) -> str:
-    """Text as base64 of raw DEFLATE, the same each time."""
+    """Return text as base64 of raw DEFLATE, which is the same each time."""
     packer = zlib.compressobj(level=9, wbits=-zlib.MAX_WBITS)
     return base64.b64encode(packer.compress(text.encode()) + packer.flush()).decode("ascii")

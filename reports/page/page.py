@@ -147,7 +147,8 @@ def _cell(value: Any, numeric: bool, is_best: bool) -> Cell:
 
 
 def _codec(row: Mapping[str, Any], encodings: Container[str]) -> str:
-    """The codec of a row, an encoding's name alone where the storage is not known; empty for none."""
+    """Return the label of a row's codec, or only the encoding's name if the row has no storage; empty if the row's
+    encoding is not among `encodings`."""
     encoding = row.get("encoding")
     if not isinstance(encoding, str) or encoding not in encodings:
         return ""
@@ -156,7 +157,8 @@ def _codec(row: Mapping[str, Any], encodings: Container[str]) -> str:
 
 
 def remarks(run: Found) -> list[str]:
-    """Return what a reader must know about the run before reading its figures."""
+    """Return the sentences that a reader should know before the figures of a run: remarks, skipped parts, and whether
+    the run is unfinished."""
     sentences = list(run.remarks)
     left_out = run.facts.get("left_out")
     sentences += [f"Skipped in this run: {line}." for line in left_out] if isinstance(left_out, list) else []
@@ -184,7 +186,7 @@ class PageSection:
 
     @property
     def is_there(self) -> bool:
-        """Whether the run has anything of it."""
+        """Whether the run has rows for the section."""
         return bool(self.section.rows)
 
 
@@ -215,7 +217,7 @@ def views(run: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
         mine.append((section.key, section.about.short))
         mine += [(extra, EXTRAS[extra]) for extra in section.about.extras if extra in EXTRAS]
     parts[View.COMPARE] += [("both", "Figures")] if has_codecs else []
-    parts[View.COMPARE] += [("pictures", "Pictures")] if has_pictures else []
+    parts[View.COMPARE] += [("pictures", "Images")] if has_pictures else []
     parts[View.SEE] += [("live", "Your GPU")] if run.live else []
     parts[View.DATA] += [("rows", "Every row"), ("measured", "Measured")]
     return [Shown(view, TITLES[view], mine) for view, mine in parts.items() if mine]
@@ -242,7 +244,7 @@ def beginning(
 
 
 def _own(run: Found, names: Sequence[str]) -> list[str]:
-    """The codecs whose encoding a user has brought."""
+    """Return the names of codecs whose encoding is a user's own, not in the catalogue."""
     known = run.cards.get("encodings")
     return [name for name in names if known and cards.of_encoding(name) not in known]
 
@@ -255,7 +257,7 @@ def drawings(run: Found) -> list[Drawing]:
 
 @cache
 def template(name: str) -> Any:
-    """A template of the folder web."""
+    """Return a Jinja template of the folder `web`, by its file name."""
     import jinja2
 
     environment = jinja2.Environment(
@@ -342,18 +344,18 @@ def html(
 
 
 def _listings(run: Found) -> str:
-    """Disassemblies as data.js reads them."""
+    """Return the disassemblies as JSON text for data.js."""
     listings = run.listings
     return json.dumps({name: {"text": listing.text, "source": listing.source} for name, listing in listings.items()})
 
 
 def base(names: Sequence[str], unpacked: Sequence[str] = (), is_beside: bool = False) -> dict[str, Any]:
-    """Return what base.html.j2 needs for every page.
+    """Return the variables that base.html.j2 needs for every page.
 
     Args:
         names: the page's scripts, files of the folder web.
         unpacked: texts of scripts that the page unpacks later.
-        is_beside: whether pictures are stored next to the page.
+        is_beside: whether images are stored next to the page.
     """
     scripts = [(WEB / name).read_text(encoding="utf-8") for name in names]
     style = (WEB / "page.css").read_text(encoding="utf-8")
@@ -361,17 +363,18 @@ def base(names: Sequence[str], unpacked: Sequence[str] = (), is_beside: bool = F
 
 
 def about(run: Found) -> dict[str, str]:
-    """Return what the laboratory says about the page that contains it."""
+    """Return the facts about a run that the laboratory shows: its name, sources and program version."""
     return {"run": run.name, "sources": run.sources, "program": str(run.machine.get("normalbench", ""))}
 
 
 def data_block(data: Any) -> str:
-    """JSON inside a script element, which no text in it can end."""
+    """Return data as JSON for a script element, with `<` escaped so that no text can end the element."""
     return json.dumps(data).replace("<", "\\u003c")
 
 
 def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
-    """Return the sources that the page may execute: its own scripts, and those of pictures next to it."""
+    """Return the sources from which the page may run scripts, for its Content-Security-Policy: hashes of its own
+    scripts, and files next to it if `is_beside`."""
     digests = (base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii") for script in scripts)
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 

@@ -23,11 +23,12 @@ NOT_A_NUMBER = 255
 
 
 def angle_bytes(degrees: np.ndarray, covered: np.ndarray) -> np.ndarray:
-    """Angles as bytes, uint8 of the same shape: within 4.5 % of the angle; NaN is NOT_A_NUMBER.
+    """Return angles as bytes, uint8 of the same shape: within 4.5% of the angle, NOT_A_NUMBER for NaN, 0 for
+    background.
 
     Args:
         degrees: any shape.
-        covered: bool of the same shape; elsewhere is background.
+        covered: bool of the same shape; false for background.
     """
     known = np.maximum(np.nan_to_num(degrees), 2.0**LEAST_LOG2)
     steps = np.rint((np.log2(known) - LEAST_LOG2) * STEPS_PER_OCTAVE) + 1
@@ -117,7 +118,7 @@ class Film:
 
 
 def film_uri(path: Path) -> str:
-    """An animated PNG as a data URI; empty where it is damaged, or takes more than MAX_FILM bytes."""
+    """Return an animated PNG as a data URI; empty if it is damaged, or larger than MAX_FILM bytes."""
     try:
         data = path.read_bytes()
         with Image.open(BytesIO(data), formats=["PNG"]) as image:
@@ -128,7 +129,7 @@ def film_uri(path: Path) -> str:
 
 
 def read_png(path: Path) -> np.ndarray | None:
-    """The pixels of a file, uint8 of shape (height, width, 3); None where it is damaged or larger than a page shows."""
+    """Return a PNG file's pixels, uint8 of shape (height, width, 3); None if damaged or too large for a page."""
     try:
         with Image.open(path, formats=["PNG"]) as image:
             return None if image.width * image.height > MAX_PIXELS else np.asarray(image.convert("RGB"))

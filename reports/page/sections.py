@@ -46,23 +46,23 @@ class TableSection:
 
     @property
     def sheets(self) -> Iterator[Sheet]:
-        """The tables that people look at first."""
+        """The sheets that people look at first, without empty sheets."""
         return (replace(sheet, rows=whole(sheet.rows)) for sheet in self.summary if sheet.rows)
 
     @property
     def data(self) -> str:
-        """Every row, packed."""
+        """Every row of the table, packed as text for data.js."""
         return block(whole(self.rows), self.columns)
 
     def measured(self) -> list[tuple[str, str]]:
-        """Return the conditions of the answer: the values of the columns SAID in its rows."""
+        """Return pairs of name and values, as text, of the columns SAID: the conditions of the answer. Columns
+        without values are left out."""
         conditions = [(name, dict.fromkeys(str(row[name]) for row in self.rows if row.get(name))) for name in SAID]
         return [(name, ", ".join(values)) for name, values in conditions if values]
 
 
 def answered_first(sections: Sequence[TableSection]) -> list[TableSection]:
-    """The sections, each with those sheets first that are of a storage, and a set of normals, that the page's answer is
-    of."""
+    """Return the sections, with the sheets first whose storage and normals are those of the page's answers."""
     answers = [sheet.keys for section in sections if section.about.leads for sheet in section.summary]
 
     def is_other(sheet: Sheet) -> tuple[bool, ...]:
@@ -72,6 +72,6 @@ def answered_first(sections: Sequence[TableSection]) -> list[TableSection]:
 
 
 def whole(rows: Sequence[Row]) -> list[Row]:
-    """Rows that all have the same columns, in the order in which these come up."""
+    """Return rows that all have the same columns, in the order of first appearance; missing values are None."""
     columns = dict.fromkeys(column for row in rows for column in row)
     return [{column: row.get(column) for column in columns} for row in rows]

@@ -39,7 +39,7 @@ class Site:
 
 
 def linked(to: str, path: str) -> str:
-    """A path of the site, as a page of it links to it."""
+    """Return the relative link from the page `path` to another path of the site, which may have a fragment."""
     file, mark, fragment = to.partition("#")
     return posixpath.relpath(file, posixpath.dirname(path) or ".") + mark + fragment
 
@@ -159,12 +159,12 @@ class ViewPage(Headed):
 
 
 def index_html(index: Index, site: Site) -> str:
-    """A list that is searched."""
+    """Return the HTML of a page with searchable lists."""
     return template("site.html.j2").render(index=index, **_around(index.path, site))
 
 
 def view_html(shown: ViewPage, site: Site) -> str:
-    """Return the page with the text of a view."""
+    """Return the HTML of the page with the text of a view."""
     view = linked(shown.view[0], shown.path)
     return template("view.html.j2").render(shown=shown, view=view, choices=None, **_around(shown.path, site))
 

@@ -16,17 +16,18 @@ LEAST_DB = 0.001
 
 
 def is_number(value: Any) -> bool:
-    """Whether it is a figure: no text, no truth value, not NaN."""
+    """Whether a value is a number, which may be infinite: neither text nor Boolean nor NaN."""
     return isinstance(value, int | float) and not isinstance(value, bool) and value == value
 
 
 def is_count(value: Any) -> bool:
-    """Whether it is a whole number."""
+    """Whether a value is an integer, not a Boolean."""
     return isinstance(value, int) and not isinstance(value, bool)
 
 
 def counted_set(row: Row, rows: Sequence[Row]) -> str:
-    """A row's set of normals, with their number where rows have several of that set: they are not compared."""
+    """Return the name of a row's set of normals, with their number if rows have sets of this name and other sizes,
+    which are not compared."""
     name, counts = (
         str(row.get("normals")),
         {other.get("count") for other in rows if other.get("normals") == row.get("normals")},

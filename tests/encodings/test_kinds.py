@@ -123,7 +123,7 @@ def planes(made) -> list:
 
 def test_an_encoding_that_is_not_named_after_its_file_is_refused(monkeypatch):
     monkeypatch.setattr(catalogue, "import_module", lambda *_: SimpleNamespace(ENCODING=catalogue.ENCODINGS["xyz"]))
-    with pytest.raises(CatalogueError, match=r"encodings/normals/xy\.py: its ENCODING is named 'xyz', not 'xy'"):
+    with pytest.raises(CatalogueError, match=r"encodings/normals/xy\.py: ENCODING has the name 'xyz' instead of 'xy'"):
         catalogue._loaded_encoding(NORMAL, "xy")
 
 

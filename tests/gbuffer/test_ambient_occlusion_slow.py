@@ -321,11 +321,11 @@ def test_one_pipeline_takes_one_method():
     gtao, other = effect("gtao"), effect("hbao")
     with pytest.raises(PipelineError) as refused:
         PIPELINES["deferred"].with_effect(gtao.passes()).with_effect(other.passes())
-    assert str(refused.value) == "pipeline deferred: pass occluder_depth has the name of another pass"
+    assert str(refused.value) == "pipeline deferred: pass occluder_depth has the same name as another pass"
 
 
 def test_a_forward_pipeline_has_no_gbuffer_to_read():
-    with pytest.raises(PipelineError, match="pass occluder_depth comes after linear_depth; known: shadow_map, forward"):
+    with pytest.raises(PipelineError, match="pass occluder_depth must come after linear_depth; known: shadow_map"):
         PIPELINES["forward"].with_effect(effect("ssao").passes())
 
 

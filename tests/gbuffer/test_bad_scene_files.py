@@ -29,14 +29,17 @@ def with_indices(document: Document, values) -> Document:
 
 
 BAD_GLTF = {
-    "an index out of range": (lambda: with_indices(chained(), [0, 1, 3]), ["index 2 names vertex 3", "there are 3"]),
+    "an index out of range": (
+        lambda: with_indices(chained(), [0, 1, 3]),
+        ["index 2 refers to vertex 3", "there are 3"],
+    ),
     "a cycle": (lambda: broken(lambda j: j["nodes"][0].update(children=[1])), ["nodes[0]", "cycle"]),
     "a node that is its own child": (
         lambda: broken(lambda j: j["nodes"].append({"children": [2]})),
         ["nodes[2]", "cycle"],
     ),
     "two parents": (lambda: broken(lambda j: j["nodes"].append({"children": [0]})), ["nodes[0]", "child of"]),
-    "no such node": (lambda: broken(lambda j: j["nodes"][1].update(children=[7])), ["nodes[7]", "there are 2"]),
+    "no such node": (lambda: broken(lambda j: j["nodes"][1].update(children=[7])), ["nodes[7]", "of nodes is 2"]),
     "a view beyond the buffer": (lambda: broken(lambda j: j["bufferViews"][0].update(byteLength=9999)), ["is cut off"]),
     "too many": (lambda: broken(lambda j: j["accessors"][0].update(count=10**9)), ["1000000000 vertices", "2^22"]),
     "a negative count": (lambda: broken(lambda j: j["accessors"][0].update(count=-1)), ["count is -1"]),
@@ -71,13 +74,13 @@ def test_bad_gltf_is_a_one_line_error(tmp_path, run, what):
 
 
 ADDRESSES = {
-    "up": ("../secret.bin", "leaves the file's folder"),
-    "up, hidden": ("inner/%2e%2e/%2E%2e/secret.bin", "leaves the file's folder"),
-    "up, by backslashes": ("..\\secret.bin", "leaves the file's folder"),
-    "absolute": ("/etc/hostname", "leaves the file's folder"),
-    "absolute, hidden": ("%2Fetc/hostname", "leaves the file's folder"),
-    "a link": ("link.bin", "leaves the file's folder"),
-    "a link to a folder": ("folder/secret.bin", "leaves the file's folder"),
+    "up": ("../secret.bin", "is outside the file's folder"),
+    "up, hidden": ("inner/%2e%2e/%2E%2e/secret.bin", "is outside the file's folder"),
+    "up, by backslashes": ("..\\secret.bin", "is outside the file's folder"),
+    "absolute": ("/etc/hostname", "is outside the file's folder"),
+    "absolute, hidden": ("%2Fetc/hostname", "is outside the file's folder"),
+    "a link": ("link.bin", "is outside the file's folder"),
+    "a link to a folder": ("folder/secret.bin", "is outside the file's folder"),
     "the network": ("http://example.org/a.bin", "nothing is downloaded"),
     "a share": ("//example.org/a.bin", "nothing is downloaded"),
     "a file address": ("file:///etc/hostname", "nothing is downloaded"),
@@ -87,7 +90,7 @@ ADDRESSES = {
     "missing": ("missing.bin", "no such file"),
     "bad base64": ("data:;base64,%%%", "data: address is damaged"),
     "no base64": ("data:,hello", "data: address is damaged"),
-    "a zero": ("a\0b", "leaves the file's folder"),
+    "a zero": ("a\0b", "is outside the file's folder"),
 }
 
 
@@ -121,9 +124,9 @@ BAD_TEXTS = {
     "an OBJ library outside": (
         "a.obj",
         "mtllib ../a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
-        ["leaves the file's folder"],
+        ["is outside the file's folder"],
     ),
-    "flat triangles": ("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", ["no triangle with an area"]),
+    "flat triangles": ("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", ["no triangle has an area"]),
     "no PLY": ("a.ply", "plywood", ["no PLY header"]),
     "a PLY without faces": (
         "a.ply",
@@ -143,8 +146,8 @@ BAD_TEXTS = {
     "no glTF": ("a.gltf", "{", ["its JSON", "cannot be read"]),
     "a deep glTF": ("a.gltf", "[" * 100_000, ["its JSON", "cannot be read"]),
     "a glTF list": ("a.gltf", "[]", ["is not an object"]),
-    "a PLY index": ("a.ply", ply("ascii", [[0, 1, 3]]).decode(), ["names vertex 3", "there are 3"]),
-    "a negative PLY index": ("a.ply", ply("ascii", [[0, 1, -1]]).decode(), ["names vertex -1"]),
+    "a PLY index": ("a.ply", ply("ascii", [[0, 1, 3]]).decode(), ["refers to vertex 3", "there are 3"]),
+    "a negative PLY index": ("a.ply", ply("ascii", [[0, 1, -1]]).decode(), ["refers to vertex -1"]),
 }
 
 
@@ -183,4 +186,4 @@ def test_two_files_of_the_same_name_are_refused(run, tmp_path):
     for arguments in (("quality", "--normals", both), ("render", "--scene", both)):
         status, out, err = run(*arguments)
         if status != 3:
-            assert (status, out) == (2, "") and "two files are called x.glb" in err and err.count("\n") == 1
+            assert (status, out) == (2, "") and "two files have the same name, x.glb" in err and err.count("\n") == 1

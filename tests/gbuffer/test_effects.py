@@ -57,7 +57,7 @@ WRITES, READS = Pass("first", (), (HALF,), nothing), Pass("second", (HALF,), (FI
     "stages, said",
     [
         ((READS, WRITES), "pass second reads half, which no earlier pass writes"),
-        ((WRITES, WRITES), "pass first has the name of another pass"),
+        ((WRITES, WRITES), "pass first has the same name as another pass"),
         ((Pass("first", (), (), nothing),), "pass first writes nothing"),
         (
             (Pass("first", (), (replace(HALF, format="rgb555"),), nothing),),
@@ -65,7 +65,7 @@ WRITES, READS = Pass("first", (), (HALF,), nothing), Pass("second", (HALF,), (FI
         ),
         (
             (WRITES, Pass("second", (replace(HALF, scale=0.25),), (FINAL,), nothing)),
-            "pass second has a resource half that differs from an earlier pass's",
+            "pass second has a resource half that differs from that of an earlier pass",
         ),
         (
             (Pass("first", (), (replace(HALF, depth=8),), nothing),),
@@ -77,7 +77,7 @@ WRITES, READS = Pass("first", (), (HALF,), nothing), Pass("second", (HALF,), (FI
         ),
         (
             (Pass("first", (), (replace(HALF, kept=True),), nothing),),
-            "pass first has the resource half, which has 1 copies; what is kept needs 2",
+            "pass first has the resource half, which has 1 copies; a kept resource needs 2",
         ),
         (
             (Pass("first", (replace(HALF, kept=True, copies=2),), (FINAL,), nothing),),
@@ -115,7 +115,7 @@ def test_a_pipeline_that_does_not_fit_is_refused_in_one_line(stages, said):
 def test_an_effect_after_a_missing_pass_is_refused():
     glow = Pass("glow", (FINAL,), (FINAL,), nothing, after=("bloom", "haze"))
     with pytest.raises(
-        PipelineError, match=r"^pipeline forward: pass glow comes after bloom or haze; known: shadow_map, for"
+        PipelineError, match=r"^pipeline forward: pass glow must come after bloom or haze; known: shadow_map, "
     ):
         PIPELINES["forward"].with_effect([glow])
 

@@ -44,7 +44,7 @@ def test_a_scene_may_move_between_frames(gl, pipeline):
             drawing.draw(moment)
             differ = np.mean(drawing.image() != alone[number])
             assert differ == 0, f"{differ:.1%} of moment {number} differs"
-        with pytest.raises(ValueError, match="only a scene of the same meshes"):
+        with pytest.raises(ValueError, match="another moment of a scene must have the same meshes"):
             drawing.draw(scene_of("objects"))
     assert np.mean(alone[0] != alone[1]) > 0.3, "the scene stands still"
 

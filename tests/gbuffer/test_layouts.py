@@ -86,7 +86,11 @@ def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
         ([("rgba8", "normal.x:12 normal.y:12 depth:1")], {"encoding": "xy_sign"}, "depth needs 2 bits, not 1"),
         ([("rgba16f", "normal.x normal.y")], {"encoding": "octahedral_precise"}, "only precise rounding"),
         ([("rgba8", "normal.x:8 normal.y:8 normal.z:1")], {"encoding": "tetrahedral"}, "normal.z has 4 values"),
-        ([("rg8", "normal.x normal.y"), ("r11g11b10f", "depth")], {"encoding": "xy_sign"}, "which depth needs"),
+        (
+            [("rg8", "normal.x normal.y"), ("r11g11b10f", "depth")],
+            {"encoding": "xy_sign"},
+            "cannot store the sign that depth needs",
+        ),
         ([("rgb555", "normal.x normal.y")], {}, "unknown format 'rgb555'; known: rgba8"),
         ([("rgba8", "normal.x normal.y kind*normal.z")], {}, "only depth, power, roughness can store a sign"),
         ([("rgba8", "normal.x roughness*normal.y")], {}, "normal.y of octahedral is not a sign"),
@@ -100,7 +104,7 @@ def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
             {"encoding": "signed_octahedral"},
             "a layout can have only one quantity with a sign",
         ),
-        ([("srgb8_a8", "normal.x normal.y")], {}, "the first three channels of sRGB8 A8 hold colours"),
+        ([("srgb8_a8", "normal.x normal.y")], {}, "the first three channels of sRGB8 A8 can hold only colours"),
         ([("srgb8_a8", "albedo.r:8 normal.y")], {}, "UNORM or integer channels"),
         ([("rg8", "normal.x normal.y"), ("rgba8", "other:40")], {}, "more than its 32 bits"),
         ([("rg16f", "normal.x normal.y")], {"encoding": "xy_sign"}, "has no depth"),
@@ -184,7 +188,7 @@ def test_a_codec_takes_the_place_of_a_layouts_normal():
 
 def test_more_targets_than_the_device_has_are_refused(gl, monkeypatch):
     monkeypatch.setattr(gl, "max_targets", 3)
-    with pytest.raises(LayoutError, match=r"fp32 has 4 targets, plus a light buffer; .* has 3"):
+    with pytest.raises(LayoutError, match=r"fp32 has 4 targets, plus a light buffer; .* supports 3"):
         check(gl, PIPELINES["deferred"], plan(LAYOUTS["fp32"], light_targets=1))
     check(gl, PIPELINES["forward"], plan(LAYOUTS["fp32"]))
     monkeypatch.setattr(gl, "max_targets", 4)

@@ -32,7 +32,7 @@ def test_a_layout_with_noise_uses_the_noise_of_its_codec(gl):
     assert noisy.rounding == "dithered" and np.array_equal(by_layout, by_plan)
     moved = abs(by_layout - without).max(axis=-1)
     assert (moved > 0).mean() > 0.3 and moved.max() < 1.01 * codec.storage.step(0)
-    with pytest.raises(LayoutError, match="fields across channels are drawn without noise"):
+    with pytest.raises(LayoutError, match="fields across channels cannot be dithered"):
         LAYOUTS["fp32"].with_codec(replace(codec, storage=STORAGES["rgba8_11_11_10"]))
 
 

@@ -462,7 +462,7 @@ def test_a_volume_beyond_the_device_is_refused_in_one_line(gl, monkeypatch):
     effect = chosen(LPV, {"cells": "16", "cascades": "3"})
     pipeline = PIPELINES["deferred"].with_effect(effect.passes())
     with (
-        pytest.raises(FormatError, match=r"has volumes of up to 40 texels per side, not 16 x 16 x 48$"),
+        pytest.raises(FormatError, match=r"supports at most 40 texels per side of a volume, not 16 x 16 x 48$"),
         rendering(gl, pipeline, ROOM, plan_of("deferred")),
     ):
         pass

@@ -124,7 +124,7 @@ def test_material_without_textures_uses_its_factors(tmp_path):
     assert (third.alpha, third.cutoff) == (1, pytest.approx(0.4))
     # glTF 2.0, 3.9.2: the defaults of a material.
     assert (none.base, none.metalness, none.roughness, none.emission) == ((1, 1, 1), 1, 1, (0, 0, 0))
-    assert file.two_sided == (True, False, False, False) and file.notes.count("textures are not read") == 0
+    assert file.two_sided == (True, False, False, False) and file.notes.count("textures are ignored") == 0
     scene = file_scene(file, Setting())
     assert [(part.materials.tolist(), part.two_sided) for part in scene.parts] == [
         ([0], True),
@@ -161,7 +161,7 @@ def test_negative_index_counts_back_from_its_own_line(tmp_path):
 def test_repeated_obj_note_is_reported_once(tmp_path):
     (tmp_path / "a.obj").write_text(OBJ)
     (tmp_path / "colours.mtl").write_text("newmtl red\nmap_Kd a.png\nmap_Ks b.png\nnewmtl blue\nmap_Kd c.png\n")
-    assert read_mesh_file(tmp_path / "a.obj").notes == ("textures are not read: only colours",)
+    assert read_mesh_file(tmp_path / "a.obj").notes == ("textures are ignored; only colours are used",)
 
 
 @pytest.mark.parametrize("order", ["ascii", "binary_little_endian", "binary_big_endian"])

@@ -82,13 +82,13 @@ def test_brightest_of_several_suns_is_drawn_with_a_note(tmp_path):
 
 def test_unknown_kind_of_light_is_left_out_with_a_note(tmp_path):
     file = read(lit({"type": "area"}), tmp_path)
-    assert file.notes == (f"{NAME}.lights[0] is neither directional nor point nor spot: not used",)
+    assert file.notes == (f"{NAME}.lights[0] is ignored: not a directional, point or spot light",)
 
 
 BAD = {
     "no such light": (
         lambda j: j["nodes"][1].update(extensions={NAME: {"light": 3}}),
-        ["a light that does not exist", "there are 1"],
+        ["a light that does not exist", "number of lights is 1"],
     ),
     "a range": (lambda j: j["extensions"][NAME]["lights"][0].update(range=0), ["range is 0.0"]),
     "a colour": (lambda j: j["extensions"][NAME]["lights"][0].update(color=[1]), ["color", "3 numbers"]),

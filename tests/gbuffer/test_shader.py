@@ -68,7 +68,7 @@ def test_missing_include_is_a_one_line_error(tmp_path):
     with pytest.raises(ShaderError, match=r"nowhere\.glsl: there is no such file"):
         Source(tmp_path / "main.frag")
     (tmp_path / "main.frag").write_text("#version 430\n#include NOBODY\n")
-    with pytest.raises(ShaderError, match=r"main\.frag:2: nothing is named NOBODY"):
+    with pytest.raises(ShaderError, match=r"main\.frag:2: unknown include name NOBODY"):
         Source(tmp_path / "main.frag")
 
 
@@ -79,5 +79,5 @@ def test_every_shader_has_a_unique_name(tmp_path, monkeypatch):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "same.glsl").write_text("float same;\n")
     monkeypatch.setattr(shader, "ROOM", tmp_path)
-    with pytest.raises(ShaderError, match=r"two shaders have one name: .*a/same\.glsl and .*b/same\.glsl"):
+    with pytest.raises(ShaderError, match=r"two shaders have the same name: .*a/same\.glsl and .*b/same\.glsl"):
         shader.shaders.__wrapped__()

@@ -378,7 +378,7 @@ def test_out_of_range_setting_is_a_one_line_error(given, said):
     "pipeline, said",
     [
         ("deferred", "pass skin_light expects LIGHT_HOLDS 0 or 2, but has 1"),
-        ("forward", "pass sun_entry comes after lights; known: shadow_map, forward, transparent"),
+        ("forward", "pass sun_entry must come after lights; known: shadow_map, forward, transparent"),
         ("forward_multipass", "pass skin_light "),
     ],
 )

@@ -124,7 +124,7 @@ MISTAKES: Mapping[str, Mistake] = MappingProxyType(
             _edit(("max(-n.z, 0.0)", "0.0"), ("e, step(0.0, z))", "e, 1.0)")),
         ),
         "sign(0)": Mistake(
-            r"sign\(\) returns 0|a comparison or sign\(\)",
+            r"sign\(\) returns 0|check comparisons and sign\(\)",
             _edit(
                 ("vec2 s = vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0)", "vec2 s = sign(p)"),
                 ("vec2 s = step(0.0, p) * 2.0 - 1.0", "vec2 s = sign(p)"),
@@ -138,8 +138,8 @@ MISTAKES: Mapping[str, Mistake] = MappingProxyType(
                 (">= a.", "> a."),
             ),
         ),
-        ".xy for .yx": Mistake("its fold has .xy where .yx belongs", _edit(("abs(p.yx)", "abs(p.xy)"))),
-        ".xy for .yx in decode": Mistake("its unfold has .xy where .yx belongs", _edit(("abs(e.yx)", "abs(e.xy)"))),
+        ".xy for .yx": Mistake("its fold uses .xy instead of .yx", _edit(("abs(p.yx)", "abs(p.xy)"))),
+        ".xy for .yx in decode": Mistake("its unfold uses .xy instead of .yx", _edit(("abs(e.yx)", "abs(e.xy)"))),
         "abs missing in the fold": Mistake(r"abs\(\) is missing in its fold", _edit(("abs(p.yx)", "p.yx"))),
         "abs missing in the sum": Mistake(
             r"abs\(\) is missing in \|x\| \+ \|y\| \+ \|z\|",

@@ -11,7 +11,9 @@ FRAGMENT, WAYS = "{}, fragment", ("encode", "decode")
 
 
 def counted(title: str, operation: str, family: str, name: str = "instructions", **more: str) -> Column:
-    return Column(title, name, {"operation": operation, "family": family} | more, "{:.0f}".format, is_counted=True)
+    of = {"operation": operation, "family": family} | more
+    # A mean over loops of different lengths is shown as a whole number.
+    return Column(title, name, of, "{:.0f}".format, abs=0.5, is_counted=True)
 
 
 def both_ways(first: tuple[str, str], *others: tuple[str, str]) -> tuple[Column, ...]:

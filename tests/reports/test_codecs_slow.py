@@ -139,7 +139,7 @@ def test_copied_code_matches_the_output_of_the_code_command(shown, run):
     card = card_of(shown, "spheremap rgb10a2")
     card.locator("[data-language]").select_option("c")
     code = card.locator("[data-code]").text_content()
-    assert "Verified: not in this run" in code and "It was not run." in card.inner_text()
+    assert "Verified: not in this run" in code and "The code was not run." in card.inner_text()
     _, written, _ = run("code", "spheremap", "--storage", "rgb10a2", "--to", "c")
     assert code.partition("#ifndef")[2] == written.partition("#ifndef")[2]
 

@@ -76,7 +76,7 @@ def charted(folder, quality: list[dict], codecs) -> tuple[list[dict], list[str]]
     contents = gathered(folder, read_run(a_run(folder, {"quality": quality, "cost": costs_of(codecs, "navi31")})))
     (chart,) = TABLES["cost"].work.joined(contents)
     (_, encode), _ = chart.parts()
-    return list(encode.rows), [remark for remark in contents.remarks if "cost against error" in remark]
+    return list(encode.rows), [remark for remark in contents.remarks if "charts of cost" in remark]
 
 
 def test_users_encoding_without_a_twin_is_placed_by_glsl(tmp_path):
@@ -102,10 +102,10 @@ def test_the_page_explains_why_a_codec_is_not_in_its_chart(tmp_path):
     points, remarks = charted(tmp_path / "run", rows, dict.fromkeys(names, ((1, 1),)))
     assert [point["codec"] for point in points] == ["xy rgba8"]
     assert remarks == [
-        f"Not in cost against error, because {why}."
+        f"Not in the charts of cost, because {why}."
         for why in (
             "its storage is not known: odd rgba8",
-            "it has no error: same rgba8",
+            "its error is 0: same rgba8",
             "its error is not known (no twin): lost rgba8",
             "its cost is not known: costless rgba8",
             "the cost of rgba8 8:8:8 is not known: three rgba8",

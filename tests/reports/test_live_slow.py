@@ -105,7 +105,7 @@ def test_the_divider_is_dragged_by_its_line_and_moved_by_keyboard(laboratory):
     laboratory.page.mouse.move(box["x"] + box["width"] * 0.2, box["y"] + 20, steps=4)
     laboratory.page.mouse.up()
     laboratory.settle()
-    assert laboratory.texts("[data-see-out=divider]") == ["20 %"]
+    assert laboratory.texts("[data-see-out=divider]") == ["20%"]
     picture = laboratory.picture()
     edge = round(0.2 * picture.shape[1])
     nothing = picture[0, 0]

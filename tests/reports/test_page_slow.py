@@ -307,7 +307,7 @@ def test_the_theme_is_the_systems_until_the_button_changes_it(opened):
     opened.page.reload()
     assert paper() < 0.1, "it is remembered"
     button.click()
-    assert button.text_content() == "Theme: as the system" and paper() > 0.5
+    assert button.text_content() == "Theme: system" and paper() > 0.5
 
 
 def test_the_keyboard_starts_with_a_link_past_the_navigation(opened):

@@ -112,7 +112,7 @@ def test_page_reports_a_stopped_run_and_other_sources(run, tmp_path):
     folder = a_run(tmp_path / "run", {"quality": [quality_row("octahedral")]}, finished=False, sources="other")
     _, read = reported(run, folder)
     assert "This run is not finished. Completed steps: 1." in read.text
-    assert f"(sources other); this page was made by sources {sources()}." in read.text
+    assert f"(sources other); this page was generated with sources {sources()}." in read.text
     assert "Measure it again: normalbench run." in read.text
     assert "it was requested but has no rows" in read.text
 
@@ -214,7 +214,7 @@ def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
     assert "normalbench run --tables quality." in read.text
     assert "Rows of colours are left out, because this version has no such table." in read.text
     assert "The charts of depth cannot be drawn from these rows" in read.text
-    assert "octahedral" in packed_text(text, "data-quality") and "its rows keep no histograms" in read.text
+    assert "octahedral" in packed_text(text, "data-quality") and "its rows have no histograms" in read.text
 
 
 def test_rows_of_a_removed_table_are_left_out_with_a_note(run, tmp_path):

@@ -81,14 +81,14 @@ def test_the_divider_is_dragged_on_the_image_and_moved_by_keyboard(opened):
     opened.page.mouse.move(box["x"] + box["width"] * 0.8, middle, steps=5)
     opened.page.mouse.up()
     opened.page.mouse.move(1, 1)
-    assert opened.texts("[data-divided]") == ["80 %"]
+    assert opened.texts("[data-divided]") == ["80%"]
     after = opened.pixels("#viewer .stage")
     changed = (np.abs(after - before).max(axis=2) > 40).mean(axis=0)
     width = len(changed)
     assert changed[: int(0.48 * width)].mean() < 0.02 and changed[int(0.52 * width) : int(0.78 * width)].mean() > 0.2
     opened.page.locator("#divider").focus()
     opened.page.keyboard.press("Home")
-    assert opened.texts("[data-divided]") == ["0 %"]
+    assert opened.texts("[data-divided]") == ["0%"]
 
 
 def test_the_lens_shows_and_describes_the_pixels_at_the_pointer(opened, results):
@@ -127,16 +127,16 @@ def test_a_codec_without_an_image_is_not_drawn(opened):
     viewed(opened)
     opened.page.evaluate(WITHOUT, "spheremap rgba8")
     opened.page.evaluate("change({ a: 'octahedral rgba8', b: 'spheremap rgba8' })")
-    opened.says("[data-pixel=right]", "no picture")
+    opened.says("[data-pixel=right]", "no image")
     command = "normalbench run --tables quality --encoding spheremap --storage rgba8"
     opened.says("[data-lacking]", f"The page has no images of B, spheremap rgba8. To see one, run: {command}")
-    assert opened.texts("#viewer [data-name=right]") == ["spheremap rgba8: no picture"]
+    assert opened.texts("#viewer [data-name=right]") == ["spheremap rgba8: no image"]
     assert not drawn(opened, "right").any() and drawn(opened, "left").std() > 8
     opened.page.evaluate("change({ b: 'xy rgba8' })")
     opened.says("#viewer [data-name=right]", "xy rgba8")
     opened.says("[data-pixel=right]", "code")
     assert drawn(opened, "right").std() > 8 and opened.texts("[data-lacking]") == [""]
-    assert not [text for text in opened.texts("#right option") if "no picture" in text] and opened.said == []
+    assert not [text for text in opened.texts("#right option") if "no image" in text] and opened.said == []
 
 
 CHOSEN = """() => ({

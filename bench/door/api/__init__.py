@@ -47,7 +47,7 @@ def __getattr__(name: str) -> Any:
         return getattr(import_module(_HOMES[name], __name__), name)
     if not name.startswith("_") and name in _tables():
         return import_module(".bench.door.python.tables", __name__).function_of(name)
-    raise AttributeError(f"normalbench has no {name!r}; it has {', '.join(__dir__())}")
+    raise AttributeError(f"normalbench has no {name!r}; available: {', '.join(__dir__())}")
 
 
 def __dir__() -> list[str]:

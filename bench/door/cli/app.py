@@ -133,8 +133,8 @@ def list_command(
     what: Annotated[
         str,
         typer.Argument(
-            help="encodings, storages, depths, frames, vectors, curves, normals, layouts, pipelines, effects, scenes, "
-            "environments, lights, or all."
+            help="What to list: encodings, storages, depths, frames, vectors, curves, normals, layouts, pipelines, "
+            "effects, scenes, environments, lights, or all."
         ),
     ] = "all",
     format: Format | None = None,
@@ -171,7 +171,7 @@ def doctor(
     diff: Annotated[
         Path | None,
         typer.Option(
-            "--diff", help="Folders only: write a patch with better encodings to this file. Nothing is applied."
+            "--diff", help="Folders only: write a patch with better encodings to this file; it is not applied."
         ),
     ] = None,
     report: Path | None = None,
@@ -213,7 +213,7 @@ CommitOption = Annotated[
     str | None,
     typer.Option(
         "--commit",
-        help="Name of the measured change in history. Default: the commit of this folder's Git repository.",
+        help="Name of this run's commit in history. Default: the commit of this folder's Git repository.",
         metavar="NAME",
     ),
 ]
@@ -223,8 +223,8 @@ def _run_info() -> CommandInfo:
     """Return the command `run`, without its options: they are those of all tables."""
     return CommandInfo(
         rich_help_panel=Group.ANSWER,
-        help="Measure the default suite into a folder, with a report page.\n\n"
-        "To resume a run that was stopped, run the same command again. With -o a finished run is extended.",
+        help="Measure the default suite and write a report to a folder.\n\n"
+        "To resume a run that was stopped, repeat the command. With -o, a finished run is extended.",
         epilog="Example: normalbench run --tables quality,cost --encoding octahedral,xyz --storage rgb10a2",
         callback=_run_with_options,
     )
@@ -238,7 +238,7 @@ def _run_with_options() -> Callable[..., int]:
 
 @app.command(rich_help_panel=Group.MACHINE, epilog="Example: normalbench worker tcp://127.0.0.1:8786")
 def worker(
-    scheduler: Annotated[str, typer.Argument(help="The address of a dask scheduler.", metavar="tcp://HOST:PORT")],
+    scheduler: Annotated[str, typer.Argument(help="Address of a dask scheduler.", metavar="tcp://HOST:PORT")],
 ) -> int:
     """Measure for commands that name this scheduler in --on, until interrupted."""
     from ...run.workers.worker import worker_command
@@ -267,7 +267,7 @@ def columns_command(
     format: Format | None = None,
     output: Path | None = None,
 ) -> None:
-    """Explain the columns of a table: definitions, units, which way is better."""
+    """Explain the columns of a table: definitions, units and which direction is better."""
     from ...tables.columns import columns
 
     write(columns(names(table)), format_of(format, output), output, by="table")
@@ -275,7 +275,7 @@ def columns_command(
 
 @app.command(rich_help_panel=Group.KEEP, epilog="Example: normalbench check gates.toml")
 def check(
-    gates: Annotated[Path, typer.Argument(help="A TOML file of [[gate]] tables.")],
+    gates: Annotated[Path, typer.Argument(help="TOML file of [[gate]] tables.")],
     files: Annotated[
         list[Path] | None,
         typer.Argument(
@@ -287,7 +287,7 @@ def check(
     ] = None,
     write_baseline: Annotated[
         bool,
-        typer.Option("--write-baseline", help="Write the baselines that gates name instead of comparing with them."),
+        typer.Option("--write-baseline", help="Write the baselines of the gates instead of comparing with them."),
     ] = False,
     format: Format | None = None,
     output: Path | None = None,
@@ -309,8 +309,8 @@ class FailOn(StrEnum):
 
 @app.command(rich_help_panel=Group.KEEP, epilog="Example: normalbench compare before after")
 def compare(
-    before: Annotated[Path, typer.Argument(help="A results folder.")],
-    after: Annotated[Path, typer.Argument(help="Another results folder.")],
+    before: Annotated[Path, typer.Argument(help="Results folder before the change.")],
+    after: Annotated[Path, typer.Argument(help="Results folder after the change.")],
     fail_on: Annotated[FailOn, typer.Option("--fail-on", help="When to exit with status 1.")] = FailOn.never,
     format: Format | None = None,
     output: Path | None = None,
@@ -318,7 +318,7 @@ def compare(
     """Compare two runs, the largest changes first.
 
     Figures are compared exactly; timings count only if the change exceeds the noise. Tables and Markdown have at most
-    20 lines; JSON and CSV have every figure that differs.
+    20 lines; JSON and CSV contain every figure that differs.
     """
     from ...keep.compare_command import compare_command
 
@@ -327,7 +327,7 @@ def compare(
 
 @app.command(rich_help_panel=Group.KEEP, epilog="Example: normalbench show before quality")
 def show(
-    run: Annotated[Path, typer.Argument(help="A results folder.", metavar="RUN")],
+    run: Annotated[Path, typer.Argument(help="Results folder.", metavar="RUN")],
     tables: Annotated[str, typer.Argument(help="Tables to print, comma-separated, or all.", metavar="TABLE")] = "",
 ) -> None:
     """Print the verdict of each table of a run, or whole tables."""
@@ -343,26 +343,26 @@ class PicturePlace(StrEnum):
 
 @app.command(rich_help_panel=Group.KEEP, epilog="Example: normalbench report before -o page.html")
 def report(
-    run: Annotated[Path, typer.Argument(help="A results folder.", metavar="RUN")],
+    run: Annotated[Path, typer.Argument(help="Results folder.", metavar="RUN")],
     markdown: Annotated[
         bool,
-        typer.Option("--markdown", help="Write Markdown for a pull request comment instead, to standard output or -o."),
+        typer.Option("--markdown", help="Write Markdown for a pull request comment to standard output or -o instead."),
     ] = False,
     pictures: Annotated[
         PicturePlace,
         typer.Option(
-            "--pictures", help="inside: as many as keep the page small; beside: all, in files next to the page."
+            "--pictures", help="inside: as many images as keep the page small; beside: all, in files next to the page."
         ),
     ] = PicturePlace.inside,
     charts: Annotated[
         bool,
-        typer.Option("--charts", help="Also write every chart as PNG and SVG, to the folder charts next to the page."),
+        typer.Option("--charts", help="Also write every chart as PNG and SVG to a folder next to the page."),
     ] = False,
     output: Path | None = None,
 ) -> None:
     """Write a run's report as one page that opens offline.
 
-    The run's own files do not change.
+    The run itself is not changed.
     """
     from ...show.report import report_command
 
@@ -456,7 +456,7 @@ def main() -> int:
         why = lack_of_memory()
         if not (why or isinstance(error, MemoryError)):
             raise
-        _say(why or f"not enough memory: {str(error) or 'the system has no more'}; measure less at once")
+        _say(why or f"not enough memory: {str(error) or 'the system has none left'}; measure less at once")
         return MissingError.exit_code
     except OSError as error:
         # Standard output has no name.
@@ -476,7 +476,7 @@ def _plainly(message: str) -> str:
 def _hint(message: str) -> str:
     """Return a hint for the end of the parser's message; empty if there is none."""
     if "extra argument" in message:
-        return "; give one, or names separated by commas"
+        return "; give one name, or several separated by commas"
     return f" Commands: {', '.join(command_line().list_commands())}." if "command" in message else ""
 
 

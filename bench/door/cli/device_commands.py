@@ -15,7 +15,9 @@ Files = Annotated[
 ]
 Folders = Annotated[
     list[Path],
-    typer.Argument(help="A run's folder, folders of device files, or both; subfolders count too.", metavar="FOLDER..."),
+    typer.Argument(
+        help="Results folder, folders of device files, or both; subfolders are searched.", metavar="FOLDER..."
+    ),
 ]
 
 
@@ -28,9 +30,9 @@ def add_devices(app: typer.Typer) -> None:
 
 
 def import_command(files: Files, output: Path | None = None) -> int:
-    """Add devices that readers measured to a run, for its page to show.
+    """Add readers' device files to a run, so that its page shows them.
 
-    For each GPU and browser the newest file is kept. All files are checked before any is added.
+    Only the newest file for each GPU and browser is kept. All files are checked before any is added.
     """
     from ...show.import_command import import_command as add
 
@@ -38,10 +40,10 @@ def import_command(files: Files, output: Path | None = None) -> int:
 
 
 def site_command(folders: Folders, output: Path = Path("site")) -> int:
-    """Make a static website from a run, readers' devices, or both.
+    """Make a static website from a run, device files or both.
 
-    The site has the laboratory, the answer and a page for each encoding. A searchable list of devices gives the codec
-    to use on each.
+    The site has the laboratory, the recommendation and a page for each encoding. A searchable list of devices shows
+    which codec to use on each device.
     """
     from ...show.site_command import site_command as make
 

@@ -35,5 +35,5 @@ def format_of(format: Format | None, output: Path | None) -> Format:
     if not format and output and (other := OTHERS.get(output.suffix.lower())):
         raise UsageError(f"-o writes only rows; for {output.name} use {other} {output}, if the command has that option")
     if output and output.suffix.lower() in NOT_WRITTEN:
-        raise UsageError(f"-o cannot write {output.suffix} files; use {output.with_suffix('.csv').name}, or .json")
+        raise UsageError(f"-o cannot write {output.suffix} files; use {output.with_suffix('.csv').name} or .json")
     return format or (ENDINGS.get(output.suffix.lower()) if output else None) or Format.table

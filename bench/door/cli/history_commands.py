@@ -14,7 +14,9 @@ from .formats import Format, format_of
 
 Runs = Annotated[
     list[Path],
-    typer.Argument(help="Results folders, or folders that contain some.", metavar="RUN...", show_default=False),
+    typer.Argument(
+        help="Results folders, or folders that contain results folders.", metavar="RUN...", show_default=False
+    ),
 ]
 SHOWN = "Selection"
 
@@ -28,7 +30,7 @@ ByOption = Annotated[
     By,
     typer.Option(
         "--by",
-        help="change: where figures got worse, or better than ever; commit: the figures at each commit.",
+        help="change: commits at which figures got worse, or better than ever; commit: the figures at each commit.",
         rich_help_panel=SHOWN,
     ),
 ]
@@ -36,7 +38,7 @@ Tables = Annotated[str | None, typer.Option("--tables", help="Tables, comma-sepa
 Encoding = Annotated[str | None, typer.Option("--encoding", help="Encodings, comma-separated.", rich_help_panel=SHOWN)]
 Storage = Annotated[str | None, typer.Option("--storage", help="Storages, comma-separated.", rich_help_panel=SHOWN)]
 Column = Annotated[
-    str | None, typer.Option("--column", help="Columns of the figures, comma-separated.", rich_help_panel=SHOWN)
+    str | None, typer.Option("--column", help="Columns with figures, comma-separated.", rich_help_panel=SHOWN)
 ]
 
 
@@ -57,8 +59,8 @@ def history(
 ) -> int:
     """Find the commit at which a figure got worse, over many runs.
 
-    Figures are judged as in compare. A time counts only if many runs of one machine before and after a commit agree.
-    A run records the commit of the folder that it was started in; see run --commit.
+    Figures are judged as in compare. A timing counts only if many runs on one machine, before and after a commit,
+    agree. A run records the commit of the folder that it was started in; see run --commit.
     """
     from ...keep.history_command import Wanted, history_command
 

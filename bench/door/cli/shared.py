@@ -16,9 +16,9 @@ from ...ground.output.errors import UsageError
 from ...run.workers.words import HELP
 from .formats import Format
 
-OUTPUT = "Write the rows, page or folder that the command makes to this path. A stopped command can then be resumed."
-FORMAT = f"{', '.join(Format)}. Default: by the extension of -o, or table."
-REPORT = "Write a page with the results, charts and pictures to this file."
+OUTPUT = "Path to write the command's rows, page or folder to. A stopped command can then be resumed."
+FORMAT = f"Output format: {', '.join(Format)}. Default: from the extension of -o, or table."
+REPORT = "Write a page with the results, charts and images to this file."
 # Panels of the program's help.
 WRITTEN, SHADERS, FILES = "Output", "Shader files", "Files of normals"
 # Where rows go, by the names that commands have for it in Python.

@@ -27,9 +27,10 @@ HOW = ("device", "rounded_by", "clock")
 
 
 def entry(table: Table, asked: Mapping[str, Any], row: Row, listing: str = "") -> Entry:
-    """Return a row and its request in a form for JSON: names as in the row, numbers as they were requested.
+    """Return a row and its request as a dict for JSON: "table", "key", "row" and, if given, "listing".
 
-    Times, and columns that only programs read, are left out.
+    Names in the key are as in the row, and numbers as they were requested. Times, and columns that only programs
+    read, are left out.
 
     Args:
         listing: the instructions behind the row's counts; empty if no instructions were counted.
@@ -49,7 +50,7 @@ def _is_kept(table: Table, name: str) -> bool:
 
 
 def read_baseline(path: Path) -> dict[str, Entry]:
-    """The entries of a file, by their keys. Raises UsageError where it is not a baseline."""
+    """Return the entries of a file, by table and key as text. Raises UsageError if the file is not a baseline."""
     try:
         entries = file_json(path)
         if not isinstance(entries, list):
@@ -68,7 +69,7 @@ def _text(row_entry: Entry) -> str:
 
 
 def write_baseline(path: Path, dumped: Sequence[str]) -> None:
-    """Write the measured rows, given as `dumped`, in place of their entries in the file; its other entries stay.
+    """Write rows, given as texts from `Baseline.dumped`, in place of their entries in a file. Other entries stay.
 
     Raises:
         UsageError: the file holds something else or cannot be written, or two rows have the same key.
@@ -110,13 +111,15 @@ class Baseline:
     _read: dict[str, Entry] | None = None
 
     def record(self, row_entry: Entry) -> None:
-        """Keep a row for writing. Raises UsageError where another is asked for by the same."""
+        """Keep an entry for writing. Raises UsageError if a kept entry has the same key and other figures."""
         before = self.recorded.setdefault(_text(row_entry), row_entry)
         if list(changes(before["row"], row_entry["row"], {})):
-            raise UsageError(f"two rows of a baseline are called {_name(row_entry)}; rename one")
+            raise UsageError(f"two rows of the baseline have the same name: {_name(row_entry)}; rename one")
 
     def differences(self, row_entry: Entry, tolerances: Mapping[str, float]) -> list[str]:
-        """Return the differences between a row and its entry, a line for each column.
+        """Return the differences between a row and its entry, a line for each column; empty if they agree.
+
+        If a column differs, changed instructions and another device add a line each.
 
         Raises:
             NoRowError: the file has no such row.
@@ -131,14 +134,15 @@ class Baseline:
         lines = list(changes(before["row"], row_entry["row"], tolerances))
         if lines and before.get("listing") and row_entry.get("listing"):
             changed = list(listing_differences(before["listing"], row_entry["listing"]))
-            lines.append("\n  ".join(["instructions, with changes marked + and -:", *changed]))
+            lines.append("\n  ".join(["instructions, with changed lines marked + and -:", *changed]))
         devices = [row.get("device") for row in (before["row"], row_entry["row"])]
         if lines and devices[0] != devices[1]:
-            lines.append(f"measured on {devices[1]}, baseline measured on {devices[0]}")
+            lines.append(f"measured on {devices[1]}; the baseline was measured on {devices[0]}")
         return lines
 
     def _other_compilers(self, row_entry: Entry) -> str:
-        """Return text that names the other compilers for which the file has a row; empty if there are none."""
+        """Return text such as " by A; it has one by B", which names this row's compiler and those of similar
+        rows in the file; empty if the file has no similar row."""
         table = TABLES.get(row_entry["table"])
         names = table.compilers if table else ()
         alike = [e["key"] for e in (self._read or {}).values() if _less(e, names) == _less(row_entry, names)]
@@ -146,15 +150,15 @@ class Baseline:
             return ""
         differ = [name for name in names if any(key.get(name) != row_entry["key"].get(name) for key in alike)]
         mine, *others = (", ".join(str(key.get(name)) for name in differ) for key in (row_entry["key"], *alike))
-        return f" by {mine}; it has one by {' and by '.join(dict.fromkeys(others))}"
+        return f" for {mine}, only for {' and for '.join(dict.fromkeys(others))}"
 
     def dumped(self) -> str:
-        """Return the recorded rows as text; empty if there are none."""
+        """Return the recorded entries as the JSON text of a list; an empty text if there are none."""
         return json.dumps(list(self.recorded.values())) if self.recorded else ""
 
 
 def _less(row_entry: Entry, names: Sequence[str]) -> str:
-    """An entry's key without some of its parts, as text."""
+    """Return an entry's table and key as text, without the parts of the key that `names` lists."""
     return _text({**row_entry, "key": {name: value for name, value in row_entry["key"].items() if name not in names}})
 
 
@@ -164,7 +168,7 @@ def _name(row_entry: Entry) -> str:
 
 
 def changes(before: Row, after: Row, tolerances: Mapping[str, float]) -> Iterator[str]:
-    """Yield a line for each column that differs by more than its tolerance, which is 0 if none is given."""
+    """Yield a line for each column, except those in HOW, that differs by more than its tolerance (0 unless given)."""
     for column in dict.fromkeys([*before, *after]):
         previous, other = before.get(column), after.get(column)
         if column not in HOW and not same(previous, other) and not _near(previous, other, tolerances.get(column, 0.0)):
@@ -177,10 +181,10 @@ def _near(figure: Any, other: Any, tolerance: float) -> bool:
 
 
 def checked_tolerances(tolerances: Mapping[str, Any], columns: Sequence[str]) -> dict[str, float]:
-    """Return the tolerances. Raises UsageError for an unknown column or a value that is not a tolerance."""
+    """Return the tolerances as a dict. Raises UsageError for an unknown column or a value that is not a tolerance."""
     for column, value in tolerances.items():
         if column not in columns:
             raise UsageError(f"no column {column!r}; known: {', '.join(columns)}")
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
-            raise UsageError(f"{column}: a tolerance must be a number from 0 up, not {value!r}")
+            raise UsageError(f"{column}: a tolerance must be a number of at least 0, not {value!r}")
     return dict(tolerances)

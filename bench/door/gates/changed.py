@@ -39,7 +39,8 @@ def _read_by(gate: Gate, path: Path) -> Iterator[Path]:
 
 
 def _with_includes(word: str) -> Iterator[Path]:
-    """Yield the files of a shader and the Python files next to them. Errors are reported when it is measured."""
+    """Yield the files of a shader, includes too, each followed by its path with the ending .py, whether or not
+    that exists. Stop without an error if the shader cannot be read: errors are reported when it is measured."""
     with suppress(UsageError):
         for file in Source(UserFile(word)).files:
             yield from (file, file.with_suffix(".py"))

@@ -44,7 +44,7 @@ def check_command(
     for limit in dict.fromkeys(row["limit"] for row in rows if row["lacks"]):
         lost = [row["lacks"] for row in rows if row["lacks"] and row["limit"] == limit]
         more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
-        tell(f"{limit.removeprefix('as in ')} has no row {lost[0]}{more}; {WRITER} writes what is missing")
+        tell(f"{limit.removeprefix('as in ')} has no row {lost[0]}{more}; run {WRITER} to add the missing rows")
     if format == "table":
         empty = [name for name in ("worst_normal", "column", "figure") if all(row[name] is None for row in rows)]
         rows = without(rows, ("skipped", "changed", "lacks", *empty))

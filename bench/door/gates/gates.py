@@ -47,10 +47,10 @@ class Gate:
     baseline: Path | None = None
 
     def located(self) -> dict[str, Any]:
-        """The options, files by their paths from here.
+        """Return the options by name; words that name files in the folder become paths from the working directory.
 
         Raises:
-            UsageError: a file that is in the folder of the shell only.
+            UsageError: a file is in the working directory and not in the folder of the gates.
         """
         for name, words in self.files().items():
             for word in map(str, words):
@@ -63,7 +63,7 @@ class Gate:
         return located(self.table, self.options, self.folder)
 
     def files(self) -> dict[str, Names]:
-        """Return the options whose words may be files, as the file of gates has them."""
+        """Return the options whose words may name files: by name, the words as the gates file has them."""
         known = fields_of(self.table.options)
         may_be = (name for name in self.options if name in known and known[name].option.files)
         return {name: words_in(self.options[name]) for name in may_be}
@@ -115,7 +115,7 @@ Measure = Callable[[Gate], list[Found]]
 
 
 def measured_for(gate: Gate) -> list[Found]:
-    """Return the rows of a gate, measured now.
+    """Return the rows of a gate, each with its request, measured now.
 
     Raises:
         UsageError: a table, an option or a name is unknown; one line with the gate's place.
@@ -159,7 +159,7 @@ def _rows_of_run(run: Path) -> Measure:
 
 
 def _finished(done: Done, gate: Gate, run: Path) -> list[Row]:
-    """The rows of a gate's table. Raises UsageError where another version wrote them."""
+    """Return a run's finished rows of a gate's table. Raises UsageError if they do not match this version."""
     name = gate.table.name
     try:
         return done.finished_rows(name)
@@ -222,11 +222,12 @@ class Baselines:
         self._by_path: dict[Path, Baseline] = {}
 
     def of(self, path: Path) -> Baseline:
-        """The baseline of a file."""
+        """Return the baseline of a file, always the same object for one path."""
         return self._by_path.setdefault(path, Baseline(path, self.writes, WRITER))
 
     def write(self) -> Iterator[Path]:
-        """Write the recorded rows into their baselines, and yield the paths. Raises UsageError."""
+        """Write the recorded rows into their baselines, and yield the paths of the files written. Do nothing if
+        rows are only compared. Raises UsageError."""
         for path, baseline in self._by_path.items():
             if self.writes and (dumped := baseline.dumped()):
                 write_baseline(path, [dumped])
@@ -249,7 +250,8 @@ def _held(gate: Gate, tested: Found, limit: Limit) -> Row:
 
 
 def _compared(gate: Gate, tested: Found, baseline: Baseline) -> Row:
-    """Return one row: whether the baseline agrees, and if not, the differences."""
+    """Return one row for the report: whether the baseline agrees, and if not, the differences. If baselines are
+    written, record the tested row instead, and report that."""
     record = entry(gate.table, tested.asked, tested.row, tested.listing)
     if baseline.writes:
         baseline.record(record)

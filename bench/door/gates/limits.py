@@ -46,7 +46,7 @@ class Limit:
             )
 
     def option_of(self, table: Table) -> str:
-        """The option without which the column is not measured; empty for none."""
+        """Return the name of the option without which the column is not measured; empty if no option is needed."""
         column = table.column(self.column)
         return column.option if column and column.option in fields_of(table.options) else ""
 
@@ -71,7 +71,8 @@ ALL_NUMBERS = Limit("invalid", "at most", 0.0)
 
 
 def limits_on(row: Mapping[str, Any], limits: Iterable[Limit]) -> list[Limit]:
-    """Return the limits on a row. If some results are not numbers and no limit covers that, a limit for it is added."""
+    """Return the limits as a list. If some results of the row are not numbers, ALL_NUMBERS is added, unless a
+    limit on that column is given or there are no limits."""
     limits = list(limits)
     is_said = any(bound.column == ALL_NUMBERS.column for bound in limits)
     return [*limits, ALL_NUMBERS] if limits and not is_said and row.get(ALL_NUMBERS.column) else limits

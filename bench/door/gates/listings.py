@@ -19,17 +19,18 @@ _PADDING = "NOP"
 
 
 def lines_of(listing: str) -> list[str]:
-    """The lines that a baseline keeps: instructions and labels, without comments, addresses, bytes and blank lines."""
+    """Return the instructions and labels of a listing as lines that a baseline keeps, without comments, addresses,
+    bytes and blank lines."""
     lines = (" ".join(_ADDRESS.sub("", _BYTES.sub("", line)).split()) for line in listing.splitlines())
     return [line for line in lines if line and line != _PADDING and not line.startswith((";", "//", "#"))]
 
 
 def differences(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:
-    """Lines that were added, with +, and left out, with -, and how many more where they are too many."""
+    """Yield the added lines, marked +, and the removed lines, marked -; beyond MOST_LINES, only their number."""
     lines = list(_changed(before, after))
     yield from lines[:MOST_LINES]
     if len(lines) > MOST_LINES:
-        yield f"... and {len(lines) - MOST_LINES} lines more"
+        yield f"... and {len(lines) - MOST_LINES} more lines"
 
 
 def _changed(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:

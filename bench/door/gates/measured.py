@@ -54,7 +54,7 @@ class Found:
 
 
 def table_named(name: Any) -> Table:
-    """A table by its name. Raises UsageError."""
+    """Return the table of a name, however the name is spelled. Raises UsageError for an unknown name."""
     if not isinstance(name, str):
         raise UsageError(f"unknown table {name!r}; known: {', '.join(TABLES)}")
     known = spelled("table", name, TABLES)
@@ -108,7 +108,7 @@ def _words(value: Any) -> set[str]:
 
 
 def _word(value: Any) -> str:
-    """A value of a row or of an option as text, numbers in one spelling; empty for none."""
+    """Return a value of a row or of an option as text, with numbers in one spelling; empty for None."""
     try:
         return f"{float(value):.17g}"
     except (TypeError, ValueError):
@@ -116,7 +116,8 @@ def _word(value: Any) -> str:
 
 
 def located(table: Table, options: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Options with the words that are files by their paths from here: they are looked for in a folder."""
+    """Return the options by name; words that name files in a folder become paths from the working directory.
+    Options that take files become a tuple if they take several names, else text."""
     known = fields_of(table.options)
     placed: Mapping[str, Callable[[Path, str], str]] = {INCLUDE: _root_in}
     files = {name for name in options if name in known and known[name].option.files}
@@ -133,7 +134,8 @@ def _root_in(folder: Path, word: str) -> str:
 
 
 def path_in(folder: Path, word: str) -> str:
-    """A word with the files of a folder that it names by their paths from here."""
+    """Return a word in which each file that it names in a folder has its path from the working directory. Absolute
+    paths stay as they are."""
     paths = (path for path in files_in(word, folder) if not Path(path).is_absolute())
     return with_files(word, {path: os.path.relpath(folder / path) for path in paths})
 
@@ -154,11 +156,12 @@ def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _is_in_glsl_only(names: Names) -> bool:
-    """Tell whether one of the names is a file with a user's encoder without a Python twin."""
+    """Whether one of the names is a user's file with an encoder but without a Python twin."""
     words = [word for word in map(str, names) if names_an_encoder(word)]
     return any(names_a_file(str(file_of(word))) and not names_a_file(str(UserFile(word).twin)) for word in words)
 
 
 def with_their_options(table: Table, values: Mapping[str, Any], limits: Iterable[Limit]) -> dict[str, Any]:
-    """The options, and those without which a limited column is not measured: `flip`, `worst_case`, `codes`."""
+    """Return the options, with True for each option without which a limited column is not measured: `flip`,
+    `worst_case` or `codes`."""
     return dict(values) | {option: True for limit in limits if (option := limit.option_of(table))}

@@ -44,12 +44,12 @@ LOOKED_AT, MORE = 4096, 0.02
 
 
 def shares(data, code, largest):
-    """Integers as shares of the largest, never below -1."""
+    """Return the integers in some bytes as a list of floats: shares of `largest`, never below -1."""
     return [max(value / largest, -1.0) for value in little(code, data)]
 
 
 def little(code, data):
-    """An array of little-endian numbers."""
+    """Return the little-endian numbers in some bytes as an array of a type code, such as "H" for 16 bits."""
     numbers = array(code)
     numbers.frombytes(bytes(data))
     if sys.byteorder == "big":
@@ -58,7 +58,7 @@ def little(code, data):
 
 
 def small_float(bits, mantissa):
-    """A float of 5 bits of exponent, without a sign."""
+    """Return the float of an integer's bits: 5 bits of exponent above `mantissa` bits, without a sign."""
     exponent, fraction = bits >> mantissa, bits & ((1 << mantissa) - 1)
     if exponent == 0:
         return fraction * 2.0 ** (-14 - mantissa)
@@ -68,7 +68,8 @@ def small_float(bits, mantissa):
 
 
 def regular(data, kind, width):
-    """The numbers of channels that are 1, 2 or 4 bytes each."""
+    """Return the numbers of all channels, pixel by pixel: floats and integers unchanged, UNorm and SNorm as shares
+    of the largest integer. Each channel has `width` bytes."""
     if kind == "Float":
         return struct.unpack(f"<{len(data) // width}{FLOATS[width]}", data)
     signed = kind in ("SNorm", "SInt", "SScaled")
@@ -80,7 +81,7 @@ def regular(data, kind, width):
 
 
 def planes(data, layout, kind, width, count, bgra=False):
-    """A list of numbers for each channel.
+    """Return a list of numbers for each channel, in the order R, G, B, A. Raises ValueError for other layouts.
 
     Args:
         layout: Regular, R10G10B10A2 or R11G11B10, as RenderDoc names it.
@@ -106,7 +107,7 @@ def planes(data, layout, kind, width, count, bgra=False):
 
 
 def depths(data, pixels, kind, is_opengl):
-    """Return the numbers of a depth buffer, in [0, 1], without the stencil."""
+    """Return the depths of a buffer of `pixels` pixels as a list of floats in [0, 1], without the stencil."""
     width = len(data) // pixels
     if width == 2:
         return shares(data, "H", 65535)
@@ -119,7 +120,7 @@ def depths(data, pixels, kind, is_opengl):
 
 
 def from_above(plane, width):
-    """Rows in the other order: OpenGL's first is the lowest."""
+    """Return the numbers of a plane with its rows in reverse order: OpenGL's first row is the lowest."""
     rows = [plane[start : start + width] for start in range(0, len(plane), width)]
     return [value for row in reversed(rows) for value in row]
 
@@ -132,7 +133,7 @@ def attribute(name, kind, value):
 
 
 def write_exr(path, width, height, channels):
-    """An EXR file of 32-bit floats, not compressed; `channels` are numbers by their names, the top row first."""
+    """Write an uncompressed EXR file of 32-bit floats; `channels` has lists of numbers by name, the top row first."""
     names = sorted(channels)
     described = b"".join(name.encode() + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for name in names) + b"\0"
     box = struct.pack("<4i", 0, 0, width - 1, height - 1)
@@ -166,7 +167,7 @@ def write_text(path, text):
 
 
 def file_name(name, index, taken):
-    """Return a file name for a texture's name that is not taken."""
+    """Return a file name for a texture's name, with the index in front if another target or the depth has it."""
     plain = f"{re.sub(r'[^A-Za-z0-9]+', '_', name).strip('_').lower() or 'target'}.exr"
     is_free = plain != DEPTH and plain not in [target["file"] for target in taken.values()]
     return plain if is_free else f"{index}_{plain}"
@@ -176,7 +177,7 @@ def file_name(name, index, taken):
 
 
 def covered(plane):
-    """Return 1 where a depth is not the background's, else 0. The background is at 0 or 1, whichever is more common."""
+    """Return a mask: 0.0 where a depth is the background's, which is 0 or 1, whichever is more common; else 1.0."""
     background = 1.0 if plane.count(1.0) >= plane.count(0.0) else 0.0
     return [0.0 if value == background else 1.0 for value in plane]
 
@@ -194,7 +195,8 @@ def normals_in(channels, mask):
 
 
 def facing(channels, option, mask, width, fov, turn):
-    """The share of normals that face the camera once they are turned to view space, x right, y up, z to the viewer."""
+    """Return the share, 0 to 1, of a sample of the covered normals that face the camera after `turn`, a rotation
+    by rows to view space: x right, y up, z to the viewer."""
     height, up = len(mask) // width, math.tan(math.radians(fov) / 2)
     scale, bias = (2, -1) if option == "--unpack" else (1, 0)
     inside = [i for i, is_covered in enumerate(mask) if is_covered]
@@ -236,7 +238,8 @@ def views(matrices):
 
 
 def camera_of(matrices, is_opengl):
-    """Return the field of view in degrees and the two planes of the first projection; None if no matrix is one."""
+    """Return the vertical field of view in degrees and the near and far planes of the first perspective
+    projection; None if no matrix is one."""
     for rows in matrices.values():
         ends = planes_of_projection(rows, -1.0 if is_opengl else 0.0)
         if ends:
@@ -245,7 +248,8 @@ def camera_of(matrices, is_opengl):
 
 
 def guessed(targets):
-    """Return the quantities that the targets' names reveal, with their sources, in the form of a description."""
+    """Return the quantities that the targets' names reveal, each with its file and channels as in a description;
+    an empty dict if the names reveal none."""
     letters = {
         match.group(1).lower(): buffer for name, buffer in targets.items() for match in [UNREAL.search(name)] if match
     }
@@ -293,12 +297,13 @@ def description(targets, camera, has_depth):
 
 
 def say(text):
-    """A line to standard output, in which control characters of a capture's names are visible."""
+    """Print text to standard output; control characters in a capture's names are shown as escape sequences."""
     print("".join(letter if letter.isprintable() or letter == "\n" else repr(letter)[1:-1] for letter in text))
 
 
 def say_description(folder, scene, targets):
-    """Print what was guessed and what the user has to fill in, and return the command."""
+    """Print the quantities that were guessed and those that the user has to fill in. Return the `normalbench
+    budget` command as text, which is a comment if the command needs one of the missing quantities."""
     where = folder / "gbuffer.json"
     held = [
         f"{name} ({source['file']} {source.get('channel') or source['channels']})"
@@ -309,7 +314,7 @@ def say_description(folder, scene, targets):
     lacks = [name for name in scene if scene[name] is None and name != "view_matrix"]
     if lacks:
         say(
-            f"{where}: null marks what is not known: {', '.join(lacks)}. "
+            f"{where}: null marks unknown values: {', '.join(lacks)}. "
             'Write {"file": "FILE.exr", "channel": "R"}, or "channels": "R,G,B" for a colour'
         )
     needed = [name for name in NEEDED if name in lacks]
@@ -318,7 +323,8 @@ def say_description(folder, scene, targets):
 
 
 def planes_of_projection(rows, lowest):
-    """The near and the far plane of a projection matrix, by rows; None if it is not a perspective.
+    """Return the distances of the near and the far plane of a projection matrix, by rows; None if it is not a
+    perspective. With reversed depth the first distance is the larger one.
 
     Args:
         lowest: the depth of the near plane after the division: -1 in OpenGL, else 0.
@@ -332,14 +338,14 @@ def planes_of_projection(rows, lowest):
 
 
 def is_rotation(rows):
-    """Whether the upper left of a matrix turns and does nothing else, and its last row is 0, 0, 0, 1."""
+    """Whether the upper left 3 x 3 of a matrix, by rows, is orthonormal and the matrix's last row is 0, 0, 0, 1."""
     turn = [row[:3] for row in rows[:3]]
     products = [sum(a * b for a, b in zip(row, other)) for row in turn for other in turn]
     return rows[3] == [0.0, 0.0, 0.0, 1.0] and all(abs(p - (i % 4 == 0)) < 1e-3 for i, p in enumerate(products))
 
 
 def measuring(folder, targets, matrices, has_depth, is_opengl):
-    """Return the commands that measure the saved files."""
+    """Return lines of commands and comments that measure the saved normals and depth; empty if neither is known."""
     camera = camera_of(matrices, is_opengl)
     fov = f" --fov {camera[0]:.6g}" if camera else ""
     lines = []
@@ -350,7 +356,8 @@ def measuring(folder, targets, matrices, has_depth, is_opengl):
 
 
 def of_normals(folder, target, matrices, options):
-    """Return the command for a target of normals, and the options to add if the normals are in world space."""
+    """Return lines for a target of normals: the command, and a comment for each view matrix with the options to
+    add if the normals are in world space."""
     read = f"--normals {folder / target['file']} {target['normals']}{options}"
     lines = [f"normalbench quality {read} --storage rg8,rgb10a2 --encoding octahedral"]
     for name in views(matrices):
@@ -360,7 +367,7 @@ def of_normals(folder, target, matrices, options):
 
 
 def of_depth(folder, near, far, fov):
-    """The command for the depth buffer; a far plane that is nearer than the near one is reversed depth."""
+    """Return the command for the depth buffer. A far plane nearer than the near plane means reversed depth."""
     code = "window" if near < far else "reversed_window"
     ends = f"--near {min(near, far):.6g} --far {min(max(near, far), FARTHEST):.6g}"
     read = f"--depths {folder / DEPTH} --depths-are {code} {ends}{fov}"
@@ -385,7 +392,8 @@ def targets_of(action, rd):
 
 
 def chosen(controller, rd, event):
-    """The draw after which targets are read."""
+    """Return the draw after which targets are read: that of event number `event` or, for None, the last draw into
+    the targets that most draws write. Exit with a message if no draw qualifies."""
     draws = [action for action in all_actions(controller.GetRootActions()) if action.flags & rd.ActionFlags.Drawcall]
     if event is not None:
         draws = [draw for draw in draws if draw.eventId == event]
@@ -401,7 +409,7 @@ def chosen(controller, rd, event):
 
 
 def constants(controller, rd):
-    """Return all 4 x 4 matrices that the draw's shaders are given, as rows, by name."""
+    """Return all 4 x 4 float matrices that the draw's vertex and pixel shaders are given, as rows, by name."""
     state, matrices = controller.GetPipelineState(), {}
     for stage in (rd.ShaderStage.Vertex, rd.ShaderStage.Pixel):
         reflection = state.GetShaderReflection(stage)
@@ -412,7 +420,7 @@ def constants(controller, rd):
 
 
 def block(controller, state, stage, index):
-    """The variables of a constant buffer."""
+    """Return RenderDoc's variables of a shader stage's constant buffer, given the buffer's index."""
     if hasattr(state, "GetConstantBlock"):  # RenderDoc 1.32 and newer
         used = state.GetConstantBlock(stage, index, 0).descriptor
         place = (used.resource, used.byteOffset, used.byteSize)
@@ -433,7 +441,7 @@ def add_matrices(matrices, variable, rd):
 
 
 def name_of(kind, value):
-    """RenderDoc's name of an enumeration's value."""
+    """Return RenderDoc's name of a value of an enumeration, whose class is `kind`."""
     return next(name for name in dir(kind) if name[:1].isupper() and getattr(kind, name) == value)
 
 
@@ -452,7 +460,7 @@ class Saving:
         folder.mkdir(parents=True, exist_ok=True)
 
     def data_of(self, texture):
-        """The bytes of its first mip level, slice and sample."""
+        """Return the bytes of a texture's first mip level, slice and sample."""
         return bytes(self.controller.GetTextureData(texture.resourceId, self.rd.Subresource(0, 0, 0)))
 
     def upright(self, plane, texture):
@@ -463,7 +471,7 @@ class Saving:
         say(f"{name}: {self.names[int(texture.resourceId)]}, {texture.format.Name()}{says}")
 
     def depth(self):
-        """Write the depth, and return the mask of covered pixels; None if the draw has no depth buffer."""
+        """Write the depth and its mask of covered pixels to a file. Return the mask; None without a depth buffer."""
         texture = self.textures.get(int(self.action.depthOut))
         if texture is None:
             return None
@@ -475,14 +483,15 @@ class Saving:
         return mask
 
     def planes(self, texture):
-        """The channels of a target. Raises ValueError for a format that cannot be read."""
+        """Return a list of numbers for each channel of a target. Raises ValueError for unsupported formats."""
         form = texture.format
         layout, kind = name_of(self.rd.ResourceFormatType, form.type), name_of(self.rd.CompType, form.compType)
         channels = planes(self.data_of(texture), layout, kind, form.compByteWidth, form.compCount, form.BGRAOrder())
         return [self.upright(plane, texture) for plane in channels]
 
     def target(self, texture, name, mask):
-        """Write a target, and return the known facts about it."""
+        """Write a target to a file of this name. Return the known facts about it: file, format, normals, channels
+        and, for unit normals, space."""
         channel_planes = self.planes(texture)
         pixels = len(channel_planes[0])
         own = mask if mask and len(mask) == pixels else [1.0] * pixels
@@ -502,7 +511,8 @@ class Saving:
         return kept
 
     def targets(self, mask):
-        """Write all targets, and return the known facts about each, by its name in the capture."""
+        """Write all targets, and return the facts about each, by its name in the capture. Targets of a format that
+        cannot be read are skipped with a message."""
         kept = {}
         for index, number in enumerate(targets_of(self.action, self.rd)):
             name = self.names[number]
@@ -513,16 +523,17 @@ class Saving:
         return kept
 
     def matrices(self):
-        """Writes all matrices of the draw's shaders, which they are by rows."""
+        """Write each matrix of the draw's shaders to a text file, by rows. Return all matrices, by name."""
         for name, rows in self.found.items():
             lines = [" ".join(f"{value:.9g}" for value in row) for row in rows]
             write_text(self.folder / file_of_matrix(name), "\n".join(lines))
-            say(f"{file_of_matrix(name)}: {name}, by rows")
+            say(f"{file_of_matrix(name)}: {name}, row by row")
         return self.found
 
 
 def save(controller, rd, folder, event=None):
-    """Everything into the folder; prints the commands that measure it."""
+    """Save a draw's depth, targets and matrices, and a description of them, to a folder. Print the commands that
+    measure them. With `event` None, the draw is chosen by its targets."""
     saving = Saving(controller, rd, folder, event)
     mask = saving.depth()
     targets = saving.targets(mask)
@@ -533,14 +544,14 @@ def save(controller, rd, folder, event=None):
     write_text(folder / "gbuffer.json", json.dumps({**scene, "capture": kept}, indent=1))
     if not any(target["normals"] for target in targets.values()):
         say(
-            "No target holds unit normals. If a target holds encoded normals, write what your shader decodes to a "
-            "float target."
+            "No target holds unit normals. If a target holds encoded normals, have your shader write the decoded "
+            "normals to a float target."
         )
     say("\n".join([*lines, say_description(folder, scene, targets)]))
 
 
 def opened(rd, path):
-    """A capture as the Python module opens it."""
+    """Return an opened capture file and its replay controller. Exit with a message if it cannot be replayed."""
     rd.InitialiseReplay(rd.GlobalEnvironment(), [])
     capture = rd.OpenCaptureFile()
     capture.OpenFile(path, "", None)

@@ -18,7 +18,7 @@ SESSION = pytest.StashKey["Session"]()
 
 
 def mirrored() -> dict[str, list[Field]]:
-    """The options of all tables by name; several tables may have one of the same name."""
+    """Return the options of all tables by name: a list for each, because several tables may have the same option."""
     options: dict[str, list[Field]] = {}
     for table in TABLES.values():
         for name, field in fields_of(table.options).items():
@@ -27,16 +27,16 @@ def mirrored() -> dict[str, list[Field]]:
 
 
 def flag(name: str) -> str:
-    """An option as typed."""
+    """Return an option's flag on pytest's command line, --normalbench-write-baseline for `write_baseline`."""
     return f"--{destination(name)}".replace("_", "-")
 
 
 def destination(name: str) -> str:
-    """An option as pytest keeps it."""
+    """Return the name by which pytest keeps an option, normalbench_write_baseline for `write_baseline`."""
     return f"normalbench_{name}"
 
 
 def baseline_path(config: pytest.Config) -> Path | None:
-    """The file that rows are compared with; None where none is named."""
+    """Return the path of the file that rows are compared with; None if no file is named."""
     named = config.getoption(destination(BASELINE))
     return config.invocation_params.dir / named if named else None

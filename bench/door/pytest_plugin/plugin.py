@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     from .session import Normalbench
 
 MARKER = (
-    'normalbench(table="quality", encoding=..., psnr_db="at least 49.5", ...): measure with these options, which are '
-    "those of the table's command, and check the rows against these thresholds before the test runs."
+    'normalbench(table="quality", encoding=..., psnr_db="at least 49.5", ...): measure with these options of the '
+    "table's command, and check the rows against these thresholds before the test runs."
 )
 KEPT = "normalbench_baseline"
 REPORTED = pytest.StashKey[list[str]]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    group = parser.getgroup("normalbench", "normalbench: defaults for tests that set nothing else")
+    group = parser.getgroup("normalbench", "normalbench: defaults for tests that do not set these options")
     for name, fields in mirrored().items():
         group.addoption(flag(name), dest=destination(name), default=None, **_parsed(fields))
     group.addoption(
@@ -45,7 +45,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def _parsed(fields: list[Field]) -> dict[str, Any]:
-    """Return the arguments with which argparse takes an option."""
+    """Return argparse's keyword arguments for an option, given the fields of the tables that have it."""
     kinds, help_text = {field.kind for field in fields}, " ".join(dict.fromkeys(field.option.help for field in fields))
     # Where tables take different kinds, each reads the text in its own way.
     kind = kinds.pop() if len(kinds) == 1 else str
@@ -61,7 +61,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def _check_baseline(path: Path | None) -> None:
-    """Raise pytest.UsageError if a baseline cannot be written; called before anything is measured."""
+    """Raise pytest.UsageError if no baseline is named or it cannot be written; called before anything is measured."""
     from ...ground.output.writing import check_writable
 
     if not path:
@@ -80,7 +80,7 @@ def normalbench(request: pytest.FixtureRequest) -> Normalbench:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_call(item: pytest.Item) -> None:
-    """Check what the test's markers ask for, before the test itself runs."""
+    """Check what the test's markers ask for, before the test itself runs, and fail the test if a check fails."""
     messages = [messages for mark in item.iter_markers("normalbench") if (messages := _broken(item, mark))]
     if messages:
         pytest.fail("\n".join(messages), pytrace=False)
@@ -112,7 +112,8 @@ def pytest_testnodedown(node: Any) -> None:
 
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """Write the whole baseline or, in an xdist worker, hand its rows to the process that writes it."""
+    """Write the recorded rows to the baseline or, in an xdist worker, hand them to the process that writes it. Do
+    nothing if no baseline is named, or the session was interrupted."""
     config, path = session.config, baseline_path(session.config)
     if exitstatus not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED) or not path:
         return

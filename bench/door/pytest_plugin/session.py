@@ -60,7 +60,8 @@ class Session:
     _found: dict[str, list[Found]] = field(default_factory=dict, repr=False)
 
     def measured(self, table: Table, values: Mapping[str, Any], folder: Path) -> Measured:
-        """Rows of a table, measured now or before; files are looked for in a folder.
+        """Return the rows of a table with checks on them, measured now or earlier in this session. Files that
+        `values` names are looked for in a folder.
 
         Raises:
             UsageError, MissingError: see measured.measured.
@@ -94,7 +95,7 @@ class Measured:
 
     @property
     def rows(self) -> list[Row]:
-        """The rows, by column."""
+        """The rows as a list of dicts by column."""
         return [measurement.row for measurement in self.found]
 
     @ends_here
@@ -165,7 +166,7 @@ class Measured:
         return asdict(self.table.options(**single(self.table, self.asked)))
 
     def _measurable(self) -> list[Found]:
-        """The rows less those that a missing GL driver left empty."""
+        """Return the rows without those that lack figures because this machine has no OpenGL device."""
         missing = found_device()[1] if any(row.get("skipped") for row in self.rows) else ""
         return [measurement for measurement in self.found if not missing or measurement.row.get("skipped") != missing]
 
@@ -208,14 +209,15 @@ class Normalbench:
 
     @ends_here
     def hold(self, table: Table, options: Mapping[str, Any], limits: Iterable[Limit]) -> None:
-        """Measure, and hold every row to limits; see Measured.assert_that."""
+        """Measure with these options, and check that every row keeps the limits; see `Measured.assert_that`."""
         limits = list(limits)
         for bound in limits:
             bound.check(table)
         self._measured(table, **with_their_options(table, options, limits)).hold(limits)
 
     def matches(self, table: Table, options: Mapping[str, Any], path: Path) -> None:
-        """Measure, and compare every row with a baseline; see Measured.matches_baseline."""
+        """Measure with these options, and compare every row with the baseline in a file; see
+        `Measured.matches_baseline`."""
         measured = self._measured(table, **options)
         replace(measured, session=replace(measured.session, baseline=Baseline(path, False, WRITER))).matches_baseline()
 
@@ -223,7 +225,7 @@ class Normalbench:
     def hold_mark(self, positional: tuple[Any, ...], values: Mapping[str, Any]) -> None:
         """Check what a marker asks for. Raises AssertionError if a row breaks a limit, UsageError if it is misused."""
         if positional:
-            raise UsageError(f"the marker normalbench takes options and limits by name, not {positional[0]!r}")
+            raise UsageError(f"the marker normalbench takes options and thresholds by name, not {positional[0]!r}")
         table = table_named(values.get("table", USUAL))
         options, limits = split_limits({name: value for name, value in values.items() if name != "table"}, table)
         self.hold(table, options, limits)

@@ -87,7 +87,7 @@ def codec_of(codec: Codec | str) -> Codec:
             raise UsageError(f'codec {codec!r}: name an encoding and a storage, such as "octahedral/rg8"')
         several = codecs_named((name,), (storage,), (rounding,))
         if len(several) != 1:
-            raise UsageError(f"codec {codec!r}: one codec at a time, not {len(several)}")
+            raise UsageError(f"codec {codec!r} names {len(several)} codecs; name exactly one")
         (chosen_codec,) = several
     if chosen_codec.misfit:
         raise UsageError(f"{chosen_codec.name}: {chosen_codec.misfit}")
@@ -99,7 +99,7 @@ def codec_of(codec: Codec | str) -> Codec:
 
 
 def _by_gl(encoding: Encoding) -> Encoding:
-    """An encoding whose two functions OpenGL runs, on arrays."""
+    """Return an encoding whose encoder and decoder take arrays and are run by OpenGL."""
     gl = device()
 
     def run(side: int, given: Any, view: Vec3) -> Any:
@@ -113,7 +113,7 @@ def _by_gl(encoding: Encoding) -> Encoding:
 
 
 def _rows_of_four(vector: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """A vector of arrays as float32 rows of four numbers, (count, 4)."""
+    """Return a vector of arrays, broadcast to a shape, as float32 of shape (count, 4), padded with zeros."""
     columns = [np.broadcast_to(np.asarray(component, np.float32), shape).ravel() for component in vector]
     return np.stack([*columns, *[np.zeros_like(columns[0])] * (4 - len(columns))], axis=1)
 
@@ -127,7 +127,7 @@ def encode(codec: Codec | str, normals: Any, view: Any = None) -> Codes:
         view: view-space positions of the same shape, for encodings that need them; None for a viewer along -z.
 
     Returns:
-        the stored numbers and integers.
+        the stored numbers as `values` and the stored integers as `integers`, both of shape (..., components).
 
     Raises:
         UsageError: no codec has this name, or an array has another shape.
@@ -154,11 +154,11 @@ def decode(codec: Codec | str, codes: Any, view: Any = None) -> Any:
     chosen = codec_of(codec)
     values = jnp.asarray(codes.values if isinstance(codes, Codes) else codes)
     if jnp.issubdtype(values.dtype, jnp.integer):
-        raise UsageError(f"codes are of {values.dtype}; decode takes the result of encode, or its values in [-1, 1]")
+        raise UsageError(f"codes have type {values.dtype}; decode takes the result of encode, or its values in [-1, 1]")
     values = values.astype(jnp.float32)
     size = chosen.encoding.components + chosen.encoding.sign_bits
     if values.ndim < 1 or values.shape[-1] != size:
-        raise UsageError(f"codes have shape {values.shape}; {chosen.name} needs (..., {size})")
+        raise UsageError(f"codes have shape {values.shape}; {chosen.name} requires (..., {size})")
     code = CODES[size](*(values[..., i] for i in range(size)))
     return to_array(chosen.encoding.decode(code, _view_or_ahead(view, Vec3(code.x, code.x, code.x))))
 
@@ -166,7 +166,7 @@ def decode(codec: Codec | str, codes: Any, view: Any = None) -> Any:
 def _planes(what: str, array: Any) -> Vec3:
     array = jnp.asarray(array, jnp.float32)
     if array.ndim < 1 or array.shape[-1] != 3:
-        raise UsageError(f"{what} have shape {array.shape}, but (..., 3) is needed")
+        raise UsageError(f"{what} have shape {array.shape}; expected (..., 3)")
     return from_array(array)
 
 
@@ -177,7 +177,7 @@ def _view_or_ahead(view: Any, like: Vec3) -> Vec3:
 
 
 def _integer(codec: Codec, component: int, number: Any) -> Any:
-    """Return the integer that a texel stores for a number, uint32."""
+    """Return the integer, uint32, that a texel stores for a number in one component of a codec."""
     storage: Storage = codec.storage
     if component >= codec.encoding.components:
         return (number > 0).astype(jnp.uint32)
@@ -193,7 +193,7 @@ def _integer(codec: Codec, component: int, number: Any) -> Any:
 
 
 def _float_integer(form: FloatForm, number: Any) -> Any:
-    """The bits of floats (float32, any shape) that are of a form, uint32."""
+    """Return the bits, uint32, that a storage's form of floats has for float32 numbers of any shape."""
     magnitude = abs(number)
     word = jax.lax.bitcast_convert_type(magnitude, jnp.uint32)
     integer = (word >> (23 - form.mantissa)) - jnp.uint32((127 - form.one) << form.mantissa)

@@ -83,7 +83,7 @@ def _code_of(layout: Layout | str) -> GBufferCode:
     if isinstance(layout, str):
         named = layouts_named((layout,))
         if len(named) != 1:
-            raise UsageError(f"{layout}: {len(named)} layouts; name one")
+            raise UsageError(f"{layout} names {len(named)} layouts; name exactly one")
         layout = named[0]
     return _written(layout)
 
@@ -97,12 +97,12 @@ def _check_names(what: str, given: Mapping[str, Any], wanted: Mapping[str, Any] 
     """Raise UsageError if names are missing or unexpected."""
     if set(given) != set(wanted):
         lacking, odd = sorted(set(wanted) - set(given)), sorted(set(given) - set(wanted))
-        wrong = [f"lacks {', '.join(lacking)}"] * bool(lacking) + [f"cannot have {', '.join(odd)}"] * bool(odd)
-        raise UsageError(f"{what} {' and '.join(wrong)}; expected: {', '.join(wanted) or 'none'}")
+        wrong = [f"missing {', '.join(lacking)}"] * bool(lacking) + [f"unexpected {', '.join(odd)}"] * bool(odd)
+        raise UsageError(f"{what}: {' and '.join(wrong)}; expected: {', '.join(wanted) or 'none'}")
 
 
 def _ran(code: GBufferCode, rows: np.ndarray, settings: Mapping[str, Any], shape: tuple[int, ...]) -> np.ndarray:
-    """Return the results of both functions for rows: uint32 of shape (count, numbers), the targets' numbers first."""
+    """Return the results of packing and unpacking rows: uint32 (count, numbers), the targets' numbers first."""
     _check_names("settings", settings, code.settings)
     besides = np.zeros((len(rows), max(place.stop for place in PLACES.values())), np.uint32)
     for name, value in settings.items():
@@ -112,14 +112,14 @@ def _ran(code: GBufferCode, rows: np.ndarray, settings: Mapping[str, Any], shape
 
 
 def _rows(value: Any, kind: str, shape: tuple[int, ...]) -> np.ndarray:
-    """A value of each pixel by its bits: uint32 of shape (count, numbers)."""
+    """Return the bits of a value given per pixel: uint32 of shape (count, numbers), a row for each pixel."""
     size, array = size_of(kind), np.asarray(value, np.uint32 if scalar_of(kind) == "uint" else np.float32)
     whole = np.broadcast_to(array, (*shape, size) if size > 1 else shape)
     return np.ascontiguousarray(whole).view(np.uint32).reshape(-1, size)
 
 
 def _shape(value: Any, kind: str) -> tuple[int, ...]:
-    """A value's shape without the axis of its type."""
+    """Return a value's shape without the axis of its components; a scalar kind has no such axis."""
     return np.shape(value)[: np.ndim(value) - (size_of(kind) > 1)]
 
 

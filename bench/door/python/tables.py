@@ -39,7 +39,7 @@ class Rows(pd.DataFrame):
         return pd.DataFrame
 
     def charts(self) -> list[Any]:
-        """The table's charts as matplotlib figures; none where it has none."""
+        """Return the table's charts as a list of matplotlib figures; empty if the table has no charts."""
         table, done = self.measured
         return [drawing.draw() for drawing in _drawings(table, done)]
 
@@ -110,9 +110,10 @@ def _typed(key: str, value: Any) -> Any:
 
 
 def _check_unit(name: str, array: np.ndarray) -> None:
-    """Raise UsageError for numbers that are not unit normals, except zeros for background."""
+    """Raise UsageError if an array is not of finite floats, or too many of its vectors are not of length 1. Zeros,
+    for background, do not count, but not all may be zero."""
     if not np.issubdtype(array.dtype, np.floating):
-        raise UsageError(f"normals: {name} is of {array.dtype}; give floats in [-1, 1]")
+        raise UsageError(f"normals: {name} has type {array.dtype}; give floats in [-1, 1]")
     if not np.isfinite(array).all():
         raise UsageError(f"normals: {name} contains NaN or infinity; set these normals to 0 to leave them out")
     lengths = np.linalg.norm(array.reshape(-1, 3).astype(np.float64), axis=1)
@@ -123,8 +124,8 @@ def _check_unit(name: str, array: np.ndarray) -> None:
 
 def _depths(name: str, array: np.ndarray) -> np.ndarray:
     if array.ndim != 2 or not array.size or not (np.issubdtype(array.dtype, np.floating) or array.dtype.kind == "u"):
-        description = f"of {array.dtype} and shape {array.shape}"
-        raise UsageError(f"depths: {name} is {description}; give floats or unsigned integers of shape (height, width)")
+        description = f"type {array.dtype} and shape {array.shape}"
+        raise UsageError(f"depths: {name} has {description}; give floats or unsigned integers of shape (height, width)")
     return array
 
 

@@ -38,7 +38,7 @@ def without_comments(text: str) -> str:
 
 
 def bare(text: str, is_wgsl: bool = False) -> str:
-    """Return a text in whole lines without comments, as compilers are given it."""
+    """Return a text as compilers get it: without comments and, except in WGSL, with continued lines joined."""
     return _without_nested_comments(text) if is_wgsl else without_comments(joined(text))
 
 
@@ -52,7 +52,7 @@ def _without_nested_comments(text: str) -> str:
 
 
 def _end_of_comment(text: str, match: re.Match[str]) -> int:
-    """Return the end of a WGSL comment; 0 if it does not end."""
+    """Return the index behind the WGSL comment that a match begins; 0 if the comment does not end."""
     depth = 1
     for mark in _NESTED.finditer(text, match.end()) if match[0] == "/*" else ():
         depth += 1 if mark[0] == "/*" else -1

@@ -102,19 +102,19 @@ class Api:
         self.type_name = self.function("spReflectionType_GetName", text, pointer)
 
     def function(self, name: str, result: type | None, *given: type) -> Callable:
-        """A function of the library with its types."""
+        """Return a function of the library by its C name, with the ctypes of its result and its arguments."""
         return c.CFUNCTYPE(result, *given)((name, self._library))
 
 
 @cache
 def api() -> Api:
-    """Return the library of this process. Raises MissingError."""
+    """Return the functions of Slang's library, loaded once per process. Raises MissingError."""
     return Api()
 
 
 @cache
 def knows(word: str) -> bool:
-    """Return whether the compiler may know a word: its library holds its keywords and functions as text."""
+    """Whether the compiler may know a word: its library holds its keywords and functions as text."""
     with path_of_library().open("rb") as file, mmap(file.fileno(), 0, access=ACCESS_READ) as library:
         # Of a build that packs its text nothing is known.
         return library.find(word.encode()) >= 0 or library.find(b"__intrinsic_asm") < 0
@@ -143,7 +143,7 @@ class Compiled:
 
 
 def compiled(text: str, options: Sequence[str], folder: Path) -> Compiled:
-    """Return the compiler's result for a text.
+    """Return the compiler's result for a text, also if the compiler refuses the text.
 
     Args:
         options: the compiler's options for the target, and macros.

@@ -121,16 +121,16 @@ def judged(
     expanded: Callable[[Text], str] | None = None,
     knows: Callable[[str], bool] = lambda _: True,
 ) -> Text:
-    """Return a text that compilers of a language may be given.
+    """Return a text, marked as checked, that compilers of a language may be given.
 
     Args:
         text: all that the compiler is given: whole lines, without comments.
         language: a name of RULES.
-        expanded: returns the text as the compiler's own preprocessor expands it, for languages whose macros can spell
-            a word that is not in the text. If None, the text itself is checked, and it may have no macro that joins
-            words.
-        knows: whether the compiler may know a word that begins with two underscores. A word that it does not know is
-            a name of the user's.
+        expanded: returns the text as the compiler's own preprocessor expands it, for languages whose macros can
+            spell a word that is not in the text. If None, the text itself is checked, and it may have no macro
+            that joins words.
+        knows: whether the compiler may know a word that begins with two underscores. A word that it does not know
+            is a name of the user's.
 
     Raises:
         RefusedError: the text may not be given to the compiler.
@@ -140,7 +140,7 @@ def judged(
     _check_directives(text, rules)
     plain = Text(text, is_own=False)
     if rules.words is not None and expanded is None and "##" in text:
-        raise _refusal_at(text, text.index("##"), "a macro that joins words is not supported here")
+        raise _refusal_at(text, text.index("##"), "a ## macro that joins words is not supported here")
     if rules.words is not None:
         words = _WORD.findall(_without_heads(text, rules) if expanded is None else expanded(plain))
         _check_words(text, dict.fromkeys(words), rules, knows)
@@ -162,7 +162,7 @@ def own(*files: Path, **numbers: int | str) -> Text:
 
 
 def is_own_file(path: Path) -> bool:
-    """Return whether a file is one of this program's, its links resolved."""
+    """Whether a file, after its links are resolved, is one of this program's."""
     return any(path.resolve().is_relative_to(PACKAGE / room) for room in ROOMS)
 
 
@@ -200,7 +200,8 @@ def _check_words(text: str, words: Iterable[str], rules: Rules, knows: Callable[
 
 
 def _line_of(text: str, word: str) -> int:
-    """Return the line of a word; if a macro spells it, the line of the first macro that joins words; else 0."""
+    """Return the number of the first line with a word, from 1; if a macro spells the word, of the first line with
+    a macro that joins words; else 0."""
     match = re.search(rf"\b{re.escape(word)}\b", text) or re.search(r"##", text)
     return text.count("\n", 0, match.start()) + 1 if match else 0
 

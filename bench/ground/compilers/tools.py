@@ -62,7 +62,8 @@ def path_of(tool: str) -> Path:
 
 
 def states() -> list[str]:
-    """Return the path and the file state of each compiler; compiled results are valid while these stay the same."""
+    """Return a text for each compiler, its path and file state, or empty if it is missing. Compiled results are
+    valid while these texts stay the same."""
     paths = (shutil.which(tool) for tool in MISSING)
     return [f"{path} {state_of(Path(path))}" if path else "" for path in paths]
 
@@ -86,14 +87,14 @@ def version_text(tool: str) -> str:
 
 
 def first_line(tool: str) -> str:
-    """Return the first line that a tool prints of its version; empty where it prints none. Raises MissingError."""
+    """Return the first line that a tool prints about its version; empty if it prints nothing. Raises MissingError."""
     return version_text(tool).partition("\n")[0].strip()
 
 
 def version(tool: str) -> str:
     """Return a tool's name and the first line that it prints about its version, or what to install."""
     try:
-        return f"{tool} {first_line(tool) or 'of no version'}"
+        return f"{tool} {first_line(tool) or '(unknown version)'}"
     except MissingError as error:
         return str(error)
 
@@ -114,7 +115,7 @@ def stamp_or_empty(tool: str) -> str:
 
 
 def put(path: Path, text: Text) -> None:
-    """Write a text where a compiler reads it."""
+    """Write a checked text to the file that a compiler reads."""
     path.write_text(text.content, encoding="utf-8", newline="\n")
 
 
@@ -134,7 +135,7 @@ def run(
     seconds: float = SECONDS,
     wall: Wall | None = None,
 ) -> Ran:
-    """Write texts into a folder, and run a tool there.
+    """Write texts into a folder, run a tool there, and return its exit status and output.
 
     Args:
         words: options, and names of files in the folder.
@@ -144,7 +145,7 @@ def run(
 
     Raises:
         MissingError: the tool is missing.
-        ToolError: the tool crashes or does not end.
+        ToolError: the tool crashes or does not end; another exit status is not an error.
     """
     for name, text in files.items():
         put(folder / name, text)
@@ -156,7 +157,7 @@ def run(
     except OSError as error:
         raise ToolError(f"{tool}: {error.strerror or error}") from error
     if name := signal_name(done.returncode):
-        raise ToolError(f"{tool} was ended by {name}: this is too much for it")
+        raise ToolError(f"{tool} was ended by {name}: it cannot handle this input")
     return Ran(done.returncode, done.stdout, done.stderr)
 
 
@@ -194,7 +195,7 @@ def slang_text(text: str, words: Sequence[str], folder: Path) -> Text:
 
 
 def module_of(text: Text, words: Sequence[str]) -> tuple[Ran, bytes]:
-    """Run glslang on a text from standard input; return how it ended and the SPIR-V module that it made."""
+    """Run glslang on a text from standard input; return its status and output, and the SPIR-V module."""
     with file_of_child() as module_file:
         command = [str(path_of(GLSLANG)), "--stdin", *words, "-o", module_file.path]
         done = _piped(command, text.content.encode(), *module_file.descriptors)
@@ -202,7 +203,7 @@ def module_of(text: Text, words: Sequence[str]) -> tuple[Ran, bytes]:
 
 
 def optimised(binary: bytes) -> bytes:
-    """Return a module of SPIR-V after its optimiser; empty where that refuses it."""
+    """Return a SPIR-V module after `spirv-opt` has optimised it; empty if `spirv-opt` refuses it."""
     done = _piped([str(path_of(SPIRV_OPT)), "-O", "-", "-o", "-"], binary)
     return done.stdout if done.returncode == 0 else b""
 

@@ -20,7 +20,8 @@ MEMORY, SECONDS, FILE = 1536 << 20, 10, 16 << 20
 
 
 def python(module: str, *words: str) -> list[str]:
-    """The command that runs a module of this program; `-P` keeps the current folder out of the search path."""
+    """Return the command that runs a module of this program with arguments; `-P` keeps the current folder out of
+    the search path."""
     return [sys.executable, "-P", "-m", module, *words]
 
 
@@ -76,8 +77,9 @@ def finished(command: Sequence[str], seconds: float, folder: Path | None = None)
 
 
 def how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
-    """Return how a process that limits itself ended, and the last line that it printed to standard error."""
-    limits = f"its limits are {MEMORY >> 20} MiB of memory and {SECONDS} s of processor time"
+    """Return text on how a process that limits itself ended: the signal and the limits, or the exit status and the
+    last line that it printed to standard error."""
+    limits = f"its limits were {MEMORY >> 20} MiB of memory and {SECONDS} s of processor time"
     if name := signal_name(done.returncode):
         return f"killed the process ({name}); {limits}"
     last = [line.strip() for line in done.stderr.splitlines() if line.strip()][-1:]

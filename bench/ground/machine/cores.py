@@ -14,7 +14,7 @@ Item = TypeVar("Item")
 
 
 def cores() -> int:
-    """The cores this process may use."""
+    """Return the number of cores that this process may use."""
     return usable_cores()
 
 

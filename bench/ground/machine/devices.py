@@ -54,7 +54,7 @@ def programs_folder() -> Path:
 
 
 def found_device() -> tuple[Device | None, str]:
-    """Return the OpenGL device; or None, and why it is missing."""
+    """Return the OpenGL device and an empty text; if it is missing, None and the reason."""
     # What it draws under an environment is kept: to filter one takes seconds.
     keep_levels_by(kept_arrays)
     try:

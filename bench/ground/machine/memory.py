@@ -32,12 +32,12 @@ def lack_of_memory() -> str:
     most = most_addresses()
     if most is None or most >= LEAST:
         return ""
-    limit = f"this process is limited to {most / 1e9:.2g} GB of addresses, but JAX and OpenGL need {LEAST / 1e9:g} GB"
+    limit = f"this process may use {most / 1e9:.2g} GB of address space, but JAX and OpenGL need {LEAST / 1e9:g} GB"
     return f"not enough memory: {limit}; raise the limit: ulimit -v {LEAST // 1000}"
 
 
 def have_few_heaps() -> None:
-    """Threads share two heaps from here on; elsewhere than on glibc nothing is done."""
+    """Have all threads share two heaps from now on; does nothing unless the C library is glibc."""
     _mallopt(M_ARENA_MAX, ARENAS)
 
 

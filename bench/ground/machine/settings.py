@@ -12,5 +12,5 @@ ROWS_BY = "normals by"
 
 
 def settings() -> dict[str, str]:
-    """The variables that are set, by name."""
+    """Return, by name, the environment variables that are set and may change what JAX and Mesa compute."""
     return {name: os.environ[name] for name in sorted(os.environ) if name.startswith(SETTINGS) and KEEPS not in name}

@@ -11,7 +11,7 @@ from .systems.files import HOME, is_closed, user
 
 
 def prepare() -> None:
-    """Before anything else is used: a home, where the system knows none."""
+    """Set a home folder if the system knows none; called before anything else is used."""
     try:
         Path.home()
     except RuntimeError:

@@ -15,7 +15,7 @@ NO_DRIVER = f"WGSL needs a {API} driver; install one ({how_to_install('mesa-vulk
 
 @cache
 def adapters() -> tuple[Any, ...]:
-    """wgpu's adapters, in the driver's order. Raises ImportError where wgpu is not installed."""
+    """Return wgpu's adapters in the driver's order. Raises ImportError if wgpu is not installed."""
     import wgpu
     from wgpu.backends.wgpu_native.extras import set_instance_extras
 

@@ -58,7 +58,7 @@ class NotElementwiseError(Exception):
 
 
 def c_function(name: str, function: Callable[..., Any], *arguments: Any) -> str:
-    """Return a JAX function as C: `void name(arguments..., *results)`.
+    """Return C source for a JAX function: `void name(arguments..., *results)`, for one element.
 
     Args:
         name: the name of the function in C.
@@ -73,7 +73,7 @@ def c_function(name: str, function: Callable[..., Any], *arguments: Any) -> str:
     with jax.enable_x64(True):
         traced = jax.make_jaxpr(function)(*shaped)
     if any(aval.shape != (LANES,) for aval in traced.out_avals):
-        raise NotElementwiseError("a result of another shape")
+        raise NotElementwiseError("a result of the wrong shape")
     writer = _Writer()
     taken = [f"a{i}" for i in range(len(traced.in_avals))]
     results = writer.results(traced, taken)
@@ -103,7 +103,8 @@ class _Constant(str):
 
 
 def _literal(value: Any) -> _Constant:
-    """A number of NumPy in C, with its type."""
+    """Return a NumPy number as a C literal with a cast to its type; its `value` is the number. Raises
+    NotElementwiseError for an array."""
     value = np.asarray(value)
     if value.ndim:
         raise NotElementwiseError("an array of constants")
@@ -125,7 +126,8 @@ class _Writer:
         self.lines: list[str] = []
 
     def results(self, traced: core.ClosedJaxpr, arguments: Sequence[str]) -> list[str]:
-        """Return the names of a traced function's results, given the names of its arguments."""
+        """Return the C expressions of a traced function's results, given those of its arguments; statements that
+        they need are added to `lines`."""
         names: dict[Any, str] = dict(zip(traced.jaxpr.invars, arguments, strict=True))
         names |= {var: _literal(value) for var, value in zip(traced.jaxpr.constvars, traced.consts, strict=True)}
 
@@ -155,7 +157,8 @@ class _Writer:
 
 
 def _check_types(equation: Any) -> None:
-    """Half floats are converted, and not computed with: C may keep more digits of a result than they have."""
+    """Raise NotElementwiseError for an operation on half floats other than a conversion: C may keep more digits of
+    a result than half floats have."""
     if equation.primitive.name != "convert_element_type" and any(
         var.aval.dtype == np.float16 for var in (*equation.invars, *equation.outvars)
     ):
@@ -176,7 +179,8 @@ def _expression(equation: Any, given: Sequence[str]) -> str:
 
 
 def _converted(equation: Any, value: str) -> str:
-    """A conversion. To integers JAX keeps within their range, and NaN is 0; C leaves both open."""
+    """Return a conversion as a C expression. Integers are clamped to their range and NaN becomes 0, as in JAX; C
+    leaves both undefined."""
     source, target = equation.invars[0].aval.dtype, equation.outvars[0].aval.dtype
     if isinstance(value, _Constant) and target.kind != "b" and abs(value.value) < 2**31:
         return _literal(np.asarray(value.value, source).astype(target))
@@ -192,7 +196,7 @@ def _converted(equation: Any, value: str) -> str:
 
 def _choice_text(_: Any, which: str, *cases: str) -> str:
     if len(cases) != 2:
-        raise NotElementwiseError("a choice of more than two")
+        raise NotElementwiseError("a choice between more than two values")
     return f"{which} ? {cases[1]} : {cases[0]}"
 
 
@@ -203,28 +207,30 @@ def _rounded(equation: Any, value: str) -> str:
 
 
 def _limited(sign: str, equation: Any, value: str, other: str) -> str:
-    """The smaller or the larger of two integers; of floats JAX's choice depends on NaN."""
+    """Return the smaller (`sign` "<") or the larger (">") of two integers as a C expression. Raises
+    NotElementwiseError for floats, for which JAX's choice depends on NaN."""
     if equation.outvars[0].aval.dtype.kind == "f":
         raise NotElementwiseError(equation.primitive.name)
     return f"{value} {sign} {other} ? {value} : {other}"
 
 
 def _shifted(operator: str, kind: str, equation: Any, value: str, by: str) -> str:
-    """Return a shift by a known number of bits. C does not define a shift by all bits or more.
+    """Return a shift by a constant number of bits as a C expression. Raises NotElementwiseError for any other
+    shift, because C does not define a shift by all bits or more.
 
     Args:
         kind: the kind of integers, signed or unsigned, that C shifts in this way; other integers are cast to it.
     """
     dtype = equation.outvars[0].aval.dtype
     if not isinstance(by, _Constant) or not 0 <= by.value < 8 * dtype.itemsize:
-        raise NotElementwiseError("a shift by a number that is not known")
+        raise NotElementwiseError("a shift by an unknown number of bits")
     return f"({c_type(dtype)})(({c_type(kind + dtype.name.lstrip('u'))}){value} {operator} {by})"
 
 
 def _viewed(equation: Any, value: str) -> str:
     source, target = (var.aval.dtype for var in (equation.invars[0], equation.outvars[0]))
     if source.itemsize != target.itemsize:
-        raise NotElementwiseError("a view of another size")
+        raise NotElementwiseError("a view with numbers of a different size")
     return f"VIEWED({c_type(source)}, {c_type(target)}, {value})"
 
 

@@ -34,7 +34,7 @@ class NoCompilerError(Exception):
 
 
 def compiler() -> str:
-    """Return the first line of the C compiler's version; empty if the compiler is missing."""
+    """Return the first line of the C compiler's version, as text; empty if the compiler is missing."""
     try:
         return tools.first_line(tools.C)
     except MissingError:
@@ -73,7 +73,7 @@ def library(text: Text, *functions: str) -> ctypes.CDLL:
 
 @cache
 def _made(text: Text, functions: tuple[str, ...]) -> ctypes.CDLL | str:
-    """Return a library, or why it is missing: a failed compilation is not tried again."""
+    """Return a library, or text on why it is missing. Failures are kept too: a compilation is not tried again."""
     if not compiler():
         return NONE
     path = kept.folder() / "native" / f"{kept.key_of(text.content, *FLAGS, compiler(), *processor_kind())}.so"
@@ -114,13 +114,14 @@ def _whole(path: Path) -> Path | None:
 
 
 def _loaded(path: Path, functions: Sequence[str]) -> ctypes.CDLL:
-    """A library, which its file need not outlive. Raises NoCompilerError where it lacks a function, and OSError."""
+    """Return a loaded library, which works on after its file is deleted. Raises NoCompilerError if it lacks a
+    function, and OSError if it cannot be loaded."""
     try:
         handle = ctypes.CDLL(str(path))
     except OSError:
         handle = _loaded_elsewhere(path)
     if missing := [name for name in functions if not hasattr(handle, name)]:
-        raise NoCompilerError(f"cc: {', '.join(missing)} is not in what it made")
+        raise NoCompilerError(f"cc: the compiled library lacks {', '.join(missing)}")
     return handle
 
 
@@ -146,7 +147,8 @@ _hangs: list[str] = []
 
 
 def _compile(text: Text, folder: Path) -> None:
-    """Compile a text. Raises NoCompilerError if that fails, and on every call after one that did not end."""
+    """Compile a text to library.so in a folder. Raises NoCompilerError if that fails, and on every later call if
+    the compiler crashed or did not end."""
     if _hangs:
         raise NoCompilerError(_hangs[0])
     words = [*FLAGS, "library.c", "-o", "library.so", "-lm"]

@@ -21,7 +21,7 @@ class CodeOptions(Sources):
         Option(
             "--of",
             "Quantity that is encoded: normal, frame (tangent frames and quaternions), motion, curve (roughness and "
-            "similar), light or depth; or layout: packing and unpacking a whole G-buffer. Default: by the names.",
+            "similar), light or depth; or layout: packing and unpacking a whole G-buffer. Default: given by the names.",
         ),
     ] = ""
     storage: Annotated[
@@ -35,8 +35,8 @@ class CodeOptions(Sources):
         str,
         Option(
             "--prefix",
-            "Prefix of every name. Default: normal, or another name for what is encoded; with several codecs of a "
-            "kind, their names.",
+            "Prefix of every name. Default: the encoded quantity, such as normal; with several codecs of a "
+            "kind, the codecs' names.",
         ),
     ] = ""
     check: Annotated[

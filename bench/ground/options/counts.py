@@ -44,13 +44,13 @@ def whole_number(text: str | int) -> int:
 def in_range(option: str, value: float, low: float, high: float) -> None:
     """Raise UsageError if an option's value is out of range."""
     if not low <= value <= high:
-        raise UsageError(f"{option} {value}: from {low} to {high}")
+        raise UsageError(f"{option} {value}: out of range; use {low} to {high}")
 
 
 def checked_count(count: int) -> int:
-    """The count itself. Raises UsageError where no set has that many."""
+    """Return the count unchanged. Raises UsageError unless it is from 1 to MAX_COUNT."""
     if not 1 <= count <= MAX_COUNT:
-        raise UsageError(f"--count {count}: from 1 to {MAX_COUNT} (2^40)")
+        raise UsageError(f"--count {count}: out of range; use 1 to {MAX_COUNT} (2^40)")
     return count
 
 
@@ -63,12 +63,13 @@ def checked_sides(text: str, most: int, where: str) -> tuple[int, int]:
     """Return the width and the height of "WxH". Raises UsageError for a malformed size, or a side above `most`."""
     match = re.fullmatch(r"(\d{1,9})x(\d{1,9})", text.strip().lower())
     if not match or not all(1 <= int(side) <= most for side in match.groups()):
-        raise UsageError(f"--size {text}: WIDTHxHEIGHT, such as 640x480, each from 1 to {most} {where}")
+        raise UsageError(f"--size {text}: expected WIDTHxHEIGHT, such as 640x480, each from 1 to {most} {where}")
     return int(match[1]), int(match[2])
 
 
 def checked_numbers(option: str, words: Names, kind: Callable[[str], N], least: N, most: N) -> tuple[N, ...]:
-    """Return numbers, each once. Raises UsageError if none is given, or one is invalid or out of range."""
+    """Return words as a tuple of numbers, each once. Raises UsageError if no word is given, or a number is invalid
+    or out of range."""
     try:
         read: Any = whole_number if kind is int else kind
         numbers: tuple[N, ...] = tuple(dict.fromkeys(read(str(word)) for word in words))
@@ -76,5 +77,5 @@ def checked_numbers(option: str, words: Names, kind: Callable[[str], N], least: 
         numbers = ()
     if not numbers or not all(least <= number <= most for number in numbers):
         between = f"whole numbers from {least} to {most}" if kind is int else f"numbers from {least:g} to {most:g}"
-        raise UsageError(f"{option} {text_of(words)}: {between}, comma-separated")
+        raise UsageError(f"{option} {text_of(words)}: expected {between}, comma-separated")
     return numbers

@@ -95,5 +95,5 @@ def usual_stage(family: str) -> str:
 
 
 def titled(vendor: str) -> str:
-    """A vendor's families as help shows them: "hsw (Haswell), bdw (Broadwell)"."""
+    """Return a vendor's families as text for help: "hsw (Haswell), bdw (Broadwell)"."""
     return ", ".join(f"{name} ({FAMILIES[name].title})" for name in CHOICES[vendor])

@@ -140,11 +140,11 @@ class Sources(Options):
         Names | None, Option("--define", "Shader files: macros, NAME or NAME=VALUE.", in_run=True, letter="-D")
     ] = None
     prelude: Annotated[
-        Names | None, Option("--prelude", "Shader files: files to put in front.", files=True, in_run=True)
+        Names | None, Option("--prelude", "Shader files: files to read before them.", files=True, in_run=True)
     ] = None
     include: Annotated[
         Names | None,
-        Option("--include", "Shader files: include folders: FOLDER, or NAME=FOLDER for NAME/file.", True, True),
+        Option("--include", "Shader files: folders of #includes, FOLDER or NAME=FOLDER for NAME/file.", True, True),
     ] = None
     language: Annotated[
         str | None,
@@ -175,7 +175,7 @@ class Reading(Options):
     ] = None
     unpack: Annotated[
         bool | None,
-        Option("--unpack/--no-unpack", "Captures: map [0,1] to [-1,1]. Default: only integers.", in_run=True),
+        Option("--unpack/--no-unpack", "Captures: map [0,1] to [-1,1]. Default: only for integers.", in_run=True),
     ] = None
     curve: Annotated[
         str,
@@ -195,7 +195,7 @@ class Reading(Options):
     ] = "view"
     view_matrix: Annotated[
         str | None,
-        Option("--view-matrix", "World-to-view matrix: 9 or 16 numbers by rows, or a file.", files=True, in_run=True),
+        Option("--view-matrix", "World-to-view matrix: 9 or 16 numbers in rows, or a file.", files=True, in_run=True),
     ] = None
     mask: Annotated[
         str | None,
@@ -212,7 +212,7 @@ class Reading(Options):
 
     @property
     def reading(self) -> Reading:
-        """These options alone, of whatever else has them."""
+        """The options of `Reading` alone, with the values that they have here."""
         return Reading(**{field.name: getattr(self, field.name) for field in fields(Reading)})
 
 
@@ -227,21 +227,22 @@ class Field:
 
     @property
     def has_names(self) -> bool:
-        """Whether it is several names, typed as one text."""
+        """Whether the option takes several names, which are typed as one text."""
         return self.type in (Names, Names | None)
 
     @property
     def kind(self) -> type:
-        """The type of the option as it is typed: str, int, float, bool or Path."""
+        """The type of the option as it is typed: str, also for several names, int, float, bool or Path."""
         return str if self.has_names else next(k for k in get_args(self.type) or (self.type,) if k is not NoneType)
 
     @property
     def typed(self) -> Any:
-        """The default as it is typed."""
+        """The default as the user types it: several names are one comma-separated text."""
         return typed(self.default)
 
     def read(self, value: Any, folder: Path = Path()) -> Any:
-        """Return the option's value for a given value; a text of several names is split into names.
+        """Return the option's value for a given value: text of several names is split into a tuple of names, and
+        any other value is unchanged.
 
         Args:
             folder: where files are looked for.
@@ -251,7 +252,8 @@ class Field:
         return file_names(value, folder) if self.option.files else names(value, repeats=self.option.repeats)
 
     def checked(self, value: Any) -> Any:
-        """A value from a file or a test. A text option takes numbers as well. Raises UsageError."""
+        """Return a value from a file or a test as the option's type. A text option takes numbers and paths as
+        well, and a float option whole numbers. Raises UsageError for any other type."""
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if self.kind is str and (number or hasattr(value, "__fspath__")):
             value = str(value)
@@ -264,7 +266,8 @@ class Field:
         raise UsageError(f"{self.name} is {value!r}; it must be {KINDS[self.kind]}")
 
     def parsed(self, value: Any) -> Any:
-        """A value that may be typed text, as this option's kind. Raises UsageError."""
+        """Return typed text as a number for an option of type int or float; other values are unchanged. Raises
+        UsageError for text that is not such a number."""
         if isinstance(value, str) and self.kind in (int, float):
             try:
                 return whole_number(value) if self.kind is int else float(value)
@@ -278,7 +281,7 @@ KINDS = {str: "text", int: "a whole number", float: "a number", bool: "true or f
 
 @cache
 def fields_of(group: type) -> Mapping[str, Field]:
-    """The options of a dataclass by their names in Python; its own first, then those that it inherits."""
+    """Return the options of a dataclass by their Python names: first its own, then those that it inherits."""
     hints, options = get_type_hints(group, include_extras=True), {}
     for field in fields(group):
         kind, option = get_args(hints[field.name])
@@ -288,7 +291,8 @@ def fields_of(group: type) -> Mapping[str, Field]:
 
 
 def checked_options(group: type, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Values for a dataclass of options, checked. Raises UsageError for an unknown name or a wrong kind."""
+    """Return option values by name, each in its option's type. Raises UsageError for unknown names and wrong
+    types."""
     known = fields_of(group)
     unknown = next((name for name in values if name not in known), None)
     if unknown is not None:

@@ -23,11 +23,11 @@ T = TypeVar("T")
 def check_scale(scale: float) -> None:
     """Raise UsageError for a scale that is not from 0.05 to 1."""
     if not 0.05 <= scale <= 1:
-        raise UsageError(f"--scale {scale}: from 0.05 to 1")
+        raise UsageError(f"--scale {scale}: out of range; use 0.05 to 1")
 
 
 def checked_setting(objects: int, lights: int, seed: int) -> Setting:
-    """The scenes' setting. Raises UsageError for counts that no scene has."""
+    """Return the scenes' setting. Raises UsageError if a count or the seed is out of range."""
     in_range("--objects", objects, 1, MAX_OBJECTS)
     in_range("--lights", lights, 0, MAX_LIGHTS)
     check_seed(seed)
@@ -64,7 +64,7 @@ F = TypeVar("F", bound=Fitted)
 
 
 def that_fit(codecs: Iterable[F]) -> list[F]:
-    """The codecs of any kind that fit; the rest is named on standard error. Raises UsageError where nothing is left."""
+    """Return the codecs of any kind that fit; report the others on standard error. Raises UsageError if none fits."""
     candidates = list(codecs)
     complaints = [f"{codec.name}: {codec.misfit}" for codec in candidates if codec.misfit]
     return what_is_left([codec for codec in candidates if not codec.misfit], complaints)
@@ -88,7 +88,8 @@ def not_with_noise(option: str) -> str:
 
 
 def without_noise(codecs: Iterable[N], reason: str) -> list[N]:
-    """The codecs without noise; others are named on standard error. Raises UsageError where none is left."""
+    """Return the codecs without noise, and report the others, with the reason, on standard error. Raises
+    UsageError if every codec has noise."""
     every = list(codecs)
     exact = [codec for codec in every if not codec.is_dithered]
     if not exact:
@@ -97,7 +98,8 @@ def without_noise(codecs: Iterable[N], reason: str) -> list[N]:
 
 
 def what_is_left(usable: list[T], complaints: list[str]) -> list[T]:
-    """Return what could be made; report the rest on standard error. Raises UsageError if nothing is left."""
+    """Return `usable` unchanged, and report the complaints on standard error, each once. Raises UsageError with
+    the first complaint if nothing is usable."""
     reasons = list(dict.fromkeys(complaints))
     if not usable:
         raise UsageError(reasons[0] if reasons else "nothing to measure")

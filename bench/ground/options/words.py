@@ -24,7 +24,8 @@ Names: TypeAlias = tuple[Word, ...]
 
 
 def names(text: str, is_whole: Callable[[str], bool] = lambda _: False, repeats: bool = False) -> tuple[str, ...]:
-    """Split comma-separated names: the only place where such a text is split.
+    """Split a text into a tuple of comma-separated names without blanks around them: the only place where such a
+    text is split.
 
     Args:
         is_whole: whether a text with commas is one name, such as a file's.
@@ -46,10 +47,10 @@ def text_of(words: Iterable[Word]) -> str:
 
 
 def typed(value: Any) -> Any:
-    """Return an option's value as it is typed: several names become one text."""
+    """Return an option's value as the user types it: a tuple of names as one comma-separated text, else unchanged."""
     return text_of(value) if isinstance(value, tuple) else value
 
 
 def words_in(value: str | Names | None) -> Names:
-    """Return the words of an option's value: of one that is a text that text, of several names these."""
+    """Return an option's value as a tuple of words: a text is one word, several names stay, and None has no words."""
     return (value,) if isinstance(value, str) else value or ()

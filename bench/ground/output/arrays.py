@@ -23,12 +23,12 @@ class DamagedError(ValueError):
 
 
 def array_of(data: bytes) -> np.ndarray:
-    """The array of a NumPy file's bytes. Raises DamagedError."""
+    """Return the array in the bytes of an .npy file. Raises DamagedError if they are anything else."""
     try:
         file = io.BytesIO(data)
         shape, is_fortran, dtype = HEADERS[np.lib.format.read_magic(file)](file)
         if dtype.hasobject or math.prod(shape) * dtype.itemsize != len(data) - file.tell():
-            raise DamagedError("its size differs from its header")
+            raise DamagedError("its size does not match its header")
         return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape, order="F" if is_fortran else "C")
     except Exception as error:  # a header is Python source: of a damaged one anything may come
         raise DamagedError("it is damaged") from error
@@ -49,7 +49,8 @@ def read_npy(path: Path, most: int) -> np.ndarray:
 
 
 def read_npz(path: Path, names: Sequence[str], most: int = MOST_BYTES) -> list[np.ndarray]:
-    """Return arrays of an archive by their names, of at most `most` bytes in all. Raises OSError or DamagedError."""
+    """Return the arrays with these names from an .npz file, in the order of the names. Raises OSError, or
+    DamagedError if they are missing, damaged, or more than `most` bytes in all."""
     data = _bytes(path, most)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:

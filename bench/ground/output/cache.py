@@ -30,12 +30,12 @@ OFF, ANEW = "NORMALBENCH_NO_CACHE", "NORMALBENCH_ANEW"
 
 
 def switch_off() -> None:
-    """Do without the cache from here on, in this process and in those that it starts."""
+    """Switch the cache off from now on, in this process and in those that it starts."""
     os.environ[OFF] = "1"
 
 
 def measure_anew() -> None:
-    """Measure figures that are kept again, in this process and in those that it starts."""
+    """Have figures measured again although they are kept, in this process and in those that it starts."""
     os.environ[ANEW] = "1"
 
 
@@ -109,8 +109,9 @@ def is_private(path: Path) -> bool:
 
 
 def loadable(path: Path) -> Path | None:
-    """A file to load as code, without links; None where anybody but this user and root can have written it, or can put
-    another one in its place: see `is_private` and `is_guarded`, which looks at all folders above the cache too."""
+    """Return the path of a file to load as code, without links. Return None if anybody but this user and root can
+    have written it, or can put another file in its place: see `is_private`, and `is_guarded`, which checks all
+    folders above the cache too."""
     try:
         whole = path.resolve()
         return whole if is_private(path) and is_guarded(whole) else None
@@ -149,7 +150,7 @@ def folder_to_execute_from() -> Path:
 
 
 def key_of(*parts: str | bytes) -> str:
-    """A key that differs wherever one of the parts does."""
+    """Return a key, a hexadecimal digest, that differs wherever one of the parts does."""
     digest = hashlib.sha256()
     for part in parts:
         data = part.encode() if isinstance(part, str) else part
@@ -158,7 +159,7 @@ def key_of(*parts: str | bytes) -> str:
 
 
 def read(key: str) -> dict[str, Any] | None:
-    """Return the value of a key; None if it is missing or is not what was written."""
+    """Return the value kept by a key; None if it is missing or is not what was written, or the cache is off."""
     if is_off():
         return None
     try:
@@ -173,7 +174,7 @@ def read(key: str) -> dict[str, Any] | None:
 
 
 def figures(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-    """Return figures of a key as `kept` does, measured again where that is asked for."""
+    """Return the figures of a key as `kept` does, but make them again if figures are to be measured again."""
     return _found_or_made(read_figures(key), key, make)
 
 
@@ -183,7 +184,7 @@ def read_figures(key: str) -> dict[str, Any] | None:
 
 
 def kept(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-    """Return the value of a key. If the value is missing, make it, and keep it unless the key is empty."""
+    """Return the value of a key. If it is missing, or the key is empty, make it; keep it unless the key is empty."""
     return _found_or_made(read(key) if key else None, key, make)
 
 
@@ -207,7 +208,7 @@ def write(key: str, value: dict[str, Any]) -> None:
 
 
 def put(path: Path, data: bytes) -> None:
-    """Put a file of this user's into the cache: readers see the old one or the new one. Raises OSError."""
+    """Write a file into the cache in one step: readers see the old file or the new one. Raises OSError."""
     make_folder(path.parent)
     with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
         try:

@@ -26,7 +26,7 @@ def names_by_reason(left_out: Iterable[tuple[str, str | None]]) -> dict[str, lis
 
 
 def by_reason(left_out: Iterable[tuple[str, str | None]]) -> list[str]:
-    """Return a line for each reason, with the names of what is left out for it."""
+    """Return a line for each reason: the names left out for it, comma-separated, and then the reason."""
     return [f"{', '.join(names)}: {why}" for why, names in names_by_reason(left_out).items()]
 
 
@@ -35,7 +35,8 @@ _noted: ContextVar[list[str] | None] = ContextVar("noted", default=None)
 
 
 def leave_out(line: str) -> None:
-    """Report what is not measured, and why."""
+    """Report on standard error what is not measured, and why; within `noting_what_is_left_out`, add the line to
+    its list instead."""
     if (lines := _noted.get()) is None:
         tell(f"left out: {line}")
     else:
@@ -44,7 +45,7 @@ def leave_out(line: str) -> None:
 
 @contextmanager
 def noting_what_is_left_out() -> Iterator[list[str]]:
-    """Collect the lines about what is left out, and print them at the end, unless an error is raised before."""
+    """Yield the list to which `leave_out` adds lines meanwhile; print them at the end unless an error is raised."""
     lines: list[str] = []
     token = _noted.set(lines)
     try:
@@ -56,7 +57,7 @@ def noting_what_is_left_out() -> Iterator[list[str]]:
 
 
 def lacks_twin(reason: str) -> bool:
-    """Whether a row has no figures because its encoding is written for shaders alone."""
+    """Whether a row's reason for missing figures is that its encoding is written for shaders alone."""
     return NO_TWIN in reason
 
 
@@ -125,7 +126,7 @@ def tell(line: str) -> None:
 
 
 def _cut(number: re.Match[str]) -> str:
-    """A number of very many digits in short."""
+    """Return a long number in short: its first DIGITS digits, and how many digits it has."""
     return f"{number[0][:DIGITS]}... ({len(number[0])} digits)"
 
 

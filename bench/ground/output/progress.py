@@ -43,13 +43,13 @@ class Bar:
         self._of = self._under_way = ""
 
     def advance(self, description: str) -> None:
-        """Advance by one step, and show the work that is under way now."""
+        """Advance by one step, and show the work that is now under way. Raises a pending interruption."""
         if ending:
             raise ending[0]
         self._move(self._step, f"{self._of}{description}")
 
     def begin(self, table: str, there: int) -> None:
-        """Begin a table, some of whose steps are there already: they take no time."""
+        """Begin a table, `there` of whose steps are done already and take no time."""
         self._begun[table] = None
         self._step = self._expected.get(table, (0, 0.0))[1]
         tables = len(self._expected) - (PAGE in self._expected)
@@ -63,7 +63,8 @@ class Bar:
         self._bar.update(self._task, completed=self._done, total=self._all, description=visible(under_way), left=left)
 
     def _left_text(self) -> str:
-        """Return the remaining time, estimated from the time that the finished steps took."""
+        """Return the remaining time as text, such as "about 1:05 left", estimated from the time that the
+        finished steps took."""
         trusted = TRUST * self._all
         slower = (time.monotonic() - self._since + trusted) / (self._done + trusted) if self._all else 1.0
         minutes, seconds = divmod(round(max(0.0, self._all - self._done) * slower), 60)
@@ -98,7 +99,7 @@ def _speak_until(ended: Event) -> None:
     while not ended.wait(EVERY):
         waited += EVERY
         # Each line as it is: what is told once is counted in the main thread.
-        tell_together(f"{waited} s, {_whole[-1].says() if _whole else 'finding out what to measure'}", ())
+        tell_together(f"{waited} s, {_whole[-1].says() if _whole else 'determining what to measure'}", ())
 
 
 @contextmanager

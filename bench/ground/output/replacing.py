@@ -60,7 +60,7 @@ def check_alike(path: Path, new: Path) -> None:
 
 def not_ours(path: Path, what: str) -> UsageError:
     """Return the error for a file that normalbench did not write."""
-    return UsageError(f"{path}: not a {what} of normalbench; name another file, or delete this one")
+    return UsageError(f"{path}: not a {what} written by normalbench; name another file, or delete this one")
 
 
 def is_empty(data: bytes) -> bool:
@@ -69,7 +69,8 @@ def is_empty(data: bytes) -> bool:
 
 
 def _ends(path: Path) -> bytes:
-    """Read both ends of a file: matplotlib writes its name at the end of a PDF."""
+    """Return the first and the last MOST bytes of a file: matplotlib writes its name at the end of a PDF. A short
+    file is returned whole."""
     with path.open("rb") as file:
         first = file.read(MOST)
         file.seek(max(file.seek(0, 2) - MOST, len(first)))

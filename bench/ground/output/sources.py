@@ -11,7 +11,7 @@ ROOMS = ("encodings", "gbuffer", "bench", "reports")
 
 @cache
 def sources() -> str:
-    """A fingerprint of everything that computes: each source file of the package."""
+    """Return a fingerprint of all source files of the package that compute: 16 hexadecimal digits."""
     root, digest = Path(__file__).parents[3], hashlib.sha256()
     for room in ROOMS:
         for path in sorted((root / room).rglob("*")):

@@ -45,7 +45,7 @@ def check_writable(path: Path, makes_folder: bool = False, mark: bytes = b"") ->
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
     folder = target_of(path).parent
     if not (makes_folder or folder.is_dir()):
-        raise UsageError(f"cannot write {path}: there is no folder {path.parent}")
+        raise UsageError(f"cannot write {path}: folder {path.parent} does not exist")
     check_folder(folder)
 
 
@@ -153,7 +153,7 @@ def check_plot(path: Path | None) -> None:
 
 
 def save_plot(path: Path, figure: Any) -> None:
-    """Write a figure as the format that its name ends in. Raises UsageError where it cannot be written."""
+    """Write a figure in the format that the file's name ends in. Raises UsageError if the file cannot be written."""
     with whole_file(path) as partial:
         plots.save(figure, (partial, path.suffix[1:].lower()))
 
@@ -202,5 +202,5 @@ def files_of(folder: Path) -> dict[str, Path]:
 
 
 def without(rows: Sequence[dict[str, Any]], hidden: Collection[str]) -> list[dict[str, Any]]:
-    """The rows less some of their columns."""
+    """Return copies of the rows without the hidden columns."""
     return [{column: value for column, value in row.items() if column not in hidden} for row in rows]

@@ -24,7 +24,8 @@ POLES: Mapping[str, Float[np.ndarray, "3 3"]] = MappingProxyType(
 
 
 def yaws(first: int, count: int, seed: int) -> Float[np.ndarray, "count 3 3"]:
-    """Return turns of the world about its y axis, `count` from number `first` on of the series that a seed begins."""
+    """Return rotation matrices about the world's y axis, in steps of STEP_DEG with a random offset each: numbers
+    `first` to `first + count - 1` of the series that a seed begins."""
     random = np.random.default_rng([seed, 0])
     start, jitter = random.uniform(0, 360), random.uniform(0, JITTER_DEG, first + count)
     angles = np.radians(start + STEP_DEG * np.arange(first, first + count) + jitter[first:])
@@ -36,7 +37,7 @@ def yaws(first: int, count: int, seed: int) -> Float[np.ndarray, "count 3 3"]:
 
 
 def rotations(first: int, count: int, seed: int) -> Float[np.ndarray, "count 3 3"]:
-    """Return independent uniform rotations, `count` from number `first` on of the series that a seed begins."""
+    """Return independent uniform rotation matrices: numbers `first` to `first + count - 1` of a seed's series."""
     from scipy.spatial.transform import Rotation
 
     return Rotation.random(first + count, np.random.default_rng([seed, 1])).as_matrix()[first:]
@@ -48,8 +49,8 @@ def jackknife(figure: Callable[[np.ndarray], float], samples: Sequence[int]) -> 
     Source: B. Efron and C. Stein, The jackknife estimate of variance, 1981.
 
     Args:
-        figure: from indices of samples.
-        samples: all indices, two or more.
+        figure: computes the figure of the samples whose indices it is given.
+        samples: the indices of all samples, two or more.
     """
     # se^2 = (n - 1) / n sum (x_i - mean x)^2, x_i without sample i
     indices = np.asarray(samples)

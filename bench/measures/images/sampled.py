@@ -68,8 +68,8 @@ class SampledImage:
         self._exact = whole.display.image(self._lit.lit(whole.scene, self._surfaces, self.normals[None])[0])
 
     def errors(self, trip: Trip, turns: Sequence[Turn]) -> Float[np.ndarray, "turns count"]:
-        """Return the squared error of each displayed pixel in each orientation of an encoding, the mean of its
-        channels; a channel that is not a number counts as 1."""
+        """Return the squared error of each sampled pixel, as displayed, in each orientation of an encoding: (turns,
+        count). It is the mean over channels; a channel that is not finite counts as 1."""
         parts = (turns[first : first + ROWS] for first in range(0, len(turns), ROWS))
         return np.concatenate([self._errors(trip, part) for part in parts])
 
@@ -79,8 +79,8 @@ class SampledImage:
         return np.mean(np.where(np.isfinite(shown), shown - self._exact, 1.0) ** 2, axis=-1)
 
     def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
-        """Return the mean squared error of each class and, as "", of the frame, in which classes count by their
-        share.
+        """Return by class the mean squared error in each orientation, (turns,), and under "" the mean squared error
+        of the frame, in which classes count by their share; {} if no sampled pixel counts.
 
         Args:
             domain: pixels whose normals are outside do not count; a class without other pixels is left out.
@@ -97,7 +97,8 @@ class SampledImage:
         return {"": total / whole, **means} if whole else {}
 
     def pixel_error(self, errors: Float[np.ndarray, " count"]) -> float:
-        """Return the standard error of the frame's mean squared error that the choice of pixels causes."""
+        """Return the standard error of the frame's mean squared error that the choice of pixels causes, from the
+        squared errors of the sampled pixels in one orientation."""
         parts = (sample.share * sample.weights * errors[sample.columns] for sample in self.classes)
         return float(np.sqrt(sum(part.var() / part.size for part in parts)))
 
@@ -118,9 +119,10 @@ def _changes(whole: WholeImage, seed: int) -> np.ndarray:
 
 
 def _sampled(whole: WholeImage, changes: np.ndarray, seed: int) -> tuple[np.ndarray, list[Sample]]:
-    """Return pixels of each class, (count, 2), in an order that keeps neighbours in space close, and their samples.
+    """Return the rows and columns of sampled pixels, (count, 2), and a `Sample` for each class that the image shows.
 
-    Half of a pixel's chance is the same for all, and half is proportional to its change, so that no weight exceeds 2.
+    Pixels are grouped by class, in an order that keeps neighbours in space close. Half of a pixel's chance is the
+    same for all, and half is proportional to its change, so that no weight exceeds 2.
     """
     random, is_seen = np.random.default_rng([seed, 2]), whole.classes >= 0
     total, change_of_all = max(int(is_seen.sum()), 1), float(np.sum(changes[is_seen])) or 1.0
@@ -145,7 +147,7 @@ def _sampled(whole: WholeImage, changes: np.ndarray, seed: int) -> tuple[np.ndar
 
 
 def _along_a_curve(places: np.ndarray, bits: int = 10) -> np.ndarray:
-    """Return the order of points, (count, 3), on Morton's curve, so that points that a lamp reaches form few runs."""
+    """Return the order of points, (count, 3), along Morton's curve, as indices: a lamp reaches few runs of them."""
     spread = np.ptp(places, axis=0).max() or 1.0
     cells = ((places - places.min(axis=0)) / spread * (2**bits - 1)).astype(np.int64)
     curve = np.zeros(len(places), np.int64)

@@ -25,42 +25,44 @@ Errors = Mapping[str, Mapping[str, Sequence[float]]]
 
 
 def best_pole(errors: Errors) -> str:
-    """Return the pole whose worst image is best, by as many yaws as every encoding of the best has."""
+    """Return the pole at which the lowest PSNR of all images is highest, over at most ALL yaws common to them."""
     poles = next(iter(errors.values()))
     return max(poles, key=lambda pole: worst_db(errors, pole, range(min(ALL, count_of(errors, pole)))))
 
 
 def count_of(errors: Errors, pole: str) -> int:
-    """Return how many yaws every image has at a pole."""
+    """Return the number of yaws that every image has at a pole: the smallest number of any image."""
     return min(len(by_pole[pole]) for by_pole in errors.values())
 
 
 def image_db(errors: Sequence[float] | np.ndarray) -> float:
-    """Return the PSNR of the mean squared error over yaws."""
+    """Return the PSNR, in dB, of the mean of an image's squared errors over yaws."""
     return psnr_db(float(np.mean(errors)))
 
 
 def worst_db(errors: Errors, pole: str, yaws: Sequence[int] | np.ndarray) -> float:
-    """Return the lowest PSNR of all images over some yaws."""
+    """Return the lowest PSNR of all images at a pole, in dB, each from the mean of its squared errors at the yaws
+    with these indices."""
     kept = np.asarray(yaws)
     return min(image_db(np.asarray(by_pole[pole])[kept]) for by_pole in errors.values())
 
 
 def error_db(errors: Errors, pole: str) -> float | None:
-    """Return the standard error of the lowest PSNR; None of a single orientation."""
+    """Return the standard error of the lowest PSNR of all images at a pole, in dB; None with fewer than two yaws."""
     yaws = range(count_of(errors, pole))
     return jackknife(lambda kept: worst_db(errors, pole, kept), yaws) if len(yaws) > 1 else None
 
 
 def two_worst_db(errors: Sequence[float]) -> float:
-    """Return the PSNR of the mean over the two worst yaws."""
+    """Return the PSNR, in dB, of the mean of the two largest squared errors over yaws."""
     return image_db(sorted(errors)[-2:])
 
 
 def gap_db(errors: Errors, other: Errors) -> tuple[float, float]:
     """Return how far the lowest PSNR of an encoding is above that of another, in dB, and the gap's standard error.
 
-    Each encoding is at its best pole, over the yaws that both have. The error of a single orientation is 0.
+    Each encoding is at its best pole, over the yaws that both have. A PSNR counts as INDISTINGUISHABLE_DB at most.
+    The error of a single orientation is 0.
     """
     poles = best_pole(errors), best_pole(other)
     yaws = range(min(count_of(errors, poles[0]), count_of(other, poles[1])))

@@ -67,7 +67,7 @@ class WholeImage:
 
     @cached_property
     def covered(self) -> Bool[np.ndarray, "height width"]:
-        """A mask of the pixels that show a surface."""
+        """A mask of the pixels that show a surface, (height, width), row 0 on top."""
         return self._covered.pixels[::-1]
 
     def _all_classes(self) -> np.ndarray:
@@ -80,14 +80,15 @@ class WholeImage:
     def decoded(
         self, trip: Trip, turns: Sequence[Turn], normals: Float[np.ndarray, "count 3"], positions: np.ndarray
     ) -> Float[np.ndarray, "turns count 3"]:
-        """Return decoded view-space normals, in view space, for each orientation of an encoding."""
+        """Return view-space normals after a round trip in each orientation of an encoding, back in view space:
+        (turns, count, 3)."""
         matrices = [np.eye(3) if turn is None else turn @ self.to_world for turn in turns]
         given = np.concatenate([normals @ matrix.T for matrix in matrices]).astype(np.float32)
         decoded = trip(given, np.tile(positions, (len(turns), 1))).reshape(len(turns), *normals.shape)
         return np.stack([part @ matrix for part, matrix in zip(decoded, matrices, strict=True)]).astype(np.float32)
 
     def shown(self, trip: Trip, turn: Turn) -> Float[np.ndarray, "height width 3"]:
-        """Return the displayed image by an encoding's normals."""
+        """Return the displayed image with an encoding's decoded normals in one orientation, (height, width, 3)."""
         # To list what is drawn takes as long as to light it.
         if self._made.frame.scene is not self.scene:
             self._made.frame.show(self.scene)
@@ -121,7 +122,8 @@ def whole_images(
     setting: Setting,
     powers: Sequence[float | None],
 ) -> dict[float | None, WholeImage]:
-    """Return a scene's images at each specular power (None where its materials have none), open with the stack."""
+    """Return a `WholeImage` of a scene for each specular power, by power; None leaves the scene's materials as they
+    are. The images may be used until the stack is closed."""
     scene = maker.make(setting)
     plan = Plan(
         maker.within(SIZE), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), True, 1.0

@@ -34,7 +34,8 @@ DOMAINS = ("sphere", "hemisphere", "view")
 
 
 def common() -> dict[str, Any]:
-    """Return the data from which browsers make the normals, and the weights of checksums."""
+    """Return, as values for JSON, the data from which browsers make the normals and the weights of checksums, and the
+    checksums of each domain's normals and views."""
     given = normals.hard()
     starts = {"normals": normals.NORMALS, "views": normals.VIEWS, "weights": normals.WEIGHTS, "sums": normals.SUMS}
     return {
@@ -50,12 +51,12 @@ def common() -> dict[str, Any]:
 
 @cache
 def sums(domain: str) -> list[int]:
-    """The checksums of a domain's normals and views, by which a browser knows that it makes the same."""
+    """Return the checksums of a domain's normals and of its views, by which a browser checks its own."""
     return [checksum(vectors) for vectors in normals.normals(domain)]
 
 
 def is_whole(saved: Mapping[str, Any], domain: str, size: int) -> bool:
-    """Whether checks are of the normals that this version makes, and as many as codes of `size` numbers have."""
+    """Whether saved checks are of the normals that this version makes, and as long as for codes of `size` numbers."""
     counts = {"groups": COUNT // GROUP, "numbers": size, "sample": COUNT // STRIDE * size}
     try:
         is_there = all(len(base64.b64decode(saved[name], validate=True)) == 4 * count for name, count in counts.items())
@@ -99,20 +100,21 @@ def _codec_checks(codec: Codec) -> dict[str, Any]:
 
 
 def ordered(codec: Codec, reference: Reference) -> np.ndarray:
-    """Return codes as integers in the order of their numbers: int32 of shape (count, components)."""
+    """Return a reference's codes as integers in the order of the numbers that they stand for: one step of a number is
+    a difference of 1. The result is int32 of shape (count, components)."""
     channels = Channels(codec).channels
     whole = [signed(channel, reference.integers[:, i]) for i, channel in enumerate(channels)]
     return np.stack(whole, axis=1).astype(np.int32)
 
 
 def weights() -> np.ndarray:
-    """The odd weights of a group, uint32 of shape (GROUP, NUMBERS)."""
+    """Return an odd weight for each number of each code of a group, uint32 of shape (GROUP, NUMBERS)."""
     index = np.arange(GROUP * NUMBERS, dtype=np.uint32).reshape(GROUP, NUMBERS)
     return hashed(np.uint32(normals.WEIGHTS) + index) | np.uint32(1)
 
 
 def group_sums(codes: np.ndarray) -> np.ndarray:
-    """A checksum of each group of codes: uint32 of shape (count / GROUP,)."""
+    """Return a checksum for each group of codes, their weighted sum modulo 2^32: uint32 of shape (count / GROUP,)."""
     size = codes.shape[1]
     weighted = codes.view(np.uint32).reshape(-1, GROUP, size) * weights()[:, :size]
     return weighted.sum(axis=(1, 2), dtype=np.uint32)

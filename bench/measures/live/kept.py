@@ -89,13 +89,13 @@ KEPT: TypeAdapter[Any] = TypeAdapter(Kept)
 
 
 def file_name(codec: Codec) -> str:
-    """Return the name of a codec's file."""
+    """Return the name of a codec's JSON file: the codec's name with `-` for slashes, spaces and colons."""
     return codec.name.replace("/", "-").replace(" ", "-").replace(":", "-") + ".json"
 
 
 def write_live(codecs: Iterable[Codec], folder: Path) -> None:
-    """Write a file for each codec; if browsers cannot run the codec, the file has the reason. Raises UsageError if a
-    file cannot be written."""
+    """Write a JSON file for each codec into a folder; if browsers cannot run the codec, the file has the reason.
+    Raises UsageError if a file cannot be written."""
     for codec in dict.fromkeys(codecs):
         try:
             record = {**program(codec), "checks": _checks_or_none(codec)}
@@ -114,14 +114,15 @@ def _checks_or_none(codec: Codec) -> Record | None:
 
 
 def _current_record(record: Record) -> Record:
-    """A record whose checks are of the normals that the page makes; without them where they are of others."""
+    """Return a record, without its checks (None) if they are not of the normals that the page makes."""
     kept_checks = record["checks"]
     is_whole = kept_checks and checks.is_whole(kept_checks, record["domain"], len(record["channels"]))
     return record if is_whole else {**record, "checks": None}
 
 
 def read_live(folder: Path) -> tuple[list[Record], dict[str, str]]:
-    """The codecs of a run's folder, and by name why others are left out; damaged files among them."""
+    """Return the records of the codecs in a run's folder, and why others are left out, by the codec's name; a damaged
+    file is left out under the file's name."""
     records, left_out = [], {}
     for name, path in sorted(files_of(folder).items()):
         if path.suffix != ".json":

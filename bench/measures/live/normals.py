@@ -26,7 +26,7 @@ PAIRS = ((0, 1), (1, 2), (2, 0))
 
 
 def hashed(words: np.ndarray) -> np.ndarray:
-    """Integers (uint32, any shape) well mixed."""
+    """Return a well-mixed hash of each integer, uint32 of the same shape."""
     mixed = words.astype(np.uint32)
     for shift, factor in zip(SHIFTS, (*FACTORS, 1), strict=True):
         mixed = (mixed ^ mixed >> np.uint32(shift)) * np.uint32(factor)
@@ -34,7 +34,7 @@ def hashed(words: np.ndarray) -> np.ndarray:
 
 
 def _uniform_numbers(words: np.ndarray) -> np.ndarray:
-    """Numbers in [-1, 1) from the upper 24 bits of hashed words, exact in float32."""
+    """Return a number in [-1, 1) for each word, from the upper 24 bits of its hash, exact in float32."""
     return (hashed(words) >> np.uint32(8)).astype(np.float32) * np.float32(2.0**-23) - np.float32(1)
 
 
@@ -75,8 +75,8 @@ def _fold_normals() -> np.ndarray:
 
 
 def _neighbour_normals(n: np.ndarray) -> np.ndarray:
-    """Normals with one component one float32 up or down; next to 0 a number that stays normal where it is multiplied,
-    because devices may flush subnormal ones."""
+    """Return six neighbours of each normal, with one component one float32 up or down, not renormalised. A component
+    of 0 becomes NEXT_TO_0 or minus that, which stays normal in products: devices may flush subnormal numbers."""
     parts = []
     for axis in range(3):
         for toward in (-2.0, 2.0):
@@ -97,10 +97,10 @@ def hard() -> np.ndarray:
 
 @cache
 def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
-    """Unit normals of a domain, and view-space positions: float32 of shape (COUNT, 3) each.
+    """Return unit normals of a domain, the hard ones first, and view-space positions: float32, (COUNT, 3) each.
 
     Args:
-        domain: as an encoding's.
+        domain: "sphere", "hemisphere" (z >= 0) or "view" (normals that face the viewer).
     """
     given = hard()
     n = np.concatenate([given, _random_normals(np.arange(len(given), COUNT, dtype=np.uint32))])
@@ -115,7 +115,7 @@ def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _view_positions() -> np.ndarray:
-    """Positions in front of a viewer: x and y in [-1, 1), z in [-3, -1/2)."""
+    """Return positions in front of a viewer, float32, (COUNT, 3): x and y in [-1, 1), z in [-3, -1/2)."""
     index = np.arange(COUNT * PER_VIEW, dtype=np.uint32).reshape(COUNT, PER_VIEW)
     view = _uniform_numbers(np.uint32(VIEWS) + index)
     view[:, 2] = view[:, 2] * np.float32(1.25) - np.float32(1.75)
@@ -123,7 +123,7 @@ def _view_positions() -> np.ndarray:
 
 
 def checksum(values: np.ndarray) -> int:
-    """A sum of hashed words, modulo 2^32, of an array of 32-bit numbers; it depends on their order."""
+    """Return a checksum of 32-bit numbers, a sum of hashed words modulo 2^32; it depends on their order."""
     words = np.ascontiguousarray(values).view(np.uint32).ravel()
     places = hashed(np.uint32(SUMS) + np.arange(len(words), dtype=np.uint32))
     return int(np.sum(hashed(words ^ places), dtype=np.uint32))

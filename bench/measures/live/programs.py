@@ -77,7 +77,7 @@ def _program(codec: Codec) -> Record:
 
 
 def _file_text(own: Path) -> str:
-    """A user's file. Raises NotLiveError."""
+    """Return the text of a user's file. Raises NotLiveError if the file cannot be read."""
     try:
         return own.read_text(encoding="utf-8", errors="replace")
     except OSError as error:
@@ -85,7 +85,7 @@ def _file_text(own: Path) -> str:
 
 
 def _code_record(codec: Codec, code: Code) -> Record:
-    """Return the storage of a code, and the positions of its numbers."""
+    """Return the fields of a codec's record about its storage, its texels and the position of each of its numbers."""
     storage, channels = codec.storage, Channels(codec)
     return {
         "storage": storage.name,
@@ -109,7 +109,8 @@ def _table_record(table: np.ndarray) -> Record:
 
 
 def storage_functions(names: list[str]) -> list[Record]:
-    """Return functions of storages for an encoder that is typed into a page, for codes of two and three numbers.
+    """Return records like those of `program` for an encoder that is typed into a page: for each storage its functions
+    for codes of two and of three numbers, if it can store them.
 
     Args:
         names: storages of the run; unknown names are left out. The usual storages are always included.
@@ -119,7 +120,7 @@ def storage_functions(names: list[str]) -> list[Record]:
 
 
 def helpers() -> str:
-    """GLSL ES of the functions that users' encoders may call."""
+    """Return the GLSL ES source of the functions that users' encoders may call."""
     return Source(HELPERS, CONSTANTS).text
 
 

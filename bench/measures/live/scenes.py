@@ -28,10 +28,11 @@ ROTATION = np.eye(3) + np.sin(1.0) * _ACROSS + (1.0 - np.cos(1.0)) * _ACROSS @ _
 
 
 def write_scene(name: str, n: np.ndarray, view: np.ndarray, covered: np.ndarray, folder: Path) -> None:
-    """A set of normals as a small image. Raises UsageError where it cannot be written.
+    """Write a set of normals as a small image, NAME.npz in a folder, at most SIDE pixels long. Raises UsageError if
+    it cannot be written.
 
     Args:
-        name: the set's, which is the file's.
+        name: the name of the set and of its file.
         n, view: unit normals and positions in view space, float32 of shape (height, width, 3).
         covered: bool of shape (height, width).
     """
@@ -44,7 +45,8 @@ def write_scene(name: str, n: np.ndarray, view: np.ndarray, covered: np.ndarray,
 
 
 def _slope(view: np.ndarray) -> np.ndarray:
-    """x / -z of the ray through the picture's right edge, and y / -z through its upper one; float32."""
+    """Return x / -z of the ray through the image's right edge, and y / -z through its upper edge: float32 of shape
+    (2,). A slope that is not finite is 0."""
     height, width = view.shape[:2]
     with np.errstate(divide="ignore", invalid="ignore"):
         across, up = (np.nanmax(np.abs(view[..., axis] / view[..., 2])) for axis in range(2))
@@ -54,7 +56,8 @@ def _slope(view: np.ndarray) -> np.ndarray:
 
 
 def read_scenes(folder: Path) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
-    """Yield a run's images: names, pixels as uint8 of shape (height, width, 4), and slopes. Skip damaged files.
+    """Yield for each image in a run's folder its name, its pixels as uint8 of shape (height, width, 4), and its
+    slope, float32 of shape (2,). Damaged files are skipped.
 
     A pixel's first 12 bits are the first number, the next 12 the second; the fourth byte is 255 on a surface.
     """

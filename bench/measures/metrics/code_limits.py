@@ -63,8 +63,8 @@ def covering_deg(codes: float) -> float:
 
 
 def effective_bits(angle_rms_deg: float, area: float | None) -> float | None:
-    """log2 of how many codes, ideally placed on `area` steradians, have this RMS angle; None where the set is not
-    uniform."""
+    """Return log2 of the number of codes that, ideally placed on `area` steradians, have this RMS angle; infinite for
+    an angle of 0. Return None if `area` is None, because the set is not uniform."""
     if area is None:
         return None
     if angle_rms_deg == 0:
@@ -78,18 +78,18 @@ def is_measurable(least: CodeLimit) -> bool:
 
 
 def broken(codes: int, area: float, s: Statistics) -> str:
-    """Return which figure over uniform directions is impossible with this number of codes, allowing for sampling
-    noise; empty if all are possible. An impossible figure means that the measurement is wrong, or the set is not
-    uniform."""
+    """Return a message about the first figure over uniform directions that is impossible with this number of codes,
+    allowing for sampling noise; empty if all are possible. An impossible figure means that the measurement is wrong,
+    or the set is not uniform."""
     least = code_limit(codes, area)
     spared = 1 - SCATTER / math.sqrt(s.count)
     for what, figure, bound in (("RMS", s.angle_rms_deg, least.rms_deg), ("mean", s.angle_mean_deg, least.mean_deg)):
         if figure < bound * spared:
-            return f"{what} {figure:.5g} degrees, below the bound of {bound:.5g}"
+            return f"{what} {figure:.5g} degrees is below the bound of {bound:.5g} degrees"
     for degrees, count in s.within:
         # Each code has its cap: so many directions at most lie that near to any.
         share = SPHERE / area * math.sin(math.radians(degrees) / 2) ** 2
         most = min(codes * share * (RESONANCE if share * s.count < 1 else 1), 1.0) * s.count
         if degrees > RESOLUTION_DEG and count > most + SIGMAS * math.sqrt(most) + SIGMAS:
-            return f"{count} angles below {degrees:.2g} degrees, more than the {most:.2g} possible"
+            return f"{count} angles are below {degrees:.2g} degrees, but only {most:.2g} are possible"
     return ""

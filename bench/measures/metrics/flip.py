@@ -98,7 +98,7 @@ def _linear(srgb: Planes) -> Planes:
 
 
 def _opponent_of(xyz: Planes) -> Planes:
-    """YCxCz: 116 Y - 16, 500 (X - Y), 200 (Y - Z), of XYZ over the white's."""
+    """Return YCxCz of XYZ relative to white, (3, height, width): 116 Y - 16, 500 (X - Y), 200 (Y - Z)."""
     x, y, z = xyz / WHITE
     return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)])
 
@@ -109,7 +109,7 @@ def _xyz_of(opponent: Planes) -> Planes:
 
 
 def _lab_of(xyz: Planes) -> Planes:
-    """L*a*b*, whose colours are 0.01 L as strong: Hunt's effect."""
+    """Return L*a*b* of XYZ, (3, height, width), with a* and b* multiplied by 0.01 L*: Hunt's effect."""
     limit = 6 / 29
     share = xyz / WHITE
     x, y, z = np.where(share > limit**3, np.cbrt(share), share / (3 * limit**2) + 4 / 29)
@@ -118,19 +118,22 @@ def _lab_of(xyz: Planes) -> Planes:
 
 
 def _apart(a: Planes, b: Planes) -> Plane:
-    """HyAB: the difference in lightness, and the distance in colour, added."""
+    """Return the HyAB distance at each pixel of L*a*b* images: difference in L* plus distance in (a*, b*)."""
     return abs(a[0] - b[0]) + np.hypot(a[1] - b[1], a[2] - b[2])
 
 
 @cache
 def _most() -> float:
-    """The largest difference: of green and blue."""
+    """Return the largest difference in colour, between green and blue, raised to Q_COLOUR."""
     green, blue = (_lab_of(_mixed(XYZ_OF_RGB, np.eye(3, dtype=np.float32)[k][:, None, None])) for k in (1, 2))
     return float(_apart(green, blue)[0, 0] ** Q_COLOUR)
 
 
 def _filtered(plane: Plane, terms: tuple[tuple[float, float], ...]) -> Plane:
-    """Return a plane filtered by a sum of Gaussians, each of which is separable."""
+    """Return a plane filtered by a sum of separable Gaussians, normalised to 1.
+
+    Args:
+        terms: (a, b) of each Gaussian a sqrt(pi / b) exp(-pi^2 d^2 / b), with the distance d in degrees."""
     radius = math.ceil(3 * math.sqrt(WIDEST / (2 * math.pi**2)) * PIXELS_PER_DEGREE)
     degrees = np.arange(-radius, radius + 1) / PIXELS_PER_DEGREE
     gaussians = [np.exp(-((math.pi * degrees) ** 2) / b) for _, b in terms]
@@ -140,8 +143,8 @@ def _filtered(plane: Plane, terms: tuple[tuple[float, float], ...]) -> Plane:
 
 
 def _features(lightness: Plane) -> tuple[Plane, Plane]:
-    """The strength of edges and of points: first and second derivatives of Gaussians, whose positive weights add up to
-    1 and whose negative ones to -1."""
+    """Return the strength of edges and the strength of points at each pixel, from first and from second derivatives
+    of Gaussians, whose positive weights add up to 1 and whose negative weights add up to -1."""
     width = 0.5 * FEATURE_DEG * PIXELS_PER_DEGREE
     radius = math.ceil(3 * width)
     x = np.arange(-radius, radius + 1)

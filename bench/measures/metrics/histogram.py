@@ -24,29 +24,31 @@ BINS_TOGETHER = 2**7
 
 
 def bins_of(angle: Float[Array, "*shape"], covered: Bool[ArrayLike, "*shape"]) -> UInt[Array, "*shape"]:
-    """The bin of each angle (float32, degrees, any shape), uint16; UNCOVERED where a normal does not count."""
+    """Return the number of each angle's bin, uint16 of the same shape; UNCOVERED where a normal does not count.
+    Angles are float32, in degrees."""
     key = (angle.view(jnp.uint32) >> BIN_SHIFT).astype(jnp.int32) - FIRST_BIN
     return jnp.where(covered, jnp.clip(key, 0, BINS - 1), UNCOVERED).astype(jnp.uint16)
 
 
 def bin_of(angle_deg: float) -> int:
-    """The bin of one angle."""
+    """Return the number of an angle's bin, from degrees; the first or the last bin for angles beyond them."""
     return min(max((int(np.float32(angle_deg).view(np.uint32)) >> BIN_SHIFT) - FIRST_BIN, 0), BINS - 1)
 
 
 def lower_edge(number: int) -> float:
-    """Return the smallest angle of a bin; 0 for the first bin."""
+    """Return the smallest angle of a bin, in degrees; 0 for the first bin."""
     return float(np.uint32(number + FIRST_BIN << BIN_SHIFT).view(np.float32)) if number else 0.0
 
 
 def tally(bins: UInt[Array, "*shape"]) -> Int[Array, " bins"]:
-    """Return the number of normals in each bin, int32 of shape (BINS + 1,). Integer counts do not depend on the order
-    in which normals are counted."""
+    """Return the number of normals in each bin, int32 of shape (BINS + 1,); the last counts UNCOVERED. Integer counts
+    do not depend on the order in which normals are counted."""
     return jnp.zeros(BINS + 1, jnp.int32).at[bins.ravel()].add(1, mode="promise_in_bounds")
 
 
 def percentile(histogram: Int[np.ndarray, " bins"], largest: float, share: float) -> float:
-    """Return the value below which `share` of the counts fall, interpolated within its bin."""
+    """Return the angle, in degrees, below which `share` (0 to 1) of the counts fall, interpolated within its bin; at
+    most `largest`, the largest angle, and 0 if that is 0."""
     cumulative = np.cumsum(histogram[:BINS])
     rank = share * cumulative[-1]
     index = int(np.searchsorted(cumulative, rank))
@@ -56,7 +58,8 @@ def percentile(histogram: Int[np.ndarray, " bins"], largest: float, share: float
 
 
 def counts_by_angle(histogram: Int[np.ndarray, " bins"]) -> tuple[tuple[float, int], ...]:
-    """Return the number of angles in each non-empty eighth of an octave, by its lower edge; the first edge is 0."""
+    """Return (lower edge in degrees, number of angles) for each non-empty eighth of an octave, ascending; the first
+    eighth begins at 0."""
     counts = histogram[:BINS].reshape(-1, BINS_TOGETHER).sum(axis=1)
     edges = ((np.arange(0, BINS, BINS_TOGETHER) + FIRST_BIN) << BIN_SHIFT).astype(np.uint32).view(np.float32)
     edges[0] = 0
@@ -64,7 +67,7 @@ def counts_by_angle(histogram: Int[np.ndarray, " bins"]) -> tuple[tuple[float, i
 
 
 def counts_below(histogram: Int[np.ndarray, " bins"]) -> tuple[tuple[float, int], ...]:
-    """Return the number of angles below each power of two of degrees, ascending."""
+    """Return (power of two in degrees, number of angles below it) for each octave of the bins, ascending."""
     octave = 2 ** (23 - BIN_SHIFT)
     below = np.cumsum(histogram[:BINS])[octave - 1 :: octave]
     first = np.log2(np.uint32(FIRST_BIN << BIN_SHIFT).view(np.float32))

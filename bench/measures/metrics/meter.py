@@ -46,14 +46,14 @@ def idle() -> None:
 
 
 def angle_between(a: Vec3, b: Vec3) -> Float[Array, "*shape"]:
-    """The angle between a unit vector and one of any length, in degrees; 180 where the other is zero."""
+    """Return the angle, in degrees, between `a`, of length 1, and `b`, of any length; 180 where `b` is zero."""
     crossed = cross(a, b - a)
     across = jnp.sqrt(dot(crossed, crossed))
     return jnp.where(dot(b, b) > 0.0, 180.0 * atan2_pi(across, dot(a, b)), 180.0)
 
 
 def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Bool[Array, "*shape"]]:
-    """Decodes, the opposite direction where one is not a number; and which of them are numbers."""
+    """Return the decoded normals, or -n where they are not finite, and a mask of the finite ones."""
     finite = jnp.isfinite(dot(decoded, decoded))
     return select(finite, decoded, -n), finite
 
@@ -61,8 +61,8 @@ def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Bool[Array, "*shape"]]:
 def errors(
     n: Vec3, decoded: Vec3, covered: Bool[ArrayLike, "*shape"]
 ) -> tuple[Float[Array, "*shape"], Float[Array, "*shape"], Float[Array, "*shape"], Bool[Array, "*shape"]]:
-    """Per normal: squared error, the article's squared error, a whole number, and angle, all float32; and whether the
-    decode is not a number, which then counts as the opposite direction."""
+    """Return for each normal the squared error, the article's squared error (a whole number) and the angle in
+    degrees, all float32, and whether the decoded normal is not finite and counts as -n; 0 unless `covered`."""
     decoded, finite = readable(n, decoded)
     difference = select(covered, n - decoded, n * 0.0)
     # The article's difference image was |n - n'| in eight bits per channel.
@@ -99,7 +99,7 @@ def _as_it_is(row):
 
 
 def _added(start: Num[Array, " lanes"], rows: Num[Array, "rows lanes"], of=_as_it_is) -> Num[Array, " lanes"]:
-    """`of` a lane's numbers added one row after the other: the same bits however many rows a block has.
+    """Return `start` plus `of` each row, one row after the other: the same bits however many rows a block has.
 
     A row is computed and converted when it is added. XLA would write whole blocks in float64 first.
     """
@@ -147,7 +147,8 @@ def _worst(bins: UInt[np.ndarray, " count"], largest: float, n: Vec3, decoded: V
 
 
 def worst_of(normals: Float[np.ndarray, "count 3"], decoded: Float[np.ndarray, "count 3"]) -> Worst | None:
-    """The normal with the largest angle, the first of them; None of none. Both are float32."""
+    """Return the normal that is farthest from its decoded normal, the first of several; None for empty arrays. Both
+    arrays are float32."""
     if not len(normals):
         return None
     angles = _angles(normals, decoded)
@@ -156,12 +157,13 @@ def worst_of(normals: Float[np.ndarray, "count 3"], decoded: Float[np.ndarray, "
 
 
 def is_smaller(largest: float, met_deg: float) -> bool:
-    """Whether the largest angle of a chunk, in float32, is below one that another chunk has."""
+    """Whether a chunk's largest angle, in float32, is surely below `met_deg`, an angle of another chunk."""
     return largest < SAME_ANGLE * met_deg
 
 
 def _angles(n: Float[np.ndarray, "count 3"], decoded: Float[np.ndarray, "count 3"]) -> Float[np.ndarray, " count"]:
-    """Return the angles between rows as `angle_between` does, in float64; 180 if a decoded normal is not a number."""
+    """Return the angles between rows, in degrees, as `angle_between` does, in float64; 180 if a decoded normal is
+    zero or not finite."""
     with np.errstate(invalid="ignore", over="ignore"):
         angles = angles_deg(n, decoded)
     return np.where(np.isfinite(decoded).all(axis=1) & (decoded != 0).any(axis=1), angles, 180.0)
@@ -180,10 +182,11 @@ class Measures(Protocol):
         ...
 
     def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> ChunkTotal:
-        """Return the statistics of one chunk.
+        """Return one chunk's figures, its histogram and its worst normal.
 
         Args:
-            met_deg: an angle that another chunk has. The worst normal is left out if it turns by less.
+            load: returns the chunk.
+            met_deg: an angle that another chunk has. The worst normal is None if its angle is smaller.
             device: the JAX device that computes them; None for any.
         """
         ...
@@ -222,7 +225,7 @@ class Meter:
         return self._decode(block, *self._given)
 
     def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> ChunkTotal:
-        """Return the statistics of one chunk; as for `Measures.one`."""
+        """Return one chunk's figures, histogram and worst normal, as `Measures.one` does."""
         with jax.enable_x64(True), jax.default_device(device):
             chunk = jax.tree.map(_on_device, load())
             decoded = self.decoded(chunk)
@@ -252,7 +255,8 @@ def measure_together(
     loads: Iterable[Load],
     tick: Callable[[int], None],
 ) -> list[ErrorTotal]:
-    """Measure one set with each meter, making each chunk once; `tick` gets the index of the meter that is done.
+    """Return the total of one set for each meter; each chunk is made once. `tick` is called with a meter's index for
+    each chunk that it has measured.
 
     Chunks are dealt to all devices that JAX has. The rest is as for `Meter.total`.
     """

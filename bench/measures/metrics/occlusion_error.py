@@ -77,7 +77,7 @@ def method_error(
     """
     method = chosen.effect
     if not isinstance(method, AmbientOcclusion):
-        raise EffectError(f"effect {method.name} is not a method of ambient occlusion")
+        raise EffectError(f"effect {method.name} is not an ambient occlusion method")
     caster, drawn = RayCaster(triangles_of(scene)), drawn_pixels(device, chosen, scene, size, pixels, seed)
     radius = dict(chosen.values)["radius"]
     exact = caster.visible(drawn.positions, drawn.normals, rays, lambda far: method.falls_off(far / radius), seed)
@@ -87,7 +87,8 @@ def method_error(
 def compared(
     visibilities: Float[np.ndarray, " pixels"], exact: Float[np.ndarray, " pixels"], error: Float[np.ndarray, " pixels"]
 ) -> OcclusionError:
-    """Compare visibilities with those of rays, given the rays' standard errors."""
+    """Return the errors of visibilities, compared with the exact visibilities by rays. The noise of the rays, given
+    as standard errors, is subtracted from the RMS."""
     difference, noise = visibilities - exact, float(np.mean(error**2))
     square = difference**2
     rms = float(np.sqrt(max(np.mean(square) - noise, 0.0)))
@@ -105,7 +106,8 @@ def compared(
 def drawn_pixels(
     device: Device, chosen: ChosenEffect, scene: Scene, size: tuple[int, int], pixels: int, seed: int
 ) -> Pixels:
-    """An effect drawn over an fp32 G-buffer, at covered pixels drawn by lot."""
+    """Draw an effect over an fp32 G-buffer, and return its visibility at up to `pixels` covered pixels, chosen at
+    random and without hair, with their positions and normals in world space."""
     plan = Plan(size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, False, 1.0)
     pipeline = PIPELINES["deferred"].with_effect(chosen.passes())
     with rendering(device, pipeline, scene, plan) as renderer:

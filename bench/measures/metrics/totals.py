@@ -73,7 +73,7 @@ class Worst:
 
     def __str__(self) -> str:
         normal, decoded = (", ".join(str(c) for c in v) for v in (self.normal, self.decoded))
-        return f"({normal}) comes back as ({decoded}), {self.angle_deg:.6g} degrees off"
+        return f"({normal}) decodes to ({decoded}), {self.angle_deg:.6g} degrees off"
 
 
 def psnr_db(mse: float) -> float:
@@ -94,7 +94,7 @@ class ErrorTotal:
 
     @property
     def met_deg(self) -> float:
-        """The largest angle so far, in float64; other threads may ask."""
+        """The largest angle of the chunks so far, in degrees; 0 if no normal counts. Other threads may read it."""
         return self.worst.angle_deg if self.worst else 0.0
 
     def add(self, part: ChunkTotal) -> None:
@@ -112,7 +112,7 @@ class ErrorTotal:
         self.add((other.figures, other.histogram, other.worst))
 
     def as_text(self) -> str:
-        """Return all its numbers as text, from which `total_of` restores the same total."""
+        """Return all numbers of the total as JSON text, from which `total_of` restores the same total."""
         bins = np.flatnonzero(self.histogram)
         counted = np.stack([np.diff(bins, prepend=0), self.histogram[bins]]).astype("<i8")
         worst = self.worst and [*map(float, (*self.worst.normal, *self.worst.decoded, self.worst.angle_deg))]
@@ -121,7 +121,7 @@ class ErrorTotal:
 
 
 def total_of(text: str) -> ErrorTotal:
-    """Return the total that `ErrorTotal.as_text` wrote as a text."""
+    """Return the total whose JSON text `ErrorTotal.as_text` returned."""
     record, total = json.loads(text), ErrorTotal()
     steps, counts = np.frombuffer(zlib.decompress(base64.b64decode(record["counts"])), "<i8").reshape(2, -1)
     total.figures = Figures(*map(Fraction, record["sums"]))

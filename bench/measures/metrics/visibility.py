@@ -42,7 +42,7 @@ class Visible(NamedTuple):
 
 
 def triangles_of(scene: Scene) -> Float[np.ndarray, "triangles 3 3"]:
-    """The corners of all that is opaque, in world space."""
+    """Return the corners of all opaque triangles of a scene (alpha 1), in world space: (triangles, 3, 3)."""
     there = [
         part.mesh.positions[part.mesh.triangles] @ model[:3, :3].T + model[:3, 3]
         for part in scene.parts
@@ -81,7 +81,7 @@ class RayCaster:
     def distances(
         self, origins: Float[np.ndarray, "rays 3"], directions: Float[np.ndarray, "rays 3"]
     ) -> Float[np.ndarray, " rays"]:
-        """Return each ray's distance to a triangle; more than 1e30 if it hits none. Directions have length 1."""
+        """Return each ray's distance to the nearest triangle; over 1e30 if it hits none. Directions have length 1."""
         given = (np.ascontiguousarray(a, np.float32) for a in (origins, directions))
         return self._scene.run(*given, query="DISTANCE")
 
@@ -93,14 +93,14 @@ class RayCaster:
         lost: Callable[[Float[np.ndarray, "points rays"]], Float[np.ndarray, "points rays"]],
         seed: int = 0,
     ) -> Visible:
-        """The visibility of points.
+        """Return the visibility of points by rays, its standard error and the bent normal of each point.
 
         Args:
             positions: each a little over its own surface.
-            normals: unit.
-            rays: for each point, 2 or more.
-            lost: w of distances.
-            seed: of the directions.
+            normals: unit normals.
+            rays: the number of rays for each point, 2 or more.
+            lost: (distances) -> the share of light that a surface at this distance takes away, w.
+            seed: the seed of the directions.
         """
         rng, blocks = np.random.default_rng(seed), []
         for first, count in _block_ranges(len(positions), max(BLOCK // rays, 1)):
@@ -121,7 +121,7 @@ def _block_ranges(total: int, most: int) -> Iterator[tuple[int, int]]:
 def cosine_directions(
     normals: Float[np.ndarray, "normals 3"], count: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "normals {count} 3"]:
-    """Directions over each normal, as dense as the cosine of their angle to it; unit.
+    """Return `count` random unit directions over each normal, as dense as the cosine of their angle to it.
 
     A point on the unit ball around the tip of the normal, seen from the origin: the cosine's density exactly.
     """

@@ -54,7 +54,7 @@ class _Held:
 
 @cache
 def _row_library() -> ctypes.CDLL:
-    """The library of row.c, the same for all codecs."""
+    """Return the compiled library of row.c, the same for all codecs."""
 
     def errors_of(n: Vec3, decoded: Vec3) -> tuple:
         squared, article, angle, invalid = errors(n, decoded, True)
@@ -109,7 +109,7 @@ class NativeMeter:
         return decoded
 
     def one(self, load: Load, met_deg: float = 0.0, device: Any = None) -> ChunkTotal:  # noqa: ARG002
-        """Return the statistics of one chunk, as `Measures.one` does; the device is always the processor."""
+        """Return one chunk's figures, histogram and worst normal, as `Measures.one` does, always on the processor."""
         sums, counts, held = np.zeros(len(Figures._fields)), np.zeros(BINS + 1, np.uint32), _Held(load())
         self._row_library.row(self._codec, held.chunk, address(sums), address(counts))
         figures = Figures(*sums.tolist())

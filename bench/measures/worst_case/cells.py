@@ -29,7 +29,8 @@ BANDS, REACH = 16, 2.0
 
 
 def way_to_corners(exact: ExactCodec) -> str:
-    """Return the method that finds the corners of a codec's cells; NONE if no method can."""
+    """Return the method that finds the corners of a codec's cells: NEAREST, ALL_CORNERS, SOME_CORNERS, or NONE ("")
+    if the cells are too many or not in a plane."""
     counts = [exact.codec.storage.count(i) for i in exact.free]
     if not counts and exact.codec.codes <= MOST_POINTS:
         return NEAREST
@@ -39,7 +40,7 @@ def way_to_corners(exact: ExactCodec) -> str:
 
 
 def corners(exact: ExactCodec, way: str) -> np.ndarray:
-    """Return normals at the worst corners of cells, shape (3, count), by a way of `way_to_corners`, except NONE."""
+    """Return normals at the worst corners of cells, (3, count), by a method from `way_to_corners`, except NONE."""
     if way == NEAREST:
         return _across_faces(exact)
     tables = sides(exact)
@@ -67,7 +68,8 @@ def _sides(exact: ExactCodec, component: int) -> np.ndarray:
 
 
 def _all_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
-    """Return the cells with the worst corners of all, and for each the three other cells that share its corner."""
+    """Return the CLIMBERS cells with the worst corners, and for each the three other cells that share its corner, as
+    indices of shape (components, count)."""
     u, v = exact.free
     rest = [range(1) if i in exact.free else range(len(table)) for i, table in enumerate(tables)]
     edges = tables[u][1:-1:2], tables[v][1:-1:2]
@@ -98,7 +100,8 @@ def _all_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
 
 
 def column_peaks(values: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The largest of some thousands of columns that values are laid out in, at most `count`, and their indices."""
+    """Return at most `count` of the largest values, the largest of each of COLUMNS interleaved columns, in descending
+    order, and their indices."""
     columns = np.pad(values, (0, -len(values) % COLUMNS), constant_values=-1.0).reshape(-1, COLUMNS)
     index = np.minimum(columns.argmax(axis=0) * COLUMNS + np.arange(COLUMNS), len(values) - 1)
     kept = index[np.argsort(-values[index], kind="stable")[:count]]
@@ -106,7 +109,8 @@ def column_peaks(values: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray
 
 
 def _climb_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
-    """The worst of CLIMBERS cells, after each was changed for a worse one near or far CLIMBS times."""
+    """Return CLIMBERS cells, as indices of shape (components, CLIMBERS): random cells, each replaced CLIMBS times by
+    the worst of four cells near or far if that is worse."""
     random = np.random.default_rng(0)
     sizes = np.array([len(table) // (2 if i in exact.free else 1) for i, table in enumerate(tables)])[:, None]
     cells = random.integers(0, sizes, (exact.size, CLIMBERS))
@@ -124,7 +128,7 @@ def _climb_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
 
 
 def _corners_of(exact: ExactCodec, tables: list[np.ndarray], cells: np.ndarray) -> np.ndarray:
-    """The four corners of cells, shape (components, count), as normals of shape (3, 4 count), corner by corner."""
+    """Return the four corners of cells, (components, count), as normals, (3, 4 count), corner by corner."""
     u, v = exact.free
     around = []
     for corner in range(4):
@@ -135,7 +139,7 @@ def _corners_of(exact: ExactCodec, tables: list[np.ndarray], cells: np.ndarray) 
 
 
 def _across_faces(exact: ExactCodec) -> np.ndarray:
-    """The directions that are equally far from three codes next to each other: across the faces of the codes' hull."""
+    """Return the directions equally far from three neighbouring codes, (3, count): across their hull's faces."""
     numbers = [exact.codec.numbers(i) for i in range(exact.size)]
     code = np.stack([c.ravel() for c in np.meshgrid(*numbers, indexing="ij")])
     return across_faces(_distinct(exact.normals(code).round(12)))
@@ -155,7 +159,8 @@ def across_faces(directions: np.ndarray) -> np.ndarray:
 
 
 def _across_band(directions: np.ndarray, band: tuple[float, float]) -> np.ndarray:
-    """The directions in a band of z across those faces whose corners are near."""
+    """Return the directions in a band of z across the faces whose corners are near, shape (3, count); empty if the
+    directions near the band have no hull."""
     reach = REACH * math.sqrt(4 * math.pi / directions.shape[1])
     latitudes, (low, high) = np.arcsin(directions[2]), np.arcsin(np.minimum(band, 1.0))
     is_near = (latitudes >= low - reach) & (latitudes <= high + reach)
@@ -169,15 +174,15 @@ def _across_band(directions: np.ndarray, band: tuple[float, float]) -> np.ndarra
 
 
 def _hull(directions: np.ndarray) -> np.ndarray:
-    """The triangles of a hull of directions, shape (4, count): their normals, and less the cosines of the angles from
-    these to the corners."""
+    """Return the triangles of a hull of directions, shape (4, count): their normals, and minus the cosine of the
+    angle from each normal to its corners."""
     from scipy.spatial import ConvexHull
 
     return ConvexHull(directions.T).equations.T
 
 
 def _distinct(directions: np.ndarray) -> np.ndarray:
-    """The different ones of directions of shape (3, count), in order."""
+    """Return directions of shape (3, count), sorted and without duplicates."""
     # np.unique of columns takes ten times as long.
     ordered = directions[:, np.lexsort(directions)]
     is_new = (np.diff(ordered, axis=1) != 0.0).any(axis=0)

@@ -34,7 +34,7 @@ class Starts:
     places: np.ndarray
 
     def best(self, count: int) -> Starts:
-        """The worst of them, at most `count`."""
+        """Return the `count` starts that are moved farthest, the worst first; all if `count` is larger."""
         return self[np.argsort(-self.chords, kind="stable")[:count]]
 
     def filled(self, count: int) -> Starts:
@@ -68,11 +68,12 @@ class Ground:
 
 
 def highest(ground: Ground, starts: Starts, count: int, first_sizes: tuple[float, ...]) -> tuple[Starts, float]:
-    """The worst place, and by how many degrees the last round of climbing still raised it.
+    """Return the worst place that climbing finds, as `Starts` of one place, and by how many degrees the last round of
+    climbing still raised it.
 
     Args:
         starts: where to begin; the worst `count` of them are climbed from, a multiple of `ground.lanes`.
-        first_sizes: the size of the first step of each round, in the error.
+        first_sizes: the size of the first step of each round, relative to the error.
     """
     starts = starts.best(count).filled(count)
     for size in first_sizes:
@@ -88,15 +89,15 @@ def highest(ground: Ground, starts: Starts, count: int, first_sizes: tuple[float
 
 
 def _climb(ground: Ground, starts: Starts, first: Any) -> Starts:
-    """Starts, each moved to the worst around it. `first` is the size of the first step in the error, for all or for
-    each."""
+    """Return starts, each moved to the worst place that a climb from it reaches. `first` is the size of the first
+    step, relative to the error, for all starts or for each."""
     sizes = first * ground.errors(starts.chords)
     parts = (slice(begin, begin + ground.lanes) for begin in range(0, len(sizes), ground.lanes))
     return reduce(add, on_all_cores(lambda part: _climb_from(ground, starts[part], sizes[part]), parts))
 
 
 def _climb_from(ground: Ground, starts: Starts, sizes: np.ndarray) -> Starts:
-    """Return starts after a climb in steps that begin with these sizes; at most `ground.lanes` starts."""
+    """Return starts after a climb whose first steps have these absolute sizes; at most `ground.lanes` starts."""
     chords, places = starts.chords, starts.places
     errors, lane = ground.errors(chords), np.arange(len(chords))
     for step in range(STEPS):

@@ -28,7 +28,7 @@ NEAR_AXIS = 0.9  # a component above which the other two are computed from it
 
 
 def ahead(like) -> Vec3:
-    """Eye rays straight ahead for planes like these."""
+    """Return eye rays straight ahead, (0, 0, -1), as planes of the shape of `like`."""
     return Vec3(jnp.zeros_like(like), jnp.zeros_like(like), jnp.full_like(like, -1.0))
 
 
@@ -40,10 +40,10 @@ def _unit_or_z(v: Vec3) -> Vec3:
 
 
 def unit(n: Vec3) -> Vec3:
-    """A unit vector whose two short components, near an axis, have the length that its long one leaves them.
+    """Return a unit vector; near an axis its two short components get the length that the long component leaves them.
 
-    Encoders compute 1 + n.z, which is exact there. Normalising a vector rounds n.z by itself, which can change 1 + n.z
-    by all that it is: the encoder would be given a vector of another length.
+    Encoders compute 1 + n.z, which is exact there. Normalising a vector rounds n.z by itself, which can change
+    1 + n.z by all that it is: the encoder would be given a vector of another length.
     """
     long = maximum(maximum(abs(n.x), abs(n.y)), abs(n.z))
     short = Vec3(*(select(abs(c) == long, 0.0, c) for c in n))
@@ -77,7 +77,7 @@ class _Programs:
         return jnp.stack(_unit_or_z(self._encoding.decode(*self._code_and_rays(code))))
 
     def _code_and_rays(self, code) -> tuple[Vec2 | Vec3, Vec3]:
-        """A code and the eye rays that it is decoded for."""
+        """Return a code as a vector, and the eye rays that it is decoded for: a decoder's arguments."""
         return self._code(*code), ahead(code[0])
 
     def _chords(self, n, *scales: Scale):
@@ -90,7 +90,7 @@ class _Programs:
         return select(n.z >= 0.0, chords, -1.0) if self._is_half else chords
 
     def _decoded(self, codec: Codec, n: Vec3) -> Vec3:
-        """Normals on their way through the codec."""
+        """Return normals after a round trip; with precise rounding, decoded from the nearest code around."""
         if not self._encoding.is_precise:
             return codec.round_trip(n, ahead(n.z))
         # The codes around are decoded as one array: the program is a quarter as long and compiles sooner.
@@ -147,7 +147,7 @@ class ExactCodec:
 
     @property
     def free(self) -> list[int]:
-        """The components that are numbers like any other: not signs, nor one of few values."""
+        """The indices of the components that are ordinary numbers: not signs, nor numbers of few values."""
         return self._programs.free
 
     def corners(self, edges: Sequence[np.ndarray], numbers: Sequence[np.ndarray], others: np.ndarray) -> np.ndarray:
@@ -171,15 +171,15 @@ class ExactCodec:
             return np.asarray(self._programs.corners(edges, numbers, others))[:rows, :columns]
 
     def normals(self, code: np.ndarray) -> np.ndarray:
-        """The directions of codes, which need not be stored ones."""
+        """Return the decoded unit directions of codes, stored or not, (3, count); +z if a code has none."""
         return self._in_blocks(self._programs.normals, code)
 
     def stored(self, code: np.ndarray) -> np.ndarray:
-        """Return numbers after a round trip through the storage."""
+        """Return codes after a round trip of their numbers through the storage, of the same shape."""
         return self._in_blocks(self._programs.stored, code)
 
     def codes(self, n: np.ndarray) -> np.ndarray:
-        """Return the stored codes of unit normals."""
+        """Return the codes of unit normals, shape (components, count), as they are read back from the storage."""
         return self._in_blocks(self._programs.codes, n)
 
     def chords(self, n: np.ndarray) -> np.ndarray:
@@ -199,7 +199,8 @@ class ExactCodec:
             return np.concatenate([np.asarray(part) for part in parts], axis=-1)[..., :count]
 
     def around(self, n: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
-        """WAYS unit normals around each: four sizes all around, turned at each step; shape (3, WAYS, count)."""
+        """Return WAYS unit normals around each, shape (3, WAYS, count): in all directions, at four distances, which
+        are shares of `sizes`. The directions turn at each step."""
         x, y, z = n
         # Two axes across n (J. Frisvad 2012, T. Duff et al. 2017).
         sign = np.where(z < 0.0, -1.0, 1.0)
@@ -223,15 +224,15 @@ class ExactCodec:
         return x, y, z
 
     def angle_deg(self, n: np.ndarray) -> float:
-        """The angle of one normal, shape (3,), in degrees."""
+        """Return the angle between one normal, shape (3,), and its decoded direction, in degrees."""
         return degrees(float(self.chords(n[:, None])[0]))
 
 
 def _lengthened(numbers: np.ndarray, count: int) -> np.ndarray:
-    """`count` numbers: these, then the last one repeated."""
+    """Return `count` numbers: the given numbers, then the last one repeated."""
     return np.pad(numbers, (0, count - len(numbers)), mode="edge")
 
 
 def degrees(chord2: float) -> float:
-    """The angle of a chord of the unit sphere, from its square."""
+    """Return the angle, in degrees, that a chord of the unit sphere spans, from the square of its length."""
     return float(np.degrees(2 * np.arcsin(np.sqrt(max(chord2, 0.0)) / 2)))

@@ -19,7 +19,8 @@ T = TypeVar("T")
 
 
 def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Row:
-    """The supremum on a set of so much area, by search; of a finite set, whose area is 0, its maximum, as measured.
+    """Return the columns of the supremum: its angle, its normal and the method that found it, or only why it was not
+    searched for. Without a domain the set is finite, and the columns have its measured maximum.
 
     Raises UsageError as `_exactly` does.
     """
@@ -42,7 +43,8 @@ def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Ro
 
 
 def odd(codec: Codec, domain: str | None) -> Row:
-    """The odd codes on the domain, the encoding's own for sets that are not uniform; nothing where there are too many.
+    """Return the columns that count odd codes on the domain, the encoding's own if it is None; {} for too many codes
+    or an encoding without an exact map.
 
     Raises UsageError as `_exactly` does.
     """
@@ -59,7 +61,8 @@ def _has_exact_map(encoding: Encoding) -> bool:
 
 
 def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T:
-    """Return the result of a search in float64. Raises UsageError if a user's own twin supports only float32."""
+    """Return the result of a search in float64, over z >= 0 unless the domain is "sphere". Raises UsageError if a
+    user's own twin supports only float32."""
     try:
         return search(codec, domain != "sphere")
     except TypeError as error:
@@ -69,7 +72,8 @@ def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T
 
 
 def held(codec: Codec, domain: str | None, s: Statistics, sup_deg: float | None) -> Row:
-    """Return the bounds, and how much of each is reached; the maximum is compared by the supremum if it is known.
+    """Return the columns of the bounds, and of how much of each is reached in percent; the maximum is compared by the
+    supremum if it is known. Return {} without a domain.
 
     If float32 normals cannot resolve errors of that size, the shares and the check against the bounds are left out.
     """

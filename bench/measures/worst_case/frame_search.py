@@ -54,7 +54,7 @@ class WorstFrame:
 
 @cache
 def worst_frame(codec: FrameCodec) -> WorstFrame:
-    """The largest rotation over all tangent frames of either hand."""
+    """Return the largest rotation by a round trip that a search over all tangent frames finds, and that frame."""
     program = jax.jit(partial(_moves, codec))
 
     def moves(frames: np.ndarray) -> np.ndarray:
@@ -78,14 +78,14 @@ def _moves(codec: FrameCodec, quaternions, hands):
 
 
 def _at_right_angles(frame: Frame) -> Frame:
-    """A frame's axes at length 1, the tangent across the normal."""
+    """Return a frame with axes of length 1, and its tangent at right angles to its normal."""
     n = normalize(frame.normal)
     return Frame(n, normalize(frame.tangent - n * dot(n, frame.tangent)), frame.hand)
 
 
 def _worst_of(moves: Callable[[np.ndarray], np.ndarray]) -> Starts:
-    """The worst of tangent frames that are spread evenly by Haar's measure (K. Shoemake 1992), of either hand: their
-    quaternions and hands, shape (5, LANES)."""
+    """Return as starts the worst LANES of tangent frames that are spread evenly by Haar's measure (K. Shoemake 1992),
+    of either hand: their quaternions and hands, shape (5, LANES)."""
 
     def block(start: int) -> Starts:
         index = np.arange(start, start + BLOCK) + 0.5
@@ -100,7 +100,7 @@ def _worst_of(moves: Callable[[np.ndarray], np.ndarray]) -> Starts:
 
 
 def _frames_around(frames: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
-    """WAYS tangent frames around each, turned about axes all around, by four angles; shape (5, WAYS, count)."""
+    """Return WAYS tangent frames around each, turned about axes all around by four angles: (5, WAYS, count)."""
     way, lane = np.arange(WAYS)[:, None], np.arange(len(sizes))[None, :]
     index = way + WAYS * step + 0.5 * lane
     height, turn = (2.0 * np.modf(index * part)[0] - 1.0 for part in TWO)

@@ -48,7 +48,7 @@ class OddCodes:
 
 @cache
 def odd_codes(codec: Codec, is_half: bool = False) -> OddCodes | None:
-    """The odd codes on the sphere, or on z >= 0; None where there are more than 2^24 codes."""
+    """Return the counts of odd codes on the sphere, or on z >= 0 if `is_half`; None for more than 2^24 codes."""
     if codec.codes > MOST_CODES:
         return None
     exact, numbers = ExactCodec(codec, is_half), _Numbers(codec)
@@ -79,15 +79,15 @@ class _Numbers:
         self._is_even = [np.allclose(np.diff(table), table[1] - table[0], rtol=1e-6) for table in self.tables]
 
     def places(self, index: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return each component's index among its numbers."""
+        """Return for each component the index of each code's number among the numbers of that component."""
         return np.unravel_index(index, self.shape)
 
     def codes(self, index: np.ndarray) -> np.ndarray:
-        """The codes, shape (components, count)."""
+        """Return the codes with these indices, shape (components, count)."""
         return np.stack([table[place] for table, place in zip(self.tables, self.places(index), strict=True)])
 
     def index(self, codes: np.ndarray) -> np.ndarray:
-        """The indices of stored codes, shape (components, count)."""
+        """Return the index of each stored code; `codes` has shape (components, count)."""
         return np.ravel_multi_index([self._nearest_index(i, c) for i, c in enumerate(codes)], self.shape, mode="clip")
 
     def _nearest_index(self, component: int, c: np.ndarray) -> np.ndarray:
@@ -98,7 +98,7 @@ class _Numbers:
 
 
 def _made_within(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray], index: np.ndarray) -> np.ndarray:
-    """Return the codes among `index` that normals at the middle, the edges and the corners of their cells make."""
+    """Return those of `index` whose codes are made by normals at the middle, edges and corners of their cells."""
     is_made = np.zeros(len(index), bool)
     for where in _stencil(exact):
         left = np.flatnonzero(~is_made)
@@ -111,8 +111,8 @@ def _made_within(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray],
 
 
 def _stencil(exact: ExactCodec) -> list[tuple[int, ...]]:
-    """Return for each free component -1, 0 or 1: the beginning, the middle or the end of its interval. The middles
-    come first; edges are included only for codes in a plane."""
+    """Return the places of a cell to try, each with -1, 0 or 1 for each free component: the beginning, the middle or
+    the end of its interval. The middles come first; edges are left out with three or more free components."""
     every: list[tuple[int, ...]] = list(itertools.product((0, -1, 1), repeat=len(exact.free)))
     return every if len(exact.free) < 3 else [where for where in every if len({abs(side) for side in where}) == 1]
 

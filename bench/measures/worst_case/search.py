@@ -58,7 +58,7 @@ class Worst:
 
 @cache
 def worst_case(codec: Codec, is_half: bool = False) -> Worst:
-    """The largest error over the sphere, or over z >= 0, with eye rays straight ahead."""
+    """Return the largest error found over the sphere, or z >= 0 if `is_half`, with eye rays straight ahead."""
     exact = ExactCodec(codec, is_half)
     way = cells.way_to_corners(exact)
     is_known = way in (cells.ALL_CORNERS, cells.NEAREST)
@@ -82,13 +82,16 @@ def _lengths(chords: np.ndarray) -> np.ndarray:
 
 
 def _worst_corners(exact: ExactCodec, way: str, count: int) -> Starts:
-    """The worst of the normals at corners of cells, at most `count`."""
+    """Return the worst of the normals at corners of cells, at most `count`."""
     normals = cells.corners(exact, way)
     return Starts(exact.chords(normals), normals).best(count)
 
 
 def _worst_of(exact: ExactCodec, blocks: Iterable[Sequence[Callable[[], np.ndarray]]], count: int) -> Starts:
-    """The worst of normals, at most `count`. They come in parts of shape (3, any), which fill a block together."""
+    """Return the worst of the normals that functions return, at most `count`.
+
+    Args:
+        blocks: lists of functions, each of which returns normals of shape (3, any); a list fills one block."""
 
     def peaks(block: Sequence[Callable[[], np.ndarray]]) -> Starts:
         parts = [part() for part in block]
@@ -103,13 +106,14 @@ def _worst_of(exact: ExactCodec, blocks: Iterable[Sequence[Callable[[], np.ndarr
 
 
 def _peak_starts(chords: np.ndarray, normals: np.ndarray) -> Starts:
-    """Some of the worst of normals, from all over them."""
+    """Return some of the worst normals, taken from all parts of the array."""
     largest, index = cells.column_peaks(chords, cells.KEPT)
     return Starts(largest, normals[:, index])
 
 
 def spread(count: int, is_half: bool) -> Iterator:
-    """Directions of equal area over the domain, by golden ratios."""
+    """Yield functions that each return BLOCK directions, at least `count` in all: spread evenly over the sphere, or
+    over z >= 0 if `is_half`, by golden ratios."""
 
     def block(start: int) -> np.ndarray:
         index = np.arange(start, start + BLOCK) + 0.5
@@ -125,9 +129,9 @@ def _sphere_points(z: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def _special_starts(is_half: bool) -> Iterator:
-    """Yield functions that make normals where codes are folded, cut or singular: great circles between axes and
-    diagonals, and both sides of them; the rim of a hemisphere, densely; and rings around the axes. Nearer than 1e-4
-    to a pole even float64 cancels in some encodings, which are then not the exact map."""
+    """Yield lists of functions that return normals where codes are folded, cut or singular: great circles between
+    axes and diagonals, and both sides of them; the rim of a hemisphere, densely; and rings around the axes. Nearer
+    than 1e-4 to a pole even float64 cancels in some encodings, which are then not the exact map."""
     circle = _sphere_points(np.zeros(BLOCK // 4), np.arange(BLOCK // 4) * (8 * np.pi / BLOCK))
     diagonals = [(1, s, 0) for s in (1, -1)] + [(1, 0, s) for s in (1, -1)] + [(0, 1, s) for s in (1, -1)]
     offsets = [circle + np.array([[0.0], [0.0], [offset]]) for offset in (0.0, 1e-9, -1e-9)]

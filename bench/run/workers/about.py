@@ -24,18 +24,19 @@ PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "scipy", "wgpu"
 
 @cache
 def marks() -> Mapping[str, str]:
-    """Return the mark of this process, and of each device or tool that it can measure with, by name."""
+    """Return marks by name: this process's, and that of each device or tool that it can measure with. A mark is the
+    name and a short hash of what figures depend on."""
     texts = {BASE: _base()} | {name: ask() for name, ask in CAN.items()}
     return {name: f"{name} {hashlib.sha256(text.encode()).hexdigest()[:12]}" for name, text in texts.items()}
 
 
 def marks_of(needs: Iterable[str]) -> frozenset[str]:
-    """Return the marks that another process must have to measure in place of this one."""
+    """Return the marks that a process must have to measure in place of this one: the base, and those of `needs`."""
     return frozenset(marks()[name] for name in (BASE, *needs))
 
 
 def named(chosen: Iterable[str]) -> str:
-    """Return the names in marks: the devices and tools that they describe."""
+    """Return the names in marks, sorted, as a text with commas: the devices and tools that they describe."""
     return ", ".join(sorted(mark.rpartition(" ")[0] for mark in chosen))
 
 

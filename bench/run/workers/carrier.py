@@ -28,12 +28,12 @@ class Task:
     is_packed: bool = False
 
     def arguments(self) -> tuple[Order | str, frozenset[str], list[str]]:
-        """Return the arguments for `tasks.measure`."""
+        """Return the arguments for `tasks.measure`: the order or its id, the needed marks and the names of steps."""
         order = self.order if self.is_packed else self.order.id
         return order, self.needs, [step_name(self.order.table, step.key) for step in self.steps]
 
     def singly(self) -> list[Task]:
-        """Make a task of each step."""
+        """Return a task for each step."""
         return [replace(self, steps=[step]) for step in self.steps]
 
 
@@ -62,19 +62,19 @@ class Carrier(Protocol):
     """Workers that are there, or may come."""
 
     def count(self, needs: frozenset[str]) -> int:
-        """Count the workers that have some marks."""
+        """Return the number of workers that have all of these marks."""
         ...
 
     def room(self, needs: frozenset[str]) -> int:
-        """Count the tasks with these needs that are to be sent now."""
+        """Return how many more tasks with these needs may be sent now."""
         ...
 
     def send(self, task: Task) -> None:
-        """Have a worker measure a task."""
+        """Have a worker measure a task, without waiting for its answer."""
         ...
 
     def arrivals(self) -> Sequence[tuple[Task, Answer | None]]:
-        """Wait a moment, and return tasks with their answers; None for a task that must be sent again.
+        """Wait a moment, and return tasks that have come back with their answers; None: the task must be sent again.
 
         Raises:
             UsageError, MissingError: a measurement failed, or the workers or their scheduler were lost.

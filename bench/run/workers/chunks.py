@@ -17,7 +17,7 @@ TASKS_EACH = 4
 
 
 def chunk_size(waiting: int, workers: int) -> int:
-    """Return how many of the steps that wait travel together."""
+    """Return how many of the `waiting` steps are sent together: 1 to MOST_TOGETHER, fewer towards the end."""
     return min(max(waiting // (TASKS_EACH * max(workers, 1)), 1), MOST_TOGETHER)
 
 

@@ -69,7 +69,8 @@ class LocalWorkers:
         return answers
 
     def _without(self, task: Task) -> Answer | None:
-        """Answer for a task whose worker is lost; None where it is sent again."""
+        """Return an answer that says how many workers were lost with a task; None if it must be sent again, as a
+        single step is up to MOST_LOST times."""
         self._lost[task] += 1
         is_lost = len(task.steps) > 1 or self._lost[task] > MOST_LOST
         return Answer(lost=self._lost[task]) if is_lost else None
@@ -83,7 +84,7 @@ class LocalWorkers:
         self._failures += not was_ready
         if self._failures >= MOST_FAILURES * (len(self._workers) + 1):
             last = lines[-1].strip() if lines else f"exit status {ended.status}"
-            raise UsageError(f"--on {self._address}: the workers keep ending: {last}")
+            raise UsageError(f"--on {self._address}: the workers keep exiting: {last}")
         self._start()
 
     def _take(self, name: str, answer: Answer | Exception) -> None:
@@ -97,7 +98,7 @@ class LocalWorkers:
 
 
 def _begin(send: Send) -> None:
-    """Do what takes seconds before anybody waits for it, and report that it is done."""
+    """Compute the marks of this process, which takes seconds, and send an empty answer: the worker is ready."""
     from .about import marks
 
     keep_what_is_freed()

@@ -43,14 +43,14 @@ class Order:
     typed: Mapping[str, str] = field(default_factory=dict)
 
     def as_typed(self, line: str) -> str:
-        """Return a line with files as the user named them."""
+        """Return a line with the worker's folders replaced by the names that the user typed."""
         for own, typed in sorted(self.typed.items(), key=lambda place: -len(place[0])):
             line = line.replace(own, typed)
         return line
 
 
 def step_name(table: str, key: Row) -> str:
-    """Return a short name for a step, for places where its key would be long."""
+    """Return a hash of a table's name and a step's key, 24 characters, for places where the key would be long."""
     return hashlib.sha256(key_text(table, key).encode()).hexdigest()[:24]
 
 
@@ -62,7 +62,7 @@ class Packing:
         self.typed: dict[str, str] = {}
 
     def packed(self, word: str) -> str:
-        """A word as a worker is to read it; the files that it names are collected, with their companions."""
+        """Return a word as a worker is to read it, and collect the files that it names, with their companions."""
         others: dict[str, str] = {}
         for part in parts_of(word):
             path = file_of(part)
@@ -77,7 +77,8 @@ class Packing:
         return with_files(word, others)
 
     def _place(self, path: Path, read: Sequence[Path]) -> Path:
-        """Return the folder of a worker that stands for a file's folder.
+        """Return the folder of a worker that stands for a file's folder: the same if all files are below this folder,
+        else a folder below ELSEWHERE.
 
         Args:
             read: the files read with it; they must not be above the folders of a worker.

@@ -69,14 +69,15 @@ class Pool:
             yield from self._measured(ask, again, refused)
 
     def _answers(self, tasks: Sequence[Task]) -> Iterator[tuple[Task, Answer]]:
-        """Yield each task with its answer, as they come; refuse the rest if no worker is able for WAIT_S seconds."""
+        """Send tasks to workers, and yield each task with its answer, as they come; refuse the rest if no worker has
+        the needed marks for WAIT_S seconds."""
         under_way, waiting, able_at = dict[Task, None](), _Waiting(tasks), time.monotonic()
         while needed := {task.needs for task in under_way} | waiting.needs:
             if any(map(self._carrier.count, needed)):
                 able_at = time.monotonic()
             elif time.monotonic() - able_at > WAIT_S:
                 for task in (*under_way, *waiting):
-                    yield task, Answer(refused=f"no worker has all of this: {named(task.needs)}")
+                    yield task, Answer(refused=f"no worker has all of these: {named(task.needs)}")
                 return
             for task in waiting.taken(self._carrier.room):
                 under_way[task] = None
@@ -109,18 +110,18 @@ class _Waiting:
         return chain.from_iterable(self._lines.values())
 
     def taken(self, room: Callable[[frozenset[str]], int]) -> Iterator[Task]:
-        """Yield the first tasks, as many as there is room for, and remove them."""
+        """Remove and yield the first tasks with each set of needs, as many as `room` returns for it."""
         for needs, line in self._lines.items():
             for _ in range(min(room(needs), len(line))):
                 yield line.popleft()
 
     def again(self, task: Task) -> None:
-        """Have a task wait once more, as the first."""
+        """Put a task back, before all others with the same needs."""
         self._lines[task.needs].appendleft(task)
 
 
 def _own_and_others(ask: Asked, steps: Sequence[Step]) -> tuple[list[Step], list[Step]]:
-    """Divide steps into those that only this process measures, and the others."""
+    """Return the steps that only this process measures, because they are timed or cannot be sent, and the others."""
     work, own, others = ask.table.work, list[Step](), list[Step]()
     for step in steps:
         (own if work.stays or work.is_timed(step) else others).append(step)
@@ -128,7 +129,7 @@ def _own_and_others(ask: Asked, steps: Sequence[Step]) -> tuple[list[Step], list
 
 
 def _write(ask: Asked, pictures: dict[str, bytes]) -> None:
-    """Write the pictures of a step."""
+    """Write the pictures of a step, by name, into the folder of the run's images."""
     for name, data in pictures.items():
         with whole_file(getattr(ask.outputs, PICTURES) / name) as partial:
             partial.write_bytes(data)
@@ -136,7 +137,7 @@ def _write(ask: Asked, pictures: dict[str, bytes]) -> None:
 
 def _lost_row(table: Table, step: Step, lost: int) -> Row:
     """Return a row without figures: the values in its key, and the reason, which is also reported."""
-    why = f"{lost} workers were lost while they measured it"
+    why = f"{lost} workers were lost while measuring this row"
     leave_out(f"{table.name}, {step.name}: {why}")
     reasons = {column.name: why for column in table.of_role(Role.REASON)}
     known = {column.name: step.key[column.name] for column in table.columns if column.name in step.key}

@@ -60,9 +60,9 @@ class Scheduled:
         return []
 
     def _look(self) -> None:
-        """Look who is there, now and then. Raises UsageError where the scheduler does not come back."""
+        """Count the workers, at most every AGAIN_S seconds. Raises UsageError if the scheduler does not come back."""
         if self._client.status == "closed":
-            raise UsageError(f"--on {self._address}: the scheduler is gone and has not come back")
+            raise UsageError(f"--on {self._address}: the connection to the scheduler was lost and not restored")
         if self._client.status != "running":
             self._workers.clear()
         elif time.monotonic() - self._looked_at > AGAIN_S:

@@ -39,23 +39,24 @@ _laid: dict[str, Laid] = {}
 
 
 def measure(order: Order | str, needs: Set[str], wanted: Sequence[str]) -> Answer:
-    """Measure steps of an order, and return the answer.
+    """Measure steps of an order, and return the answer, which also says so if this worker refuses them, does not know
+    the order or meets a UsageError or a MissingError.
 
     Args:
         order: the order, or the id of an order that was sent before.
         needs: the marks that this worker has to have.
-        wanted: the names of steps.
+        wanted: the names of steps, as from `step_name`.
     """
     if absent := needs - set(marks().values()):
-        return Answer(refused=f"no worker has this {named(absent)}")
+        return Answer(refused=f"no worker has the same {named(absent)}")
     try:
         laid = _laid_down(order)
     except (UsageError, MissingError) as error:
-        return Answer(refused=f"workers refuse them: {error}")
+        return Answer(refused=f"workers refuse these steps: {error}")
     if laid is None:
         return Answer(knows=False)
     if not laid.steps.keys() >= set(wanted):
-        return Answer(refused="workers make other steps from the same options")
+        return Answer(refused="workers derive different steps from the same options")
     steps: list[tuple[list[Row], dict[str, bytes]]] = []
     error = None
     with _in_folder(laid.folder), _listening() as lines:
@@ -68,13 +69,13 @@ def measure(order: Order | str, needs: Set[str], wanted: Sequence[str]) -> Answe
 
 
 def _answers(laid: Laid, wanted: Sequence[str]) -> Iterator[tuple[list[Row], dict[str, bytes]]]:
-    """Measure steps: of each its rows and its pictures."""
+    """Measure steps, and yield for each its rows and its pictures by their path."""
     for _, rows in HERE.measure(laid.ask, [laid.steps[name] for name in wanted], lambda _: None):
         yield rows, _taken(laid.folder)
 
 
 def _taken(folder: Path) -> dict[str, bytes]:
-    """Take the pictures that a step wrote; they are there no more."""
+    """Return the pictures that a step wrote, by their path below the folder of pictures, and delete their files."""
     root = folder / PICTURES
     paths = {path.relative_to(root).as_posix(): path for path in sorted(root.rglob("*")) if path.is_file()}
     taken = {name: path.read_bytes() for name, path in paths.items()}
@@ -84,7 +85,8 @@ def _taken(folder: Path) -> dict[str, bytes]:
 
 
 def _laid_down(order: Order | str) -> Laid | None:
-    """Lay an order down, once; None for one that is not known here. Raises UsageError and MissingError."""
+    """Return an order with its files written and its steps made, which is done once; None for an id that is not known
+    here. Raises UsageError and MissingError."""
     if isinstance(order, str):
         return _laid.get(order)
     if order.id not in _laid:
@@ -96,7 +98,7 @@ def _laid_down(order: Order | str) -> Laid | None:
 
 
 def _laid_of(order: Order) -> Laid:
-    """Write an order's files into a folder of its own, and make its steps."""
+    """Write an order's files into a new folder, make its steps there, and return them by name."""
     folder = Path(tempfile.mkdtemp(prefix="order-", dir=folder_of_this_process())).resolve()
     typed = folder / "typed"
     typed.mkdir()
@@ -114,7 +116,7 @@ def _laid_of(order: Order) -> Laid:
 
 @contextlib.contextmanager
 def _in_folder(folder: Path) -> Iterator[None]:
-    """Run a block in the folder that stands for the user's, so that the user's words are read as they were typed."""
+    """Run a block in the folder that stands for the user's current folder, so that typed words mean the same."""
     before = Path.cwd()
     os.chdir(folder / "typed")
     try:
@@ -125,7 +127,7 @@ def _in_folder(folder: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _listening() -> Iterator[list[str]]:
-    """Collect the lines that are told meanwhile, for the process that asks to tell."""
+    """Yield a list that is filled, after the block, with the lines told in it; nothing is printed."""
     lines: list[str] = []
     told.clear()
     with contextlib.redirect_stderr(io.StringIO()) as printed:

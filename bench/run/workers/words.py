@@ -26,7 +26,7 @@ def place_named(word: str) -> int | str:
         except ValueError:
             count = 0
         if not 1 <= count <= MOST_LOCAL:
-            raise UsageError(f"--on {word}: from 1 to {MOST_LOCAL} worker processes, such as local:4")
+            raise UsageError(f"--on {word}: use 1 to {MOST_LOCAL} worker processes, such as local:4")
         return count
     return checked_address("--on", word)
 
@@ -38,7 +38,7 @@ def check_place(on: str | None) -> None:
 
 
 def checked_address(option: str, word: str) -> str:
-    """The address of a scheduler. Raises UsageError for anything else."""
+    """Return the address of a scheduler, stripped. Raises UsageError that names `option` for any other word."""
     match = _ADDRESS.fullmatch(word.strip())
     if not match or not 0 < int(match["port"]) < 2**16:
         local = "local:N, such as local:4, or " if option == "--on" else ""

@@ -50,7 +50,7 @@ class MainThread(Executor):
         """Do nothing: the next connection uses the same thread."""
 
     def serve(self) -> None:
-        """Run jobs until `end`."""
+        """Run jobs in this thread, one after the other, until `end` is called."""
         while job := self._next_job():
             future, function, arguments, named = job
             if not future.set_running_or_notify_cancel():
@@ -81,7 +81,7 @@ class Connection(threading.Thread):
     def __init__(self, address: str, executor: MainThread):
         super().__init__(daemon=True)
         self._address, self._executor = address, executor
-        self.why = "it has yet to join"
+        self.why = "the worker has not joined yet"
 
     def run(self) -> None:
         asyncio.run(self._joined_again_and_again())
@@ -125,7 +125,7 @@ class Connection(threading.Thread):
 
 
 def why(error: BaseException) -> str:
-    """Return why a scheduler could not be reached."""
+    """Return why a scheduler could not be reached, from the error of an attempt: advice, and the error's own text."""
     nobody = "" if isinstance(error, MISCONFIGURED) else "no scheduler responded; start one there with: dask scheduler"
     return ": ".join(filter(None, (nobody, str(error))))
 
@@ -145,7 +145,7 @@ def serve(address: str) -> str:
 
 
 def worker_command(address: str) -> int:
-    """Run `normalbench worker`: measure for whoever asks the scheduler.
+    """Run `normalbench worker`: measure for whoever asks the scheduler, until it is gone, and return exit status 0.
 
     Raises:
         UsageError: the address is invalid, or no scheduler responds.
@@ -158,7 +158,7 @@ def worker_command(address: str) -> int:
     tell(f"joining {checked}; interrupt the worker to end it")
     if reason := serve(checked):
         raise UsageError(f"worker {checked}: {reason}")
-    tell(f"{checked} is gone")
+    tell(f"the scheduler {checked} is gone")
     return 0
 
 

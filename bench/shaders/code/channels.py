@@ -19,9 +19,9 @@ TEMPLATE = Path(__file__).with_name("storage.glsl.j2")
 FIELDS, PARTS, WORD = "xyzw", "rgba", 32
 RULES: Mapping[str, str] = MappingProxyType(
     {
-        "nearest": "{x} {scale} rounded to the nearest integer, ties to even",
-        "truncate": "{x} {scale} truncated toward zero",
-        "truncate_half": "{x} ({scale} + 1/2) truncated toward zero, at most {scale}",
+        "nearest": "{x} * {scale}, rounded to the nearest integer, ties to even",
+        "truncate": "{x} * {scale}, truncated toward zero",
+        "truncate_half": "{x} * ({scale} + 1/2), truncated toward zero, at most {scale}",
     }
 )
 
@@ -47,13 +47,13 @@ class Piece:
     is_first: bool
 
     def placed(self, name: str) -> str:
-        """Return the bits of a number at their place in the channel."""
+        """Return the GLSL expression of a number's bits at their place in the channel, from the number's name."""
         low = f"{name} >> {self.below}" if self.below else name
         kept = f"({low} & {mask_text(self.bits)})" if self.above else low
         return f"{kept} << {self.left}" if self.left else kept
 
     def taken(self, part: str) -> str:
-        """Return the bits of a channel at their place in the number."""
+        """Return the GLSL expression of a channel's bits at their place in the number, from the channel's name."""
         low = f"{part} >> {self.left}" if self.left else part
         kept = low if self.is_first else f"({low} & {mask_text(self.bits)})"
         return f"{kept} << {self.below}" if self.below else kept
@@ -98,7 +98,7 @@ class Channel:
 
     @property
     def top(self) -> str:
-        """The largest integer as a float."""
+        """The largest integer as the text of a float, such as `127.0`."""
         return f"{self.most}.0"
 
     @property
@@ -107,7 +107,7 @@ class Channel:
 
     @property
     def largest(self) -> str:
-        """The largest unsigned integer as a float."""
+        """The largest unsigned integer of as many bits as the text of a float, such as `255.0`."""
         return f"{(1 << self.bits) - 1}.0"
 
     @property
@@ -116,17 +116,17 @@ class Channel:
 
     @property
     def float_words(self) -> str:
-        """The arguments of `float_bits`: the bits of exponent and mantissa, and whether the float has a sign."""
+        """The arguments of `float_bits` as text: the bits of exponent and mantissa, and whether it has a sign."""
         assert self.form
         return f"{self.form.exponent}, {self.form.mantissa}, {'true' if self.form.is_signed else 'false'}"
 
     @property
     def share_words(self) -> str:
-        """The arguments of `fixed_code`: the largest integer, and whether the number has a sign."""
+        """The arguments of `fixed_code` as text: the largest integer, and whether the number has a sign."""
         return f"{self.scale}, {'true' if self.share == 'signed' else 'false'}"
 
     def rounded(self, x: str) -> str:
-        """x in [-1, 1] as a whole number."""
+        """Return the GLSL expression, a float, that rounds `x` in [-1, 1], a text, to a whole number."""
         if self.rounding == "nearest":
             whole = f"roundEven({x} * {self.scale})"
             return whole if self.most == self.integer else f"min({whole}, {self.top})"
@@ -141,7 +141,8 @@ class Channel:
 
     @property
     def read(self) -> str:
-        """The number's bits, taken from the word or the channels that hold them."""
+        """The GLSL expression of the number's bits, taken from the word or the channels that hold them; in
+        parentheses unless it is a name."""
         if self.pieces:
             return f"({' | '.join(f'({piece.taken(PARTS[piece.part])})' for piece in self.pieces)})"
         shift = self.first % WORD
@@ -150,13 +151,13 @@ class Channel:
 
     @property
     def signed(self) -> str:
-        """The number's bits as the highest bits of a word."""
+        """The GLSL expression that shifts the number's word until the number's bits are the highest."""
         shift = WORD - self.bits - self.first % WORD
         return f"{self._word_name} << {shift}" if shift else self._word_name
 
     @property
     def placed(self) -> str:
-        """The number's bits at their place in a word."""
+        """The GLSL expression of the number's bits, which have its name, shifted to their place in a word."""
         shift = self.first % WORD
         return f"{self.name} << {shift}" if shift else self.name
 
@@ -191,7 +192,7 @@ class Channels:
 
     @property
     def _end(self) -> int:
-        """Behind the last bit of the numbers, counted from the first channel's highest."""
+        """The number of bits up to the end of the last number, from the first channel's highest bit."""
         return self.numbers.skipped + sum(self.numbers.storage.bits)
 
     @cached_property
@@ -222,7 +223,7 @@ class Channels:
         return self.part * self.parts - before - bits[index] if self.part else before
 
     def _pieces(self, index: int) -> tuple[Piece, ...]:
-        """Return the bits of a number, by the channels that hold them."""
+        """Return the pieces of a number, one for each channel with bits of it; empty if not laid across channels."""
         if not self.part:
             return ()
         bits = self.numbers.storage.bits
@@ -236,7 +237,7 @@ class Channels:
         return tuple(pieces)
 
     def _texel_text(self, word: int) -> str:
-        """A word of the texel."""
+        """Return the GLSL expression of a word of the texel, from its numbers or channels; "0u" if it is empty."""
         if not self.part:
             return " | ".join(c.placed for c in self.channels if c.first // WORD == word) or "0u"
         each = WORD // self.part
@@ -244,14 +245,14 @@ class Channels:
         return " | ".join(_shifted_text(PARTS[i], self.part * (i % each)) for i in inside) or "0u"
 
     def _part_text(self, part: int) -> str:
-        """The channel that numbers are laid across."""
+        """Return the GLSL expression of a channel, from the numbers laid across it; "0u" if it is empty."""
         held = [(c.name, piece) for c in self.channels for piece in c.pieces if piece.part == part]
         return (
             " | ".join(f"({piece.placed(name)})" if piece.left else piece.placed(name) for name, piece in held) or "0u"
         )
 
     def _read_part(self, part: int) -> str:
-        """A channel's integer, from the texel's words."""
+        """Return the GLSL expression that reads a channel's integer from the texel's words."""
         size = self.numbers.storage.part
         each = WORD // size
         word = "texel" + (f".{FIELDS[part // each]}" if self.words > 1 else "")
@@ -260,7 +261,7 @@ class Channels:
 
     @property
     def layout(self) -> str:
-        """The positions of the numbers, in words."""
+        """The positions of the numbers in the texel, as a phrase for a comment."""
         if self.part:
             spread = ", then ".join(f"{c.bits} bits of {c.name}" for c in self.channels)
             what = "byte" if self.part == 8 else f"channel of {self.part}"
@@ -274,7 +275,7 @@ class Channels:
 
     @property
     def rule(self) -> str:
-        """The rule by which a number becomes an integer, in words."""
+        """The rule by which a number becomes an integer, as a sentence; empty for floats with a channel each."""
         first = self.channels[0]
         if first.form:
             if not self.part:
@@ -282,7 +283,7 @@ class Channels:
             return f"Each is a float of {first.form.exponent} exponent bits and {first.form.mantissa} mantissa bits."
         if first.share == "signed":
             half = first.integer // 2
-            return f"Up to {half} it is the integer nearest to code {half}; above, that of -code."
+            return f"Each is round(code * {half}) if code >= 0, else {half + 1} + round(-code * {half})."
         x = "(code / 2 + 1/2)" if self.numbers.is_biased else "code"
         scales = dict.fromkeys(str(c.integer) for c in self.channels)
         offset = f", plus {' or '.join(scales)}" if first.is_offset else ""
@@ -310,7 +311,7 @@ class Channels:
         }
 
     def _across_fields(self) -> dict[str, Any]:
-        """Return the template's variables for a texel whose bits fill channels one after the other."""
+        """Return the template's variables for texels whose bits fill channels one by one; empty lists for others."""
         if not self.parts:
             return {"parts": [], "target_parts": []}
         size, each = self.numbers.storage.part, WORD // self.numbers.storage.part
@@ -327,7 +328,7 @@ class Channels:
     # The same in NumPy.
 
     def texel_words(self, integers: np.ndarray) -> np.ndarray:
-        """Texels of the bits of numbers (uint32 of shape (count, numbers)): uint32 of shape (count, words)."""
+        """Return texels of the bits of numbers, uint32: (count, words) from (count, numbers)."""
         words = np.zeros((len(integers), self.words), np.uint32)
         for index, channel in enumerate(self.channels):
             if not channel.pieces:
@@ -339,7 +340,7 @@ class Channels:
         return words
 
     def bits_in(self, words: np.ndarray, index: int) -> np.ndarray:
-        """The bits of a number in texels, uint32 of shape (count,): `texel_words` the other way."""
+        """Return the bits of number `index` in texels, uint32 of shape (count,): the inverse of `texel_words`."""
         channel = self.channels[index]
         if not channel.pieces:
             word = words[:, channel.first // WORD]
@@ -352,14 +353,14 @@ class Channels:
         return integers
 
     def part_in(self, words: np.ndarray, part: int) -> np.ndarray:
-        """The integers of a channel that numbers are laid across, uint32 of shape (count,)."""
+        """Return the integers of channel `part` of texels, uint32 of shape (count,); numbers are laid across it."""
         size = self.numbers.storage.part
         place = part * size
         return words[:, place // WORD] >> np.uint32(place % WORD) & np.uint32((1 << size) - 1)
 
 
 def mask_text(bits: int) -> str:
-    """Return the text of an unsigned integer whose lowest `bits` bits are set."""
+    """Return the text of an unsigned integer whose lowest `bits` bits are set, in decimal: 15u for 4."""
     return f"{(1 << bits) - 1}u"
 
 

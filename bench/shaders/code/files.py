@@ -48,18 +48,19 @@ class Code:
         return file_name(self.codec, self.language)
 
     def text(self, head: Iterable[str]) -> str:
-        """The file, under a comment of these paragraphs."""
+        """Return the text of the file: the functions under a comment of these paragraphs, in an include guard if the
+        language has one."""
         return commented(self.body, self.language, self.guard, head)
 
     @property
     def guard(self) -> str:
-        """The include guard for a language with a preprocessor: the prefix unless it is the default, else the codec
-        with its storage. Codecs of one kind usually have the same names; if two are included, a compiler should
-        report it."""
+        """The word from which the include guard is made: the prefix unless it is the default, else the codec with its
+        storage. Codecs of one kind usually have the same names; if two are included, a compiler should report it."""
         return stem_of(self.codec) if self.prefix == usual_prefix(self.codec) else self.prefix
 
     def files(self, head: Iterable[str]) -> dict[str, bytes]:
-        """Return all files of the codec, by name."""
+        """Return the contents of all files of the codec, by file name: its functions under a comment of these
+        paragraphs, and its lookup tables."""
         beside = table_files(self.interface.tables, self.language, stem_of(self.codec), self.prefix)
         return {self.name: self.text(head).encode(), **beside}
 
@@ -91,8 +92,8 @@ def usual_prefix(codec: Any) -> str:
 
 
 def stem_of(codec: Any) -> str:
-    """Return the beginning of the names of a codec's files: its kind (except for normals), its encoding, its storage,
-    and its rounding (except nearest)."""
+    """Return the beginning of the names of a codec's files, an identifier: its kind (except for normals), its
+    encoding, its storage, and its rounding (except nearest)."""
     kind = kind_of(codec)
     if kind.kind is NORMAL:
         return identifier(codec.name)
@@ -127,13 +128,14 @@ def code_of(codec: Any, language: str, prefix: str = "") -> Code:
 
 
 def _untranslatable_reason(codec: Any, reason: str) -> str:
-    """Why a file is not translated; the place is in the user's file where that is GLSL."""
+    """Return why a codec is not translated, from a translator's message: after the line in its GLSL, or after the
+    user's file alone if that was translated to GLSL first."""
     encoding = codec.encoding
     source = getattr(encoding, "source", None)
     if source is None or not UserFile(str(source)).is_translated:
         return reason if re.match(r"\S+:\d+: ", reason) else f"{encoding.glsl}: {reason}"
     what = re.sub(r"^\S*?:?\d+:(\d+:)? ", "", reason).replace("is not a type that is known here", "parameters or types")
-    return f"{source}: it can be measured, but not written in other languages: {what}"
+    return f"{source}: can be measured, but cannot be written in other languages: {what}"
 
 
 def _check_written(codec: Any) -> None:

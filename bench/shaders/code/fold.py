@@ -17,7 +17,8 @@ BRACKET = re.compile(r"[({](?=\S)")
 
 
 def folded(text: str) -> str:
-    """Return the text with long lines broken."""
+    """Return the text with lines of over WIDTH columns broken where they can be. Directives and lines with a comment
+    at their end stay as they are."""
     return "".join(f"{part}\n" for line in text.splitlines() for part in _folded_line(line))
 
 
@@ -36,7 +37,8 @@ def _folded_line(line: str) -> list[str]:
 
 
 def _broken_lines(line: str, indent: str) -> list[str]:
-    """The parts of a line that is too long."""
+    """Return the parts of a line that is too long, the first as it begins, the others after `indent`. A part that
+    cannot be broken stays long."""
     parts: list[str] = []
     depth = 0
     while len(line) > WIDTH and (place := _best_break(line, depth)):
@@ -51,8 +53,8 @@ def _opened(text: str) -> int:
 
 
 def _best_break(line: str, depth: int) -> int:
-    """Return where to break a line: after a comma, before an operator or else after a bracket, within as few brackets
-    as possible, and as late as possible there; 0 if it cannot be broken."""
+    """Return the index at which to break a line: after a comma, before an operator or else after a bracket, within as
+    few brackets as possible, and as late as possible there; 0 if it cannot be broken."""
     begin = len(line) - len(line.lstrip())
     for pattern in (COMMA, OPERATOR, BRACKET):
         places = [match.end() for match in pattern.finditer(line[: WIDTH + 1], begin) if match.end() <= WIDTH]

@@ -45,7 +45,7 @@ class Reference:
 # Each has megabytes; the languages of one codec follow each other.
 @lru_cache(8)
 def reference(codec: Any) -> Reference:
-    """Return the catalogue's results for the values of a codec."""
+    """Return the catalogue's results for the test values of a codec, which its kind makes."""
     return reference_of(codec, *kind_of(codec).values(codec))
 
 
@@ -84,7 +84,8 @@ def _step_by_step(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _stored_numbers(channels: Channels, integers: np.ndarray, code: np.ndarray) -> np.ndarray:
-    """Return the numbers that bits stand for. Each product and sum is rounded; compilers may round the two once."""
+    """Return codes with the numbers that their stored bits stand for. Each product and sum is rounded by itself;
+    compilers may round the two once."""
     stored = code.copy()
     for index, channel in enumerate(channels.channels):
         texel = values_of(channel, integers[:, index])
@@ -93,14 +94,14 @@ def _stored_numbers(channels: Channels, integers: np.ndarray, code: np.ndarray) 
 
 
 def _array(planes) -> np.ndarray:
-    """Planes, or one, as an array of shape (count, size)."""
+    """Return planes, a tuple or a single array, as one float32 array of shape (count, size)."""
     return np.stack(
         [np.asarray(plane, np.float32) for plane in (planes if isinstance(planes, tuple) else (planes,))], 1
     )
 
 
 def _integers(channel: Channel, texels: np.ndarray) -> np.ndarray:
-    """The bits that a texel's numbers are kept as, uint32 of shape (count,)."""
+    """Return the bits as which a channel stores texels' numbers, uint32 of shape (count,)."""
     numbers = texels.astype(np.float64)
     if channel.form:
         return float_words(numbers, channel.form)

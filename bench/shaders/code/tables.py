@@ -23,7 +23,7 @@ GIVEN, FOUR_LETTERS, IS_TEXTURE = 0x100F, 0x4, 0x1000
 
 
 def texels_of(table: np.ndarray) -> Texels:
-    """Return the format in which a table is stored: 8 bits if these are the same numbers.
+    """Return the size of a table and the format in which it is stored: 8 bits if they hold it exactly, else floats.
 
     Args:
         table: float32 of shape (height, width, channels).
@@ -37,12 +37,12 @@ def _as_bytes(table: np.ndarray) -> np.ndarray:
 
 
 def kept(table: np.ndarray) -> np.ndarray:
-    """A table as a file has it: uint8 or float32, of its shape."""
+    """Return a table as a file stores it, of its shape: uint8 if 8 bits hold it exactly, else float32."""
     return _as_bytes(table) if texels_of(table).is_bytes else np.ascontiguousarray(table, "<f4")
 
 
 def dds(table: np.ndarray) -> bytes:
-    """A table as a texture file, read by whatever reads DDS with its header of DirectX 10.
+    """Return a table as the bytes of a DDS texture file with the header of DirectX 10.
 
     Args:
         table: float32 of shape (height, width, channels), of 1, 2 or 4 channels.
@@ -58,7 +58,7 @@ def dds(table: np.ndarray) -> bytes:
 
 
 def header(tables: Mapping[str, np.ndarray]) -> str:
-    """Tables as arrays of C: row by row, the channels of a texel next to each other."""
+    """Return the text of tables as C arrays, by name: row by row, the channels of a texel next to each other."""
     return "\n".join([*(_array_text(name, tables[name]) for name in sorted(tables))])
 
 
@@ -86,7 +86,8 @@ def table_lines(tables: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def table_files(tables: Mapping[str, np.ndarray], language: str, stem: str, prefix: str) -> dict[str, bytes]:
-    """Return the table files next to a file of a language, by name: `stem`, and a table's name without the prefix."""
+    """Return the contents of the table files next to a file of a language, by file name: for C one header of all
+    tables, else a DDS file for each, named after `stem` and the table without the prefix; {} without tables."""
     if not tables:
         return {}
     if language == "c":

@@ -22,7 +22,8 @@ Trip = Callable[[np.ndarray, np.ndarray], Ran]
 
 @contextmanager
 def by_wgsl(codec: Codec) -> Iterator[Trip]:
-    """Yield a function that runs a codec's WGSL, compiled once, on the Vulkan device.
+    """Yield a function from normals and views, (count, 3) each, to the results of a codec's WGSL on the Vulkan
+    device; it is compiled once.
 
     Raises:
         MissingError: wgpu or a Vulkan driver is missing; what to install.

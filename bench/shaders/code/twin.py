@@ -16,7 +16,7 @@ class NoTwinError(Exception):
 
 
 def lacking_twin(reason: str) -> Callable[..., Any]:
-    """A half of a map that raises NoTwinError."""
+    """Return a function that raises NoTwinError with a reason, for an encoder or a decoder without a twin."""
 
     def lacking(*_: Any) -> Any:
         raise NoTwinError(reason)
@@ -26,7 +26,7 @@ def lacking_twin(reason: str) -> Callable[..., Any]:
 
 @cache
 def has_twin(encoding: Encoding) -> bool:
-    """Whether an encoding is there in JAX."""
+    """Whether an encoding exists in JAX, and not only in GLSL."""
     # Tracing takes a tenth of a second, and those of the catalogue all have one.
     if is_in_catalogue(encoding):
         return True

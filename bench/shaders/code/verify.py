@@ -75,7 +75,8 @@ class Agreement:
 
     @property
     def holds(self) -> bool:
-        """Whether it is the catalogue's but for ties."""
+        """Whether the file agrees with the catalogue, except for ties in rounding, equivalent codes of a search and
+        values next to where the map is singular."""
         is_rare = self.differing <= self.share * self.count
         agrees = is_rare or self.worse <= SEARCHED if self.searches else is_rare and self.are_ties
         # Next to a pole a longitude may be any, and the normal is the same.
@@ -97,12 +98,13 @@ class Agreement:
             near = "equally accurate" if self.worse <= SEARCHED else f"up to {self.worse:.1g} {self.unit} farther off"
             codes = f"the texels of {self._share_text} differ, {near}: the search finds equivalent codes"
         else:
-            steps = f"by {self.steps} step{'s' * (self.steps != 1)} at most"
-            codes = f"the texels of {self._share_text} differ, {steps if self.steps else 'not what they decode to'}"
-        codes += "" if self.are_ties or self.searches else ", which is more than rounding of ties"
-        wrong = f"; {self.unpacked} numbers come back different" if self.unpacked else ""
+            steps = f"by at most {self.steps} step{'s' * (self.steps != 1)}"
+            how = steps if self.steps else "but decode to the same values"
+            codes = f"the texels of {self._share_text} differ, {how}"
+        codes += "" if self.are_ties or self.searches else ", which is more than the rounding of ties explains"
+        wrong = f"; {self.unpacked} numbers differ when unpacked" if self.unpacked else ""
         wrong += f"; {self.targets} texels of the render target differ" if self.targets else ""
-        far = f", {self.far} of them next to where the map is singular" if self.far else ""
+        far = f", {self.far} of them next to singularities of the map" if self.far else ""
         decoded = f"within {self.decoded / EPSILON:.3g} x 2^-23" if self.decoded else "equal"
         return f"{codes}; decoded {self.plural} are {decoded}{far}{wrong}"
 
@@ -146,7 +148,7 @@ def agreement(codec: Any, language: str, path: Path, interface: Interface) -> Ag
 
 
 def compared(codec: Any, expected: Reference, ran: Ran) -> Agreement:
-    """Compare the results of a file with the catalogue's."""
+    """Return the differences between `ran`, the results of a file, and `expected`, the catalogue's."""
     channels = Channels(codec)
     integers = np.stack([channels.bits_in(ran.words, i) for i in range(len(channels.channels))], axis=1)
     apart = np.stack(
@@ -198,7 +200,7 @@ def _numbers_apart(expected: Reference, ran: Ran) -> np.ndarray:
 
 
 def _worse(codec: Any, expected: Reference, ran: Ran, differs: np.ndarray) -> float:
-    """Return the largest error that differing texels add when decoded."""
+    """Return the largest error that differing texels add when decoded, in the kind's unit; 0 if none differ."""
     if not differs.any():
         return 0.0
     errors, given = kind_of(codec).errors, _given(expected)[differs]
@@ -206,7 +208,8 @@ def _worse(codec: Any, expected: Reference, ran: Ran, differs: np.ndarray) -> fl
 
 
 def _targets_apart(channels: Channels, expected: Reference, ran: Ran, same: np.ndarray) -> int:
-    """Texels of the render target, as its own conversion stores them, that are not the expected ones."""
+    """Return the number of texels of the render target that its own conversion stores differently from the expected
+    ones, among those where `same` is true."""
     target, apart = channels.numbers.target, np.zeros(len(same), bool)
     for index in range(channels.parts or channels.numbers.count):
         stored = np.asarray(store_texel(jnp.asarray(ran.targets[:, index]), target, index))

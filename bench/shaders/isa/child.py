@@ -28,7 +28,7 @@ def own_output() -> Any:
 
 
 def compiled(driver: Any, job: dict[str, Any], planes: int) -> dict[str, Any]:
-    """Compile a job with the driver: return its kernels, or the reason for the failure."""
+    """Compile a job with the driver, and return {"kernels": [...]}, or {"failed": reason} if it does not compile."""
     code, vertex = (base64.b64decode(job[part]) for part in ("code", "vertex"))
     try:
         kernels = driver.compile(job["stage"], code, vertex, planes)
@@ -38,7 +38,8 @@ def compiled(driver: Any, job: dict[str, Any], planes: int) -> dict[str, Any]:
 
 
 def main(compiler: Callable[[], Any] = Compiler, fingerprints: Callable[[], dict[str, str]] = loaded_files) -> int:
-    """Compile every job on standard input.
+    """Compile every job on standard input, which is JSON, and write the results as lines of JSON; without jobs, write
+    the driver's files. Return exit status 0, also after a failure, which is a line too.
 
     Args:
         compiler: makes a driver with the interface of `Compiler`.

@@ -52,7 +52,7 @@ HEAD = 4096
 
 
 def loaded_files() -> dict[str, str]:
-    """Return the loaded files of the driver, and of the LLVM that disassembles for it, with their fingerprints; empty
+    """Return fingerprints by path of the loaded files of the driver, and of the LLVM that disassembles for it; empty
     if the system does not report which files a process has loaded.
 
     Raises:
@@ -74,7 +74,7 @@ def _instance(vk: Any) -> Any:
         application = vk.VkApplicationInfo(apiVersion=VULKAN_1_3)
         return vk.vkCreateInstance(vk.VkInstanceCreateInfo(pApplicationInfo=application), None)
     except vk.VkError as error:
-        raise DriverError(f"the Vulkan loader accepts no driver: {type(error).__name__}") from error
+        raise DriverError(f"the Vulkan loader found no usable driver: {type(error).__name__}") from error
 
 
 def uses_halves(code: bytes) -> bool:
@@ -121,7 +121,7 @@ class Compiler:
         try:
             return vk.vkEnumeratePhysicalDevices(_instance(vk))[0]
         except (vk.VkError, IndexError) as error:
-            raise DriverError(f"the Vulkan driver offers no device: {type(error).__name__}") from error
+            raise DriverError(f"the Vulkan driver lists no devices: {type(error).__name__}") from error
 
     def _half_features(self, physical: Any) -> Any:
         """Return the device's features of 16-bit arithmetic."""
@@ -146,11 +146,11 @@ class Compiler:
         except vk.VkErrorFeatureNotPresent:
             self._has_passes = True
         except vk.VkError as error:
-            raise DriverError(f"{self.device} creates no device: {type(error).__name__}") from error
+            raise DriverError(f"no logical device for {self.device}: {type(error).__name__}") from error
         try:
             return made(tells)
         except vk.VkError as error:
-            raise DriverError(f"{self.device} creates no device: {type(error).__name__}") from error
+            raise DriverError(f"no logical device for {self.device}: {type(error).__name__}") from error
 
     def compile(self, stage: str, code: bytes, vertex: bytes, planes: int) -> list[dict[str, Any]]:
         """Compile a shader and return its kernels.
@@ -178,7 +178,7 @@ class Compiler:
                 self._kernel(pipeline, i, width) for i, stages, width in self._executables(pipeline) if stages & bit
             ]
         except vk.VkError as error:
-            raise DriverError(f"{self.device} does not compile it: {type(error).__name__}") from error
+            raise DriverError(f"{self.device} cannot compile the shader: {type(error).__name__}") from error
         if not kernels:
             raise DriverError(f"{self.device} reports no {stage} kernel")
         return kernels
@@ -222,7 +222,8 @@ class Compiler:
         return vk.vkCreateComputePipelines(self._device, None, 1, [info], None)[0]
 
     def _graphics_pipeline(self, code: bytes, vertex: bytes) -> Any:
-        """Return a pipeline with float targets, which convert no numbers: a conversion counts as the storage's cost.
+        """Return a pipeline of a fragment shader, `code`, and the vertex shader before it. Its targets are floats,
+        which convert no numbers: a conversion counts as the storage's cost.
 
         Each part has a name until the call ends, because the bindings do not keep the parts of a structure alive.
         """
@@ -260,7 +261,7 @@ class Compiler:
         return vk.vkCreateGraphicsPipelines(self._device, None, 1, [info], None)[0]
 
     def _render_pass(self, formats: list[int]) -> Any:
-        """A pass that draws into targets of these formats."""
+        """Return a render pass that draws into targets of these formats."""
         vk = self._vk
         layout = vk.VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL
         targets = [
@@ -273,7 +274,7 @@ class Compiler:
         )
 
     def _executables(self, pipeline: Any) -> Iterator[tuple[int, int, int]]:
-        """(index, stages, lanes) of each part of a pipeline."""
+        """Return for each executable of a pipeline its index, the bits of its stages and its number of lanes."""
         ask = self._vk.vkGetDeviceProcAddr(self._device, "vkGetPipelineExecutablePropertiesKHR")
         executables = ask(self._device, self._vk.VkPipelineInfoKHR(pipeline=pipeline))
         return ((i, executable.stages, executable.subgroupSize) for i, executable in enumerate(executables))

@@ -57,9 +57,10 @@ def names(assembly: str) -> list[str]:
 
 @cache
 def kind(name: str, family: str = "") -> str:
-    """The kind of an instruction. Raises ValueError for one that is of none, or of doubles, whose rates are others."""
+    """Return the kind of an instruction, one of KINDS. Raises ValueError if its name is unknown, or if it computes
+    doubles, which have other rates."""
     if "_f64" in name:
-        raise ValueError(f"{name} computes doubles")
+        raise ValueError(f"{name} computes in 64-bit floats")
     if family in _SLOW and re.match(_SLOW[family], name):
         return "quarter_rate"
     for rule_kind, rule in _RULES:
@@ -69,7 +70,7 @@ def kind(name: str, family: str = "") -> str:
 
 
 def kinds(assembly: str, total: int, family: str = "") -> dict[str, int] | None:
-    """Count the instructions of each kind; return None unless the text is a listing of `total` known instructions.
+    """Return the number of instructions of each kind; None unless the text lists `total` known instructions.
 
     A driver that was built without a disassembler writes a message instead of the listing.
     """
@@ -93,7 +94,7 @@ def rates(family: str) -> Mapping[str, int] | None:
 
 
 def kinds_in_order(assembly: str, family: str) -> list[str]:
-    """The kind of each instruction of a listing whose instructions are all known, in order."""
+    """Return the kind of each instruction of a listing, in order. Raises ValueError if one of them is unknown."""
     return [kind(name, family) for name in names(assembly)]
 
 

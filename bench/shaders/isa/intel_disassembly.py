@@ -52,13 +52,13 @@ def instructions(assembly: str) -> Iterator[Instruction]:
 
 
 def names(assembly: str) -> list[str]:
-    """The name of each instruction, in order."""
+    """Return the name of each instruction except `nop`, in order."""
     return [instruction.name for instruction in instructions(assembly)]
 
 
 @cache
 def kind(instruction: Instruction) -> str:
-    """The kind of an instruction. Raises ValueError for one that is of none."""
+    """Return the kind of an instruction, one of KINDS. Raises ValueError if its name is unknown."""
     if instruction.name in _SENDS:
         return "memory"
     if instruction.name in _CONTROL_FLOW:
@@ -76,7 +76,7 @@ def kind(instruction: Instruction) -> str:
 
 
 def _is_conversion(instruction: Instruction) -> bool:
-    """Whether it moves between floats and integers, or between floats of two sizes."""
+    """Whether an instruction is a `mov` between floats and integers, or between floats of two sizes."""
     types = _TYPE.findall(instruction.operands.split("{")[0])
     if instruction.name != "mov" or len(types) < 2:
         return False
@@ -84,7 +84,8 @@ def _is_conversion(instruction: Instruction) -> bool:
 
 
 def kinds(assembly: str, total: int, _: str = "") -> dict[str, int] | None:
-    """Count the instructions of each kind; return None unless the text lists `total` known instructions."""
+    """Return the number of instructions of each kind, 0 included; None unless the text lists `total` known
+    instructions, with or without `sync nop`."""
     every = list(instructions(assembly))
     without = [instruction for instruction in every if (instruction.name, instruction.function) != ("sync", "nop")]
     listed = next((some for some in (every, without) if len(some) == total), None)
@@ -96,12 +97,12 @@ def kinds(assembly: str, total: int, _: str = "") -> dict[str, int] | None:
 
 
 def issue_slots(_: Mapping[str, int], __: str) -> None:
-    """Nothing: the rates depend on the unit's width and on operands, and the driver's model tells of cycles alone."""
+    """Return None: rates depend on the unit's width and on operands; the driver's model reports only cycles."""
     return
 
 
 def packed(_: str) -> None:
-    """Nothing: an instruction on numbers of 16 bits is for as many lanes as one on 32."""
+    """Return None: an instruction works on as many lanes with 16-bit numbers as with 32-bit numbers."""
     return
 
 
@@ -112,7 +113,7 @@ def rates(family: str) -> Mapping[str, int]:
 
 
 def kinds_in_order(assembly: str, _: str) -> list[str]:
-    """The kind of each instruction of a listing whose instructions are all known, in order."""
+    """Return the kind of each instruction of a listing, in order. Raises ValueError if one of them is unknown."""
     return [kind(instruction) for instruction in instructions(assembly)]
 
 
@@ -133,7 +134,7 @@ def loops(assembly: str) -> list[range]:
 
 
 def jumps(assembly: str) -> tuple[int, int]:
-    """(branches, loops): conditional jumps ahead, and jumps back."""
+    """Return (branches, loops): the number of conditional jumps ahead, `if` included, and of jumps back."""
     listed = list(instructions(assembly))
     loops = sum(instruction.name == "while" for instruction in listed)
     return sum(

@@ -123,7 +123,7 @@ def missing(library: str = RADV) -> str:
 
 
 def _null_device(library: str) -> None:
-    """Build the null device, except for RADV, which has its own. Raises NullDeviceError."""
+    """Build the null device for a driver; nothing for RADV, which has its own. Raises NullDeviceError."""
     if library != RADV:
         null_device.library()
 
@@ -131,7 +131,7 @@ def _null_device(library: str) -> None:
 def compile_all(
     jobs: Sequence[Job], families: Sequence[str], tick: Callable[[str], None]
 ) -> dict[tuple[str, Job], Outcome]:
-    """Compile each job for each family; `tick` is called with a family when it is done."""
+    """Compile each job for each family; return outcomes by (family, job). `tick` gets each family that is done."""
     by_job: dict[tuple[str, Job], Outcome] = {}
     stop = threading.Event()
     with ThreadPoolExecutor(cores()) as pool:
@@ -176,7 +176,7 @@ def _driver_version(library: str) -> str:
 
 
 def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
-    """A family's outcomes, in the order of the jobs; of a stage that is not counted, a Failure."""
+    """Return a family's outcomes, in the order of the jobs; a Failure for a job whose stage is not counted."""
     known = FAMILIES[family]
     counted = [job for job in jobs if job.stage in known.stages]
     outcomes = dict(zip(counted, _counted(family, stop, counted), strict=True))
@@ -184,7 +184,8 @@ def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Out
 
 
 def _counted(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
-    """A family's outcomes, in the order of the jobs: from the cache, or by a child under the first name it takes."""
+    """Return a family's outcomes, in the order of the jobs: from the cache, else compiled by child processes; the
+    same Failure for all jobs if the driver is missing."""
     if not jobs:
         return []
     library, gpu = FAMILIES[family].library, FAMILIES[family].null_device
@@ -207,7 +208,7 @@ def _counted(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Ou
 
 
 def _driver(library: str, stop: threading.Event) -> Driver:
-    """A driver that `missing` finds nothing missing of."""
+    """Return the driver of a library, after `missing` found nothing missing."""
     if library == NVRTC:
         return Driver(tools.found()[0], stop, python("normalbench.bench.shaders.isa.nvidia.child"))
     path = driver_file(library)
@@ -247,7 +248,8 @@ def _kernels(values: Sequence[dict[str, Any]]) -> tuple[Kernel, ...]:
 
 
 def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
-    """A family's outcomes under the first of its names that the driver takes."""
+    """Compile jobs, and return their outcomes by key, under the first of the family's names that the driver accepts;
+    a Failure for each job if it accepts none."""
     names = FAMILIES[family].names
     for name in names:
         try:
@@ -271,7 +273,8 @@ def _variables(family: str, name: str) -> dict[str, str]:
 def _by_children(
     name: str, variables: Mapping[str, str], driver: Driver, jobs: Mapping[str, Job]
 ) -> dict[str, Outcome]:
-    """Children one after the other until each job has its outcome: whoever leaves a job unanswered is replaced."""
+    """Compile jobs in one child process after the other, and return the outcome of each by key. A job with which a
+    child ends is a Failure, and the other jobs go to the next child, until MOST_LOST children are lost."""
     outcomes: dict[str, Outcome] = {}
     lost = 0
     while len(outcomes) < len(jobs):
@@ -316,7 +319,7 @@ def _answers(
 
 
 def _job_fields(jobs: Mapping[str, Job]) -> dict[str, Any]:
-    """Jobs as a child takes them."""
+    """Return jobs, and the binding of the storage buffer, as a child reads them: values for JSON."""
     return {"planes": PLANES, "jobs": [_as_json(key, job) for key, job in jobs.items()]}
 
 

@@ -37,7 +37,7 @@ class NullDeviceError(Exception):
 
 
 def library() -> Path:
-    """Return the shared library that stands in for a GPU. Raises NullDeviceError."""
+    """Return the path of the library that stands in for a GPU, and build it if needed. Raises NullDeviceError."""
     folder = _library_folder()
     stem = f"{SOURCE.stem}-{kept.key_of(SOURCE.read_bytes(), SHARED.read_bytes(), platform.machine())[:16]}"
     return _kept_library(folder, stem) or _built_library(folder, stem)
@@ -63,12 +63,14 @@ def _library_folder() -> Path:
 
 
 def variables(words: str) -> dict[str, str]:
-    """Return the environment in which a process finds the Intel GPU that the words describe. Raises NullDeviceError."""
+    """Return the environment variables with which a process finds the Intel GPU that `words`, one text, describes.
+    Raises NullDeviceError."""
     return preloaded(library()) | {SAID: words}
 
 
 def _library_name(stem: str, path: Path) -> str:
-    """Return the name of a library, by its content; empty if the file cannot be read, or others may have written it."""
+    """Return the file name of a library, the stem and a hash of its content; empty if the file cannot be read, or
+    others may have written it."""
     try:
         return f"{stem}-{kept.key_of(path.read_bytes())[:16]}.so" if kept.is_private(path) else ""
     except OSError:
@@ -101,7 +103,7 @@ def _compile(path: Path) -> None:
         raise NullDeviceError(f"{error} for {SOURCE.name}") from error
     if done.status or not path.exists():
         last = [line.strip() for line in done.err.splitlines() if line.strip()][-1:]
-        message = f"{COMPILER} does not compile {SOURCE.name}: {last[0][:200] if last else f'status {done.status}'}"
+        message = f"{COMPILER} cannot compile {SOURCE.name}: {last[0][:200] if last else f'status {done.status}'}"
         raise NullDeviceError(
-            f"{message}; the headers of libc may be missing ({how_to_install('gcc libc6-dev', counts=True)})"
+            f"{message}; libc's headers may be missing ({how_to_install('gcc libc6-dev', counts=True)})"
         )

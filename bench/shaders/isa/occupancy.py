@@ -53,7 +53,8 @@ OCCUPANCY: Mapping[str, Occupancy] = MappingProxyType(
 
 
 def waves(family: str, registers: float | None) -> int | None:
-    """Return the number of waves of a kernel that a SIMD of a GPU family holds; None if that is not known."""
+    """Return the number of waves that a SIMD of a GPU family holds of a kernel with this number of registers; None if
+    that is not known."""
     rule = OCCUPANCY.get(family)
     if rule is None or (rule.registers and registers is None):
         return None

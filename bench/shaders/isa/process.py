@@ -78,7 +78,8 @@ class _Heard:
         self._lines, self._stop, self._is_silent = lines, stop, False
 
     def following(self) -> dict[str, Any] | None:
-        """Return the next line; None at the end, after SECONDS of silence, or once the children are told to stop."""
+        """Return the child's next line, parsed from JSON; None at the end, for a line that was cut off, after SECONDS
+        of silence, or once the children are told to stop."""
         until = time.monotonic() + SECONDS
         while not self._stop.is_set() and time.monotonic() < until:
             try:
@@ -90,16 +91,18 @@ class _Heard:
         return None
 
     def why(self, process: subprocess.Popen[str], errors: IO[bytes]) -> str:
-        """Return the reason why no more lines come."""
+        """Return why no more lines come: the driver's silence, or how the process ended, by its status and
+        `errors`."""
         if self._is_silent:
-            return f"the driver did not answer within {SECONDS:g} s"
+            return f"the driver did not respond within {SECONDS:g} s"
         status = process.wait(SECONDS)
         errors.seek(0)
         return _end_reason(status, errors.read().decode(errors="replace"))
 
 
 def _parsed(line: str | None) -> dict[str, Any] | None:
-    """Return a child's line, parsed; None at the end, and for a line that was cut off when the child died."""
+    """Return the dictionary in a child's line of JSON; None at the end, and for a line that was cut off when the
+    child died."""
     try:
         answer = json.loads(line or "null")
     except ValueError:
@@ -114,7 +117,7 @@ def _read(stream: Any, lines: queue.Queue[str | None]) -> None:
 
 
 def _end_reason(status: int, errors: str) -> str:
-    """Return how a child ended, and the last line that it or its driver wrote."""
+    """Return a clause on how a child ended, by its exit status, and the last line that it or its driver wrote."""
     how = f"signal {name}" if (name := signal_name(status)) else f"status {status}"
     last = [line.strip() for line in errors.splitlines() if line.strip()]
     return f"the driver ended with {how}" + (f": {last[-1][:200]}" if last else "")

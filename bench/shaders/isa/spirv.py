@@ -34,15 +34,15 @@ class Module:
 
 
 def version(tool: str) -> str | None:
-    """Return all that a tool reports about its version; None if it is not installed."""
+    """Return all that a tool reports about its version; "of no version" if that is nothing, None without the tool."""
     try:
-        return tools.version_text(tool) or "of no version"
+        return tools.version_text(tool) or "(unknown version)"
     except MissingError:
         return None
 
 
 def compiler() -> str:
-    """The GLSL compiler's version. Raises MissingError, one line that names the package."""
+    """Return the GLSL compiler's own text about its version. Raises MissingError, one line that names the package."""
     compiler_version = version(COMPILER)
     if compiler_version is None:
         raise MissingError(NO_COMPILER)
@@ -54,25 +54,29 @@ class ToolError(ShaderError):
 
 
 def title(output: str) -> str:
-    """The name of a compiler's version, in a few words."""
+    """Return "glslang" and its version, from all that the compiler reports about its version."""
     return "glslang " + output.splitlines()[0].split(":")[-1].strip()
 
 
 def titles() -> str:
-    """The compiler and the optimiser that counts are by, in a few words. Raises MissingError as `compiler`."""
+    """Return the compiler and its version and, if the optimiser is installed, the same of it, as one text. Raises
+    MissingError as `compiler` does."""
     optimiser = version(OPTIMISER)
     return title(compiler()) + (f", {OPTIMISER} {_version_number(optimiser)}" if optimiser else "")
 
 
 def _version_number(output: str) -> str:
-    """The first word of a version that is a number: "SPIRV-Tools v2023.1 v2022.4 ..." """
+    """Return the first word of a version's text that is a number, such as v2023.1; else the first line."""
     return next((word for word in output.split() if word.strip("v")[:1].isdigit()), output.splitlines()[0])
 
 
 def compiled(source: Source, stage: str, counted: bool = True) -> Module:
-    """Compile a source to SPIR-V; `stage` is "vert", "frag" or "comp". It is kept by its text and the tools' versions.
+    """Return a source compiled to SPIR-V, from the cache if its text and the versions of the tools are the same.
 
-    Its instructions are counted if that is requested and spirv-opt is installed.
+    Its instructions are counted if `counted` and if spirv-opt is installed.
+
+    Args:
+        stage: "vert", "frag" or "comp".
 
     Raises:
         MissingError: no compiler is installed.
@@ -93,7 +97,7 @@ def compiled(source: Source, stage: str, counted: bool = True) -> Module:
 
 
 def _as_module(value: dict[str, Any] | None) -> Module | None:
-    """Return a module that was kept; None if the value is anything else."""
+    """Return the module in a cached value with `binary`, in base64, and `instructions`; None for other values."""
     try:
         binary, count = base64.b64decode((value or {})["binary"], validate=True), (value or {})["instructions"]
     except (KeyError, TypeError, ValueError):
@@ -117,7 +121,7 @@ def _glslang_binary(source: Source, stage: str) -> bytes:
         return binary
     errors = [line.removeprefix("ERROR: ") for line in done.out.splitlines() if line.startswith("ERROR: ")]
     if not errors:
-        raise ToolError(f"{COMPILER} ended with status {done.status} and said nothing")
+        raise ToolError(f"{COMPILER} ended with status {done.status} and no message")
     raise ShaderError(source.explain(errors[0]))
 
 
@@ -136,7 +140,7 @@ def _module_words(binary: bytes) -> list[int]:
 
 
 def _instructions(words: list[int]) -> Iterator[tuple[int, int]]:
-    """(place, opcode) of each instruction of a module."""
+    """Yield (word index, opcode) of each instruction in the words of a module."""
     place = HEADER
     while place < len(words):
         yield place, words[place] & 0xFFFF
@@ -144,7 +148,7 @@ def _instructions(words: list[int]) -> Iterator[tuple[int, int]]:
 
 
 def _asking_to_unroll(binary: bytes) -> bytes:
-    """The module with the hint to unroll on every loop, which GLSL has no word for without an extension."""
+    """Return a module with the hint to unroll on every loop; GLSL cannot express the hint without an extension."""
     words = _module_words(binary)
     for place, opcode in _instructions(words):
         if opcode == LOOP_MERGE:
@@ -153,7 +157,7 @@ def _asking_to_unroll(binary: bytes) -> bytes:
 
 
 def _count(binary: bytes) -> int | None:
-    """Instructions from each OpFunction to its OpFunctionEnd; None with a loop among them."""
+    """Return the number of instructions from each OpFunction to its OpFunctionEnd; None if a loop is among them."""
     inside, count = False, 0
     for _, opcode in _instructions(_module_words(binary)):
         if opcode == LOOP_MERGE:

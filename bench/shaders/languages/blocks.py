@@ -12,8 +12,8 @@ COMMON = "INCLUDE"
 
 
 def programs_of(source: Source) -> list[Source]:
-    """Return a source for each program of a file that has such blocks: the common blocks and the program, with each
-    line in its place. A file without blocks is one program."""
+    """Return a source for each program block of a file: this block and the common blocks, with each line in its
+    place. A file without blocks gives its own source alone."""
     matches = list(_BLOCK.finditer(source.text))
     if not matches:
         return [source]

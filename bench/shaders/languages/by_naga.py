@@ -23,7 +23,8 @@ ENTRY, GROUP, ROW = "normalbench_second", 64, 16
 
 
 def main(folder: Path) -> None:
-    """Run the file in a folder on a Vulkan device, and write its results there."""
+    """Run `given.wgsl` of a folder on `given.bin` with a Vulkan device, and write the results to `made.bin` there.
+    Raises MissingError without a device."""
     import wgpu
 
     all_adapters = adapters()

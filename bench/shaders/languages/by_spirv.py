@@ -62,7 +62,7 @@ def defined(module: bytes) -> bytes:
         if opcode in DIVISIONS:
             divided_type, _, x, y = of
             if divided_type not in notes:
-                raise ValueError("it divides integers that do not have 32 bits")
+                raise ValueError("integer division is supported only in 32 bits")
             result, note = notes[divided_type]
             new_words += _written(CALL, (result, next(numbers), note, x, y))
         if opcode in CONVERSIONS and of[0] in converters and function not in converters.values():
@@ -81,7 +81,7 @@ def _written(opcode: int, operands: Iterable[int]) -> list[int]:
 
 
 def _instructions(words: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
-    """The code and the operands of each instruction; its first word has its size as well."""
+    """Yield the opcode and the operands of each instruction in the words of a module."""
     offset = HEADER
     while offset < len(words):
         size, opcode = divmod(int(words[offset]), 1 << 16)
@@ -90,10 +90,11 @@ def _instructions(words: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
 
 
 def main(folder: Path) -> int:
-    """Run the module in a folder, write its results there, and return the exit status of the process."""
+    """Run `made.spv` of a folder on `given.bin`, write the results to `made.bin` there, and return the exit status of
+    the process: UNDEFINED if the module did something undefined, else 0."""
     context = device().context
     if EXTENSION not in context.extensions:
-        raise NoDeviceError(f"the OpenGL driver has no {EXTENSION}")
+        raise NoDeviceError(f"the OpenGL driver does not support {EXTENSION}")
     program = compute_program(defined((folder / "made.spv").read_bytes()), ENTRY)
     given = np.fromfile(folder / "given.bin", "<f4").reshape(-1, GIVEN * 4)
     groups = -(-len(given) // GROUP)

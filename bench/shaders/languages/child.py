@@ -63,7 +63,7 @@ _UNKNOWN = re.compile(r"undefined identifier|unknown variable|no matching overlo
 _UNDEFINED = re.compile(r"undefined identifier '(\w+)'")
 BY_MACRO = "; define missing macros with -D or --prelude"
 WHICH = "measured: {}"
-HAS_PARAMETERS = "they have only their parameters"
+HAS_PARAMETERS = "only parameters are available"
 MOST_NAMED, MOST_OTHERS = 12, 4
 
 
@@ -149,7 +149,7 @@ def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Pa
                 error.alone = _pair_facts(parsed, single_pair, "", folder, by)
         raise
     notes = [
-        *(f"it is read without an include: {line}" for line in parsed.source.missing),
+        *(f"read without an include: {line}" for line in parsed.source.missing),
         *_read_with(source),
         *([WHICH.format(named)] if text or not (asked or speaks_of_normals(pair)) else []),
         *([] if asked else _others(parsed.functions, pair)),
@@ -160,7 +160,8 @@ def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Pa
 
 
 def _check_refused(parsed: Read, asked: tuple[str, str] | None) -> None:
-    """Raise TranslationError if a refused function could be one of the two, which explains the missing pair."""
+    """Raise TranslationError if a refused function has a requested name, or the name of an encoder or a decoder: that
+    explains the missing pair."""
     if why := next((why for name, why in parsed.refused.items() if name in (asked or ()) or role(name)), ""):
         raise TranslationError(why) from None
 
@@ -170,7 +171,7 @@ def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, b
     language = language_of(source.file, by)
     parsed = language.read(source, folder)
     if asked and not all(wiring_of(text).is_plain for text in asked):
-        raise NoPairError("arguments can be given only for normals; name the two functions")
+        raise NoPairError("arguments can be given only with normals; name just the two functions")
     own = functions_in(parsed.source.own_text)
     try:
         pair = shaped_pair(language.placed(parsed.source, parsed.functions), kind, asked, str(source.path), own)
@@ -192,7 +193,7 @@ def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, b
     facts = _facts_of_texts(
         parsed, text, [function.name for function in called.values()], _row_name(source, both, asked), by, texts
     )
-    notes = [*(f"it is read without an include: {line}" for line in parsed.source.missing), *_read_with(source)]
+    notes = [*(f"read without an include: {line}" for line in parsed.source.missing), *_read_with(source)]
     return facts | {
         "components": pair.components,
         "notes": notes,
@@ -205,7 +206,7 @@ def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, b
 def _adapter_texts(
     source: Source, language: Language, called: Mapping[str, Function], prefix: str, folder: Path
 ) -> str:
-    """Adapters as functions of GLSL, each by its letter behind the prefix."""
+    """Return the text of a GLSL function for each adapter, which is named by the prefix and the adapter's letter."""
     return "".join(
         plain(language.shader(source, function, folder), f"{prefix}_{letter}", "vec4", HAS_PARAMETERS)
         for letter, function in called.items()
@@ -273,7 +274,8 @@ def _facts_of_texts(
 
 
 def _pair_and_text(parsed: Read, asked: tuple[str, str] | None, path: Path) -> tuple[Pair, str, str]:
-    """The pair that is measured; the text of its two functions, where they call others; and how it is asked for."""
+    """Return the pair that is measured, the HLSL text of its two functions if these call others as they are wired,
+    else empty, and the name by which the pair is requested. Raises NoPairError."""
     first, other = wirings = [wiring_of(text) for text in asked] if asked else (Wiring(""), Wiring(""))
     names = (first.function, other.function) if asked else None
     if not (first.is_plain and other.is_plain):
@@ -306,7 +308,8 @@ def _wired_pair(wirings: Sequence[Wiring], parsed: Read) -> tuple[Pair, str, str
 
 
 def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: str) -> tuple[str, list[str]]:
-    """Return the compiler that read the functions, empty for their language's own, and the functions as texts."""
+    """Return the compiler that read the functions, empty for their language's own, and the GLSL texts from `texts`.
+    Slang's failures on HLSL are tried again with glslang."""
     try:
         return by, texts(language_of(source.file, by), source, prefix)
     except TranslationError:
@@ -318,7 +321,8 @@ def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: s
 
 
 def _others(functions: Sequence[Function], pair: Pair) -> list[str]:
-    """Return a line on each other pair with a 32-bit code or more parameters, but not on pairs of plain numbers."""
+    """Return a line on each other pair with a 32-bit code or more parameters, at most MOST_OTHERS in all, but not on
+    pairs of plain numbers."""
     others = [] if pair.is_packed else packed_pairs(functions)
     packed = {other.named: f", which packs into {_A[other.encode.kind]}," for other in others}
     wired = dict.fromkeys(f"{first.function}:{other.function}" for first, other in candidates(_but(functions, pair)))
@@ -337,12 +341,12 @@ def _but(functions: Sequence[Function], pair: Pair) -> list[Function]:
 
 
 def _read_with(source: Source) -> list[str]:
-    """Return a line on the files and macros that were read with the file."""
+    """Return a list with one line on the files and macros that were read with the file; empty if there are none."""
     others = [str(path) for path in source.files.values() if path not in source.mains]
     more = f" and {len(others) - MOST_NAMED} others" if len(others) > MOST_NAMED else ""
     macros = [f"-D {macro}" for macro in source.settings.defines]
     extras = ", ".join([*macros, *others[:MOST_NAMED]])
-    return [f"it is read with {extras}{more}"] if extras else []
+    return [f"read with {extras}{more}"] if extras else []
 
 
 def _row_name(source: Source, pair: Pair, asked: tuple[str, str] | None) -> str:
@@ -357,7 +361,8 @@ def _row_name(source: Source, pair: Pair, asked: tuple[str, str] | None) -> str:
 
 
 def _function_texts(source: Source, language: Language, pair: Pair, prefix: str, folder: Path) -> list[str]:
-    """The two functions in GLSL, of codes in [-1, 1] and of codes in [0, 1]."""
+    """Return two GLSL texts of the two functions: for codes in [-1, 1], and for codes in [0, 1]. The texts are equal
+    if the code is packed."""
     sides = {f"{prefix}_e": pair.encode, f"{prefix}_d": pair.decode}
     text = "".join(
         plain(language.shader(source, side, folder), name, side.takes or f"vec{side.given[0]}")

@@ -17,7 +17,8 @@ _OF_STRIDE = re.compile(r"^([ \t]*)((?:(?:override|abstract|stage|clone|static)\
 
 
 def shader_text(text: str, ending: str) -> str:
-    """Return the shader in a file's text, with each line in its place.
+    """Return the shader in a file's text, with each line in its place. A file type that embeds no shaders is returned
+    as it is.
 
     Args:
         ending: the file's extension, in lower case.
@@ -31,7 +32,7 @@ def shader_text(text: str, ending: str) -> str:
 
 
 def _block(text: str, start: int) -> tuple[int, int]:
-    """Return the start and the end of the text inside braces that begin at a place."""
+    """Return (start, end) of the text inside braces; `start` is the place behind the opening brace."""
     depth, bare = 1, without_comments(text)
     for mark in re.finditer(r"[{}]", bare[start:]):
         depth += 1 if mark[0] == "{" else -1
@@ -41,7 +42,8 @@ def _block(text: str, start: int) -> tuple[int, int]:
 
 
 def only(text: str, spans: list[tuple[int, int]]) -> str:
-    """Return a text in which everything outside of some spans is blank."""
+    """Return a text in which everything outside the spans is blank, and each line stays where it is. A span is
+    (start, end)."""
     parts, last = [], 0
     for start, end in spans:
         parts += [blank(text[last:start]), text[start:end]]

@@ -21,12 +21,12 @@ _ERROR = re.compile(rf"^ERROR: {re.escape(GIVEN)}:(\d+): '([^']*)' : (.*)$", re.
 
 
 def shader(source: Source, function: Function, folder: Path) -> str:
-    """A function of a source as a fragment shader in GLSL: see `plain.py`.
+    """Return the text of a GLSL fragment shader that calls a function of an HLSL source: see `plain.py`.
 
     Raises:
         TranslationError: it does not compile.
         ToolError: a tool crashes or does not end.
-        MissingError: a tool is not there.
+        MissingError: a tool is not installed.
     """
     try:
         text = judged(program(source, function), "hlsl")
@@ -50,7 +50,7 @@ def _define_options(source: Source) -> list[str]:
 
 
 def _check(source: Source, status: int, message: str) -> None:
-    """Raise TranslationError if glslang refuses a source."""
+    """Raise TranslationError if glslang refused a source: it ended with this status and printed this message."""
     if not status:
         return
     match = _ERROR.search(message)

@@ -45,7 +45,8 @@ class Item(NamedTuple):
 
 
 def items(text: str) -> list[Item]:
-    """The items of a text without comments, which together with the braces of its namespaces are all of it."""
+    """Return the items of a text without comments, in order. The items and the braces of namespaces are all of the
+    text, without gaps."""
     parts: list[Item] = []
     spaces: list[str] = []
     bare = _QUOTED.sub(lambda match: blank(match[0]), _without_directives(text))
@@ -83,7 +84,7 @@ def _items(bare: str, start: int, end: int, body: int, space: str) -> list[Item]
 
 
 def functions_in(text: str) -> list[str]:
-    """The names of the functions that a text defines, each once; SPACE::NAME of those in a namespace or a structure."""
+    """Return the names of the functions that a text defines, each once; SPACE::NAME in a namespace or a structure."""
     return list(dict.fromkeys(_functions_in(text, "")))
 
 
@@ -96,7 +97,7 @@ def _functions_in(text: str, space: str) -> Iterator[str]:
 
 
 def words_of(text: str) -> set[str]:
-    """The words of a text, but the names of its functions where they are defined."""
+    """Return the set of words in a text, except in the heads of its functions."""
     bodies = _rewritten(text, ((item.start, item.body, "") for item in items(text) if item.function))
     return set(_WORD.findall(bodies))
 
@@ -109,12 +110,13 @@ def defined_in(text: str) -> Iterator[str]:
 
 
 def heads(text: str) -> str:
-    """A text with a semicolon for the body of each of its functions; each line stays where it is."""
+    """Return a text with a semicolon in place of each function's body; each line stays where it is."""
     return _rewritten(text, ((item.body, item.end, ";") for item in items(text) if item.function))
 
 
 def marked_heads(text: str, mark: str) -> str:
-    """Return the same with a mark before the name of each function, so that no name is one of the language's own."""
+    """Return a text as `heads` does, with a mark before the name of each function, so that no name is one of the
+    language's own."""
     functions = [item for item in items(text) if item.function]
     names = (re.search(rf"\b{item.name}\s*\(", text[item.start : item.body]) for item in functions)
     places = (item.start + name.start() for item, name in zip(functions, names, strict=True) if name)
@@ -123,7 +125,7 @@ def marked_heads(text: str, mark: str) -> str:
 
 
 def without(text: str, some: Iterable[Item]) -> str:
-    """A text with blanks for some of its items; its directives stay, and each line stays where it is."""
+    """Return a text with some of its items blanked; directives in them stay, and each line stays where it is."""
     return _rewritten(text, ((item.start, item.end, "") for item in some))
 
 
@@ -142,12 +144,13 @@ def reached(text: str, names: Collection[str]) -> str:
 
 
 def _may_be_pasted(name: str, parts: Collection[str]) -> bool:
-    """Whether a macro may paste a name of one of some parts."""
+    """Whether a name begins or ends with one of some parts, so that a macro may paste it together."""
     return any(name.startswith(part) or name.endswith(part) for part in parts)
 
 
 def _rewritten(text: str, parts: Iterable[tuple[int, int, str]]) -> str:
-    """A text with other words, and blanks, in parts of it: start, end and words, which come one after another."""
+    """Return a text with new words, padded with blanks, in some of its parts: (start, end, words), which do not
+    overlap."""
     pieces, last = [], 0
     for start, end, words in sorted(parts):
         pieces += [text[last:start], words, blanked(text[start:end])[len(words) :]]
@@ -156,12 +159,12 @@ def _rewritten(text: str, parts: Iterable[tuple[int, int, str]]) -> str:
 
 
 def blanked(text: str) -> str:
-    """Blanks in place of a text but for its directives, in as many lines."""
+    """Return a text with everything blanked except its preprocessor directives; each line stays where it is."""
     kept: Iterator[str] = iter(_DIRECTIVE.findall(text))
     parts = _DIRECTIVE.split(text)
     return "".join(blank(part) + next(kept, "") for part in parts)
 
 
 def _without_directives(text: str) -> str:
-    """A text with blanks for its directives."""
+    """Return a text with its preprocessor directives blanked; each line stays where it is."""
     return _DIRECTIVE.sub(lambda match: blank(match[0]), text)

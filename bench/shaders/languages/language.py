@@ -63,13 +63,13 @@ BY_NAME: Mapping[str, Language] = MappingProxyType(
 
 
 def language_of(file: UserFile, by: str = "") -> Language:
-    """Return the language of a file, or the language of the reader `by`."""
+    """Return the language of a file; if `by` is given, the language of that name in `BY_NAME`."""
     return BY_NAME[by or name_of(file)]
 
 
 def name_of(file: UserFile) -> str:
     """Return the name of a file's language: as the user names it, by the file's extension, or by its text if several
-    languages have that extension."""
+    languages have that extension; "HLSL" if the text does not show it."""
     ending = file.path.suffix.lower()
     language = file.settings.language or TRANSLATED.get(ending, GLSL_NAME if ending == GLSL else "")
     if language:

@@ -38,8 +38,8 @@ OF_OTHERS = "{} is of {}, not of {}: `{}" + IS_OF
 
 NO_PAIR = "no encoder and decoder found"
 # Behind the name of a pair that was not measured.
-IF_NAMED = "is measured if it is named"
-BY_PARAMETER = "{} returns nothing; write a function that returns what it writes to its parameter"
+IF_NAMED = "is measured only if named"
+BY_PARAMETER = "{} returns nothing; write a function that returns the value of the output parameter"
 
 
 @dataclass(frozen=True)
@@ -106,12 +106,13 @@ class Function:
         return len(self.given) == 2
 
     def called(self, given: str) -> str:
-        """A call of it, in a function that has the position as `view`."""
+        """Return the text of a call of it with this argument, and with `view` if it takes the view-space position."""
         return f"{self.name}({given}, view)" if self.takes_view else f"{self.name}({given})"
 
     @property
     def may_encode(self) -> bool:
-        """Whether it is of a normal, and of a view-space position if of anything else."""
+        """Whether it takes a normal, perhaps with a view-space position, and returns a vector of two or three
+        numbers."""
         return self.result > 0 and self.takes_a_normal
 
     @property
@@ -121,27 +122,27 @@ class Function:
 
     @property
     def gives_by_parameter(self) -> bool:
-        """Whether it is of a vector, and returns nothing."""
+        """Whether its first parameter is a vector of two or three numbers and it returns nothing."""
         return self.kind == "void" and self.given[:1] > (0,)
 
     @property
     def packs(self) -> bool:
-        """Whether it makes a normal one integer, or one float, of 32 bits."""
+        """Whether it takes a normal, perhaps with a view-space position, and returns one 32-bit integer or float."""
         return self.takes_a_normal and self.kind in PACKED
 
     @property
     def unpacks(self) -> bool:
-        """Whether it makes such a one a normal."""
+        """Whether it takes one 32-bit integer or float, perhaps with a view-space position, and returns a normal."""
         return self.result == NORMAL and self.takes in PACKED and self.given[1:] in ((), (NORMAL,))
 
     @property
     def given_type(self) -> str:
-        """The type of its first parameter."""
+        """The type of its first parameter, as HLSL writes it."""
         return self.takes or f"float{self.given[0]}"
 
     @property
     def result_type(self) -> str:
-        """The type of its result."""
+        """The type of its result, as HLSL writes it."""
         return self.kind if self.kind in PACKED else f"float{self.result}"
 
     @property
@@ -159,7 +160,7 @@ class Pair:
 
     @property
     def components(self) -> int:
-        """The number of components of their code; an integer's are its two halves."""
+        """The number of components of the code; for one 32-bit value, its two halves."""
         return HALVES if self.is_packed else self.encode.result
 
     @property
@@ -169,7 +170,7 @@ class Pair:
 
     @property
     def named(self) -> str:
-        """The name by which a pair is requested."""
+        """The name by which the pair is requested: ENCODE:DECODE."""
         return f"{self.encode.name}:{self.decode.name}"
 
 
@@ -243,7 +244,8 @@ def pair_of(
 
 
 def _is_half_named(pair: Pair) -> bool:
-    """Whether only one name says what its function does: the other function may be for something else."""
+    """Whether exactly one name says that its function encodes or decodes; the other function may be for something
+    else."""
     return bool(role(pair.encode.name)) != bool(role(pair.decode.name))
 
 
@@ -264,12 +266,13 @@ def _sides(functions: Sequence[Function]) -> tuple[list[Function], list[Function
 
 
 def too_many(encoders: Sequence[Function], decoders: Sequence[Function]) -> bool:
-    """Whether not each encoder is tried with each decoder."""
+    """Whether there are too many encoders and decoders to try each encoder with each decoder."""
     return len(encoders) * len(decoders) > MOST_PAIRED
 
 
 def packed_pairs(defined: Sequence[Function]) -> list[Pair]:
-    """The pairs whose code is one value of 32 bits, of an encoder and a decoder by their names."""
+    """Return the pairs of an encoder and a decoder, by their names, whose code is one 32-bit value of the same
+    type."""
     sides = [function for function in defined if function.packs], [function for function in defined if function.unpacks]
     alike = (both for both in itertools.product(*sides) if stem(both[0].name) == stem(both[1].name))
     return _by_name([Pair(encoder, other) for encoder, other in alike if encoder.kind == other.takes])
@@ -281,7 +284,7 @@ def _asked(functions: Sequence[Function], asked: tuple[str, str], pairs: Sequenc
     missing = [name for name in asked if name not in {candidate.name for candidate in functions}]
     if missing:
         known = ", ".join(dict.fromkeys(candidate.name for candidate in functions)) or "none"
-        raise NoPairError(f"no function is named {missing[0]}; there are: {known}")
+        raise NoPairError(f"unknown function {missing[0]}; known: {known}")
     for function in functions:
         if function.name in asked and function.gives_by_parameter:
             raise NoPairError(BY_PARAMETER.format(function.name))
@@ -297,8 +300,8 @@ def _by_name(pairs: Sequence[Pair]) -> list[Pair]:
 
 
 def _by_parameter(functions: Sequence[Function], best: Sequence[Pair]) -> str:
-    """Return the function that is, by its name, the partner of a function in the best pairs, but returns nothing;
-    else empty.
+    """Return the name of the function that is, by its name, the partner of a function in the best pairs, but returns
+    nothing; else empty.
 
     A function that returns a code in its place is probably one of its helpers.
     """
@@ -369,7 +372,8 @@ def role(name: str) -> str:
 
 @cache
 def stem(name: str) -> str:
-    """Return a function's name without the words that say that it encodes or decodes."""
+    """Return a function's name, in lower case, without the words that say that it encodes or decodes; two functions
+    with the same stem belong together."""
     if ways := _ways(name):
         return " ".join(sorted(" ".join(words) for words in ways))
     return re.sub("|".join((*DECODES, *ENCODES, "_")), "", name.lower())
@@ -406,7 +410,7 @@ def _none_fits(functions: Sequence[Function]) -> str:
         if candidate.takes_a_normal and not candidate.result and role(candidate.name) == "encode"
     ]
     if others and not encoders:
-        return f"{others[0].name} returns a {others[0].kind}, but a code must be two or three unpacked numbers"
+        return f"{others[0].name} returns a {others[0].kind}, but a code must have two or three unpacked numbers"
     if encoders and not decoders:
         return f"{encoders[0]} has no decoder"
     if decoders and not encoders:

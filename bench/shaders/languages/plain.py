@@ -35,11 +35,12 @@ _HALF = re.compile(r"\bf16(vec|mat)(\d)|\bfloat16_t\b")
 _HALF_NUMBER = re.compile(r"(?<=[\d.])HF\b", re.I)
 
 
-HAS_A_NORMAL = "an encoder has only the normal and the view-space position"
+HAS_A_NORMAL = "only the normal and the view-space position are available"
 
 
 def plain(shader: str, prefix: str, given: str, has: str = HAS_A_NORMAL) -> str:
-    """Return the shader as a function PREFIX_main of PREFIX_0 and view, without a head.
+    """Return a GLSL fragment shader, given as text, as a function `PREFIX_main(PREFIX_0, view)` that returns its
+    output.
 
     Args:
         given: the GLSL type of its first input; its second input has three numbers.
@@ -63,7 +64,10 @@ def plain(shader: str, prefix: str, given: str, has: str = HAS_A_NORMAL) -> str:
 
 
 def _function_text(text: str, prefix: str, given: str, result: str) -> str:
-    """Return a text in which `main`, its last function, returns its output."""
+    """Return a shader's text with its last function, `main`, as `PREFIX_main`, which returns the output.
+
+    Args:
+        given, result: the GLSL types of the first input and of the output."""
     before, _, main = text.partition("void main()")
     body = re.sub(r"\breturn;", f"return {prefix}_out;", main.strip().removeprefix("{").removesuffix("}"))
     head = f"{result} {prefix}_main({given} {prefix}_0, vec3 view)"

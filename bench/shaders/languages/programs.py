@@ -49,7 +49,7 @@ class TranslationError(Exception):
 
 
 def template(name: str, **words: object) -> str:
-    """Return a file of this folder with some of its words replaced."""
+    """Return the text of a file of this folder with each word that is a keyword here replaced by its value."""
     return re.sub(rf"\b(?:{'|'.join(words)})\b", lambda match: str(words[match[0]]), _text(name))
 
 
@@ -63,7 +63,8 @@ UNIT_WAYS = (" * 2.0 - 1.0", " * 0.5 + 0.5")
 
 
 def pair(name: str, components: int, encoder: Function, decoder: Function, is_unit: bool) -> str:
-    """Return the functions NAME_encode and NAME_decode that every program calls; they call two functions above them.
+    """Return the GLSL functions NAME_encode and NAME_decode that every program calls; they call two functions above
+    them.
 
     Args:
         is_unit: whether these two use codes in [0, 1], which are converted to [-1, 1] on output and back on input.
@@ -81,10 +82,11 @@ HANDS: Mapping[str, str] = MappingProxyType(
 
 
 def shaped(name: str, shaped_pair: ShapedPair, is_unit: bool) -> str:
-    """The two functions of a kind that every program calls, of adapters NAME_e_main and the like before them.
+    """Return the GLSL functions of a kind that every program calls; they call adapters above them, such as
+    NAME_e_main.
 
     Args:
-        is_unit: as of `pair`.
+        is_unit: as for `pair`.
     """
     text = _text(shaped_pair.shape.template)
     words = {word: word.replace("NAME", name, 1) for word in re.findall(r"\bNAME_\w+", text)}
@@ -116,7 +118,7 @@ def packed_pair(name: str, encoder: Function, decoder: Function) -> str:
 
 
 def program(source: Source, function: Function) -> str:
-    """A source with an entry point that calls one of its functions."""
+    """Return a source's text with an HLSL entry point that calls one of its functions."""
     arguments = "normalbench_given, normalbench_view" if function.takes_view else "normalbench_given"
     view = ", [[vk::location(1)]] float3 normalbench_view : TEXCOORD1" if function.takes_view else ""
     # What is no float is the same for all of a triangle.
@@ -127,7 +129,7 @@ def program(source: Source, function: Function) -> str:
 
 
 def macros(source: Source, types: Mapping[str, str] = ENGINE_TYPES) -> list[str]:
-    """NAME=TEXT of each type that a source uses and does not define."""
+    """Return NAME=TEXT for each type, and for the HLSL version, that a source uses but does not define."""
     words = set(re.findall(r"\w+", source.text))
     used = [(old + size, new + size) for old, new in types.items() for size in SIZES if old + size in words]
     used += [(VERSION, YEAR)] if VERSION in words else []

@@ -56,14 +56,15 @@ class NoSecondWayError(Exception):
 
 
 def second_way(file: UserFile, encoder: Translated, folder: Path) -> Way:
-    """The second way of a file.
+    """Return a function that runs the two functions of a file in a second way: see `Way`.
 
     Args:
         encoder: its translation.
-        folder: an empty one to work in.
+        folder: an empty folder to work in.
 
     Raises:
-        NoSecondWayError: a compiler is missing or refuses the file.
+        NoSecondWayError: a compiler is missing or refuses the file; also raised when the returned function is called.
+        UndefinedError: only when it is called: the file divides an integer by 0.
     """
     make = _naga_runner if name_of(file) == "WGSL" else _spirv_runner
     run = make(Source(file), encoder, folder)
@@ -80,7 +81,7 @@ def second_way(file: UserFile, encoder: Translated, folder: Path) -> Way:
 
 
 def _program_text(name: str, encoder: Translated) -> str:
-    """The program around a file, which calls its two functions."""
+    """Return the text of the program that calls the two functions of a file, from the template of this name."""
     if encoder.packed and name == "second.hlsl":
         return _of_halves(encoder)
     size = encoder.components
@@ -91,7 +92,7 @@ def _program_text(name: str, encoder: Translated) -> str:
 
 
 def _of_halves(encoder: Translated) -> str:
-    """Return the same program for two functions whose code is one value of 32 bits."""
+    """Return the text of the same program for two functions whose code is one 32-bit value."""
     (pack, is_viewed), (unpack, is_viewed_back) = encoder.functions
     words = {
         "PACK": pack,
@@ -106,7 +107,8 @@ def _of_halves(encoder: Translated) -> str:
 
 
 def _spirv_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
-    """Slang's SPIR-V by OpenGL, in a process that the driver may end."""
+    """Compile a file to SPIR-V with Slang, and return a function that runs it on OpenGL, in a process that the driver
+    may end. Raises NoSecondWayError."""
     of_language = list(slang.GLSL) if name_of(source.file) == GLSL_NAME else []
     used = macros(source.with_text(encoder.text), slang.TYPES)
     defined = [*of_language, *(word for macro in used for word in ("-D", macro))]
@@ -129,12 +131,13 @@ def _refusal_text(source: Source, printed: str) -> str:
     try:
         slang.check(source, printed, 1)
     except TranslationError as error:
-        return f"{tools.SLANG} does not read it: {error}"
-    return f"{tools.SLANG} does not read it"
+        return f"{tools.SLANG} cannot read it: {error}"
+    return f"{tools.SLANG} cannot read it"
 
 
 def _naga_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
-    """The text itself on a Vulkan device, in a process that naga may end."""
+    """Write a file's WGSL to a folder, and return a function that runs it on a Vulkan device, in a process that naga
+    may end. Raises NoSecondWayError."""
     try:
         text = judged(bare(encoder.text + _program_text("second.wgsl", encoder), is_wgsl=True), "wgsl")
     except RefusedError as error:
@@ -145,13 +148,13 @@ def _naga_runner(source: Source, encoder: Translated, folder: Path) -> Callable[
 
 
 def _run(command: list[str], folder: Path) -> None:
-    """A command that ends well. Raises NoSecondWayError, UndefinedError."""
+    """Run a command in a folder. Raises UndefinedError if it divides by 0, NoSecondWayError if it fails otherwise."""
     try:
         done = children.finished(command, SECONDS, folder)
     except subprocess.TimeoutExpired as error:
-        raise NoSecondWayError(f"it did not end within {SECONDS:g} s") from error
+        raise NoSecondWayError(f"no result within {SECONDS:g} s") from error
     if done.returncode == by_spirv.UNDEFINED:
-        raise UndefinedError("it divides an integer by 0 for some normal")
+        raise UndefinedError("it divides an integer by 0 for some normals")
     if done.returncode:
         lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
         ended = signal_name(done.returncode) or f"status {done.returncode}"

@@ -48,7 +48,7 @@ class Fitted:
     made: Mapping[CodeArgument, Place]
 
     def size(self, part: str) -> int:
-        """Return the number of components of a part here; 0 if the part is missing."""
+        """Return the number of components of the part of this name here; 0 if the part is missing."""
         both = [*((part, place) for place, part in self.given.items()), *self.made.items()]
         return next((place.size for argument, place in both if argument.name == part), 0)
 
@@ -63,7 +63,7 @@ class ShapedPair:
 
     @property
     def named(self) -> str:
-        """The name by which the pair is requested."""
+        """The name by which the pair is requested: ENCODE:DECODE."""
         return f"{self.encode.function.name}:{self.decode.function.name}"
 
     @property
@@ -86,7 +86,7 @@ class ShapedPair:
         return {part.name: [side.size(part.name) for side in (self.encode, self.decode)] for part in self.shape.parts}
 
     def sides(self, adapter: Adapter) -> dict[str, tuple[Function, str]]:
-        """Return each adapter and its text, by the letter that a program calls it by."""
+        """Return each adapter, as a function and its text, by the letter that a program calls it by: e encodes."""
         by_letter = {"e": _adapted(self.encode, "e", (self.shape.code.name,), adapter)}
         for letter, names in zip(LETTERS, self.shape.results, strict=False):
             by_letter[letter] = _adapted(self.decode, letter, names, adapter)
@@ -98,7 +98,11 @@ LETTERS = "dtb"
 
 
 def _adapted(fitted: Fitted, letter: str, results: Sequence[str], adapter: Adapter) -> tuple[Function, str]:
-    """Return a function that takes seven numbers and returns four, and its text."""
+    """Return an adapter of a function, which takes seven numbers and returns four, and its text.
+
+    Args:
+        letter: the end of its name.
+        results: the names of the parts that it returns, in order."""
     name = f"{fitted.function.name.replace('::', '_')}_{letter}"
     given = {place.path: part.sizes[place.size] for place, part in fitted.given.items()}
     places = {part.name: place for part, place in fitted.made.items()}
@@ -113,11 +117,11 @@ def shaped_pair(
     file: str = "",
     own: Collection[str] = (),
 ) -> ShapedPair:
-    """The pair of a kind among functions; see `pairs.pair_of`.
+    """Return the pair of a kind among functions; the arguments are as for `pairs.pair_of`.
 
     Raises:
-        NoPairError: none fits.
-        SeveralPairsError: several do; the message names them.
+        NoPairError: no pair fits.
+        SeveralPairsError: several pairs fit; the message names them.
     """
     every = list(_all_pairs(functions, kind, asked))
     if asked and not every:
@@ -163,7 +167,8 @@ def _fitted(
 def _assigned(places: Sequence[Place], parts: Sequence[CodeArgument]) -> dict[Place, CodeArgument] | None:
     """Return the part for each place, by its name, then by the order; None if a needed part or a place is left over.
 
-    Fields of a structure may be left over.
+    Fields of a structure may be left over. A place matches a part only if it holds floats, in a number that the part
+    allows.
     """
     assigned: dict[Place, CodeArgument] = {}
     likely = sorted(
@@ -191,7 +196,8 @@ def _likeness(place: Place, part: CodeArgument) -> int:
 
 
 def _likeliest(pairs: Sequence[ShapedPair], kind: Kind) -> list[ShapedPair]:
-    """Return the pairs with the same stem that speak of the kind, or of no kind."""
+    """Return the pairs, if possible with the same stem, whose names speak of the kind, else those whose names speak
+    of no kind; all of one shape."""
     same = [pair for pair in pairs if stem(pair.encode.function.name) == stem(pair.decode.function.name)] or pairs
     spoken = [pair for pair in same if kind_spoken_of(pair.named) is kind]
     silent = [pair for pair in same if not kind_spoken_of(pair.named) and not _is_of_colours(pair, kind)]
@@ -208,12 +214,12 @@ def _why_not(functions: Sequence[Function], kind: Kind, asked: tuple[str, str]) 
     """Return why two functions that were requested are not a pair."""
     names = {function.name for function in functions}
     if missing := [name for name in asked if name not in names]:
-        return f"no function is named {missing[0]}; there are: {', '.join(dict.fromkeys(names)) or 'none'}"
+        return f"unknown function {missing[0]}; known: {', '.join(dict.fromkeys(names)) or 'none'}"
     return f"{asked[0]} and {asked[1]} are not a pair for {kind.plural}; the two functions must be {_wanted(kind)}"
 
 
 def _why_none(functions: Sequence[Function], kind: Kind, file: str) -> str:
-    """Why no functions of a file are a pair of a kind."""
+    """Return a message on why a file has no pair of a kind among its functions."""
     wanted = f"the two functions must be {_wanted(kind)}"
     sides = {side: [function for function in functions if role(function.name) == side] for side in ("encode", "decode")}
     spoken = [function for several in sides.values() for function in several]
@@ -222,17 +228,17 @@ def _why_none(functions: Sequence[Function], kind: Kind, file: str) -> str:
         other = _other_kind(spoken[0].name, kind) or NORMAL
         return OF_OTHERS.format(spoken[0].name, other.plural, kind.plural, other.command.format(file))
     if packs := next((function for function in of_kind if function.kind in PACKED[:2]), None):
-        return f"{packs.name} returns a {packs.kind}, but a code of {kind.plural} must be numbers; {wanted}"
+        return f"{packs.name} returns a {packs.kind}, but a code of {kind.plural} must be one or more floats; {wanted}"
     for side, other in (("encode", "decode"), ("decode", "encode")):
         if sides[side] and not sides[other]:
             return f"{sides[side][0].name} has no {other}r; {wanted}"
     if of_kind:
-        return f"{of_kind[0].name} and its partner do not have the types of a pair for {kind.plural}; {wanted}"
+        return f"{of_kind[0].name} and its partner have the wrong types for {kind.plural}; {wanted}"
     return f"no encoder and decoder found; {wanted}"
 
 
 def _other_kind(name: str, kind: Kind) -> Kind | None:
-    """Return the kind that a function's name speaks of, if it is not this kind."""
+    """Return the kind that a function's name speaks of; None if that is this kind, or if it speaks of none."""
     spoken = kind_spoken_of(name)
     if spoken is kind:
         return None

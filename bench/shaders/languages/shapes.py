@@ -31,7 +31,8 @@ class CodeArgument:
     is_needed: bool = True
 
     def likeness(self, called: str) -> int:
-        """Return the number of letters of a name, in lower case, that match a word of this part."""
+        """Return the length of the longest word of this part that occurs in a name in lower case; 0 if none does. A
+        single letter must be the whole name."""
         return max(
             (len(word) for word in self.words if word == called or (len(word) > 1 and word in called)), default=0
         )
@@ -80,7 +81,7 @@ SHAPES: Mapping[kinds.Kind, tuple[Shape, ...]] = MappingProxyType(
                 CodeArgument("code", {2: "n.xy"}, OF_CODE),
                 (RANGE,),
                 "adapters/motion.glsl",
-                "float2 Encode(float2 motion) and float2 Decode(float2 code); either may have a range behind it",
+                "float2 Encode(float2 motion) and float2 Decode(float2 code); a range may follow as a parameter",
                 (("motion",),),
                 has_sign=True,
             ),
@@ -91,7 +92,7 @@ SHAPES: Mapping[kinds.Kind, tuple[Shape, ...]] = MappingProxyType(
                 CodeArgument("code", {1: "n.x"}, OF_CODE),
                 PLANES,
                 "adapters/depth.glsl",
-                "float Encode(float depth) and float Decode(float code); either may have near and far behind it",
+                "float Encode(float depth) and float Decode(float code); near and far may follow as parameters",
                 (("depth",),),
             ),
             Shape(
@@ -99,7 +100,7 @@ SHAPES: Mapping[kinds.Kind, tuple[Shape, ...]] = MappingProxyType(
                 CodeArgument("code", {4: "n", 3: "n.xyz", 2: "n.xy"}, OF_CODE),
                 (),
                 "adapters/depth_bytes.glsl",
-                "float4 Pack(float depth) and float Unpack(float4 texel), over bytes",
+                "float4 Pack(float depth) and float Unpack(float4 texel), with a byte per component",
                 (("depth",),),
             ),
         ),
@@ -109,7 +110,7 @@ SHAPES: Mapping[kinds.Kind, tuple[Shape, ...]] = MappingProxyType(
                 CodeArgument("code", {1: "n.x"}, OF_CODE),
                 (RANGE,),
                 "adapters/curve.glsl",
-                "float Encode(float roughness) and float Decode(float code); either may have a range behind it",
+                "float Encode(float roughness) and float Decode(float code); a range may follow as a parameter",
                 (("quantity",),),
             ),
         ),

@@ -77,7 +77,7 @@ def read_glsl(source: Source, folder: Path) -> Read:
 
 
 def _diagonals(text: str) -> Iterator[int]:
-    """Yield the lines in which a matrix is made of one value."""
+    """Yield the number, counted from 1, of each line in which a matrix is made of one value."""
     for match in _DIAGONAL.finditer(text):
         depth, commas = 1, 0
         for index in range(match.end(), len(text)):
@@ -123,8 +123,8 @@ def _readable_part(source: Source, first: Callable[[str], str], folder: Path, op
 
 
 def _refused_now(source: Source, options: tuple[str, ...], folder: Path) -> dict[Item, str]:
-    """Return the items of a source that are refused, each with the first message; empty if the heads compile. Raises
-    TranslationError if the refused text is not an item."""
+    """Return the items of a source that are refused, each with the first message; empty if the text compiles without
+    function bodies. Raises TranslationError if the refused text is not an item."""
     try:
         compiled = _compiled(source, heads(source.text) + NO_ENTRY, (*options, *TARGET), folder)
     except RefusedWordError as error:
@@ -145,7 +145,8 @@ def _marked(name: str) -> str:
 
 
 def _live_part(source: Source, folder: Path, options: tuple[str, ...]) -> Source:
-    """A source without its conditional directives, and without the branches that its preprocessor leaves out."""
+    """Return a source without its conditional directives and without the branches that its preprocessor leaves out;
+    each line stays where it is."""
     parts, ends = _CONDITIONAL.split(source.text), [*_CONDITIONAL.findall(source.text), ""]
     if len(parts) == 1:
         return source
@@ -167,7 +168,7 @@ def _names_in_head(text: str, item: Item) -> list[str]:
 
 
 def _any_name(why: str) -> list[str]:
-    """Return ANY if the removed text reads another file, whose names are unknown."""
+    """Return [ANY] if the reason says that the removed text reads another file, whose names are unknown; else []."""
     return [ANY] if why.endswith(INSTEAD) else []
 
 
@@ -189,11 +190,11 @@ def _items_at(source: Source, messages: Iterable[tuple[int, int, str]]) -> dict[
 
 
 def shader(source: Source, function: Function, folder: Path, options: tuple[str, ...] = ()) -> str:
-    """A function of a source as a fragment shader in GLSL: see `plain.py`.
+    """Return the text of a GLSL fragment shader that calls a function of a source: see `plain.py`.
 
     Raises:
         TranslationError: it does not compile.
-        MissingError: the compiler is not there.
+        MissingError: the compiler is not installed.
     """
     compiled = _compiled(source, program(source, function), (*options, *TARGET), folder)
     if compiled.failed:
@@ -204,15 +205,17 @@ def shader(source: Source, function: Function, folder: Path, options: tuple[str,
 
 
 def shader_of_glsl(source: Source, function: Function, folder: Path) -> str:
-    """Return a function of a GLSL source as a fragment shader, as `shader` does."""
+    """Return a GLSL fragment shader for a function of a GLSL source, as `shader` does. Raises TranslationError also
+    for a matrix made of one value."""
     if line := next(_diagonals(source.text), 0):
-        what = "a matrix from one value is not what GLSL defines; write out its elements"
+        what = "a matrix constructed from one value differs from GLSL's; write out its elements"
         raise TranslationError(source.explained(line, what))
     return shader(source, function, folder, GLSL)
 
 
 def _compiled(source: Source, text: str, options: tuple[str, ...], folder: Path) -> library.Compiled:
-    """Compile a part of a source with the text behind it. Raises TranslationError."""
+    """Return the result of Slang's compiler for a part of a source with the text behind it; the compiler may have
+    failed. Raises TranslationError if the text is refused before it is compiled."""
     defined = [word for macro in macros(source, TYPES) for word in ("-D", macro)]
     # A text without an entry point is checked, and nothing is written of it.
     target = () if "-target" in options else ("-target", "glsl")

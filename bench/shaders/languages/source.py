@@ -74,7 +74,7 @@ def _searched(folder: Path) -> list[Path]:
 
 
 def _option_for(name: str) -> str:
-    """Return the option that names the folder of a missing file."""
+    """Return the text of the option that names the folder of a missing file, such as `--include Packages=FOLDER`."""
     first, _, rest = name.lstrip("/").partition("/")
     is_virtual = rest and (name.startswith("/") or first == "Packages")
     return f"--include {f'{first}=' * bool(is_virtual)}FOLDER"
@@ -85,7 +85,8 @@ _PRAGMA, _NATURE = (-1,), (-2,)
 
 
 def _read(own: Path, path: Path, language: str) -> _Text:
-    """A file, which the user knows by another path. Raises UsageError."""
+    """Return the text of the file `own` without comments, with its includes and its guard; messages call it `path`.
+    Raises UsageError."""
     is_wgsl = (language or TRANSLATED.get(path.suffix.lower())) == "WGSL"
     try:
         text = bare(shader_text(file_text(own), path.suffix.lower()), is_wgsl)
@@ -97,7 +98,7 @@ def _read(own: Path, path: Path, language: str) -> _Text:
     lines = text.split("\n")
     includes = {i: match[match.lastindex or 0] for i, line in enumerate(lines) if (match := _INCLUDE.fullmatch(line))}
     if len(_ANY_INCLUDE.findall(text)) != len(includes):
-        raise UsageError(f'{path}: an #include must be written as #include "FILE" in one line')
+        raise UsageError(f'{path}: an #include must be written as #include "FILE" on one line')
     if is_wgsl:
         return _Text(lines, includes, _NATURE)
     imports: dict[int, str] = {}
@@ -128,7 +129,7 @@ class _Text(NamedTuple):
 
 
 def _guard(lines: list[str]) -> tuple[int, ...]:
-    """The places of #ifndef NAME and its #endif where they hold all of a text; else none."""
+    """Return the line indices of #ifndef NAME and its #endif if they enclose a whole text; else an empty tuple."""
     written = [i for i, line in enumerate(lines) if line.strip()]
     first = _UNLESS.fullmatch(lines[written[0]]) if len(written) > 2 else None
     if not first or not re.match(rf"[ \t]*#[ \t]*define[ \t]+{first[1]}\b", lines[written[1]]):
@@ -148,7 +149,7 @@ def _defined(lines: list[Line]) -> set[str]:
 
 
 def _renamed(lines: list[Line], names: set[str], mark: str) -> Iterator[Line]:
-    """Lines in which some names are others."""
+    """Yield lines, between others that define each of the names as NAME_MARK and that undefine it again."""
     where = lines[0].path
     yield from (Line(f"#define {name} {name}_{mark}", where, 1) for name in sorted(names))
     yield from lines
@@ -210,7 +211,7 @@ class Source:
         try:
             self.lines = list(self._all_lines())
         except RecursionError:
-            raise UsageError(f"{path}: its #includes are nested too deep") from None
+            raise UsageError(f"{path}: its #includes are nested too deeply") from None
         self.text = "".join(f"{line.text}\n" for line in self.lines)
 
     def _all_lines(self) -> Iterator[Line]:
@@ -220,7 +221,7 @@ class Source:
             yield Line(f"#define {name} {value if '=' in macro else 1}", Path("--define"), 1)
         for prelude in self.settings.preludes:
             if _resolved(Path(prelude)).suffix.lower() not in ENDINGS:
-                raise UsageError(f"--prelude {prelude}: its name must end like a shader's, such as .hlsl")
+                raise UsageError(f"--prelude {prelude}: its name must end in a shader's extension, such as .hlsl")
             yield from self._expanded(Path(prelude))
         if len(self.mains) == 1:
             yield from self._expanded(self.path)
@@ -242,7 +243,10 @@ class Source:
         yield from _renamed(second, clash & {encode}, "of_decoder")
 
     def _alone(self, path: Path, before: Mapping[Path, list[tuple[int, ...]]]) -> list[Line]:
-        """The lines of one of two files, where some were read before both."""
+        """Return the lines of one of two files, read as if alone.
+
+        Args:
+            before: the files that were read before both, each with its branches."""
         self._main, self._folders = path, _searched(_resolved(path.parent))
         self._tops.append(self._folders[-1])
         self._branches.now, self._read_in = (), {own: list(branches) for own, branches in before.items()}
@@ -296,7 +300,7 @@ class Source:
             yield from self._expanded(target)
 
     def _targets(self, path: Path, name: str) -> list[Path]:
-        """Return the paths at which an included file may be."""
+        """Return the paths at which a file that `path` includes by this name may be, in the order of preference."""
         if name.endswith(SLANG) and "_" in name:
             # A module's file may have hyphens for underscores.
             return [*self._targets(path, name.replace("_", "-")), *self._targets_as_written(path, name)]
@@ -311,8 +315,8 @@ class Source:
         return [*own, *given, *(folder / name for folder in self._folders)]
 
     def _is_read(self, own: Path, target: Path, is_module: bool) -> bool:
-        """Whether a file need not be read again: it is open, or it guards itself, or is a module, and was read wherever
-        this line is."""
+        """Whether a file need not be read again: it is open, or it guards itself, or is a module, and was read
+        wherever this line is. If not, and it is guarded or a module, remember that it is read here."""
         if own in self._open:
             return True
         if not (is_module or self._text_of(own, target).guard):
@@ -336,17 +340,18 @@ class Source:
         return "".join(f"{text}\n" for text, line in texts if line.path in self.mains)
 
     def without_missing(self) -> Source:
-        """Return a copy without the lines that include missing files."""
+        """Return a copy in which the lines that include missing files are empty."""
         texts = zip(self.text.split("\n"), self.lines, strict=False)
         return self.with_text("".join(f"{'' if line.wrong else text}\n" for text, line in texts))
 
     @property
     def missing(self) -> list[str]:
-        """The errors of lines that include missing files, with their places."""
+        """The errors of lines that include missing files, each as PATH:LINE: MESSAGE."""
         return [f"{line.path}:{line.number}: {line.wrong}" for line in self.lines if line.wrong]
 
     def without_part(self) -> Source:
-        """Return a copy without the declarations that `part` selects."""
+        """Return a copy in which the declarations that `part` selects are blank, and add them to `left_out`; the
+        source itself if it selects none."""
         number, count = self.part
         if not count:
             return self
@@ -363,12 +368,13 @@ class Source:
         return any(map(target.is_relative_to, self._tops)) and target.suffix.lower() in ENDINGS
 
     def place(self, number: int) -> tuple[Path, int]:
-        """The file and the line of a line of `text`, counted from 1; beyond its end, its last."""
+        """Return the file and the line number of a line of `text`, counted from 1; beyond its end, of the last
+        line."""
         line = self._line(number)
         return line.path, line.number
 
     def _line(self, number: int) -> Line:
-        """The line of a number, or the last one."""
+        """Return the line of this number, counted from 1; the nearest line if no line has it."""
         return self.lines[min(max(number, 1), len(self.lines)) - 1]
 
     def explained(self, number: int, message: str, token: str = "", column: int = 0) -> str:

@@ -64,7 +64,8 @@ class Translated:
     shaped: dict[str, Any]
 
     def glsl(self, is_unit: bool) -> Path:
-        """A file with one of the texts, that other processes find as well."""
+        """Return a file with one of the GLSL texts, which other processes find as well; `is_unit` chooses the text
+        with converted codes."""
         return glsl_file(self.prefix, self.texts[is_unit], TEXTS[is_unit])
 
 
@@ -81,7 +82,7 @@ class AloneError(UsageError):
 
 
 def translated(file: UserFile, by: str = "", kind: Kind = kinds.NORMAL) -> Translated:
-    """Return the encoder of a user's file.
+    """Return a user's encoder, translated to GLSL; from the cache if nothing has changed.
 
     Args:
         by: the compiler that reads the file, if not its own language's: see `BY_NAME`.
@@ -119,14 +120,14 @@ def own() -> str:
 
 
 def sources_of_this() -> list[Path]:
-    """Return the files that `own` hashes."""
+    """Return the paths of the files that `own` hashes, sorted."""
     folders = (Path(file).parent for file in (__file__, tree.__file__, tools.__file__))
     return sorted([Path(kinds.__file__), *(file for folder in folders for file in folder.iterdir() if file.is_file())])
 
 
 def _translated_or_none(value: Any) -> Translated | None:
-    """Return a cached or reported encoder; None if it is malformed, because a file could have misled the process that
-    reports it."""
+    """Return the encoder in a cached or reported value, the fields of `Translated`; None if it is malformed, because
+    a file could have misled the process that reports it."""
     try:
         encoder = Translated(**(value or {}))
     except TypeError:
@@ -141,7 +142,8 @@ _KINDS |= {"components": int, "notes": list, "texts": list, "functions": list, "
 
 
 def _by_child(file: UserFile, by: str, kind: Kind) -> dict[str, Any]:
-    """The answer of the child process that translates a file: its fields, as JSON has them."""
+    """Return the fields of `Translated` from the child process that translates a file, as JSON has them. Raises
+    UsageError, SeveralEncodersError and MissingError."""
     done = _ended_child(file, by, kind)
     answer = _answer(done)
     if answer is None and done.returncode in CRASHES:
@@ -168,7 +170,7 @@ def _ended_child(file: UserFile, by: str, kind: Kind, part: Part = (0, 0)) -> su
 
 
 def _answer(done: subprocess.CompletedProcess[str]) -> dict[str, Any] | None:
-    """Return the answer that a child printed; None if it died before."""
+    """Return the dictionary that a child printed, empty if it is another value; None if the child printed no JSON."""
     try:
         answer = json.loads(done.stdout)
     except (ValueError, RecursionError):
@@ -177,8 +179,8 @@ def _answer(done: subprocess.CompletedProcess[str]) -> dict[str, Any] | None:
 
 
 def _answer_without_killer(file: UserFile, by: str, kind: Kind) -> dict[str, Any] | None:
-    """The answer without the declaration that kills the compiler, which it names; None where leaving out one does not
-    help."""
+    """Return the answer without the declaration that kills the compiler; its notes or its error name the declaration.
+    None if it does not help to leave out a single declaration."""
     number, count = 0, 1
     while True:
         halves = [(2 * number, 2 * count), (2 * number + 1, 2 * count)]
@@ -188,7 +190,7 @@ def _answer_without_killer(file: UserFile, by: str, kind: Kind) -> dict[str, Any
         if not answer or not isinstance(left_out, list) or not left_out:
             return None
         if len(left_out) == 1:
-            reason = f"{_one_line(left_out[0])} kills the compiler"
+            reason = f"{_one_line(left_out[0])} crashes the compiler"
             more = {"error": f"{reason}; without it: {answer['error']}"} if "error" in answer else {}
             notes = {"notes": [f"{reason} and is left out", *answer["notes"]]} if "notes" in answer else {}
             return {name: value for name, value in answer.items() if name not in ("left_out", "alone")} | more | notes
@@ -199,12 +201,14 @@ def _one_line(message: Any) -> str:
 
 
 def glsl_file(name: str, text: str, mark: str = "") -> Path:
-    """A file of GLSL that other processes find as well, in the cache."""
+    """Return the path of a file in the cache with this GLSL text, which other processes find as well; write it if
+    needed."""
     return _cached_file(f"{name[:40]}-{kept.key_of(text)[:16]}{mark}.glsl", text)
 
 
 def _cached_file(name: str, text: str) -> Path:
-    """A file of this name and text in the cache; where that cannot be written, in a folder of this process."""
+    """Return the path of a file of this name and text in the cache or, if that cannot be written, in a folder of this
+    process; write it if needed. Raises UsageError."""
     for folder in (kept.folder() / "translated", None):
         path = (folder or kept.folder_of_this_process()) / name
         try:
@@ -213,4 +217,4 @@ def _cached_file(name: str, text: str) -> Path:
             return path
         except (OSError, ValueError):
             continue
-    raise UsageError(f"{name}: neither the cache nor a temporary folder can be written")
+    raise UsageError(f"{name}: neither the cache folder nor a temporary folder is writable")

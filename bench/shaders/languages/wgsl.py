@@ -29,11 +29,11 @@ _PLACED = re.compile(r"(\d+):(\d+): (.*)", re.S)
 
 
 def read(source: Source, folder: Path) -> Read:  # noqa: ARG001 (no tool works there)
-    """A source with its functions. Raises TranslationError."""
+    """Return a WGSL source, with its imports blanked, and its functions. Raises TranslationError."""
     if source.settings.defines:
         raise TranslationError(f"{source.path}: WGSL has no macros; leave out -D")
     if len(source.mains) > 1:
-        raise TranslationError(f"{source.path}: WGSL in two files is not supported; join them")
+        raise TranslationError(f"{source.path}: WGSL in two files is not supported; join the files")
     source = source.with_text(_IMPORT.sub(lambda match: blank(match[0]), source.text))
     return Read(
         source, [_function(function) for function in _checked(source, lambda: read_wgsl(source.text)).functions]
@@ -46,7 +46,8 @@ def _function(defined: tree.Function) -> Function:
 
 
 def with_places(source: Source, functions: Sequence[Function]) -> list[Function]:
-    """Functions of a source with the numbers and vectors that they are given and give. Raises TranslationError."""
+    """Return functions of a source with the numbers and vectors of their parameters and results. Raises
+    TranslationError."""
     program = _checked(source, lambda: read_wgsl(source.text))
     structs = {struct.name: struct.kinds for struct in program.structs}
     defined = {tree.plain_name(function): function for function in program.functions}
@@ -69,13 +70,13 @@ def _places(path: str, kind: str, structs: _Structs) -> Iterator[Place]:
 
 
 def _free(place: Place) -> str:
-    """Return the value of an unbound input, as in `FREE`."""
+    """Return the WGSL text of the value of an unbound input: that of its type in `FREE`, repeated in a vector."""
     value = FREE[place.kind]
     return value if place.size == 1 else f"vec{place.size}<{TYPES[place.kind]}>({value})"
 
 
 def adapter(function: Function, name: str, given: Mapping[str, str], places: Sequence[Place | None]) -> str:
-    """Return an adapter in WGSL, as `wiring.adapter` does in HLSL."""
+    """Return the text of an adapter in WGSL, as `wiring.adapter` does in HLSL."""
     words = {"n": "normalbench_n", "view": "normalbench_more", "vec4": "vec4f"}
     of_structs = [
         parameter for parameter in function.parameters if any("." in place.path for place in parameter.places)
@@ -93,7 +94,8 @@ def adapter(function: Function, name: str, given: Mapping[str, str], places: Seq
 
 
 def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: ARG001 (no tool works there)
-    """A function of a source as a fragment shader in GLSL: see `plain.py`. Raises TranslationError."""
+    """Return the text of a GLSL fragment shader that calls a function of a WGSL source: see `plain.py`. Raises
+    TranslationError."""
     program = _checked(source, lambda: reduced(read_wgsl(source.text), {function.name: "entry"}, "wgsl", ""))
     # Names that end in a number are those that `plain.py` makes its own: none is a word of GLSL's.
     numbered(program, "wgsl")
@@ -106,7 +108,7 @@ def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: AR
 
 
 def _checked(source: Source, make):
-    """Return what `make` returns. Raises TranslationError, at the user's line and column."""
+    """Return what the function `make` returns. Raises TranslationError, at the user's line and column if known."""
     try:
         return make()
     except tree.TranslationError as error:

@@ -65,12 +65,12 @@ class Wiring:
 
     @property
     def is_plain(self) -> bool:
-        """Whether only the name is given."""
+        """Whether only the function's name is given, without inputs and outputs."""
         return not (self.bound or self.made)
 
 
 def wiring_of(text: str) -> Wiring:
-    """Return the wiring that a text describes. Raises NoPairError."""
+    """Return the wiring in a text such as `Pack(s.normal=n; s.roughness=0.5)->o1.xyz`. Raises NoPairError."""
     match = TEXT.fullmatch(text)
     parts = [part.partition("=") for part in re.split(r"[;,]", match["bound"] or "") if part.strip()] if match else []
     if not match or not all(
@@ -96,13 +96,13 @@ def wired(pair: Sequence[Wiring], functions: Sequence[Function]) -> tuple[str, P
     encode, decode = (_function_of(side, functions) for side in pair)
     for wiring, not_given, given in zip(pair, (CODE, N), (N, CODE), strict=True):
         if any(value.partition(".")[0] == not_given for _, value in wiring.bound):
-            raise NoPairError(f"{wiring}: it is given {given}, not {not_given}")
+            raise NoPairError(f"{wiring}: {not_given} is not available here; use {given}")
     size, kind = _made(encode, pair[0])
     size_back, kind_back = _made(decode, pair[1])
     if size_back != NORMAL or kind_back != "float":
-        raise NoPairError(f"{pair[1]} returns no normal; name it, as in {pair[1].function}(...)->n")
+        raise NoPairError(f"{pair[1]} does not return a normal; name the output, as in {pair[1].function}(...)->n")
     if not (size in (2, 3) and kind == "float") and not (size == 1 and kind in PACKED):
-        raise NoPairError(f"{pair[0]} returns a code of {size} numbers; name two or three, as in ->o1.xy")
+        raise NoPairError(f"{pair[0]} returns a code of {size} numbers; choose two or three, as in ->o1.xy")
     code = kind if size == 1 else f"float{size}"
     text = _caller(encode, pair[0], "float3", N, code) + _caller(decode, pair[1], code, CODE, "float3")
     sizes = ((size if size > 1 else 0), NORMAL), (NORMAL, size if size > 1 else 0)
@@ -119,7 +119,7 @@ def _function_of(wiring: Wiring, functions: Sequence[Function]) -> Function:
     several = [function for function in functions if function.name == wiring.function]
     if not several:
         known = ", ".join(dict.fromkeys(function.name for function in functions)) or "none"
-        raise NoPairError(f"no function is named {wiring.function}; there are: {known}")
+        raise NoPairError(f"unknown function {wiring.function}; known: {known}")
     places = {place for place, _ in wiring.bound}
     return next((function for function in several if places <= set(_all_paths(function))), several[0])
 
@@ -135,13 +135,14 @@ def _swizzles(size: int) -> Iterator[str]:
 
 
 def outputs_of(function: Function) -> list[Place]:
-    """Return the outputs of a function: its result and its output parameters."""
+    """Return the numbers and vectors that a function outputs: those of its result, then those of its output
+    parameters."""
     outputs = [place for parameter in function.parameters if parameter.is_made for place in parameter.places]
     return [*function.results, *outputs]
 
 
 def _output(function: Function, path: str) -> Place:
-    """Return an output of a function, or a part of one, by its path. Raises NoPairError."""
+    """Return the place of a function's output, or of a part of one such as o1.xy, by its path. Raises NoPairError."""
     for place in outputs_of(function):
         if path == place.path:
             return place
@@ -154,7 +155,7 @@ def _output(function: Function, path: str) -> Place:
 
 
 def _made(function: Function, wiring: Wiring) -> tuple[int, str]:
-    """Return how many numbers a wired function outputs, and their type."""
+    """Return how many numbers a wired function outputs in all, and their type; "float" for more than one place."""
     places = [_output(function, path) for path in wiring.made] or outputs_of(function)
     kinds = {place.kind for place in places}
     return sum(place.size for place in places), kinds.pop() if len(places) == 1 else "float"
@@ -169,7 +170,7 @@ def _uses_view(wiring: Wiring) -> bool:
 
 
 def _caller(function: Function, wiring: Wiring, given: str, called: str, returned: str) -> str:
-    """Return a function that calls another function as it is wired.
+    """Return the HLSL text of a function that calls another function as it is wired. Raises NoPairError.
 
     Args:
         given, called: the type and the name of its input.
@@ -188,7 +189,8 @@ def _caller(function: Function, wiring: Wiring, given: str, called: str, returne
 
 
 def _body(function: Function, head: str, bound: Mapping[str, str], expression: str) -> str:
-    """Return a function with this head that calls another one and returns `expression`, an expression of its results.
+    """Return the HLSL text of a function with this head that calls another function and returns `expression`, an
+    expression of the results of the call.
 
     Args:
         bound: by place, the values of the called function's inputs.
@@ -210,7 +212,8 @@ def _body(function: Function, head: str, bound: Mapping[str, str], expression: s
 
 
 def adapter(function: Function, name: str, given: Mapping[str, str], places: Sequence[Place | None]) -> str:
-    """Return a function of four numbers, n, and three, view, that calls another function and returns four numbers.
+    """Return the HLSL text of a function of four numbers, n, and three, view, that calls another function and returns
+    four numbers.
 
     Args:
         given: by the path of each input of the other function, its value as a GLSL expression of n and view.
@@ -228,7 +231,7 @@ def adapter(function: Function, name: str, given: Mapping[str, str], places: Seq
 
 
 def with_words(text: str, words: Mapping[str, str]) -> str:
-    """Return a text with some words replaced; swizzles are left alone."""
+    """Return a text with each word that is a key replaced by its value; swizzles are left alone."""
     return re.sub(rf"(?<![.\w])(?:{'|'.join(words)})\b", lambda match: words[match[0]], text)
 
 
@@ -238,13 +241,16 @@ def _made_paths(function: Function, wiring: Wiring) -> list[str]:
 
 
 def _of_result(path: str, of_result: set[str]) -> str:
-    """A place as a program names it, where the result has a name."""
+    """Return a path as a program names it: with a dot before it if it is in the function's result, else unchanged.
+
+    Args:
+        of_result: the paths of the result's places."""
     whole = path.rpartition(".")[0]
     return f".{path}" if path and {path, whole} & of_result else path
 
 
 def _local(path: str) -> str:
-    """Return the variable for a parameter or a part of one, or for a part of the result."""
+    """Return the name of the variable for a parameter or a part of one, or for a part of the result."""
     return f"{RESULT}{path}" if path.startswith(".") else f"wired_{path}"
 
 
@@ -253,7 +259,8 @@ def inputs_of(function: Function) -> list[Place]:
 
 
 def _value(function: Function, path: str, value: str) -> str:
-    """A value as a program writes it, of a place's type."""
+    """Return the HLSL text of a wiring's value for the input at `path`: a number as it is; n, e and view as the
+    caller's parameter, a part of which is rounded for an integer."""
     name, _, letters = value.partition(".")
     if name not in (N, CODE, VIEW):
         return value
@@ -308,12 +315,14 @@ def _wirings(encode: Function, decode: Function) -> Iterator[tuple[Wiring, Wirin
 
 
 def _named(function: Function, path: str, size: int) -> tuple[str, ...]:
-    """Return an output as a wiring names it; empty for a result that is the only output."""
+    """Return the path by which a wiring names an output, in a tuple; an empty tuple for a result that is the only
+    output."""
     return (path,) if path else ("xyz"[:size],) if len(outputs_of(function)) > 1 else ()
 
 
 def _free(function: Function, taken: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Yield the other inputs of a function: the position, recognised by its name, and middle values for the rest."""
+    """Yield (path, value) for the inputs of a function that are not taken: `view` for a position, which is recognised
+    by its name, and middle values for the rest. Inputs with a default are skipped."""
     for parameter in function.parameters:
         for place in parameter.places if parameter.is_given and not parameter.has_default else ():
             is_view = place.size == NORMAL and any(word in place.path.lower() for word in OF_VIEW)
@@ -348,7 +357,7 @@ def _codes(encode: Function, decode: Function, normal: Place) -> _Ways:
 
 
 def _parts(outputs: Sequence[Place]) -> Iterator[list[Place]]:
-    """Places or parts of them that may be a code, or belong to it."""
+    """Yield lists of outputs, or of parts of an output, that may be a code or belong to a code."""
     if sum(place.size for place in outputs) <= NORMAL:
         yield list(outputs)
     for place in outputs:
@@ -360,7 +369,8 @@ def _parts(outputs: Sequence[Place]) -> Iterator[list[Place]]:
 
 
 def _given(parts: Sequence[Place], encode: Function, decode: Function) -> _Ways:
-    """A code of some parts, if the decoder takes it in the same order."""
+    """Yield the ways in which the parts can be the code, if the decoder takes them in the same order: the paths of
+    the outputs, and for each input of the decoder its path and value. Nothing for more than three numbers."""
     inputs, size = inputs_of(decode), sum(part.size for part in parts)
     outputs = tuple(path for part in parts for path in _named(encode, part.path, part.size))
     if size > NORMAL:

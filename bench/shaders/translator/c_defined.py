@@ -51,7 +51,8 @@ OPERATIONS: Mapping[str, str] = MappingProxyType(
 
 
 def counted(loop: For) -> dict[str, Range]:
-    """Return the counter of a loop that counts up between two numbers, with its range; empty for other loops."""
+    """Return the range, first and last value, of the counter of a loop that counts up between two numbers, by the
+    counter's name; empty for other loops, and if the loop changes its counter."""
     match loop:
         case For(
             Declare("int" | "uint", name, Literal(_, first)),

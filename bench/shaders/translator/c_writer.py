@@ -136,7 +136,8 @@ class CWriter(Writer):
         return f"typedef struct {{ {scalar} {', '.join(FIELDS[:size])}; }} {self._kind(kind)};"
 
     def _helper(self, name: str, *given: str) -> ScalarText:
-        """A call of a function of the file's own."""
+        """Return the text of a call of one of the file's helper functions, which is written to the file, and its
+        level."""
         if name not in self._helpers:
             self._helpers[name] = self._global_name(name)
         return f"{self._helpers[name]}({', '.join(given)})", PRIMARY
@@ -185,7 +186,7 @@ class CWriter(Writer):
         return self._comments(statement, indent) + hoisted + text
 
     def _apart(self, write: Callable[[], str], indent: str) -> tuple[str, str]:
-        """Return a text, and the statements that must precede it."""
+        """Return the text that `write` returns, and the statements that must precede it."""
         outer = self._hoisted, self._indent
         self._hoisted, self._indent = [], indent
         text = write()
@@ -233,13 +234,15 @@ class CWriter(Writer):
         return super()._simple_text(statement)
 
     def _is_plain(self, target: Expression, mark: str, value: Expression) -> bool:
-        """Whether C's own operator with = does it."""
+        """Whether C's own operator, such as `+=`, does the assignment: the target is a scalar variable and, for whole
+        numbers, C defines the result."""
         if target.kind not in SCALARS or not isinstance(target, Name):
             return False
         return scalar_of(target.kind) not in WHOLE or self._is_safe(Binary(target.kind, mark[:-1], target, value))
 
     def _whole(self, value: Expression | None, is_initial: bool = False) -> str:
-        """A value as C has it: a scalar, or a structure."""
+        """Return the C text of a whole value: a scalar, or a structure. An initial value is without the structure's
+        type."""
         assert value
         if isinstance(value, Elements):
             values = [self._whole(element, is_initial=True) for element in value.values]
@@ -254,7 +257,7 @@ class CWriter(Writer):
     # Places: what can be assigned to, and read without being computed.
 
     def _place(self, value: Expression) -> str:
-        """A variable, or a part of one."""
+        """Return the C text of a variable, or of a part of one. Raises TranslationError for any other expression."""
         match value:
             case Name(_, name):
                 return self._name(name)
@@ -279,7 +282,7 @@ class CWriter(Writer):
         return f"{self._place(inner)}.{field}"
 
     def _within(self, index: Expression, count: int) -> str:
-        """An index that an array of some elements has."""
+        """Return the text of an index into `count` elements; a helper bounds it unless its range is known to fit."""
         known = self._range(index)
         if known and known[0] >= 0 and known[1] < count:
             return self._text(index)
@@ -288,7 +291,8 @@ class CWriter(Writer):
     # Values: a vector is the list of its components.
 
     def _text_and_level(self, value: Expression) -> ScalarText:
-        """A scalar; or a whole vector that has a name."""
+        """Return the text and the level of a scalar, or of a whole value that is a name or a call of an own
+        function."""
         if isinstance(value, Name):
             return self._name(value.name), PRIMARY
         if isinstance(value, Call) and value.is_own:
@@ -347,7 +351,7 @@ class CWriter(Writer):
         return self._member_parts(f"(&{whole}.x)[{self._within(index, count)}]", value.kind)
 
     def _count_of(self, kind: str) -> int:
-        """Return how many scalars a value has."""
+        """Return how many scalars a value of this type has."""
         if kind in self._structs:
             return sum(map(self._count_of, self._structs[kind].kinds.values()))
         return int(kind[3]) ** 2 if kind in MATRICES else size_of(kind)
@@ -364,13 +368,14 @@ class CWriter(Writer):
         return [(f"{name}.{field}", PRIMARY) for field in FIELDS[: size_of(kind)]]
 
     def _once(self, part: ScalarText, kind: str) -> ScalarText:
-        """A scalar that is used several times, computed once."""
+        """Return a scalar that is used several times: as it is if it is plain, else as the name of a new variable for
+        it."""
         if PLAIN.issuperset(part[0].removeprefix("-")):
             return part
         return self._temporary(self._kind(kind), part[0]), PRIMARY
 
     def _temporary(self, kind: str, text: str) -> str:
-        """Return the name of a new variable for a value, which is computed before the statement."""
+        """Return the name of a new variable with this value, which is declared before the current statement."""
         name = self._fresh_name()
         self._hoisted.append(f"{self._indent}const {kind} {name} = {text};\n")
         return name
@@ -382,7 +387,7 @@ class CWriter(Writer):
         return name
 
     def _broad_parts(self, value: Expression, size: int) -> list[ScalarText]:
-        """A value's components, a scalar as many times."""
+        """Return the texts of a value's components; a scalar is computed once and repeated `size` times."""
         parts = self._parts(value)
         return [self._once(parts[0], scalar_of(value.kind))] * size if len(parts) == 1 < size else parts
 
@@ -407,7 +412,7 @@ class CWriter(Writer):
         return [(f"{_bracketed(a, level)} {mark} {_bracketed(b, level + 1)}", level) for a, b in pairs]
 
     def _size(self, value: Binary) -> int:
-        """Return how many components an operation has."""
+        """Return how many components an operation has: the most that its result or an operand has."""
         kinds = (value.kind, value.left.kind, value.right.kind)
         return max(map(self._count_of, kinds))
 
@@ -424,7 +429,7 @@ class CWriter(Writer):
         return scalar_of(value.kind) == "uint" or self._range(value) is not None
 
     def _range(self, value: Expression) -> Range | None:
-        """Return the smallest and the largest value that a signed number can have; None if they are unknown."""
+        """Return the smallest and the largest value that a whole number can have; None if they are unknown."""
         match value:
             case Literal("int" | "uint", text):
                 return int(text, 0), int(text, 0)
@@ -450,7 +455,8 @@ class CWriter(Writer):
         return name, PRIMARY
 
     def _product_parts(self, value: Binary) -> list[ScalarText]:
-        """A matrix's columns by a vector from the left, or summed by a vector's components."""
+        """Return the components of a matrix product: of a vector from the left and each column, or of the columns
+        summed by the components of a vector or of each column of another matrix."""
         left, right = value.left, value.right
         size = int((left if "mat" in left.kind else right).kind[3])
         if "mat" not in left.kind:
@@ -467,7 +473,7 @@ class CWriter(Writer):
         ]
 
     def _named_parts(self, value: Expression) -> list[ScalarText]:
-        """A vector's components, each computed once."""
+        """Return the texts of a value's components, each of which is computed only once."""
         return [self._once(part, scalar_of(value.kind)) for part in self._parts(value)]
 
     def _choice_parts(self, value: Choice) -> list[ScalarText]:
@@ -509,7 +515,8 @@ class CWriter(Writer):
         return texts if kind in SCALARS else f"({self._kind(kind)}){texts}"
 
     def _braced_text(self, kind: str, texts: Iterator[str]) -> str:
-        """Return a value's braced initialiser, taking scalars from `texts`."""
+        """Return the braced initialiser of a value of this type, taking scalars from `texts`; a scalar itself has no
+        braces."""
         if kind in SCALARS:
             return next(texts)
         inner = [scalar_of(kind)] * size_of(kind)
@@ -541,7 +548,7 @@ class CWriter(Writer):
         return [self._scalar_call(value.name, scalar, parts) for parts in zip(*given, strict=True)]
 
     def _made_parts(self, text: str, kind: str) -> list[ScalarText]:
-        """A structure under a name, as its components."""
+        """Return the texts of the components of a structure, which a new variable holds."""
         return self._member_parts(self._temporary(self._kind(kind), text), kind)
 
     def _scalar_call(self, name: str, scalar: str, parts: tuple[ScalarText, ...]) -> ScalarText:

@@ -73,7 +73,7 @@ def _changing(function: Function) -> _Changing:
 
 
 def _unused(name: str, taken: set[str]) -> str:
-    """Return a name that is not taken, and add it to the taken names."""
+    """Return this name, with a number behind it if it is taken, and add it to the taken names."""
     ways = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
     free_name = next(way for way in ways if way not in taken)
     taken.add(free_name)
@@ -81,7 +81,7 @@ def _unused(name: str, taken: set[str]) -> str:
 
 
 def _give_back(function: Function, changing: _Changing) -> None:
-    """Has a function give its structure."""
+    """Rewrite a function that changes its arguments: it returns the structure of `changing` instead."""
     changed = [p for p in function.parameters if p.is_changed]
     function.kind = changing.made.name
     begin = [Declare(p.kind, p.name, None) for p in function.parameters if not _is_taken(p)]
@@ -101,7 +101,8 @@ def _made(kind: str, value: Expression | None, changed: list[Parameter]) -> Expr
 
 
 def _with_returns(statements: list[Statement], kind: str, changed: list[Parameter]) -> list[Statement]:
-    """Statements whose returns give a structure."""
+    """Rewrite the returns in statements, at any depth, to return a structure of the old value and the changed
+    parameters. Return the same list."""
     for statement in statements:
         for body in _bodies(statement):
             body[:] = _with_returns(body, kind, changed)
@@ -111,7 +112,7 @@ def _with_returns(statements: list[Statement], kind: str, changed: list[Paramete
 
 
 def _bodies(statement: Statement) -> list[list[Statement]]:
-    """The statements in a statement."""
+    """Return the lists of statements inside a statement, such as both branches of an `if`; empty without any."""
     match statement:
         case If(_, chosen, other):
             return [chosen, other]
@@ -133,14 +134,16 @@ class _Calls:
     names: set[str]
 
     def statements(self, given: list[Statement]) -> Iterator[Statement]:
-        """Statements in which these are called by themselves."""
+        """Yield statements in which the calls that change arguments are statements by themselves, at any depth.
+        Raises TranslationError for a call within an expression."""
         for statement in given:
             for body in _bodies(statement):
                 body[:] = self.statements(body)
             yield from self._apart(statement)
 
     def _apart(self, statement: Statement) -> Iterator[Statement]:
-        """Yield a statement, or its replacement if its whole value is a call of a function that changes arguments."""
+        """Yield a statement, or its replacement if its whole value is a call of a function that changes arguments.
+        Raises TranslationError for such a call within an expression."""
         value = statement.call if isinstance(statement, Perform) else getattr(statement, "value", None)
         is_plain = not isinstance(statement, Assign) or statement.operator == "="
         if is_plain and isinstance(value, Call) and value.name in self.changing:

@@ -46,7 +46,7 @@ PRECISIONS = frozenset(("highp", "mediump", "lowp", "precise"))
 
 
 def read_glsl(text: str) -> Program:
-    """A program of GLSL's text, its includes in place. Raises TranslationError."""
+    """Return the program in a GLSL text whose includes are already in place. Raises TranslationError."""
     before = Preprocessor()
     with one_error_type():
         parser = GlslParser(before.tokens(text), before.constants)
@@ -116,7 +116,7 @@ class GlslParser(Parser):
             while self._skip(","):
                 kinds[self._word_token().text] = kind
             if self._next_token.text == "[":
-                raise self._error("an array in a structure is not translated")
+                raise self._error("arrays in structures are not supported")
             self._take(";")
         self._take(";")
         self._structs[name] = Struct(name, kinds)
@@ -167,13 +167,14 @@ class GlslParser(Parser):
         return parameters
 
     def _sized(self, kind: str) -> str:
-        """A type, or an array of it where a length follows in brackets."""
+        """Read a length in brackets, if one follows, and return the type of an array; otherwise return the type
+        unchanged."""
         length = self._length()
         return kind if length is None else self._array_kind(kind, length)
 
     def _array_kind(self, kind: str, length: Expression) -> str:
         if kind in self._structs:
-            raise self._error("an array of structures is not translated")
+            raise self._error("arrays of structures are not supported")
         return super()._array_kind(kind, length)
 
     def _length(self) -> Expression | None:
@@ -253,7 +254,7 @@ class GlslParser(Parser):
         return For(starts[0] if starts else None, condition, step, body)
 
     def _starts(self) -> list[Statement]:
-        """Read the first part between a loop's parentheses."""
+        """Read the first part between a loop's parentheses, and return its statements; empty if there are none."""
         if self._skip(";"):
             return []
         if self._is_type(self._next_token.text) or self._next_token.text in ("const", *PRECISIONS):
@@ -261,7 +262,8 @@ class GlslParser(Parser):
         return [self._before_semicolon(self._assignment())]
 
     def _do(self) -> Statement:
-        """do BODY while (CONDITION), as a loop that does not ask before its first turn."""
+        """Read a loop after `do`: BODY while (CONDITION). Return it as a `while` that skips the condition on its
+        first turn."""
         is_first = self._unused("is_first")
         body = self._body()
         self._take("while")
@@ -290,7 +292,10 @@ class GlslParser(Parser):
         return declarations
 
     def _declarator(self, kind: str, is_constant: bool, is_open: bool) -> Statement | None:
-        """A name of a declaration; `is_open` where it is an array as long as its value."""
+        """Read a name in a declaration, and its value; return None if it is an alias of another constant.
+
+        Args:
+            is_open: whether it is an array that is as long as its value."""
         name = self._word_token().text
         if self._next_token.text == "[" and self._text_ahead(1) == "]":
             self._at += 2
@@ -298,7 +303,7 @@ class GlslParser(Parser):
         kind = self._sized(kind)
         value = self._expression() if self._skip("=") else None
         if value is None and is_open:
-            raise self._error(f"{name} has neither a length nor a value")
+            raise self._error(f"array {name} has neither a length nor a value")
         if is_constant and getattr(value, "name", None) in {each.name for each in self._made.constants}:
             assert value
             self._declared(name, value.kind, value)
@@ -329,7 +334,7 @@ class GlslParser(Parser):
             return self._structure(self._structs[token.text], self._arguments())
         if token.kind != "word":
             self._at -= 1
-            raise self._error(f"{token.text} is not expected here")
+            raise self._error(f"unexpected {token.text}")
         if self._skip("("):
             return self._called(token.text, self._arguments(), token.place)
         return self._name_expression(token)
@@ -351,14 +356,15 @@ class GlslParser(Parser):
         return Construct(chosen.kind, list(choices))
 
     def _field_values(self, value: Expression) -> list[Expression]:
-        """Return a structure's fields, if it is a name or a constructor; any other would be computed for each field."""
+        """Return the values of a structure's fields. Raises TranslationError unless it is a name or a constructor,
+        because any other value would be computed for each field."""
         whole = value
         while isinstance(whole, Member):
             whole = whole.value
         if isinstance(value, Construct):
             return value.arguments
         if not isinstance(whole, Name):
-            raise self._error(f"between two {value.kind} that are computed, choose by if")
+            raise self._error(f"?: between computed values of {value.kind} is not supported; use if")
         return [Member(kind, value, name) for name, kind in self._structs[value.kind].kinds.items()]
 
     def _array(self, kind: str) -> Expression:
@@ -370,7 +376,7 @@ class GlslParser(Parser):
         return Elements(f"{kind}[{len(values)}]", values)
 
     def _index_expression(self, value: Expression, index: Expression) -> Expression:
-        """An element; of an array that has no name, one of its values."""
+        """Return an element of an array, a vector or a matrix; of an array that has no name, one of its values."""
         return (
             self._element_of(value, index) if isinstance(value, Elements) else super()._index_expression(value, index)
         )
@@ -382,9 +388,10 @@ class GlslParser(Parser):
         return choice
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
-        """== and != of vectors are one truth value."""
+        """Return an operation of two values; == and != of vectors are one truth value. Raises TranslationError for
+        structures."""
         if left.kind in self._structs or right.kind in self._structs:
-            raise self._error(f"{left.kind} {mark} {right.kind}: structures are compared field by field")
+            raise self._error(f"{left.kind} {mark} {right.kind}: compare structures field by field")
         combined = self._combined(mark, left, right)
         if mark in ("==", "!=") and size_of(combined.kind) > 1:
             return Call("bool", "all" if mark == "==" else "any", [combined])
@@ -402,7 +409,7 @@ class GlslParser(Parser):
 
 
 def _number(text: str) -> Expression:
-    """A number; a whole one of 32 bits with the highest set is negative."""
+    """Return the expression for a number's text; a 32-bit whole number whose highest bit is set is negative."""
     kind, plain = suffixed(text)
     if kind == "int" and int(plain, 0) >= 2**31:
         return Unary(kind, "-", Literal(kind, str(2**32 - int(plain, 0))))

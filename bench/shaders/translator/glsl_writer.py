@@ -58,7 +58,7 @@ class EsslWriter(GlslWriter):
     has_precise = False
 
     # WebGL 2 has no `layout(binding)`.
-    binding_advice = "Bind it by glUniform1i."
+    binding_advice = "Bind it with glUniform1i."
 
     def _declared_table(self, table: TexelTable, binding: int) -> str:  # noqa: ARG002 (others have it in the text)
         return f"uniform highp sampler2D {table.name};"

@@ -85,7 +85,8 @@ class HlslWriter(Writer):
         return "".join(f"{function}\n\n" for _, function in self._choices.values()) + text
 
     def _statement(self, statement: Statement, indent: str) -> str:
-        """A loop over an array of constants is unrolled: its elements are then numbers of the instructions."""
+        """Return the text of a statement. A loop over an array of constants is marked to be unrolled: its elements
+        are then numbers of the instructions."""
         text = super()._statement(statement, indent)
         if not isinstance(statement, For) or not _has_ends(statement) or not self._reads_array(statement):
             return text
@@ -97,7 +98,8 @@ class HlslWriter(Writer):
         return any(isinstance(array, Name) and array.name in self._constants for array in arrays)
 
     def _struct(self, struct: Struct) -> str:
-        """The structure, and a function that makes it of its fields: HLSL has no constructor of one."""
+        """Return the text of a structure, and of a function that makes one from its fields: HLSL has no such
+        constructor."""
         fields = self._fields(struct)
         name = self._makers[struct.name] = self._global_name(f"{struct.name.removeprefix(f'{self._prefix}_')}_of")
         given = ", ".join(f"{self._kind(kind)} {field}" for field, kind in fields.items())
@@ -134,11 +136,13 @@ class HlslWriter(Writer):
         return names <= self._constants and not any(isinstance(node, Call) and node.is_own for node in nodes)
 
     def _operand(self, parent: Binary, child: Expression, least: int) -> str:
-        """An operand: Slang takes `a < b && c > (d)` for a generic function of b && c."""
+        """Return the text of an operand. A `<` in a logical operation gets parentheses: Slang reads `a < b && c >
+        (d)` as a generic function of b && c."""
         return super()._operand(parent, child, UNARY if parent.operator in TRUTHS and is_less(child) else least)
 
     def _choice_and_level(self, value: Choice) -> tuple[str, int]:
-        """Write a choice of vectors by component: HLSL 2021 has no `?:` of vectors, earlier versions have no select."""
+        """Return the text and the level of a choice; of vectors, by component: HLSL 2021 has no `?:` of vectors, and
+        earlier versions have no select."""
         size = size_of(value.condition.kind)
         if size == 1:
             text, level = super()._choice_and_level(value)
@@ -156,7 +160,8 @@ class HlslWriter(Writer):
         return f"{self._choice_of(value.kind, value.condition.kind, size)}({', '.join(texts)})", PRIMARY
 
     def _component(self, value: Expression, field: str) -> str:
-        """A component of a vector; of a comparison, and of numbers, without the whole."""
+        """Return the text of a component of a vector; of a comparison or a constructor, without the rest of the
+        vector."""
         index = FIELDS.index(field)
         match value:
             case Binary(_, mark, left, right) if mark in COMPARES and size_of(left.kind) == size_of(right.kind):
@@ -168,7 +173,11 @@ class HlslWriter(Writer):
         return f"{self._text(value, PRIMARY)}.{field}"
 
     def _choice_of(self, kind: str, condition: str, size: int) -> str:
-        """The function that chooses between two values of a kind."""
+        """Return the name of the function that chooses between two values of a kind; write the function on first use.
+
+        Args:
+            condition: the type of the condition.
+            size: the number of components."""
         if kind not in self._choices:
             name, kind_name = self._global_name(f"chosen_{self._kind(kind)}"), self._kind(kind)
             head = f"{kind_name} {name}({self._kind(condition)} condition, {kind_name} chosen, {kind_name} other)"

@@ -61,7 +61,7 @@ class MslWriter(Writer):
     has_tables = False
     splats = True
 
-    binding_advice = "Functions that read it take it last."
+    binding_advice = "Functions that read it take it as their last parameter."
 
     def __init__(self, prefix: str, texels: Mapping[str, Texels], stem: str = ""):
         super().__init__(prefix, texels, stem)
@@ -108,7 +108,8 @@ class MslWriter(Writer):
         return super()._construct(value)
 
     def _conversion(self, value: Construct, given: Expression, size: int) -> str:
-        """Convert to or from Booleans by a choice or a comparison: compilers differ in the value of true."""
+        """Return the text of a conversion. Vectors become Booleans by a comparison, and are made from them by a
+        choice, because compilers differ in the value of true."""
         from_kind, to_kind = scalar_of(given.kind), scalar_of(value.kind)
         if size > 1 and from_kind == "bool":
             ones, zero = (Construct(value.kind, [Literal(to_kind, text)]) for text in _ends(to_kind))
@@ -124,7 +125,7 @@ def _ends(scalar: str) -> tuple[str, str]:
 
 
 def tables_read(program: Program) -> dict[str, list[str]]:
-    """The tables that each function reads, itself or by those it calls; by name, in order."""
+    """Return, by function, the sorted names of the tables that it reads, itself or in functions that it calls."""
     names = {table.name for table in program.tables}
     tables: dict[str, list[str]] = {}
     for function in program.functions:

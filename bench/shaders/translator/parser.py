@@ -94,7 +94,7 @@ class Parser:
         self._words = {token.text for token in given if token.kind == "word"}
 
     def program(self) -> Program:
-        """The tree of the whole text. Raises TranslationError."""
+        """Return the tree of the whole text. Raises TranslationError."""
         with one_error_type(self._error):
             program = self._program()
         program.functions[:0] = self._made_functions.values()
@@ -114,10 +114,10 @@ class Parser:
         return self._tokens[index].text if index < len(self._tokens) else ""
 
     def _take(self, *texts: str) -> Token:
-        """The next token, which must be one of these if any are named."""
+        """Take and return the next token. Raises TranslationError at the end, or if texts are given without it."""
         token = self._next_token
         if (texts and token.text not in texts) or token is END:
-            raise self._error(f"{' or '.join(texts) or 'more'} expected, not {token.text}")
+            raise self._error(f"expected {' or '.join(texts) or 'more'}, not {token.text}")
         self._at += 1
         return token
 
@@ -130,7 +130,7 @@ class Parser:
 
     def _word_token(self) -> Token:
         if self._next_token.kind != "word":
-            raise self._error(f"a name expected, not {self._next_token.text}")
+            raise self._error(f"expected a name, not {self._next_token.text}")
         return self._take()
 
     def _error(self, what: str, place: Place | None = None) -> TranslationError:
@@ -142,7 +142,7 @@ class Parser:
         """Return the result of `read`, one level deeper. Raises TranslationError if that is too deep."""
         self._depth += 1
         if self._depth > MOST_DEPTH:
-            raise self._error(f"nested more than {MOST_DEPTH} deep")
+            raise self._error(f"nested more than {MOST_DEPTH} levels deep")
         try:
             return read()
         finally:
@@ -155,7 +155,7 @@ class Parser:
             if token.text in scope:
                 return replace(scope[token.text])
         self._at -= 1
-        raise self._error(f"{token.text} is not known here")
+        raise self._error(f"unknown name {token.text}")
 
     def _declared(self, name: str, kind: str, stands_for: Expression | None = None) -> str:
         """Make a name known in the innermost scope, and return its name in the tree.
@@ -172,7 +172,7 @@ class Parser:
         return name in self._functions or any(name in scope for scope in self._scopes[:-1])
 
     def _unused(self, name: str) -> str:
-        """A name like this one that the program does not have."""
+        """Return a name like this one that the program does not have, such as NAME_2, and count it as taken."""
         plain = name.rstrip("_")
         free_name = next(candidate for number in count(2) if (candidate := f"{plain}_{number}") not in self._words)
         self._words.add(free_name)
@@ -208,7 +208,7 @@ class Parser:
             self._take()
             left, terms = self._operation(mark, left, self._binary(BINDING[mark] + 1)), terms + 1
             if terms > MOST_TERMS:
-                raise self._error(f"more than {MOST_TERMS} terms")
+                raise self._error(f"an expression of more than {MOST_TERMS} terms")
         return left
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
@@ -216,7 +216,8 @@ class Parser:
         return self._combined(mark, left, right)
 
     def _combined(self, mark: str, left: Expression, right: Expression) -> Expression:
-        """Two values combined component by component."""
+        """Return two values combined component by component by an operator, converted to one scalar type except in
+        logic and shifts; integer literals are folded."""
         if mark in LOGICAL:
             # Of two truth values ^^ and != are one, and only GLSL has the former.
             return Binary("bool", "!=" if mark == "^^" else mark, left, right)
@@ -238,7 +239,7 @@ class Parser:
             return left if "vec" in left else right
         sizes = size_of(left), size_of(right)
         if 1 not in sizes and sizes[0] != sizes[1]:
-            raise self._error(f"{left} and {right} do not mix")
+            raise self._error(f"{left} and {right} cannot be combined")
         return left if sizes[0] >= sizes[1] else right
 
     def _alike(self, a: Expression, b: Expression, sizes_too: bool = True) -> tuple[Expression, Expression]:
@@ -248,20 +249,22 @@ class Parser:
             widest = "float" if "float" in scalars else "uint"
             a, b = self._converted(a, widest), self._converted(b, widest)
         if sizes_too and size_of(a.kind) != size_of(b.kind):
-            raise self._error(f"{a.kind} and {b.kind} do not mix")
+            raise self._error(f"{a.kind} and {b.kind} cannot be combined")
         return a, b
 
     def _converted(self, value: Expression, scalar: str) -> Expression:
-        """A value with components of another type; a literal becomes a literal of it."""
+        """Return a value with components of another scalar type; a literal becomes a literal of it. Raises
+        TranslationError for a conversion from or to bool."""
         current = scalar_of(value.kind)
         if current == scalar:
             return value
         if "bool" in (current, scalar):
-            raise self._error(f"a {current} where a {scalar} is expected")
+            raise self._error(f"expected {scalar}, not {current}")
         return self._cast(value, scalar)
 
     def _cast(self, value: Expression, scalar: str) -> Expression:
-        """A value with components of another type, as a constructor makes it; a literal becomes a literal of it."""
+        """Return a value with components of another scalar type, as a constructor makes it; a literal becomes a
+        literal of it."""
         current = scalar_of(value.kind)
         if current == scalar:
             return value
@@ -286,7 +289,8 @@ class Parser:
         raise NotImplementedError
 
     def _behind(self, value: Expression) -> Expression:
-        """Members and elements behind a value."""
+        """Read the members and the elements behind a value, and return the whole expression; the value if there are
+        none."""
         while True:
             if self._skip("."):
                 value = self._member(value, self._word_token())
@@ -307,7 +311,7 @@ class Parser:
                 plain = "".join("xyzw"[letters.index(letter)] for letter in names)
                 return Swizzle(vector(scalar_of(value.kind), len(names)), value, plain)
         self._at -= 1
-        raise self._error(f"a {value.kind} has no .{names}")
+        raise self._error(f"{value.kind} has no member {names}")
 
     def _element_kind(self, kind: str) -> str:
         if kind.endswith("]"):
@@ -315,13 +319,13 @@ class Parser:
         if kind.startswith("mat"):
             return f"vec{kind[3]}"
         if size_of(kind) == 1:
-            raise self._error(f"a {kind} has no elements")
+            raise self._error(f"{kind} has no elements")
         return scalar_of(kind)
 
     def _array_kind(self, kind: str, length: Expression) -> str:
         count = self._whole_number(length)
         if count is None:
-            raise self._error("an array's length is not a number")
+            raise self._error("the length of an array must be a constant integer")
         return f"{kind}[{count}]"
 
     def _whole_number(self, value: Expression | None) -> int | None:
@@ -348,7 +352,11 @@ class Parser:
         return arguments
 
     def _called(self, name: str, arguments: list[Expression], place: Place | None = None) -> Expression:
-        """Return a call of a function; `place` is the place of its name."""
+        """Return the expression for a call of a function by its name: a call, or the operations that replace a
+        function such as mod. Raises TranslationError for an unknown function.
+
+        Args:
+            place: the place of its name."""
         if name in self._functions:
             return self._own_call(name, arguments)
         if name == "mod" and len(arguments) == 2:
@@ -368,7 +376,7 @@ class Parser:
             return Literal("float", with_a_point(repr(2.0 ** float(arguments[0].text))))
         kind = result_of(name, [a.kind for a in arguments]) if arguments else None
         if kind is None:
-            raise self._error(f"{name} is not a function that is known here", place)
+            raise self._error(f"unknown function {name}", place)
         return Call(kind, name, arguments)
 
     def _given(self, name: str, arguments: list[Expression]) -> list[Expression]:
@@ -411,13 +419,14 @@ class Parser:
             sizes = [size_of(kind) for kind in kinds]
             function = next((f for f in same if [size_of(p.kind) for p in f.parameters] == sizes), None)
         if not function:
-            raise self._error(f"{name} does not take ({', '.join(kinds)})")
+            raise self._error(f"{name} does not accept arguments of types ({', '.join(kinds)})")
         pairs = zip(arguments, function.parameters, strict=True)
         given = [self._converted(a, scalar_of(p.kind)) if a.kind != p.kind else a for a, p in pairs]
         return Call(function.kind, function.name, given, is_own=True)
 
     def _constructed(self, kind: str, arguments: list[Expression]) -> Expression:
-        """A type's constructor, with components of that type and no more of them than it takes."""
+        """Return the expression for a type's constructor: components of that type, and of the last argument only as
+        many as fit. Raises TranslationError for too many arguments."""
         if len(arguments) == 1 and arguments[0].kind == kind:
             return arguments[0]
         scalar, size = scalar_of(kind), size_of(kind)
@@ -430,7 +439,7 @@ class Parser:
         for argument in arguments:
             left = size - sum(size_of(component.kind) for component in components)
             if left <= 0:
-                raise self._error(f"a {kind} of too many components")
+                raise self._error(f"too many components for {kind}")
             parts = min(size_of(argument.kind), left)
             if parts < size_of(argument.kind):
                 argument = Swizzle(vector(scalar_of(argument.kind), parts), argument, FIELDS[0][:parts])
@@ -438,7 +447,8 @@ class Parser:
         return components[0] if size == 1 else Construct(kind, components)
 
     def _matrix(self, kind: str, arguments: list[Expression]) -> Expression:
-        """A matrix of its columns or of its numbers; of one number that is its diagonal."""
+        """Return a matrix made of its columns or of its numbers, of one number on its diagonal, or of the corner of a
+        larger matrix. Raises TranslationError for other arguments."""
         size = int(kind[3])
         if len(arguments) == 1 and arguments[0].kind == "float":
             (number,) = arguments
@@ -450,7 +460,7 @@ class Parser:
             columns = [Index(f"vec{matrix.kind[3]}", matrix, Literal("int", str(column))) for column in range(size)]
             return Construct(kind, [Swizzle(f"vec{size}", column, FIELDS[0][:size]) for column in columns])
         if [a.kind for a in arguments] not in ([f"vec{size}"] * size, ["float"] * size**2):
-            raise self._error(f"a {kind} is made of {size} columns, {size**2} numbers or one number")
+            raise self._error(f"{kind} needs {size} columns, {size**2} numbers or one number")
         if len(arguments) > size:
             columns = [arguments[start : start + size] for start in range(0, size**2, size)]
             arguments = [Construct(f"vec{size}", column) for column in columns]
@@ -462,7 +472,7 @@ class Parser:
         raise NotImplementedError
 
     def _block(self) -> list[Statement]:
-        """Statements between braces, in a scope of their own."""
+        """Read statements between braces, in a scope of their own."""
         self._take("{")
         self._scopes.append({})
         statements: list[Statement] = []
@@ -472,7 +482,7 @@ class Parser:
         return statements
 
     def _about(self, statement: Statement, first: Token) -> Statement:
-        """Return a statement with the comments around its tokens, the last of which was just taken."""
+        """Return a statement, to which the comments around its tokens are added; its last token was just taken."""
         statement.above = [*first.above, *statement.above]
         statement.behind = statement.behind or self._tokens[self._at - 1].behind
         return statement
@@ -500,7 +510,7 @@ class Parser:
 
 
 def _is_short(value: Expression) -> bool:
-    """Whether a value can be written twice: a number, a name, or a part of one."""
+    """Whether a value can be written twice: a number, a name, or a part or the negative of one."""
     while isinstance(value, Swizzle | Unary):
         value = value.value
     return isinstance(value, Literal | Name)

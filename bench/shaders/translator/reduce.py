@@ -46,7 +46,7 @@ def reduced(
     bound: Mapping[str, float] = MappingProxyType({}),
     pair: tuple[str, str] = PAIR,
 ) -> Program:
-    """Reduce a program to some of its functions and the parts that they need.
+    """Return a program reduced to some of its functions and the parts that they need.
 
     Args:
         program: the whole program, which is changed.
@@ -61,7 +61,7 @@ def reduced(
     """
     keys = {plain_name(f): f.name for f in program.functions}
     if unread := next((name for name in roots if name not in keys), ""):
-        raise TranslationError(f"{unread} is not read")
+        raise TranslationError(f"function {unread} cannot be read")
     kept = _reached_names(program, [keys[name] for name in roots])
     functions = [f for f in program.functions if f.name in kept]
     _keep_changes_inside(functions)
@@ -85,7 +85,7 @@ def reduced(
 def _named_structs(
     program: Program, constants: list[Declare], functions: list[Function], prefix: str, own: str
 ) -> list[Struct]:
-    """The structures that are needed, under names of their own."""
+    """Return the structures that constants and functions need, renamed everywhere to names with the prefix."""
     kinds = {node.kind.partition("[")[0] for node in inside([constants, functions]) if hasattr(node, "kind")}
     for struct in reversed(program.structs):
         kinds |= set(struct.kinds.values()) if struct.name in kinds else set()
@@ -143,7 +143,7 @@ def _keep_changes_inside(functions: list[Function]) -> None:
 
 
 def _bind(function: Function, setting: str, value: float) -> None:
-    """Puts a number in the place of a parameter that nothing assigns to."""
+    """Replace a function's parameter, to which nothing is assigned, by a number; ignore a missing parameter."""
     if setting not in _parameter_names(function):
         return
     function.parameters = [parameter for parameter in function.parameters if parameter.name != setting]
@@ -151,7 +151,7 @@ def _bind(function: Function, setting: str, value: float) -> None:
 
 
 def _with_number(node: Any, name: str, text: str) -> Any:
-    """A part of a tree with a number for a name; x * 1 and x / 1 are x."""
+    """Return a part of a tree, changed in place, with a number for each use of a name; x * 1 and x / 1 become x."""
     if isinstance(node, Name) and node.name == name:
         return Literal("float", text)
     if isinstance(node, list):
@@ -167,7 +167,8 @@ def _with_number(node: Any, name: str, text: str) -> Any:
 
 
 def _leave_out(setting: str, functions: list[Function], pair: set[str]) -> None:
-    """Takes a setting from functions that do not read it; from both or neither of a pair."""
+    """Remove a setting from functions that do not read it, and from their calls; from both functions of the pair or
+    neither."""
     indices = {f.name: _parameter_names(f).index(setting) for f in functions if setting in _parameter_names(f)}
     unread: set[str] = set()
     for function in functions:
@@ -218,12 +219,12 @@ def _rename(functions: list[Function], names: dict[str, str], prefix: str, own: 
 
 
 def table_name(name: str, prefix: str, own: str) -> str:
-    """Return the name of a lookup table."""
+    """Return the new name of a lookup table: the prefix, and its name without the prefix `own`."""
     return f"{prefix}_{_without(own, name)}"
 
 
 def _without(own: str, name: str) -> str:
-    """Return a name without the prefix of an encoding's own functions."""
+    """Return a name without the prefix `own` of an encoding's functions, unless that leaves nothing."""
     return re.sub(f"^{own}_(?=.)", "", name)
 
 
@@ -234,7 +235,8 @@ def _free_name(name: str, taken: Collection[str]) -> str:
 
 
 def _shorter_name(own: str, name: str) -> str:
-    """A constant's name without the words of its encoding's: COUNT for FIBONACCI_COUNT of spherical_fibonacci."""
+    """Return a constant's name without the last words of the encoding's name `own` that begin it: COUNT for
+    FIBONACCI_COUNT of spherical_fibonacci."""
     words = own.upper().split("_")
     for first in range(len(words)):
         begin = "_".join(words[first:]) + "_"
@@ -258,7 +260,8 @@ def _rename_constants(constants: list[Declare], functions: list[Function], prefi
 
 
 def _replace(functions: list[Function], names: Mapping[str, str]) -> None:
-    """Rename globals in functions, except in a function with a variable of the old name."""
+    """Rename globals in functions, by new names for old ones, except in a function with a variable of the old
+    name."""
     for function in functions:
         own = {*_parameter_names(function), *(node.name for node in inside(function.body) if isinstance(node, Declare))}
         _replace_in(function.body, {old: new for old, new in names.items() if old not in own})
@@ -271,7 +274,7 @@ def _replace_in(nodes: object, names: Mapping[str, str]) -> None:
 
 
 def numbered(program: Program, word: str) -> None:
-    """Call everything that has a name by this word and a number."""
+    """Rename everything that has a name in a program, which is changed, to this word and a number."""
     numbers = count()
     _number_structs(program, word, numbers)
     outside = {definition.name: f"{word}_{next(numbers)}" for definition in [*program.constants, *program.functions]}
@@ -300,7 +303,11 @@ def _number_structs(program: Program, word: str, numbers: Iterator[int]) -> None
 
 
 def _rename_structs(program: Program, names: Mapping[str, str], fields: Mapping[tuple[str, str], str]) -> None:
-    """Give structures and some of their fields, by these and the structure's name, other names."""
+    """Rename structures and some of their fields, everywhere in the program, which is changed.
+
+    Args:
+        names: the new name of each structure, by the old one.
+        fields: the new names of fields, by the old name of the structure and of the field."""
 
     def named(kind: str) -> str:
         plain, mark, length = kind.partition("[")

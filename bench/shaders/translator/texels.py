@@ -22,12 +22,12 @@ class Texels:
 
     @property
     def format(self) -> str:
-        """The texture's format, as DXGI and Vulkan begin its name."""
+        """The texture's format as DXGI names it, such as R8G8_UNORM for bytes or R32G32_FLOAT for floats."""
         letters = "RGBA"[: self.channels]
         bits = 8 if self.is_bytes else 32
         return "".join(f"{letter}{bits}" for letter in letters) + ("_UNORM" if self.is_bytes else "_FLOAT")
 
     @property
     def bytes(self) -> int:
-        """The size in bytes."""
+        """The size of all texels in bytes."""
         return self.height * self.width * self.channels * (1 if self.is_bytes else 4)

@@ -41,7 +41,7 @@ END = Token("end", "the end of the file", Place(0, 0))
 
 
 def said(comment: str) -> list[str]:
-    """A comment's lines without its marks."""
+    """Return the lines of a comment without its marks; empty lines of a block comment are left out."""
     if comment.startswith("//"):
         return [in_a_comment(comment.removeprefix("//").strip())]
     lines = (line.strip().removeprefix("*").strip() for line in comment[2:-2].splitlines())
@@ -55,7 +55,8 @@ def in_a_comment(text: str) -> str:
 
 
 def tokens(text: str, first: int = 1) -> list[Token]:
-    """The tokens of text without preprocessor lines; a comment followed by an empty line belongs to nothing.
+    """Return the tokens of text without preprocessor lines, each with the comments above and behind it; a comment
+    followed by an empty line belongs to nothing.
 
     Args:
         text: the text.
@@ -80,7 +81,7 @@ def tokens(text: str, first: int = 1) -> list[Token]:
         match = TOKEN.match(text, position)
         place = Place(line, position - begin + 1)
         if not match:
-            raise TranslationError(f"{line}:{place.column}: {text[position]!r} is an unexpected character")
+            raise TranslationError(f"{line}:{place.column}: unexpected character {text[position]!r}")
         piece, kind = match[0], str(match.lastgroup)
         if kind == "comment":
             is_behind = newlines == 0 and stream and not piece.startswith("/*")
@@ -111,7 +112,8 @@ class Preprocessor:
         self.constants: dict[str, list[Token]] = {}
 
     def tokens(self, text: str) -> list[Token]:
-        """The tokens of a text, with its macros in place. Raises TranslationError."""
+        """Return the tokens of a text without its directives and the branches that they exclude, and with macros
+        expanded; names of numbers stay. Raises TranslationError."""
         kept: list[str] = []
         including: list[tuple[bool, bool]] = []  # whether this branch counts, and whether one has
         # Directives are what stands in no comment.
@@ -130,7 +132,7 @@ class Preprocessor:
             kept.append(_open_comment(lines[len(kept)], bare[len(kept)]))
             self._obey(directive[1], rest, number, including, counts)
         if including:
-            raise TranslationError("an #if without its #endif")
+            raise TranslationError("#if without #endif")
         every = (each for token in tokens("\n".join(kept)) for each in self._expanded_tokens(token))
         expanded = list(islice(every, MOST_TOKENS + 1))
         if len(expanded) > MOST_TOKENS:
@@ -156,19 +158,26 @@ class Preprocessor:
     def _define(self, rest: str, line: int) -> None:
         match = re.match(r"([A-Za-z_]\w*)(\(?)\s*(.*)", rest)
         if not match or match[2]:
-            raise TranslationError(f"{line}:1: macros with arguments are not translated: {rest[:60]}")
+            raise TranslationError(f"{line}:1: macros with arguments are not supported: {rest[:60]}")
         self._macros[match[1]] = [replace(token, above=(), behind="") for token in tokens(match[3], line)]
         if _is_number(self._macros[match[1]]):
             self.constants[match[1]] = self._macros.pop(match[1])
 
     def _holds(self, word: str, rest: str, line: int) -> bool:
-        """Whether the lines behind `#if`, `#ifdef` or `#ifndef` are read."""
+        """Whether the lines behind a directive are read.
+
+        Args:
+            word: "if", "ifdef" or "ifndef".
+            rest: the text behind it.
+
+        Raises:
+            TranslationError: an #if of anything but one name or number."""
         if word != "if":
             name = rest.split()[0] if rest.split() else ""
             return (name in self._macros or name in self.constants) == (word == "ifdef")
         numbers = [self._whole_number(token, line) for token in tokens(rest.split("//")[0], line)]
         if len(numbers) != 1:
-            raise TranslationError(f"{line}:1: only `#if NAME` is translated, not {rest[:60]}")
+            raise TranslationError(f"{line}:1: only `#if NAME` is supported, not {rest[:60]}")
         return numbers[0] != 0
 
     def _whole_number(self, token: Token, line: int) -> int:
@@ -209,7 +218,7 @@ def _open_comment(line: str, bare: str) -> str:
 
 
 def _is_number(words: Sequence[Token]) -> bool:
-    """A number under a sign, or an array of numbers."""
+    """Whether tokens are one number, with or without a minus sign, or an array of numbers."""
     texts = [word.text for word in words if word.text != "-"]
     # Without numbers in brackets behind it, `float[4]` is a type.
     is_array = len(texts) > 1 and texts[0] in ("float", "int") and texts[1] == "[" and "(" in texts
@@ -217,7 +226,8 @@ def _is_number(words: Sequence[Token]) -> bool:
 
 
 def suffixed(text: str) -> tuple[str, str]:
-    """A number as GLSL and HLSL write it: its type, and its text without suffix, in decimal if it is whole.
+    """Return (type, text) of a number as GLSL and HLSL write it: "int", "uint" or "float", and its text without
+    suffix; a whole number in decimal, but a hexadecimal one stays hexadecimal.
 
     Raises:
         ValueError: no such number.
@@ -232,12 +242,12 @@ def suffixed(text: str) -> tuple[str, str]:
 
 
 def _decimal_text(text: str) -> str:
-    """A whole number in decimal; with a zero before it, it is octal."""
+    """Return the text of a whole number in decimal; a number with a zero before it is octal."""
     return str(int(text, 8)) if text.startswith("0") else text
 
 
 def with_a_point(text: str) -> str:
-    """A number's text with digits on both sides of a point."""
+    """Return a number's text with a point and digits on both sides of it; an exponent stays."""
     mantissa, mark, exponent = text.partition("e")
     whole, _, rest = mantissa.partition(".")
     return f"{whole or 0}.{rest or 0}{mark}{exponent}"

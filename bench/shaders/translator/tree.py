@@ -32,7 +32,7 @@ def one_error_type(placed: Callable[[str], Exception] = TranslationError) -> Ite
         try:
             yield
         except UNEXPECTED as error:
-            why = "this is too deep" if isinstance(error, RecursionError) else "this is not understood"
+            why = "the code is nested too deeply" if isinstance(error, RecursionError) else "the code cannot be parsed"
             raise placed(why) from error
 
 
@@ -68,14 +68,14 @@ class Place:
 
 
 def scalar_of(kind: str) -> str:
-    """The type of a vector's components; a scalar's own."""
+    """Return the type of the components of a vector or a matrix; any other type, such as a scalar, unchanged."""
     if kind in SIZES:
         return next(scalar for scalar, letter in SCALARS.items() if kind.startswith(f"{letter}vec"))
     return "float" if kind.partition("[")[0] in MATRICES else kind
 
 
 def size_of(kind: str) -> int:
-    """Return how many components a type has; 1 for a scalar."""
+    """Return how many components a vector type has; 1 for any other type."""
     return SIZES.get(kind, 1)
 
 
@@ -292,7 +292,7 @@ class Program:
     structs: list[Struct] = field(default_factory=list)
 
     def function(self, name: str) -> Function:
-        """The function of a name that only one has."""
+        """Return the function of this name. Raises ValueError unless exactly one has it."""
         (function,) = (f for f in self.functions if f.name == name)
         return function
 
@@ -303,7 +303,7 @@ def plain_name(function: Function) -> str:
 
 
 def inside(node: Any) -> Iterator[Any]:
-    """A node and all below it, in the order of the text."""
+    """Yield a node and all nodes below it, also in lists, in the order of the text."""
     left = [node]
     while left:
         node = left.pop()

@@ -91,14 +91,14 @@ TRUTHS = frozenset(("&", "|"))
 
 
 def read_wgsl(text: str) -> Program:
-    """A program of WGSL's text. Raises TranslationError."""
+    """Return the program in a WGSL text. Raises TranslationError."""
     with one_error_type():
         parser = WgslParser(tokens(_with_flat_comments(text)))
     return parser.program()
 
 
 def _with_flat_comments(text: str) -> str:
-    """A text whose comments hold no others, which WGSL's may: the marks inside become blanks."""
+    """Return a text in which no comment contains another, as WGSL allows: inner marks become blanks."""
     depth = position = 0
     flat_text = ""
     while match := (INSIDE if depth else OUTSIDE).search(text, position):
@@ -146,7 +146,7 @@ class WgslParser(Parser):
         return self._made
 
     def _declarations(self) -> Iterator[range]:
-        """The tokens of each declaration of the module."""
+        """Yield the range of token indices of each declaration of the module."""
         depth = begin = 0
         for index, token in enumerate(self._tokens):
             depth += (token.text in OPENS) - (token.text in CLOSES)
@@ -159,7 +159,7 @@ class WgslParser(Parser):
             yield range(begin, len(self._tokens))
 
     def _known_by(self, declared: range) -> tuple[Token, str]:
-        """Return the word that begins a declaration, such as fn, and the declared name; move the parser to the word."""
+        """Return the token that begins a declaration, such as fn, and the declared name; move to that token."""
         self._at = declared.start
         while self._next_token.text == "@":
             self._at += 2
@@ -182,7 +182,7 @@ class WgslParser(Parser):
         known = {declared: self._known_by(declared) for declared in declarations}
         for word, name in known.values():
             if word.text in SET_FROM_OUTSIDE:
-                what = f"{name} is set from outside; an encoder has only its normal and a view-space position"
+                what = f"{name} is set from outside; only the normal and the view-space position are available"
                 self._unread[name] = self._error(what, word.place)
         for declared, (word, name) in known.items():
             if word.text == "const":
@@ -194,7 +194,7 @@ class WgslParser(Parser):
                 self._know_function(declared)
 
     def _has_attributes(self, declared: range) -> bool:
-        """Whether it is an entry point, or something else of a pipeline."""
+        """Whether a declaration begins with an attribute other than @must_use, as an entry point does."""
         self._at = declared.start
         return self._next_token.text == "@" and self._text_ahead(1) != "must_use"
 
@@ -243,7 +243,8 @@ class WgslParser(Parser):
             self._aliases[name] = name
 
     def _leave_out(self, declared: range, error: TranslationError) -> None:
-        """A declaration that cannot be read: whoever needs it is told why. Raises the error where it has no end."""
+        """Leave out a declaration that cannot be read; an error is kept for its name and raised where the name is
+        needed. Raises the error at once if the declaration has no end."""
         if self._tokens[declared.stop - 1].text not in DECLARATION_ENDS:
             raise error
         word, name = self._known_by(declared)
@@ -294,7 +295,7 @@ class WgslParser(Parser):
             pass
 
     def _name_expression(self, token: Token) -> Expression:
-        """A name; a constant outside of functions is read when it is first used."""
+        """Return the expression for a name; a constant outside functions is read when it is first used."""
         if not any(token.text in scope for scope in self._scopes):
             self._read_constant(token)
         return super()._name_expression(token)
@@ -429,7 +430,7 @@ class WgslParser(Parser):
                 body += self._deeper(self._statement)
                 continue
             if _leaves(body, "continue"):
-                raise self._error("a loop with continue and continuing is not read")
+                raise self._error("a loop with both continue and continuing is not supported")
             self._take()
             body.append(Block(self._continuing_statements()))
         self._scopes.pop()
@@ -450,7 +451,7 @@ class WgslParser(Parser):
         return statements
 
     def _switch(self) -> Statement:
-        """switch, as a choice between blocks."""
+        """Read a switch without its first word, and return it as a block of nested choices on a variable."""
         value = self._expression()
         name = self._unused("chosen_by")
         chosen_by = Name(value.kind, name)
@@ -465,7 +466,8 @@ class WgslParser(Parser):
         return Block([Declare(value.kind, name, value), *other])
 
     def _case(self, chosen_by: Name) -> tuple[Expression | None, list[Statement]]:
-        """A case's condition, None of the default, and its body without a break at its end."""
+        """Read a case of a switch. Return its condition, None for the default, and its body without a break at its
+        end. Raises TranslationError for any other break."""
         condition: Expression | None = None
         is_default = self._skip("default")
         if not is_default:
@@ -482,7 +484,7 @@ class WgslParser(Parser):
         if body and body[-1] == Leave("break"):
             body.pop()
         if _leaves(body, "break"):
-            raise self._error("a switch with break inside of a case is not read")
+            raise self._error("break inside a case of a switch is not supported")
         return (None if is_default else condition), body
 
     def _for(self) -> Statement:
@@ -506,7 +508,7 @@ class WgslParser(Parser):
             # WGSL's variables are 0 until they are something else.
             value = self._zero_value(kind)
         if value is None and kind is None:
-            raise self._error(f"{name} has neither a type nor a value")
+            raise self._error(f"variable {name} has neither a type nor a value")
         if value is not None and kind and size_of(kind) == 1 and kind in SCALARS.values():
             value = self._converted(value, kind)
         if value is not None and kind and scalar_of(kind) != scalar_of(value.kind):
@@ -541,7 +543,7 @@ class WgslParser(Parser):
             return Literal("bool", token.text)
         if token.kind != "word":
             self._at -= 1
-            raise self._error(f"{token.text} is not expected here")
+            raise self._error(f"unexpected {token.text}")
         if token.text == "bitcast":
             return self._bits()
         is_variable = any(token.text in scope for scope in self._scopes)
@@ -585,24 +587,24 @@ class WgslParser(Parser):
     def _typed_array(self, kind: str, values: list[Expression], token: Token) -> Expression:
         element, _, length = kind.partition("[")
         if values and len(values) != int(length.rstrip("]")):
-            raise self._error(f"{len(values)} values of an array of {length.rstrip(']')}", token.place)
+            raise self._error(f"an array of {length.rstrip(']')} elements has {len(values)} values", token.place)
         values = [self._converted(value, scalar_of(element)) for value in values]
         return Elements(kind, values or self._zero_elements(kind))
 
     def _array_of(self, values: list[Expression], token: Token) -> Expression:
-        """An array whose elements are of the type that its values have."""
+        """Return an array of these values, converted to one type. Raises TranslationError if that is impossible."""
         if len({value.kind for value in values}) > 1:
             values = self._all_alike(values)
         kinds = sorted({value.kind for value in values})
         if len(kinds) != 1:
-            message = f"an array of {', '.join(kinds) or 'nothing'}; its elements must have one type"
+            message = f"array elements must have the same type, not {', '.join(kinds) or 'none'}"
             raise self._error(message, token.place)
         return Elements(self._array_kind(kinds[0], Literal("int", str(len(values)))), values)
 
     def _array_kind(self, kind: str, length: Expression) -> str:
         """Return the type of an array, as in GLSL. Raises TranslationError for an array of arrays."""
         if "[" in kind:
-            raise self._error("an array of arrays is not read; write one array, with the index computed")
+            raise self._error("arrays of arrays are not supported; use one array and compute the index")
         return super()._array_kind(kind, length)
 
     def _field_values(self, kind: str, values: list[Expression]) -> list[Expression]:
@@ -633,7 +635,11 @@ class WgslParser(Parser):
         return super()._constructed(kind, arguments)
 
     def _defined(self, name: str, scalar: str, given: list[Expression]) -> Expression:
-        """A function of `wgsl_defined.glsl`."""
+        """Return a call of a function of `wgsl_defined.glsl`, with the scalars among its arguments repeated to
+        vectors.
+
+        Args:
+            scalar: the type of its result's components."""
         size = max(size_of(argument.kind) for argument in given)
         given = [
             argument if size_of(argument.kind) == size else Construct(vector(argument.kind, size), [argument])
@@ -646,12 +652,12 @@ class WgslParser(Parser):
         if value.kind in self._structs:
             kind = self._structs[value.kind].kinds.get(word.text)
             if kind is None:
-                raise self._error(f"a {value.kind} has no .{word.text}", word.place)
+                raise self._error(f"{value.kind} has no member {word.text}", word.place)
             return Member(kind, value, word.text)
         return super()._member(value, word)
 
     def _index_expression(self, value: Expression, index: Expression) -> Expression:
-        """An element; an index beyond an array is its last."""
+        """Return an element of a value; an index beyond the value, unless a literal, becomes the last one."""
         return super()._index_expression(
             value, index if isinstance(index, Literal) else self._clamped_index(value.kind, index)
         )
@@ -673,9 +679,10 @@ class WgslParser(Parser):
         return self._called(NAMES.get(name, name), arguments, token.place)
 
     def _converted(self, value: Expression, scalar: str) -> Expression:
-        """WGSL converts nothing but numbers that are written out, and constants without a type."""
+        """Return a value with components of another scalar type. Raises TranslationError unless it has this type
+        already, or is a literal or a constant without a type: WGSL converts nothing else."""
         if scalar_of(value.kind) != scalar and not self._is_abstract(value):
-            raise self._error(f"{value.kind} where {scalar} is expected; WGSL converts by {SCALAR_NAMES[scalar]}()")
+            raise self._error(f"expected {scalar}, not {value.kind}; convert it with {SCALAR_NAMES[scalar]}()")
         return super()._converted(value, scalar)
 
     def _is_abstract(self, value: Expression) -> bool:
@@ -683,7 +690,8 @@ class WgslParser(Parser):
         return all(isinstance(n, Literal) or (isinstance(n, Name) and n.name in self._abstract) for n in leaves)
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
-        """Return an operation as in GLSL, but define quotients and remainders of whole numbers, and shifts."""
+        """Return an operation as in GLSL, but with WGSL's defined results for quotients and remainders of whole
+        numbers, and for shifts."""
         scalar = scalar_of(left.kind)
         if mark in SHIFTS:
             by = right if isinstance(right, Literal) else self._masked_shift(right)
@@ -714,12 +722,12 @@ class WgslParser(Parser):
 
 
 def _divides(value: Expression) -> bool:
-    """Whether a divisor is a number above 0."""
+    """Whether a divisor is a literal above 0."""
     return isinstance(value, Literal) and int(value.text, 0) > 0
 
 
 def _leaves(body: list[Statement], word: str) -> bool:
-    """Whether statements break or continue the loop around them."""
+    """Whether statements contain this word, "break" or "continue", for the loop around them."""
     for statement in body:
         match statement:
             case Leave(said) if said == word:
@@ -743,7 +751,7 @@ def _number(text: str) -> Literal:
 
 
 def _callees_first(functions: list[Function]) -> list[Function]:
-    """Functions in an order in which each calls only those before it."""
+    """Return functions in an order in which each calls only those before it."""
     by_name, ordered, begun = {f.name: f for f in functions}, [], set()
 
     def add(function: Function) -> None:

@@ -108,7 +108,7 @@ class Writer:
         self._structs: dict[str, Struct] = {}
 
     def program(self, program: Program) -> str:
-        """The text of the whole program. Raises TranslationError."""
+        """Return the text of the whole program. Raises TranslationError."""
         everything = [*program.constants, *program.tables, *program.functions]
         self._taken = {definition.name for definition in everything} | self.reserved | BUILTINS
         self._taken |= {*self.kinds.values(), *self.functions.values(), *(struct.name for struct in program.structs)}
@@ -137,7 +137,7 @@ class Writer:
         return {self._field(name): kind for name, kind in struct.kinds.items()}
 
     def _field(self, name: str) -> str:
-        """A field's name, which no word of the language is."""
+        """Return a field's name, with an underscore behind it if it is a reserved word of the language."""
         return f"{name}_" if name in self.reserved else name
 
     def _table(self, table: TexelTable) -> str:
@@ -155,7 +155,7 @@ class Writer:
             return ""
         texels, file = self._texels[name], f"{self._stem}_{name.removeprefix(f'{self._prefix}_')}.dds"
         size = f"{texels.width} x {texels.height} texels, {texels.format}, one mip level, from {file}"
-        return f"// {size}.\n// It is read texel by texel: no sampler, no filter. {self.binding_advice}\n"
+        return f"// {size}.\n// Read texel by texel, without a sampler or a filter. {self.binding_advice}\n"
 
     def _constant(self, constant: Declare) -> str:
         return self._comments(constant, "") + self._global_text(constant)
@@ -185,7 +185,7 @@ class Writer:
         return self._statements(function.body, INDENT)
 
     def _global_name(self, name: str) -> str:
-        """A name for something of the writer's own, which nothing else of the program has."""
+        """Return a new name with the program's prefix for something of the writer's own, and mark it as taken."""
         own_name = f"{self._prefix}_{name}"
         while own_name in self._taken:
             own_name += "_"
@@ -193,16 +193,17 @@ class Writer:
         return own_name
 
     def _unused(self, name: str) -> str:
-        """A name that begins like this one and that the function does not have yet."""
+        """Return this name or one with a number behind it, which the function does not have yet, and count it as
+        taken."""
         ways = (name, *(f"{name.rstrip('_')}_{number}" for number in range(2, len(self._used) + 3)))
         unused_name = next(way for way in ways if way not in self._used)
         self._used.add(unused_name)
         return unused_name
 
     def _check_parameters(self, function: Function) -> None:
-        """Raise TranslationError for parameters and results that not every language supports."""
+        """Raise TranslationError for arrays as parameters or results, and for arguments that a function changes."""
         if any(kind.endswith("]") for kind in (function.kind, *(p.kind for p in function.parameters))):
-            raise TranslationError(f"{function.name} takes or returns an array; write its numbers one by one")
+            raise TranslationError(f"{function.name} has an array as a parameter or a result; use separate numbers")
         if any(p.is_changed for p in function.parameters):
             raise TranslationError(f"{function.name} changes its argument; return the result instead")
 
@@ -217,7 +218,7 @@ class Writer:
         return "".join(self._statement(self._plainer(each), indent) for each in statements)
 
     def _plainer(self, statement: Statement) -> Statement:
-        """Return a statement without features that the language lacks."""
+        """Return a statement without features that the language lacks: assignments to several components at once."""
         if self.assigns_to_parts:
             return statement
         match statement:
@@ -228,7 +229,7 @@ class Writer:
         return statement
 
     def _part_by_part(self, statement: Assign, target: Swizzle, value: Expression) -> Statement:
-        """n.xy = VALUE, by way of a variable: the value may have the components that change."""
+        """Return `n.xy = VALUE` as a block with a variable, because VALUE may read the components that change."""
         name, scalar = self._unused("parts"), scalar_of(target.kind)
         parts: list[Statement] = [Declare(target.kind, name, value)]
         for to, field in zip(target.fields, FIELDS, strict=False):
@@ -237,7 +238,8 @@ class Writer:
         return Block(parts, above=statement.above, behind=statement.behind)
 
     def _loop_without_head(self, loop: For) -> Statement:
-        """Return a loop whose condition or step is more than an expression; `continue` goes on with the step."""
+        """Return a `for` loop as an endless loop in a block, for a condition or a step that is more than an
+        expression; `continue` goes on with the step."""
         name = self._unused("is_first")
         first = Name("bool", name)
         self._assigned.add(name)
@@ -369,7 +371,8 @@ class Writer:
         return f"{name}({self._arguments(value.arguments)})"
 
     def _arguments(self, values: Sequence[Expression]) -> str:
-        """Write a call's arguments. `f(a < b, c > (d))` may be read as a template's name and a call."""
+        """Return the text of a call's arguments. A comparison `a < b` before others gets parentheses where `f(a < b,
+        c > (d))` may be read as a template's name and a call."""
         return ", ".join([*map(self._argument_text, values[:-1]), *map(self._text, values[-1:])])
 
     def _argument_text(self, value: Expression) -> str:
@@ -386,7 +389,7 @@ class Writer:
         return f"{self._kind(kind)}[{count}({self._listed(value)})"
 
     def _listed(self, value: Elements) -> str:
-        """An array's elements, in lines of their own where they are many."""
+        """Return the text of an array's elements, separated by commas; in several lines if they are many."""
         return self._rows_text(list(map(self._text, value.values)))
 
     def _rows_text(self, texts: list[str]) -> str:
@@ -397,7 +400,7 @@ class Writer:
 
 
 def _applied(kind: str, assigned: Assign) -> Expression:
-    """Return the value that `x OPERATOR= VALUE` assigns."""
+    """Return the value that `x OPERATOR= VALUE` assigns, as an operation of this type."""
     return Binary(kind, assigned.operator[:-1], assigned.target, assigned.value)
 
 
@@ -407,8 +410,8 @@ def _splat(value: Expression, kind: str) -> Expression:
 
 
 def least_of(parent: Binary, child: Expression, least: int) -> int:
-    """Return how tightly an operand has to bind. Mixed bitwise or logical operators get parentheses, because people and
-    some languages want them."""
+    """Return how tightly an operand has to bind: `least`, but UNARY, for parentheses, if bitwise or logical operators
+    are mixed, because people and some languages want them."""
     is_mixed = isinstance(child, Binary) and child.operator != parent.operator and _is_unclear(parent, child)
     return UNARY if is_mixed else least
 
@@ -420,17 +423,17 @@ def _is_unclear(parent: Binary, child: Binary) -> bool:
 
 
 def is_less(value: Expression) -> bool:
-    """Whether a value begins as the name of a template does."""
+    """Whether a value is a `<` comparison, whose text begins as the name of a template does."""
     return isinstance(value, Binary) and value.operator == "<"
 
 
 def words(text: str) -> frozenset[str]:
-    """The words of a text."""
+    """Return the set of the words of a text, which white space separates."""
     return frozenset(text.split())
 
 
 def base_of(assigned: Assign) -> str:
-    """The variable that an assignment changes; empty where it changes none."""
+    """Return the name of the variable that an assignment changes, wholly or in part; empty if it changes none."""
     target = assigned.target
     while isinstance(target, Swizzle | Index | Member):
         target = target.value
@@ -438,7 +441,8 @@ def base_of(assigned: Assign) -> str:
 
 
 def shortest(text: str) -> str:
-    """Return the shortest number that is the same 32-bit float; the given text if that float is not finite."""
+    """Return the text of the shortest number that is the same 32-bit float as a number's text; the given text if that
+    float is not finite."""
     # Here, because reading a user's file needs no arrays.
     import numpy as np
 
@@ -449,11 +453,12 @@ def shortest(text: str) -> str:
 
 
 def commented(lines: Iterable[str], mark: str = "//") -> str:
-    """Lines as comments."""
+    """Return one text of lines as comments, each with the mark before it and an end of line."""
     return "".join(f"{mark} {line}".rstrip() + "\n" for line in lines)
 
 
 def identifier(name: str) -> str:
-    """A name as every language takes it: letters, digits and single underscores."""
+    """Return a name in lower case as every language takes it: ASCII letters, digits and single underscores; a name
+    that begins with a digit gets an n before it."""
     plain = re.sub(r"_+", "_", re.sub(r"\W", "_", name, flags=re.ASCII)).strip("_").lower()
     return f"n{plain}" if plain[:1].isdigit() else plain

@@ -74,10 +74,10 @@ APART, APART_SHARE = 1e-3, 0.01
 
 
 def first_look(file: UserFile, domain: str = "") -> dict[str, Any]:
-    """Return the findings on a file; see above.
+    """Return the findings on the GLSL of a file, as a dictionary: see the module.
 
     Args:
-        domain: the domain that its author says it is made for, or ANY, to look closely.
+        domain: the domain that its author says it is made for, or ANY, to look closely; empty for a quick look.
     """
     look = _first_look(file, domain, "")
     if "error" not in look or file.is_translated:
@@ -123,7 +123,8 @@ def _first_look(file: UserFile, domain: str, by: str) -> dict[str, Any]:
 
 
 def _alike(failing: Mapping[str, str]) -> dict[str, str]:
-    """Return the pairs that are an encoder and its decoder by their names, with why they do not round-trip."""
+    """Return the pairs, with why they do not round-trip, that are an encoder and its decoder by their names; pairs
+    without a reason were not tried and are left out."""
     return {pair: why for pair, why in failing.items() if why and _is_pair(pair)}
 
 
@@ -134,7 +135,10 @@ def _is_pair(pair: str) -> bool:
 
 
 def _why_none(failing: Mapping[str, str]) -> str:
-    """Why none of a file's pairs can be measured; each is named with its reason."""
+    """Return a message on why none of a file's pairs can be measured, with the first reasons.
+
+    Args:
+        failing: by pair, the reason; empty for a pair that was not tried."""
     named = [f"{pair}: {why}" for pair, why in failing.items() if why][:MOST_REASONS]
     if len(failing) == 1:
         return named[0]
@@ -147,12 +151,12 @@ def _untried(failing: Mapping[str, str]) -> str:
 
 
 def _wirings_of(file: UserFile) -> list[Wiring]:
-    """Return the wirings of the two functions that a word names."""
+    """Return the wirings of the two functions that a file's word names; empty if the word names none."""
     return [wiring_of(text) for text in file.functions or ()]
 
 
 def _functions_of(file: UserFile) -> tuple[str, ...]:
-    """The names of these functions."""
+    """Return the names of the two functions that a file's word names; empty if the word names none."""
     return tuple(wiring.function for wiring in _wirings_of(file))
 
 
@@ -179,7 +183,8 @@ def _that_undo_themselves(file: UserFile, pairs: Sequence[str], by: str) -> tupl
 
 
 def _undone(file: UserFile, by: str) -> tuple[str, str]:
-    """The domain on which a decoder undoes its encoder; where it does on none, empty, and why."""
+    """Return (domain, "") with the name of the domain on which the decoder undoes its encoder; if there is none, an
+    empty name and the reason."""
     try:
         encoding, gl = read_encoding(file, NOT_ASKED, by=by), device()
         with np.errstate(invalid="ignore"):
@@ -231,9 +236,9 @@ def _of_one(file: UserFile, translation: Translated) -> dict[str, Any]:
         gl = device()
         like = names_alone(gl, probe_of(gl, encoding_alone(file, translation)), side == SIDES[0])
     except (NoDeviceError, ShaderError) as error:
-        like, sentence = [], f"it is not compared with the catalogue: {' '.join(str(error).split())[:300]}"
+        like, sentence = [], f"not compared with the catalogue: {' '.join(str(error).split())[:300]}"
     else:
-        sentence = f"{name} is the {side} of {like[0] if like else 'no encoding of the catalogue'}"
+        sentence = f"{name} matches the {side}r of {like[0] if like else 'no encoding in the catalogue'}"
     return {"error": sentence, "alone": [side, name, *like]}
 
 
@@ -258,7 +263,8 @@ def _second_look(file: UserFile, gl: Device, encoding: Encoding) -> dict[str, An
 
 
 def _of_compiler(file: UserFile, message: str) -> str:
-    """A compiler's message with the user's file at its begin."""
+    """Return a compiler's message as one line of limited length that names the user's file; a hint follows for
+    HLSL."""
     line = " ".join(message.partition("=\n")[2].split()) or " ".join(message.split())
     if file.is_translated:
         message = re.sub(r"\S+\.glsl:(\d+)", r"line \1", line)[:LONGEST]
@@ -308,7 +314,7 @@ def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
 
 
 def twin_look(file: UserFile, findings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the findings on a file's Python twin; see above.
+    """Return the findings on a file's Python twin: `error`, `apart`, or nothing if it agrees or without a device.
 
     Args:
         findings: the first look's findings on its shader: the twin is of the same functions.
@@ -332,7 +338,8 @@ def twin_look(file: UserFile, findings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _by_twin(function: Callable[..., Any], given: np.ndarray, view: np.ndarray) -> np.ndarray:
-    """Return a twin function's results for arrays of shape (count, 2 or 3), passed as they are when it is measured."""
+    """Return a twin function's results, of shape (count, components), for arrays of shape (count, 2 or 3), passed as
+    they are when it is measured."""
     kind = {2: Vec2, 3: Vec3}[given.shape[1]]
     components = jax.jit(function)(kind(*map(jnp.asarray, given.T)), Vec3(*map(jnp.asarray, view.T[:3])))
     return np.stack(
@@ -353,8 +360,8 @@ def _apart(
         if far.mean() > APART_SHARE:
             index = int(np.argmax(far))
             values = [row[index, : by_twin.shape[1]].round(4).tolist() for row in (by_twin, other)]
-            share = f"{100 * far.mean():.0f}% of directions, such as {given[index].round(4).tolist()}"
-            return {"apart": f"{what} differs from the GLSL for {share}: {values[0]}, in GLSL {values[1]}"}
+            share = f"{100 * far.mean():.0f}% of inputs, such as {given[index].round(4).tolist()}"
+            return {"apart": f"{what} differs from the GLSL for {share}: {values[0]} in Python, {values[1]} in GLSL"}
     return {}
 
 
@@ -363,7 +370,7 @@ def _widened(array: np.ndarray) -> np.ndarray:
 
 
 def _alone() -> int:
-    """Return a file descriptor for the answer; whatever users' code prints goes to stderr."""
+    """Return a new file descriptor of standard output, for the answer; whatever users' code prints goes to stderr."""
     descriptor = os.dup(1)
     os.dup2(2, 1)
     return descriptor
@@ -377,7 +384,7 @@ def _looks(file: UserFile, domain: str = "") -> Iterator[dict[str, Any]]:
 
 
 def main(words: Sequence[str]) -> None:
-    """Run the command; see above."""
+    """Print the findings on a file as lines of JSON; `words` are the file and perhaps the domain: see the module."""
     children.limit_this_process()
     answer = _alone()
     for look in _looks(UserFile(words[0]), *words[1:]):

@@ -32,7 +32,7 @@ _TABLE_FILE = re.compile(rf"(?<={MARK}{TABLE}=)(?:[^{MARK}]|{MARK}(?=[\\/]))+")
 
 
 def layouts_named(names: Names) -> list[Layout]:
-    """Return the layouts that names stand for.
+    """Return the layouts that names stand for: layouts of the catalogue, or files that end in .toml.
 
     Raises:
         UsageError: an unknown name, a file that is not a layout, or an encoder that cannot be measured.
@@ -51,7 +51,7 @@ def layouts_named(names: Names) -> list[Layout]:
 
 
 def _check_encodings(layouts: Sequence[Layout]) -> None:
-    """Raise UsageError if two encodings have the same name, because rows could not tell them apart."""
+    """Raise UsageError if two different encodings have the same name, because rows could not tell them apart."""
     files: dict[str, set[tuple[Path | None, Path]]] = {}
     for encoding in (layout.encoding for layout in layouts):
         files.setdefault(encoding.name, set()).add((encoding.source, encoding.glsl))
@@ -70,7 +70,8 @@ def _layout_from_file(path: Path, encoding_named: Callable[[str], Encoding]) -> 
 
 
 def _encoding_named(word: str) -> Encoding:
-    """The encoding that --encoding would take by this name. Raises UsageError and MissingError."""
+    """Return the encoding that --encoding would take by this name, but not "all". Raises UsageError and
+    MissingError."""
     if word == "all":
         raise UsageError(f"encoding {word!r}: a layout has one encoding")
     (encoding,) = encodings_named((word,))
@@ -79,7 +80,8 @@ def _encoding_named(word: str) -> Encoding:
 
 
 def _from_here(path: Path, word: str) -> str:
-    """Return the encoding that a layout names, with its file as seen from the working folder.
+    """Return the name of the encoding in a layout at `path`, with its files as seen from the working folder; a name
+    without a file is unchanged.
 
     Raises:
         LayoutError: the file is outside the layout's folder, so it would not travel to workers with the layout.
@@ -113,7 +115,8 @@ def _leads_inside(folder: Path, place: Path) -> bool:
 
 
 def files_of_layout(path: Path) -> list[Path]:
-    """Return the file that a layout's encoding is read from; empty if it has none, or the layout cannot be read."""
+    """Return the paths of the files that a layout's encoding is read from; empty if it has none, or the layout cannot
+    be read."""
     try:
         word = _from_here(path, str(file_toml(path).get("encoding", "")))
     except (OSError, ValueError, LayoutError):

@@ -54,7 +54,8 @@ def codecs_named(
 
 
 def _with_chains(words: Names) -> list[Encoding]:
-    """Return encodings by name; CODEC+ENCODING encodes the normals that a codec decodes. Raises UsageError."""
+    """Return encodings by name; a name CODEC+ENCODING is an encoding of the normals that the codec decodes. Raises
+    UsageError."""
     own = [word for word in words if isinstance(word, Given)]
     chains = [word for word in words if isinstance(word, str) and _is_chain(word)]
     single = tuple(word for word in words if word not in chains)
@@ -108,7 +109,8 @@ def _computes_halves(encodings: Iterable[Encoding]) -> bool:
 
 
 def as_declared(codecs: Sequence[Codec]) -> list[Codec]:
-    """Codecs in the arithmetic that their files declare, where this machine computes in it."""
+    """Return codecs in the arithmetic that their files declare, if this machine computes in it; else the same
+    codecs."""
     if not _computes_halves([codec.encoding for codec in codecs]):
         return list(codecs)
     return [
@@ -117,10 +119,11 @@ def as_declared(codecs: Sequence[Codec]) -> list[Codec]:
 
 
 def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
-    """The codecs whose storage has room for their components, and a line for each reason why others are left out.
+    """Return the codecs whose storage has room for their components, and a line for each reason why others are left
+    out.
 
     Raises:
-        UsageError: none is left.
+        UsageError: no codec is left.
     """
     codecs = list(codecs)
     fit = [codec for codec in codecs if codec.fits]
@@ -131,7 +134,8 @@ def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
 
 
 def check_twin(encoding: Encoding) -> None:
-    """Trace the Python twin of a user's encoding on one normal; tests cover the twins of the catalogue.
+    """Trace the Python twin of a user's encoding on one normal; do nothing for the catalogue, whose twins tests
+    cover, or without a twin.
 
     Raises:
         UsageError: the twin raises an exception, or its code does not have the declared size; one line with its file.
@@ -144,7 +148,7 @@ def check_twin(encoding: Encoding) -> None:
         code = jax.eval_shape(encoding.encode, n, n)
         size = encoding.components + encoding.sign_bits
         if len(code) != size:
-            raise TypeError(f"encode gives {len(code)} numbers, but components and sign_bits say {size}")
+            raise TypeError(f"encode returns {len(code)} numbers, but components and sign_bits add up to {size}")
         jax.eval_shape(encoding.decode, code, n)
     except NoTwinError:
         return

@@ -53,7 +53,7 @@ def second_look(
         read: returns the encoding as read by a compiler that is named in `BY_NAME`.
 
     Returns:
-        Nothing if they agree. `error`: if they do not; `notes`: lines to report.
+        A dictionary: empty if they agree, else `error`, why the file is refused, or `notes`, lines to report.
     """
     source, language = Source(file), language_of(file)
     stamps = [tools.stamp_or_empty(tool) for tool in (tools.SLANG, *language.tools, *language.others)]
@@ -62,7 +62,7 @@ def second_look(
         try:
             finding = _disagreement(file, source.text, gl, encoding, hard, read)
         except UndefinedError as error:
-            finding = {"error": f"{file}: {error}; its language does not define that"}
+            finding = {"error": f"{file}: {error}, which its language does not define"}
         except NoSecondWayError as error:
             finding = _unchecked_finding(file, str(error))
             if not error.is_of_the_file:
@@ -72,13 +72,14 @@ def second_look(
 
 
 def _unchecked_finding(file: UserFile, why: str) -> dict[str, Any]:
-    """Return findings on a file that only one compiler has read; refuse it if that compiler is known to be wrong."""
+    """Return findings on a file that only one compiler has read: `notes`; if that is glslang, `error` if it is known
+    to misread such a file, else nothing."""
     encoder = translated(file)
     if encoder.read_by == GLSLANG:
         if not (used := MISREAD.search(encoder.text)):
             return {}
         what = f"it uses {used[0].strip('( ')}, which glslang interprets differently from HLSL"
-        return {"error": f"{file}: {what}, and no second compiler reads the file: {why}"}
+        return {"error": f"{file}: {what}, and no second compiler can read the file: {why}"}
     return {"notes": [f"no second compiler has checked its translation: {why}"]}
 
 
@@ -102,7 +103,7 @@ def _disagreement(
     if disagreement or (why and by_glslang):
         advice = "rewrite ambiguous expressions such as % of negative integers"
         return {"error": f"{file}: two compilers disagree: {disagreement or by_glslang}; {advice}"}
-    return {"notes": [f"{by_glslang}; the first is measured, as the language defines it"]} if by_glslang else {}
+    return {"notes": [f"{by_glslang}; the first is measured, because it follows the language"]} if by_glslang else {}
 
 
 def _by_second_way(file: UserFile, difference: Callable[[Way, tuple[str, str]], str]) -> str:
@@ -114,7 +115,8 @@ def _by_second_way(file: UserFile, difference: Callable[[Way, tuple[str, str]], 
 def _by_glslang(
     file: UserFile, gl: Device, read: Callable[[str], Encoding], difference: Callable[[Way, tuple[str, str]], str]
 ) -> str | None:
-    """Return where glslang differs; None if it has not read the file, or if only glslang has."""
+    """Return a text on where glslang differs, empty if it agrees; None if it has not read the file, or if only
+    glslang has."""
     if name_of(file) != "HLSL" or translated(file).read_by:
         return None
     try:
@@ -153,14 +155,15 @@ def _difference(
         index = _first_apart(function, values, mine, theirs, tolerance)
         if index is not None:
             shown = [np.asarray(row[index], np.float64).round(5).tolist() for row in (values[:, :count], mine, theirs)]
-            return f"{name} of {shown[0]} is {shown[1]} by {ways[0]} and {shown[2]} by {ways[1]}"
+            return f"{name} of {shown[0]} is {shown[1]} with {ways[0]} and {shown[2]} with {ways[1]}"
     return ""
 
 
 def _first_apart(
     function: Function, given: np.ndarray, mine: np.ndarray, theirs: np.ndarray, tolerance: float
 ) -> int | None:
-    """Return the index of a value whose two results differ by more than rounding; None if at most a few do."""
+    """Return the index of a value whose two results differ by more than rounding; None if at most a few differ where
+    the function does not jump."""
     with np.errstate(all="ignore"):
         bound = tolerance * np.maximum(1, np.abs(theirs))
         is_near = (np.abs(mine - theirs) <= bound) | (mine == theirs) | (np.isnan(mine) & np.isnan(theirs))
@@ -173,7 +176,8 @@ def _first_apart(
 
 
 def _is_beside(function: Function, given: np.ndarray, theirs: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """Whether results are within the range of the function's results next to the values."""
+    """Return a Boolean for each result: whether it is within the range of the function's results next to its value,
+    give or take `bound`."""
     steps = np.array(list(itertools.product((-1, 0, 1), repeat=3)), np.float32) * np.float32(BESIDE)
     neighbours = function((given[:, None, :] + steps).reshape(-1, 3)).reshape(len(given), len(steps), -1)
     with np.errstate(all="ignore"):

@@ -21,8 +21,8 @@ ENCODE, MAIN = re.compile(FUNCTION.format(name=r"\w+_encode")), re.compile(r"\bv
 CODES = ("vec2", "vec3")
 HLSL = re.compile(r"\b(?:float|half|int|uint)[234](?:x[234])?\b")
 NO_FUNCTION = "no function vec2 (or vec3) NAME_encode(vec3 n, vec3 view)"
-OWN_MAIN = "it defines main; leave it out, normalbench has its own"
-OWN_VERSION = "it has #version; leave it out, normalbench has its own"
+OWN_MAIN = "it defines main; remove main, because normalbench defines its own"
+OWN_VERSION = "it has #version; remove that line, because normalbench adds its own"
 FROM_HLSL = "rename float2 to vec2, lerp to mix, and so on"
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
@@ -43,10 +43,11 @@ class Encode(NamedTuple):
 
 
 def encode_of(file: UserFile, text: str) -> Encode:
-    """Return the encode function of a file's text.
+    """Return the name and component count of a text's first encoding, and the names of others that have a decode.
 
     Raises:
-        UsageError: the text does not define the two functions in the right form.
+        UsageError: no encode has the right form, its decode has the wrong types, or the text has main, #version or an
+            unclosed comment.
     """
     code = COMMENT.sub(" ", text)
     if "/*" in code:
@@ -65,13 +66,15 @@ def encode_of(file: UserFile, text: str) -> Encode:
 
 
 def check_given(file: UserFile, code: str) -> None:
-    """Raise UsageError if a shader reads input from outside: a uniform, a texture or a buffer.
+    """Raise UsageError if a shader reads input from outside: a uniform without a value, a texture or a buffer.
+
+    Declarations that are not read are accepted.
 
     Args:
         code: the file with its includes, without comments.
     """
     if given := _given_and_read(code):
-        raise UsageError(f"{file}: it reads {given}, which has no value here; write a constant in its place")
+        raise UsageError(f"{file}: it reads {given}, which has no value here; use a constant instead")
 
 
 def _given_and_read(code: str) -> str:
@@ -89,7 +92,7 @@ def _given_and_read(code: str) -> str:
 
 
 def _is_read(name: str, code: str) -> bool:
-    """Whether code has a name, not as the x of n.x, and declares nothing itself that is called so."""
+    """Whether a GLSL text uses a name, other than as a member (`n.x`), and neither declares nor #defines it."""
     own = rf"\b(?!return\b|else\b)\w+\s+{name}\s*[,)=;\[]|#\s*define\s+{name}\b"
     return bool(re.search(rf"(?<![.\w]){name}\b", code)) and not re.search(own, code)
 
@@ -99,13 +102,13 @@ def _is_encode(function: tuple[str, ...]) -> bool:
 
 
 def _types(parameters: str) -> list[str]:
-    """The types of parameters: `in vec3 n, vec3 view` has vec3 twice."""
+    """Return the types in a parameter list, without `in` and `const`: `in vec3 n, vec3 view` has vec3 twice."""
     words = [parameter.split() for parameter in parameters.split(",")]
     return [" ".join(word for word in parameter[:-1] if word not in ("in", "const")) for parameter in words]
 
 
 def _no_encode(signatures: list[tuple[str, ...]]) -> str:
-    """Why none of some functions is an encode."""
+    """Return in words why no function is an encode: the first one and its right form, or that none was found."""
     if not signatures:
         return NO_FUNCTION
     kind, name, _ = signatures[0]

@@ -17,7 +17,9 @@ from ...ground.spelling import spelled
 
 
 def tuned(word: str) -> Encoding:
-    """Return the encoding that a name with parameters stands for.
+    """Return the encoding that a name with parameters stands for, such as `stereographic:scale=1.31`.
+
+    The parameter `table` names a file to use in place of an encoding's own lookup table.
 
     Raises:
         UsageError: an unknown encoding or parameter, an invalid value, a value out of range, or a file that is not a
@@ -46,7 +48,7 @@ def tuned(word: str) -> Encoding:
 
 def _example_setting(encoding: Encoding) -> str:
     known = [f"{encoding.name}{MARK}{key}={value}" for key, value in known_settings(encoding).items()]
-    return known[0] if known else f"those of others: {encoding.name} has none"
+    return known[0] if known else f"NAME:KEY=VALUE; {encoding.name} has no parameters"
 
 
 def _read_table(path: Path, encoding: Encoding) -> np.ndarray:
@@ -61,7 +63,7 @@ def _read_table(path: Path, encoding: Encoding) -> np.ndarray:
         raise UsageError(f"{path}: {error}") from error
     if table.shape != published.shape or table.dtype != published.dtype:
         wanted = f"{published.dtype} of shape {published.shape}"
-        raise UsageError(f"{path}: a table of {encoding.name} is {wanted}, as `normalbench tune --table` writes it")
+        raise UsageError(f"{path}: {encoding.name} needs a table of {wanted}, as `normalbench tune --table` writes it")
     if not np.all((table > 0) & (table <= 1)):
-        raise UsageError(f"{path}: a table of {encoding.name} holds scales above 0 and up to 1")
+        raise UsageError(f"{path}: a table of {encoding.name} must hold scales above 0 and at most 1")
     return table

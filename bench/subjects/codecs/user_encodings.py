@@ -43,11 +43,11 @@ TIME_LIMIT = 60.0
 ANY = "any"
 FIRST_LOOK = "normalbench.bench.subjects.codecs.first_look"
 DECLARES_HALF = (
-    "it declares 16-bit numbers: quality and cost also have rows in half arithmetic, which pick uses; all "
+    "it declares 16-bit numbers: quality and cost also have rows in half arithmetic, and pick uses them; all "
     "other tables compute in 32 bits"
 )
 IN_32_BITS = "it declares 16-bit numbers, but its code is an integer: it is computed in 32 bits"
-UNIT = "{} are in [0, 1]; every storage holds them unchanged, including signed and float ones"
+UNIT = "{} are in [0, 1]; every storage holds them unchanged, signed and float included"
 
 
 def looked_at(file: UserFile) -> Looked[Encoding]:
@@ -112,20 +112,21 @@ class Examined(NamedTuple):
 
 
 def examined(file: UserFile, domain: str = ANY) -> Examined:
-    """Return the findings on a file.
+    """Return the encoding of a file with the mistakes and notes that a first look finds.
 
     Args:
         domain: the domain that its author made it for; "any" to find out.
 
     Raises:
-        UsageError: the file is not an encoding, or does not compile.
+        UsageError: the file is not an encoding, or does not compile; SeveralEncodersError or OneFunctionError for
+            several pairs or a single function.
         MissingError: there is no GL device to run it on.
     """
     check_word(str(file), ENCODINGS)
     known = spelled("encoding", str(file), ENCODINGS)
     if known and not file.path.exists():
         command = f"normalbench quality --encoding {known}"
-        raise UsageError(f"{file} is in the catalogue; doctor examines a file of yours. `{command}` measures it")
+        raise UsageError(f"{file} is in the catalogue; doctor examines your files. Measure it with `{command}`")
     if file.path.is_file() and not names_an_encoder(str(file)):
         raise UsageError(f"{file}: its name does not end in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
     looks = _look(file, domain)
@@ -151,7 +152,7 @@ def examined(file: UserFile, domain: str = ANY) -> Examined:
 
 
 def _functions_in(file: UserFile, by: str) -> str:
-    """The two functions of a file that are examined."""
+    """Return the names of the two functions of a file that are examined, in GLSL as `NAME_encode:NAME_decode`."""
     if by or file.is_translated:
         return translated(file).named
     name, *_ = encode_of(file, read_shader(file.path))
@@ -165,6 +166,8 @@ def what_names(encoding: Encoding) -> str:
 
 def read_encoding(file: UserFile, fault: str = "", is_unit: bool = False, by: str = "") -> Encoding:
     """Return an encoding from its file, and from the Python file of the same name if there is one.
+
+    Without a usable Python file, the Python functions of the encoding raise NoTwinError.
 
     Args:
         file: its name, followed by its functions if they are needed.
@@ -209,7 +212,7 @@ def _encoding(file: UserFile, text: _Text, encode: Callable[..., Any], decode: C
 
 
 def _of_unit(encode: Callable[..., Any], decode: Callable[..., Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Return a twin with codes in [0, 1] as a twin with codes in [-1, 1]."""
+    """Return an encode and a decode with codes in [-1, 1], made from functions with codes in [0, 1]."""
     return lambda n, view: encode(n, view) * 2.0 - 1.0, lambda e, view: decode(e * 0.5 + 0.5, view)
 
 
@@ -244,7 +247,8 @@ def _text(file: UserFile, is_unit: bool, by: str) -> _Text:
 
 
 def _of_unit_text(file: Path, name: str, components: int) -> _Text:
-    """Return a text that includes a GLSL file with codes in [0, 1] and defines functions with codes in [-1, 1]."""
+    """Write a GLSL file that includes a file with codes in [0, 1] and converts its functions to codes in [-1, 1];
+    return its text entry. Raises UsageError if the name of the included file has quotes or control characters."""
     sizes = {"encode": (components, NORMAL), "decode": (NORMAL, components)}
     encoder, decoder = (
         Function(f"{name}_{side}", output_size, (given, NORMAL) if takes_view(file, f"{name}_{side}") else (given,))
@@ -268,12 +272,13 @@ def _with_includes(file: UserFile) -> str:
 
 
 def _lacking_functions(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """An encode and a decode that raise NoTwinError."""
+    """Return an encode and a decode that raise NoTwinError with a reason."""
     return lacking_twin(reason), lacking_twin(reason)
 
 
 def _twin_functions(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """The encode and decode of a Python file; of a missing one, functions that raise NoTwinError."""
+    """Return the encode and decode of a Python file; if the file is missing, functions that raise NoTwinError. Raises
+    UsageError if the file fails to run or lacks a function."""
     if not path.exists():
         return _lacking_functions(f"{path.stem} {NO_TWIN}; add {path.name} next to it for rows computed by JAX")
     try:
@@ -289,7 +294,7 @@ def _twin_functions(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]
 
 
 def _guarded(path: Path, function: Callable[..., Any], kinds: tuple[type, ...]) -> Callable[..., Any]:
-    """Return a user's function that raises NoTwinError if it fails or returns another type."""
+    """Return a user's function that raises NoTwinError if the call fails or returns another type than `kinds`."""
     wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
 
     def guarded(*given: Any) -> Any:
@@ -330,7 +335,7 @@ class Looks:
     is_asked: bool = False
 
     def encoding(self) -> Encoding:
-        """Return the encoding that was looked at."""
+        """Read the file again and return its encoding with the domain and packed bits that were found."""
         read = read_encoding(self.file, self.fault, self.is_unit, self.glsl.get("by", ""))
         read = replace(read, packed_bits=self.glsl.get("packed_bits", read.packed_bits))
         return self.domain.measured(read)
@@ -363,13 +368,14 @@ class Looks:
         return UNIT.format(f"the codes of {made_for}" if made_for else "its codes")
 
     def _of_domain(self) -> Iterator[str]:
-        """Yield why it is assumed to be made only for some normals, or where it is not finite."""
+        """Yield at most one sentence: the normals that the file is assumed to be made for, or, if the user gave a
+        domain, where outside of that domain a function is not finite."""
         domain, hole = self.domain, self.glsl.get("hole")
         if self.is_asked and hole:
             yield f"it is meant for {domain.made_for}; elsewhere {hole}"
         elif domain.made_for and not self.is_asked:
             turned = "; tables rotate it so that this half is z >= 0" if domain.is_turned else ""
-            yield f"assumed to be made only for {domain.made_for}: {hole or 'other normals do not come back'}{turned}"
+            yield f"assumed to be made only for {domain.made_for}: {hole or 'other normals do not round-trip'}{turned}"
 
 
 def _look(file: UserFile, domain: str = "") -> Looks:
@@ -401,14 +407,14 @@ def _look(file: UserFile, domain: str = "") -> Looks:
 
 def file_with(file: UserFile, findings: Mapping[str, Any]) -> UserFile:
     """Return a file with the findings of a first look: its language, if the extension is another's, and the only pair
-    of several that round-trips."""
+    of several that round-trips. Without these findings the file is unchanged."""
     if "language" in findings:
         file = file.with_language(findings["language"])
     return file.with_pair(findings["pair"]) if "pair" in findings else file
 
 
 def _said_of(file: UserFile, by: str) -> tuple[str, ...]:
-    """Return remarks on the text of a file."""
+    """Return the notes of a file's translation; for GLSL, a remark on each encoding that is not measured."""
     if by or file.is_translated:
         return tuple(translated(file).notes)
     name, _, others = encode_of(file, read_shader(file.path))
@@ -429,7 +435,7 @@ def _answers(output: str) -> Iterator[dict[str, Any]]:
 
 
 def _check(file: UserFile, findings: dict[str, Any]) -> None:
-    """Raise UsageError if a shader does not compile, or is not finite."""
+    """Raise UsageError if findings on a shader have an error, such as of its compiler, or call it not finite."""
     if "error" in findings:
         raise UsageError(findings["error"])
     if "broken" in findings:

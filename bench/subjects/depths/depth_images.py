@@ -68,7 +68,7 @@ class DepthImage:
         return width / height
 
     def depths(self, camera: Camera) -> np.ndarray:
-        """View depths, float64 of shape (height, width); NaN where the file has that."""
+        """Return view depths, float64 of shape (height, width); NaN where the file has NaN."""
         if self.code == VIEW:
             return self.numbers * self.unit
         encoding = DEPTH_ENCODINGS[self.code]
@@ -93,9 +93,10 @@ class DepthImage:
 
 
 def read_depths(path: Path, channel: str | None) -> Pixels:
-    """Read the depth channel of an image as Pixels of one plane, (1, height, width). Raises UsageError."""
+    """Read the depth channel of an image as Pixels of one plane, (1, height, width); if `channel` is None, the
+    channel is chosen by its name. Raises UsageError."""
     if path.suffix.lower() not in READERS:
-        raise UsageError(f"{path}: not an image of depths; {', '.join(READERS)} are read")
+        raise UsageError(f"{path}: not an image of depths; supported: {', '.join(READERS)}")
     return read_plane(path, lambda names: [_channel(path, names, channel)])
 
 
@@ -114,12 +115,13 @@ def _check_code(path: Path, numbers: np.ndarray, code: str) -> None:
     """Raise UsageError if numbers are outside the range of a depth encoding, [0, 1]."""
     valid_numbers = numbers[~np.isnan(numbers)]
     if len(valid_numbers) and not 0 <= valid_numbers.min() <= valid_numbers.max() <= 1:
-        what = f"its numbers are {valid_numbers.min():.3g} to {valid_numbers.max():.3g}, but those of {code} are 0 to 1"
+        what = f"its values are {valid_numbers.min():.3g} to {valid_numbers.max():.3g}, but {code} ranges from 0 to 1"
         raise refused(path, what, "use --depths-are view for distances")
 
 
 def _channel(path: Path, names: Sequence[str], asked: str | None) -> str:
-    """Return the channel of depths: the requested channel, the channel named like depths, or the only channel."""
+    """Return the channel of depths: the requested channel, the channel named like depths, or the only channel. Raises
+    UsageError if the requested channel is missing, or if several channels may be depths."""
     shown = ", ".join(names[:40])
     if asked is not None:
         if asked not in names:
@@ -128,11 +130,11 @@ def _channel(path: Path, names: Sequence[str], asked: str | None) -> str:
     likely = [name for name in names if _is_called_like_depths(name, names)] or list(names)
     if len(likely) == 1:
         return likely[0]
-    raise refused(path, f"any of {', '.join(likely[:40])} may be depths", f"choose one with --channel {likely[0]}")
+    raise refused(path, f"any of {', '.join(likely[:40])} may hold depths", f"choose one with --channel {likely[0]}")
 
 
 def _is_called_like_depths(name: str, names: Sequence[str]) -> bool:
-    """Z, Depth, ViewLayer.Depth.Z; but not the Z of three axes."""
+    """Whether a channel is named like depths: Z, Depth, ViewLayer.Depth.Z; but not the Z of three axes."""
     *_, last = words = re.split(r"[._ ]", name.lower())
     has_axes = f"{name[:-1]}{'X' if name[-1:] == 'Z' else 'x'}" in names
     return any("depth" in word for word in words) or (last == "z" and not has_axes)

@@ -54,14 +54,14 @@ def _check(path: Path, sides: tuple[int, int], channels: int) -> None:
     """Raise UsageError if an image does not have the width and height of an environment."""
     width, height = sides
     if width != 2 * height:
-        remedy = "an equirectangular environment must be twice as wide as high; export it so"
+        remedy = "an equirectangular environment must be twice as wide as high; export it in that size"
         raise refused(path, f"{width} x {height} pixels", remedy)
     if width > MOST_WIDTH:
         raise refused(
-            path, f"{width} x {height} pixels", f"at most {MOST_WIDTH} x {MOST_WIDTH // 2} are supported: scale it down"
+            path, f"{width} x {height} pixels", f"at most {MOST_WIDTH} x {MOST_WIDTH // 2} are supported: shrink it"
         )
     if width < LEAST_WIDTH:
-        raise refused(path, f"{width} x {height} pixels", f"at least {LEAST_WIDTH} x {LEAST_WIDTH // 2} are needed")
+        raise refused(path, f"{width} x {height} pixels", f"at least {LEAST_WIDTH} x {LEAST_WIDTH // 2} are required")
     check_sides(path, sides, channels)
 
 

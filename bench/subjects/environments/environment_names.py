@@ -13,7 +13,7 @@ from ...ground.choose import choose_one, names_a_file, names_a_folder
 from ...ground.output.errors import UsageError
 from .environment_files import ENDINGS, environment_of
 
-READ = f"{' and '.join(ENDINGS)} files are read"
+READ = f"only {' and '.join(ENDINGS)} files are supported"
 LOW = "it stores no light brighter than white; save the environment as .hdr or .exr"
 # By its ending, why a picture of another kind is not read.
 OTHERS: Mapping[str, str] = MappingProxyType(
@@ -38,5 +38,5 @@ def environment_named(word: str) -> Environment:
     try:
         maker = ENVIRONMENTS[choose_one("environment", word, ENVIRONMENTS)]
     except UsageError as error:
-        raise UsageError(f"{error}; or a file that ends in {', '.join(ENDINGS)}") from None
+        raise UsageError(f"{error}; or a file ending in {', '.join(ENDINGS)}") from None
     return without_sun(maker.make()) if maker.has_sun else maker.make()

@@ -12,14 +12,15 @@ BACKENDS = ("jax", "glsl", "wgsl")
 
 
 def backends_named(names: Names, has: Collection[str]) -> list[str]:
-    """Return the back ends of some names that a table has; the others are named on standard error.
+    """Return the back ends that names stand for and that a table has, or all that it has for "all". Others are named
+    on standard error.
 
     Raises:
         UsageError: an unknown name, or none that the table has.
     """
     if "all" in names:
         return list(has)
-    picked = choose("back end", names, dict(zip(BACKENDS, BACKENDS, strict=True)))
+    picked = choose("backend", names, dict(zip(BACKENDS, BACKENDS, strict=True)))
     available, lacking = [name for name in picked if name in has], [name for name in picked if name not in has]
     message = f"{', '.join(lacking)}: this table measures only with {' and '.join(has)}"
     if not available:

@@ -30,12 +30,13 @@ def effects_named(names: Names) -> list[ChosenEffect]:
 
 
 def name_of(effects: Iterable[ChosenEffect]) -> str | None:
-    """Return the name that rows give to the effects of an image; None if there are no effects."""
+    """Return the names of the effects of an image, joined by commas; None if there are no effects."""
     return ",".join(effect.name for effect in effects) or None
 
 
 def pipeline_with(pipeline: Pipeline, effects: Iterable[ChosenEffect], complaints: list[str]) -> Pipeline | None:
-    """A pipeline with effects in it; None, and a line among the complaints, where they do not fit."""
+    """Return a pipeline with the passes of effects added. If two effects produce the same result, or an effect does
+    not fit, append a line to `complaints` and return None."""
     makers: dict[str, str] = {}
     for effect in effects:
         twin = makers.setdefault(effect.effect.result.name, effect.name)
@@ -60,7 +61,10 @@ def _fits(pipeline: Pipeline, effect: ChosenEffect) -> bool:
 
 
 def lacking(effects: Iterable[ChosenEffect], name: str, scene: Scene) -> str | None:
-    """Why a scene has nothing for one of the effects; None where it has for all."""
+    """Return in words the first effect that lacks an input in a scene, and why; None if no effect does.
+
+    Args:
+        name: the scene's name in the message."""
     reasons = ((effect.name, effect.effect.lacks(scene)) for effect in effects)
     return next((f"{effect} on {name}: {why}" for effect, why in reasons if why), None)
 

@@ -33,7 +33,7 @@ def light_buffers_named(names: Iterable[Word]) -> list[LightCodec]:
 
 
 def _said_codec(word: str) -> LightCodec:
-    """A code with its range or its storage, or both: `linear:1/unorm:10:10:10`."""
+    """Return the codec of a name with a range, a storage or both: `linear:1/unorm:10:10:10`. Raises UsageError."""
     name, is_in, storage = (PLAIN, "/", word) if RULE.match(word) else word.partition("/")
     codec = ranged_light_buffer(name) if ":" in name else LIGHT_BUFFERS.get(name) or _plain_codec(name, word)
     if not is_in:
@@ -70,7 +70,8 @@ def ranged_light_buffer(word: str) -> LightCodec:
 
 
 def name_and_range(word: str) -> tuple[str, str]:
-    """A name and the text of its range: rgbm and 8 of rgbm:8 and of rgbm:range=8."""
+    """Return a name and the text of its range: `rgbm` and `8` of `rgbm:8` and of `rgbm:range=8`; the text is empty
+    without a range."""
     name, _, text = word.partition(":")
     return name.strip(), text.strip().removeprefix("range=")
 

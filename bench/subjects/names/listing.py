@@ -29,8 +29,8 @@ from ...ground.options.words import Names
 NORMAL_SETS = {
     "sphere": "directions spread evenly over the sphere, seeded",
     "hemisphere": "directions spread evenly over z >= 0, seeded",
-    "axes": "axis-aligned, both zeros, and a few units in the last place around",
-    "playground": "the scene of Pranckevicius' article rendered at 640 x 480, with four lamp arms like its own",
+    "axes": "axis-aligned, with +0 and -0, and neighbours a few ulps (units in the last place) away",
+    "playground": "the scene of Pranckevicius' article rendered at 640 x 480, with four similar lamp arms",
 }
 
 # Sets that users' files are, by how they are named.
@@ -65,7 +65,7 @@ def _encodings() -> list[Row]:
 
 
 def _settings_of(encoding: Encoding) -> str | None:
-    """Return the settings that may follow an encoding's name, after a colon."""
+    """Return `settings:` and the settings that may follow an encoding's name, joined by commas; None if none."""
     settings = ", ".join(known_settings(encoding))
     return f"settings: {settings}" if settings else None
 
@@ -89,7 +89,7 @@ def _storages() -> list[Row]:
 
 
 def _rule_text(storage: Storage) -> str:
-    """The bits of a storage, of floats how many there are as well."""
+    """Return the bits of a storage as text; for floats after the number of channels, as in `4 x ...`."""
     return f"{storage.channels} x {rule_of(storage)}" if storage.kind == "float" else rule_of(storage)
 
 
@@ -161,7 +161,7 @@ def _pipelines() -> list[Row]:
 
 
 def said(setting: Number | Choice) -> str:
-    """Return the usual value of a setting and its other possible values."""
+    """Return a number's usual value and range, such as `1 (0.5 to 2)`; for a choice, its words, joined by `|`."""
     if isinstance(setting, Choice):
         return "|".join(setting.words)
     return f"{setting.usual:g} ({setting.least:g} to {setting.most:g})"
@@ -186,7 +186,7 @@ def _scenes() -> list[Row]:
 def _light_buffers() -> list[Row]:
     return [
         _row("light buffer", light.name, light.title, bytes_per_pixel=light.bytes_per_pixel)
-        | {"holds": f"up to {light.limit:.6g}, by {HOW[light.blend]}", "from": light.encoding.citation}
+        | {"holds": f"up to {light.limit:.6g}, accumulated by {HOW[light.blend]}", "from": light.encoding.citation}
         for light in LIGHT_BUFFERS.values()
     ]
 

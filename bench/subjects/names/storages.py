@@ -46,7 +46,7 @@ def storages_named(
 
 
 def roundings_named(names: Names, known: Collection[str] = ROUNDINGS) -> list[str]:
-    """Return ways to round by their names. Raises UsageError for one that is not among the known."""
+    """Return ways to round by their names. Raises UsageError for a name that is not in `known`."""
     if DITHERED not in known and DITHERED in names:
         raise UsageError(f"--rounding {DITHERED}: this command adds no noise; use quality or render")
     return choose("rounding", names, {name: name for name in known})
@@ -74,7 +74,8 @@ def _storage_of(word: str) -> Storage | None:
 
 
 def _rule_of(word: str) -> str | None:
-    """The bits of a format that an API names and the catalogue lacks: unorm:5:6:5 for B5G6R5_UNORM."""
+    """Return the bits, as `unorm:5:6:5`, of a format that an API names and the catalogue lacks, such as B5G6R5_UNORM;
+    None for any other word."""
     if vertex := VERTEX.fullmatch(word):
         bits = vertex["bits"].split("-") if vertex["bits"] else [vertex["size"]] * int(vertex["count"])
         kind = vertex["kind"].lower()
@@ -89,9 +90,10 @@ def _floats_of(size: str | None, count: int) -> str | None:
 
 
 def _in_range(word: str) -> list[str]:
-    """The names of a range, in which numbers grow by a bit from one to the next; a name alone is its own.
+    """Return the names of a range, `unorm:4:4..8:8`, in which numbers grow by a bit from one to the next; for a name
+    alone, a list of this name.
 
-    Raises UsageError.
+    Raises UsageError for an invalid range.
     """
     word = word.lower() if RULE.match(word) else word
     match = RANGE.fullmatch(word)
@@ -104,7 +106,7 @@ def _in_range(word: str) -> list[str]:
     first, last = ([int(bits) for bits in match[end].split(":")] for end in ("first", "last"))
     steps = {high - low for low, high in zip(first, last, strict=False)} - {0}
     if len(first) != len(last) or len(steps) > 1 or min(steps, default=0) < 0:
-        raise UsageError(f"--storage {word}: bit counts of a range grow equally or stay, as in unorm:4:4..16:16")
+        raise UsageError(f"--storage {word}: the bit counts must grow equally or not at all, as in unorm:4:4..16:16")
     grows = [high > low for low, high in zip(first, last, strict=True)]
     every = ([b + step * g for b, g in zip(first, grows, strict=True)] for step in range(max(steps, default=0) + 1))
     return [":".join((match["kind"], *map(str, bits))) for bits in every]

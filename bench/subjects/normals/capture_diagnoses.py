@@ -58,7 +58,7 @@ class Pixels:
     has_places: bool
 
     def away(self, to_view: np.ndarray, fov: float) -> float:
-        """The share of normals that no camera of this angle of view sees, once `to_view` (3, 3) has turned them."""
+        """Return the share of normals, turned by `to_view` (3, 3), that no camera of this angle of view sees."""
         half = math.tan(math.radians(fov) / 2)
         x, y, z = to_view @ self.n.T
         along = (x * self.across + y * self.up) * half - z
@@ -100,7 +100,8 @@ class Finding(NamedTuple):
 
 
 def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: bool) -> Finding | None:
-    """Return the likely mistake in the space that the normals are read in; None if too few normals face away.
+    """Return in words the share of normals that face away, with a correction if a known misreading explains them;
+    None if few normals face away.
 
     Args:
         to_view: the matrix that turns the file's normals to view space, as the frame is read.

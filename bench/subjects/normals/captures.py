@@ -128,7 +128,7 @@ def check_size(path: Path, shape: tuple[int, ...], wanted: tuple[int, ...]) -> N
     """Raise UsageError if an image does not have the (height, width) of another."""
     if shape != wanted:
         sides, others = (" x ".join(map(str, size[::-1])) for size in (shape, wanted))
-        raise refused(path, f"it is {sides}, but the depth is {others}", "save all images of a frame in one size")
+        raise refused(path, f"it is {sides}, but the depth is {others}", "save all images of a frame in the same size")
 
 
 def is_in_object_space(path: Path, reading: Reading) -> bool:
@@ -146,11 +146,12 @@ def _roundings(pixels: Pixels, reading: Reading) -> Sequence[Rounding]:
 
 
 def _of_roundings(roundings: Sequence[Rounding], own: float | None, is_image: bool) -> list[str]:
-    """Return remarks on normals that their file stores in few bits, with an error of `own` degrees."""
+    """Return remarks on normals that their file stores in few bits, with an error of `own` degrees; empty if the
+    error is unknown or small."""
     if is_image and roundings == (EIGHT_BITS,):
         return [
-            "8 bits per channel, about 0.2 degrees off themselves: 8-bit storages look better on them than "
-            "they are; captures in 16 bits or floats favour none"
+            "8 bits per channel, with errors of about 0.2 degrees: 8-bit storages look better on them than "
+            "they are; captures in 16 bits or floats favour no storage"
         ]
     if own is None or own < FINE:
         return []
@@ -158,7 +159,7 @@ def _of_roundings(roundings: Sequence[Rounding], own: float | None, is_image: bo
 
 
 def checked(reading: Reading) -> Reading:
-    """Return how files are read, with the known names. Raises UsageError."""
+    """Return a reading with the known names. Raises UsageError for unknown names and values out of range."""
     if not 0 <= reading.nan_share <= 1:
         raise UsageError(f"--nan-share {reading.nan_share}: out of range; use 0 to 1")
     if reading.fov is not None and not 1 <= reading.fov <= 175:
@@ -172,7 +173,8 @@ def checked(reading: Reading) -> Reading:
 
 
 def _layer_channels(names: Sequence[str]) -> Iterator[tuple[str, list[str]]]:
-    """Three channels that belong together, with their layer's name: N.X N.Y N.Z, normal.R .., Nx Ny Nz, 0 1 2."""
+    """Yield a layer's name with its three channels that belong together: N.X N.Y N.Z, normal.R .., Nx Ny Nz, 0 1 2.
+    The name is empty if the channels have only these letters or digits."""
     known = set(names)
     for name in names:
         stem, axis = name[:-1], name[-1:]
@@ -201,20 +203,21 @@ def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list
             return layers[words[0]]
         if len(words) == 3 and set(words) <= set(names):
             return words
-        raise refused(path, f"no channels {asked!r}; it has {shown}", "give a layer or three channels with --channels")
+        raise refused(path, f"no channels {asked!r}; it has {shown}", "name a layer or three channels with --channels")
     likely = [layer for layer in layers if NORMAL_WORDS.fullmatch(re.split(r"[._ ]", layer)[-1])]
     if len(likely) > 1:
-        raise refused(path, f"layers {', '.join(likely)} may all be normals", f"choose one with --channels {likely[0]}")
+        raise refused(path, f"layers {', '.join(likely)} may hold normals", f"choose one with --channels {likely[0]}")
     if likely or "" in layers or len(layers) == 1:
         return layers[likely[0] if likely else "" if "" in layers else next(iter(layers))]
-    raise refused(path, f"no channels with names of normals; it has {shown}", "name three with --channels x,y,z")
+    raise refused(path, f"no channel names suggest normals; it has {shown}", "name three with --channels x,y,z")
 
 
 # What is surface
 
 
 def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the pixels that a mask marks as surface, bool of the image's shape."""
+    """Return the pixels that the mask of a reading, an image file or a channel of the image, marks as surface: bool
+    of the image's shape, all true without a mask. Raises UsageError if the mask has another size."""
     asked = reading.mask
     if asked is None:
         return np.ones(shape, bool)
@@ -226,18 +229,18 @@ def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
         where, mask = f"channel {asked}", read_pixels(path, lambda names: _one_channel(path, names, asked)).planes[0]
     if mask.shape != shape:
         sides = " x ".join(map(str, mask.shape))
-        raise refused(path, f"{where} is {sides}, the normals are {' x '.join(map(str, shape))}", "use the same size")
+        raise refused(path, f"{where} is {sides}, normals are {' x '.join(map(str, shape))}", "use the same size")
     return np.isfinite(mask) & (mask != 0)
 
 
 def _mask_of_file(path: Path) -> np.ndarray:
-    """The first channel of an image, (height, width)."""
+    """Return the first channel of an image, (height, width)."""
     return read_plane(path, lambda names: names[:1]).planes[0]
 
 
 def _one_channel(path: Path, names: Sequence[str], asked: str) -> list[str]:
     if asked not in names:
-        raise refused(path, f"no channel {asked!r} for a mask; it has {', '.join(names[:40])}", "or --mask FILE")
+        raise refused(path, f"no channel {asked!r} for a mask; it has {', '.join(names[:40])}", "use --mask FILE")
     return [asked]
 
 
@@ -256,9 +259,9 @@ def _directions_and_remarks(
     length = _plane_lengths(n)
     covered = surface & finite & (length >= BACKGROUND)
     if not covered.any() and path.suffix.lower() in CLOUDS:
-        raise refused(path, "none of its points has a normal: nx, ny, nz are 0, as in splats", "export normals")
+        raise refused(path, "none of its points has a normal: nx, ny and nz are 0, as in splats", "export normals")
     if not covered.any():
-        raise refused(path, "no normals: every pixel is background", "see --channels, --mask and --unpack")
+        raise refused(path, "no normals: every pixel is background", "check --channels, --mask and --unpack")
     notes = _checked_unit(path, stored, length, covered, reading, unpack)
     far = covered & (abs(length - 1) > ROUNDING)
     return np.divide(n, length, out=n.copy(), where=far), covered, notes
@@ -298,9 +301,9 @@ def _checked_unit(
     low, high = (float(f(components)) for f in (np.min, np.max))
     remedy = next(_readings_that_fit(components, reading.curve, unpacked), None)
     if reading.normalise:
-        return [f"{complaint}, normalised; {remedy} would read them at unit length"] if remedy else []
+        return [f"{complaint}, normalised; with {remedy} they would be unit length"] if remedy else []
     if remedy:
-        raise refused(path, f"{complaint}, all components are in [{low:.3g}, {high:.3g}]", f"use {remedy}")
+        raise refused(path, f"{complaint}; all components are in [{low:.3g}, {high:.3g}]", f"use {remedy}")
     median = float(np.median(length[covered]))
     raise refused(
         path,
@@ -311,7 +314,8 @@ def _checked_unit(
 
 
 def _readings_that_fit(components: np.ndarray, curve: str, unpacked: bool) -> Iterator[str]:
-    """Yield options other than the current ones with which nearly all normals have unit length.
+    """Yield options, such as `--curve srgb --no-unpack`, with which nearly all normals have unit length, except the
+    current options; nothing unless the current curve is linear.
 
     Args:
         components: the components, (3, count), decoded by `curve`.
@@ -393,14 +397,14 @@ def _rotation_and_remarks(text: str) -> tuple[np.ndarray, list[str]]:
     square = linear @ linear.T
     scale = np.trace(square) / 3
     if not scale > 0 or not np.allclose(square / scale, np.eye(3), atol=ROTATION_WITHIN):
-        raise UsageError(f"{option}: not a rotation: its rows are not at right angles, or of different lengths")
+        raise UsageError(f"{option}: not a rotation: its rows are not at right angles, or differ in length")
     size = math.sqrt(scale)
     is_scaled = abs(size - 1) > ROTATION_WITHIN
-    return linear / size, [f"the rows of --view-matrix are {size:.4g} long: the scale is ignored"] * is_scaled
+    return linear / size, [f"the rows of --view-matrix have length {size:.4g}: the scale is ignored"] * is_scaled
 
 
 def _numbers_of(text: str, option: str) -> np.ndarray:
-    """A matrix of 3 or 4 rows."""
+    """Return the matrix of 3 or 4 rows whose numbers are in a text, or in a file of that name. Raises UsageError."""
     if re.search(r"[^-+0-9.eE,;\s]", text):
         try:
             text = file_text(Path(text))[:4096]
@@ -411,7 +415,7 @@ def _numbers_of(text: str, option: str) -> np.ndarray:
     except ValueError as error:
         raise UsageError(f"{option}: neither numbers nor a text file of numbers") from error
     if len(numbers) not in (9, 16):
-        raise UsageError(f"{option}: {len(numbers)} numbers; 9 or 16, row by row")
+        raise UsageError(f"{option}: {len(numbers)} numbers; expected 9 or 16, row by row")
     side = math.isqrt(len(numbers))
     return np.array(numbers).reshape(side, side)
 
@@ -427,7 +431,7 @@ def _check_affine(matrix: np.ndarray, option: str) -> None:
 
 
 def typed(matrix: np.ndarray) -> str:
-    """A matrix as --view-matrix takes it."""
+    """Return a matrix as --view-matrix takes it: numbers row by row, joined by commas."""
     return ",".join(f"{value + 0.0:.7g}" for value in matrix.ravel())
 
 
@@ -446,24 +450,25 @@ def _which_way(
 
 def _remedy_text(remedy: np.ndarray | float | None, is_world: bool, chosen: Sequence[str]) -> str:
     if remedy is SWAPPED:
-        return f"read it with --channels {','.join(reversed(chosen))}"
+        return f"use --channels {','.join(reversed(chosen))}"
     if isinstance(remedy, np.ndarray):
         space = next(
             (name for name, known in SPACES.items() if known is not None and np.array_equal(known, remedy)), None
         )
-        return f"read it with --space {space}" if space else f"read it with --space world --view-matrix {typed(remedy)}"
+        return f"use --space {space}" if space else f"use --space world --view-matrix {typed(remedy)}"
     if remedy is not None:
         return "check --fov, which is the vertical angle"
     if is_world:
         return "check --view-matrix"
     return (
-        "is it in world space? use --space world --view-matrix to transform it to view space; if the engine encodes "
+        "if they are in world space, use --space world --view-matrix to transform them; if the engine encodes "
         "world-space normals, use --space world --code-space world"
     )
 
 
 def _rays(n: np.ndarray, fov: float | None) -> np.ndarray:
-    """View-space positions one unit away, (..., 3): through each pixel's centre, or straight ahead."""
+    """Return view-space positions at depth 1, (..., 3): through each pixel's centre, or straight ahead if `fov` is
+    None or the normals are a list."""
     view = np.broadcast_to(np.array([0, 0, -1], np.float32), n.shape)
     if fov is None or n.ndim != 3:
         return view

@@ -64,7 +64,7 @@ def normal_sets_named(
             if needs_rays and reading.code_space == WORLD and reading.view_matrix is None:
                 raise UsageError("encodings that need the view ray require --view-matrix with --code-space world")
             if needs_rays and reading.fov is None and normal_set.has_rays:
-                notes[path].append("without --fov, encodings that need view rays get parallel ones")
+                notes[path].append("without --fov, encodings that need view rays use parallel rays")
         else:
             normal_set, notes[path] = mesh_set(path, reading.size)
         return given(normal_set)
@@ -87,7 +87,7 @@ def lacking_rays(pairs: Iterable[tuple[Encoding, NormalSet]]) -> list[str]:
 def check_rays(sets: Iterable[NormalSet], needs_rays: bool) -> None:
     """Raise UsageError if an encoding to be measured needs view rays and a set has none."""
     if needs_rays and (lacking := next((normal_set for normal_set in sets if not normal_set.has_rays), None)):
-        raise UsageError(f"--normals {lacking.name}: an encoding cannot be measured on it: {LACKS_RAYS}")
+        raise UsageError(f"--normals {lacking.name}: cannot be used with this encoding: {LACKS_RAYS}")
 
 
 def _check_kind(word: str) -> None:
@@ -133,7 +133,7 @@ def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:
     seen = files.seen(file, sides)
     if not seen.covered.any():
         raise UsageError(f"{path}: {SEES_NOTHING}")
-    notes = [*file.notes, *([] if file.view else ["no camera in it: viewed from one side, framed as a whole"])]
+    notes = [*file.notes, *([] if file.view else ["no camera in it: everything is framed, from one side"])]
     if (own := seen.map_error_deg) is not None:
         notes.append(own_error_note("its normal maps have 8 bits per channel and", own))
     of_vertices, vertex_notes = vertices.drawn_error(path)

@@ -96,14 +96,14 @@ class NormalSet:
 
     @cached_property
     def parts(self) -> Sequence[NormalSet]:
-        """The set in parts of at most PART normals, each with the count of all; none where one is enough."""
+        """The set in parts of at most PART normals, each with the count of all; empty if one part is enough."""
         if self.of or self.count <= PART:
             return ()
         chunks = PART // CHUNK
         return [replace(self, of=range(start, start + chunks)) for start in range(0, len(self.starts), chunks)]
 
     def facing(self) -> NormalSet:
-        """Return its part that faces the viewer."""
+        """Return the set with only those normals covered that face the viewer."""
 
         def chunk(start: int) -> Chunk:
             whole = self.chunk(start)
@@ -121,7 +121,7 @@ def _straight_ahead(like) -> Vec3:
 
 
 def _unit_interval(index, step: int, offset):
-    """The fraction of offset + index * step in units of 2^-32, exact in float64; never 0 or 1."""
+    """Return (offset + index * step + 0.5) / 2^32, with the first sum modulo 2^32: exact in float64; never 0 or 1."""
     fixed = index * jnp.uint32(step) + offset
     return (fixed.astype(jnp.float64) + 0.5) * 2.0**-32
 
@@ -158,7 +158,7 @@ def _fill(whole: bool) -> Fill | None:
 
 @cache
 def _ahead() -> Vec3:
-    """View positions of a chunk."""
+    """Return the view positions of a chunk, all straight ahead."""
     return Vec3(*map(np.asarray, _straight_ahead(jnp.zeros(CHUNK, jnp.float32))))
 
 
@@ -179,22 +179,23 @@ def _make_uniform(name: str, title: str, whole: bool, count: int, seed: int) -> 
 
 
 def sphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
-    """`count` directions spread evenly over the sphere, a low-discrepancy sequence shifted by the seed."""
+    """Return `count` directions spread evenly over the sphere, a low-discrepancy sequence shifted by the seed."""
     return _make_uniform("sphere", "uniform sphere", True, count, seed)
 
 
 def hemisphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
-    """`count` directions spread evenly over z >= 0."""
+    """Return `count` directions spread evenly over z >= 0, a low-discrepancy sequence shifted by the seed."""
     return _make_uniform("hemisphere", "uniform hemisphere, z >= 0", False, count, seed)
 
 
 def from_arrays(name: str, title: str, n, view, covered, shape=None, not_finite: int | None = None) -> NormalSet:
-    """A set of given normals.
+    """Return a set of given normals.
 
     Args:
         n, view: float32 arrays of shape (..., 3).
-        covered: which of them count, bool of shape (...).
-        not_finite: how many of those that do not are NaN or infinite in the file they come from.
+        covered: which of the normals count, bool of shape (...).
+        not_finite: number of normals that do not count because they are NaN or infinite in their file; None if
+            unknown.
     """
     count = covered.size
     background = count - int(np.count_nonzero(covered)) - (not_finite or 0)
@@ -223,17 +224,18 @@ def _chunks(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> list[Chunk]
 
 
 def axes(count: int = 0, seed: int = 0) -> NormalSet:
-    """The six axis directions, with both zeros and one to three units in the last place of 1 around each."""
+    """Return the six axis directions, with both zeros and one to three units in the last place of 1 around each;
+    `count` and `seed` have no effect."""
     ulp = float(np.spacing(np.float32(1)))
     near = [0.0, -0.0, *(s * k * ulp for k in (1, 2, 3) for s in (1, -1))]
     sides = itertools.product(range(3), (1.0, -1.0), near, near)
     n = np.array([np.insert([a, b], axis, side) for axis, side, a, b in sides], np.float32)
     view = np.broadcast_to(np.array([0, 0, -1], np.float32), n.shape)
-    return from_arrays("axes", "axis-aligned, and a few units in the last place around", n, view, np.ones(len(n), bool))
+    return from_arrays("axes", "axis-aligned, with neighbours a few ulps away", n, view, np.ones(len(n), bool))
 
 
 def playground(count: int = 0, seed: int = 0) -> NormalSet:
-    """The article's scene as its camera sees it, 640 x 480."""
+    """Return the article's scene as its camera sees it, 640 x 480; `count` and `seed` have no effect."""
     return _playground_set()
 
 

@@ -31,7 +31,8 @@ BITS, DIFFERENT, NEAR = range(5, 13), 64, 0.1
 
 
 def own_error_deg(n: np.ndarray, roundings: Sequence[Rounding]) -> float | None:
-    """Return the mean angular error in degrees of unit normals, (count, 3); None if it is unknown.
+    """Return the mean angular error in degrees that roundings have caused in unit normals, (count, 3); None without
+    roundings or normals.
 
     Args:
         roundings: the roundings of the normals, in the order in which they were applied.
@@ -55,7 +56,7 @@ def all_roundings(n: np.ndarray, roundings: Sequence[Rounding]) -> tuple[Roundin
 
 
 def octahedral_grid(n: np.ndarray, roundings: Sequence[Rounding] = ()) -> list[Rounding]:
-    """Return the grid of the octahedral map that packed the normals, as Draco does; empty if no map did.
+    """Return a list of the grid of the octahedral map that packed the normals, as Draco does; empty if no map did.
 
     On the octahedron |x| + |y| + |z| = 1 the two numbers of a map's code are two of x, y and z, and the third makes
     up the sum of 1. All three are therefore multiples of a step.
@@ -70,7 +71,7 @@ def octahedral_grid(n: np.ndarray, roundings: Sequence[Rounding] = ()) -> list[R
 
 
 def _mean_angle(n: np.ndarray, rounding: Rounding) -> float:
-    """The mean angle, in radians, by which a rounding has turned normals."""
+    """Return an estimate of the mean angle, in radians, by which a rounding has turned normals."""
     wide = max(rounding.most // COARSER, 1)
     again = _rounded_on_octahedron(n, wide) if rounding.is_octahedral else np.round(n * wide)
     apart = np.linalg.norm(again / np.linalg.norm(again, axis=1, keepdims=True) - n, axis=1)
@@ -78,7 +79,7 @@ def _mean_angle(n: np.ndarray, rounding: Rounding) -> float:
 
 
 def _rounded_on_octahedron(n: np.ndarray, most: float) -> np.ndarray:
-    """Directions with the two numbers of an octahedral map rounded to steps of 1 / most."""
+    """Return directions, (count, 3), whose two octahedral numbers have been rounded to steps of 1 / most."""
     octahedral, view = ENCODINGS["octahedral"], Vec3(*np.zeros((3, len(n)), np.float32))
     code = octahedral.encode(Vec3(*np.ascontiguousarray(n.T, np.float32)), view)
     decoded = octahedral.decode(Vec2(*(jnp.round(number * most) / most for number in code)), view)
@@ -86,12 +87,12 @@ def _rounded_on_octahedron(n: np.ndarray, most: float) -> np.ndarray:
 
 
 def own_error_note(what: str, own: float) -> str:
-    """Return a remark on a source's own error in degrees."""
+    """Return a remark that `what` are off by `own` degrees, and which mean errors waste bits on them."""
     finer = f"encodings with a mean error below {own * WASTED:.1g} degrees waste bits on them"
     return f"{what} are off by about {own:.2g} degrees themselves: {finer}"
 
 
 def bits_text(roundings: Iterable[Rounding]) -> str:
-    """8 bits; 10 bits of an octahedral map."""
+    """Return the bits of roundings in words, such as `8 bits and 10 bits of an octahedral map`."""
     kinds = {(rounding.is_octahedral, int(2 * rounding.most).bit_length()) for rounding in roundings}
     return " and ".join(f"{bits} bits{' of an octahedral map' * packed}" for packed, bits in sorted(kinds))

@@ -32,7 +32,7 @@ from . import png
 MAX_PIXELS = 2**25
 MAX_NUMBERS = 2**29
 MAX_CHANNELS = 1024
-SMALLER = f"at most {MAX_PIXELS} pixels (2^25) are supported: crop it"
+SMALLER = f"at most {MAX_PIXELS} pixels (2^25) are supported: crop the image"
 SECONDS = 120
 EXR = "openexr"
 TIFF = rb"(II|MM)(\*\0|\0\*|\+\0|\0\+)"
@@ -56,7 +56,7 @@ STEPS, LOOKED_AT, DIFFERENT = (255, 1023), 2**16, 8
 # What a status of `pixel_process.py` says, and the remedy; any other is a damaged file.
 FAILURES: Mapping[int, tuple[str, str]] = MappingProxyType(
     {
-        2: ("a channel is subsampled", "save it in full"),
+        2: ("a channel is subsampled", "save all channels at full resolution"),
         3: ("its header claims far more pixels than the file can hold", SMALLER),
     }
 )
@@ -102,7 +102,7 @@ def read_pixels(path: Path, choose: Choice) -> Pixels:
 
 
 def _are_shares(planes: np.ndarray, full: int) -> bool:
-    """Whether all numbers are whole ones over `full`."""
+    """Whether sampled finite numbers are multiples of 1 / full in [0, 1], and enough of them differ to tell."""
     flat = planes.reshape(-1)[:: max(1, planes.size // LOOKED_AT)]
     numbers = np.unique(flat[np.isfinite(flat)]).astype(np.float64) * full
     # A float32 is that close to what it stands for.
@@ -156,7 +156,7 @@ def read_image(path: Path, choose: Choice, check: Check = check_sides) -> Pixels
     kind, start = FORMATS[path.suffix.lower()]
     data = _bytes(path)
     if not re.match(start, data, re.DOTALL):
-        raise refused(path, f"not in {path.suffix[1:].upper()} format, by its first bytes")
+        raise refused(path, f"its first bytes are not those of {path.suffix[1:].upper()} files")
     if kind == "png" and max(png.sides(data)) > png.MAX_SIDE:
         width, height = png.sides(data)
         raise refused(path, f"{width} x {height} pixels", f"at most {png.MAX_SIDE} per side are supported")
@@ -176,7 +176,10 @@ def read_image(path: Path, choose: Choice, check: Check = check_sides) -> Pixels
 
 
 def _in_a_process(path: Path, kind: str, out: Path, mode: str, *names: str) -> None:
-    """Runs `pixel_process.py`. Raises UsageError where it cannot read the file."""
+    """Run `pixel_process.py` on a file; the answer is written to `out`. Raises UsageError if the file cannot be read.
+
+    Args:
+        mode: "header" for the facts about its parts; any other for the channels in `names`."""
     command = [*python(f"{__package__}.pixel_process"), mode, kind, str(path.resolve()), str(out), *names]
     try:
         done = subprocess.run(command, capture_output=True, timeout=SECONDS, env=environment())
@@ -192,14 +195,14 @@ def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]], check: Ch
     for part in parts:
         where = f"part {part['name']!r}: " if len(parts) > 1 else ""
         if part["deep"]:
-            raise refused(path, f"{where}deep samples", "flatten it")
+            raise refused(path, f"{where}deep samples are not supported", "flatten the image")
         width, height, depth = part["sides"]
         if depth != 1 or min(width, height) < 1:
             raise refused(path, f"{where}an image of {width} x {height} x {depth}", "save it with a depth of 1")
         check(path, (width, height), len(part["names"]))
         other = [word for word in part["types"] if word not in (*TYPES, *(["uint"] if kind == EXR else []))]
         if other:
-            raise refused(path, f"{where}numbers of type {other[0]}", f"{', '.join(TYPES)} are read")
+            raise refused(path, f"{where}numbers of type {other[0]}", f"supported: {', '.join(TYPES)}")
     names = [name for part in parts for name in part["names"]]
     if not names or len(set(names)) < len(names):
         raise refused(path, "no channels, or two with the same name")
@@ -259,7 +262,7 @@ def read_plane(path: Path, choose: Choice) -> Pixels:
 
 
 def _npy_pixels(path: Path, array: np.ndarray, choose: Choice) -> Pixels:
-    """Channels of an array of (..., channels)."""
+    """Return channels of an array of (..., channels), chosen by their numbers as names: "0", "1", ..."""
     check_pixels(path, math.prod(array.shape[:-1]), array.shape[-1])
     names = [str(channel) for channel in range(array.shape[-1])]
     chosen = [names.index(name) for name in choose(names)]
@@ -272,13 +275,13 @@ def _npy_array(path: Path) -> np.ndarray:
     shape, in_columns, kind = _npy_header(path, stream)
     if kind.kind not in "fub" or kind.itemsize > 8 or (kind.kind == "u" and kind.itemsize > 2):
         signed = f"; save array / {np.iinfo(kind).max} as float32" if kind.kind == "i" else ""
-        raise refused(path, f"numbers of type {kind}", f"float16, float32, float64, uint8 and uint16 are read{signed}")
+        raise refused(path, f"numbers of type {kind}", f"supported: float16, float32, float64, uint8, uint16{signed}")
     if len(shape) not in (2, 3) or min(shape) < 1:
-        raise refused(path, f"an array of shape {shape}", "(height, width, 3) or (count, 3) is read")
+        raise refused(path, f"an array of shape {shape}", "expected (height, width, 3) or (count, 3)")
     count = math.prod(shape)
     left = len(stream.getbuffer()) - stream.tell()
     if count * kind.itemsize > left:
-        raise refused(path, f"shape {shape} needs {count * kind.itemsize} bytes, the file has {left}: it is cut off")
+        raise refused(path, f"shape {shape} needs {count * kind.itemsize} bytes; the file has {left}: it is truncated")
     flat = np.frombuffer(stream.getbuffer(), kind, count, stream.tell())
     return flat.reshape(shape, order="F" if in_columns else "C")
 

@@ -38,7 +38,7 @@ class UnreadableError(ValueError):
 
 
 def opened(kind: str, path: str) -> oiio.ImageInput:
-    """An image file of that format. Raises UnreadableError."""
+    """Open an image file of a format, without conversion of its values. Raises UnreadableError."""
     wishes = oiio.ImageSpec()
     for wish in AS_STORED:
         wishes.attribute(wish, 1)
@@ -80,7 +80,7 @@ def full_names(parts: list[dict[str, Any]]) -> list[list[str]]:
 
 
 def read_pixels(kind: str, path: str, wanted: list[str]) -> np.ndarray:
-    """Channels by their full names, (channels, height, width). Raises UnreadableError where one cannot be read."""
+    """Return channels by their full names, (channels, height, width). Raises UnreadableError if any fails."""
     file = opened(kind, path)
     parts = parts_of(file)
     places = {

@@ -36,7 +36,7 @@ def has_surplus(data: bytes) -> bool:
 
 
 def _rows_size(data: bytes) -> int:
-    """The bytes of all rows, each with its filter's number before it."""
+    """Return the number of bytes of all rows of a PNG file after decompression, each with its filter's byte."""
     width, height, depth, colour, _, _, interlaced = struct.unpack_from(">IIBBBBB", data, 16)
     bits = depth * CHANNELS[colour]
     passes = ADAM7 if interlaced else ((0, 0, 1, 1),)

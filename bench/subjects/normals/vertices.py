@@ -104,7 +104,7 @@ def drawn_error(path: Path) -> tuple[float, list[str]]:
 
 
 def vertices_of(path: Path) -> Vertices:
-    """The vertices that triangles or points of a mesh file use. Raises UsageError."""
+    """Return the vertices that triangles or points of a mesh file use, each once. Raises UsageError."""
     all_meshes = _said(path)
     meshes = [mesh for mesh in all_meshes if mesh.normals is not None]
     if not meshes:
@@ -133,7 +133,7 @@ def _all_used(path: Path, meshes: Sequence[Stored]) -> list[np.ndarray]:
 
 
 def _used(path: Path, stored: Stored) -> np.ndarray:
-    """Positions and normals of the vertices that are used, (count, 6). Raises SceneFileError."""
+    """Return positions and normals of the vertices of a mesh that are used, (count, 6). Raises SceneFileError."""
     corners = np.asarray(stored.corners, np.int64).ravel()
     used = np.unique(checked_indices(path, corners, len(stored.positions), stored.place))
     both = (np.asarray(numbers, np.float64)[used] for numbers in (stored.positions, stored.normals))
@@ -171,6 +171,6 @@ def _own_rounding(used: Sequence[np.ndarray], meshes: Sequence[Stored]) -> OwnRo
 
 def _left_out(zero: int, not_finite: int, without: int) -> list[str]:
     parts = [f"{zero} vertex normals of zero length"] * bool(zero)
-    parts += [f"{not_finite} that are NaN or infinite"] * bool(not_finite)
+    parts += [f"{not_finite} NaN or infinite vertex normals"] * bool(not_finite)
     notes = [f"{' and '.join(parts)} are left out"] if parts else []
     return notes + [f"{without} of its meshes have no normals and are left out"] * bool(without)

@@ -54,7 +54,7 @@ def captured_frame(frame: FrameFile) -> CapturedFrame:
     height, width = pixels.depth.shape
     notes = [*reader.notes]
     if every > 1:
-        notes.append(f"one row and one column in {every} are drawn, {width} x {height} pixels, without averaging")
+        notes.append(f"drawn: one row and one column in {every} ({width} x {height} pixels), without averaging")
     scene = pixel_scene(pixels, _view(frame, fov, reader.to_world))
     return CapturedFrame(scene, (width, height), notes)
 
@@ -138,14 +138,15 @@ class _Reader:
         reading = Reading(fov=self._frame.fov, **options)
         if reading.space == "world":
             if self._frame.view_matrix is None:
-                raise self._frame.error("normal", "--space world needs --view-matrix, next to --fov")
+                raise self._frame.error("normal", "--space world requires --view-matrix and --fov")
             reading = replace(reading, view_matrix=self._frame.view_matrix)
         image = self._asked("normal", lambda: captured(path, reading, within))
         self._note("normal", image.notes)
         return np.moveaxis(image.normals, 0, -1).astype(np.float32), image.covered
 
     def _quantity(self, name: str, covered: np.ndarray) -> np.ndarray | None:
-        """A quantity of all pixels, 0 on the background; None where the frame has none."""
+        """Return a quantity of all pixels, 0 on the background and clipped to [0, 1] unless it is emissive; None if
+        the frame has none. Raises UsageError for impossible values."""
         entry = self._frame.entries.get(name)
         if entry is None:
             return None
@@ -220,13 +221,13 @@ def _out_of_reach(path: Path, image: DepthImage, camera: Camera) -> UsageError:
     depths = image.depths(camera)
     depths = depths[np.isfinite(depths)]
     reach = f"{depths.min():.4g} to {depths.max():.4g}" if len(depths) else "not finite"
-    return refused(path, f"no depth is within near and far; depths are {reach}", "see --depths-are and --depth-unit")
+    return refused(path, f"no depth is between near and far; depths are {reach}", "check --depths-are and --depth-unit")
 
 
 def _planes(path: Path, name: str, entry: dict[str, Any]) -> Pixels:
-    """The channels of a quantity. Raises UsageError."""
+    """Return the channels of a quantity: three of a colour, otherwise one. Raises UsageError."""
     if path.suffix.lower() not in READERS:
-        raise UsageError(f"{path}: not an image; {', '.join(READERS)} are read")
+        raise UsageError(f"{path}: not an image; supported: {', '.join(READERS)}")
     if ENTRIES[name] is COLOUR:
         return read_pixels(path, lambda names: _colours(path, names, entry.get("channels")))
     return read_plane(path, lambda names: [_one(path, names, entry.get("channel"))])
@@ -264,9 +265,9 @@ def _check_range(name: str, numbers: np.ndarray) -> None:
     low, high = float(numbers.min()), float(numbers.max())
     if name == "emissive":
         if not 0 <= low <= high <= MOST_LIGHT:
-            raise UsageError(f"its numbers are {low:.3g} to {high:.3g}; light must be 0 to {MOST_LIGHT:g}")
+            raise UsageError(f"its values are {low:.3g} to {high:.3g}; light must be 0 to {MOST_LIGHT:g}")
     elif not -BEYOND <= low <= high <= 1 + BEYOND:
-        raise UsageError(f"its numbers are {low:.3g} to {high:.3g}, but must be 0 to 1; rescale them with --scale")
+        raise UsageError(f"its values are {low:.3g} to {high:.3g}, but must be 0 to 1; rescale them with --scale")
 
 
 def lines_of(frame: FrameFile, capture: CapturedFrame) -> Iterator[str]:

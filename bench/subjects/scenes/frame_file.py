@@ -99,7 +99,7 @@ def read_frame_file(path: Path) -> FrameFile:
         name for name in NEEDED if name not in attributes and not (name == "roughness" and "smoothness" in attributes)
     ]
     if lacking:
-        raise UsageError(f"{path}: no {', '.join(lacking)}; {_how(lacking[0])}")
+        raise UsageError(f"{path}: missing {', '.join(lacking)}; {_how(lacking[0])}")
     fov, near, far = (_number(path, name, attributes[name]) for name in CAMERA)
     _check_camera(path, fov, near, far)
     entries = {name: _entry(path, name, attributes[name]) for name in ENTRIES if name in attributes}
@@ -107,7 +107,7 @@ def read_frame_file(path: Path) -> FrameFile:
 
 
 def files_of_frame(path: Path) -> list[Path]:
-    """The files that a description names and that are there; none of one that cannot be read."""
+    """Return the files that a description names and that exist, sorted; empty if the description cannot be read."""
     try:
         return sorted(set(filter(Path.is_file, _named_files(read_frame_file(path)))))
     except (UsageError, OSError):
@@ -165,7 +165,8 @@ def _check_camera(path: Path, fov: float, near: float, far: float) -> None:
 
 
 def _matrix(path: Path, value: object) -> str | None:
-    """Return the numbers of a matrix as comma-separated text, or the path of the file that holds them."""
+    """Return the numbers of a matrix as comma-separated text, or the path of the file that holds them; None for None.
+    Raises UsageError for any other value."""
     if value is None:
         return None
     if isinstance(value, list):
@@ -178,7 +179,8 @@ def _matrix(path: Path, value: object) -> str | None:
 
 
 def _entry(path: Path, name: str, value: object) -> Any:
-    """Return the value of a quantity, with the paths of its files."""
+    """Return the value of an entry: a number, a list of three numbers for a colour, or a dict of options with paths
+    in place of file names. Raises UsageError."""
     kinds = ENTRIES[name]
     if kinds is NUMBER and not isinstance(value, dict):
         return _number(path, name, value)
@@ -207,7 +209,7 @@ def _word(path: Path, place: str, value: object, kind: type) -> Any:
 
 
 def _beside(path: Path, name: str, address: str) -> Path:
-    """A file next to a description or below it. Raises UsageError where it is elsewhere, or not there."""
+    """Return the path of a file next to a description or below it. Raises UsageError if not there."""
     try:
         file = checked_address(path, address, name)
         is_there = file is not None and file.is_file()

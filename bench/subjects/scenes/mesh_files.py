@@ -15,7 +15,7 @@ T = TypeVar("T")
 
 
 def mesh_file(path: Path) -> MeshFile:
-    """A mesh file. Raises UsageError, and MissingError where a package that would unpack it is not installed."""
+    """Read a mesh file. Raises UsageError, and MissingError if a package that would unpack it is not installed."""
     return read_or_refused(lambda: read_mesh_file(path))
 
 

@@ -147,7 +147,7 @@ def _on_curve(
 
 
 def in_halves(attribute: str) -> Iterator[Code]:
-    """The code of an attribute in 16-bit floats that only layouts of such targets need."""
+    """Yield the one encoding of an attribute in 16-bit floats, for layouts that have such targets."""
     if attribute == "normal":
         yield _normal("octahedral", (16, 16), "rg16f", FLOAT)
         return
@@ -210,8 +210,8 @@ UP_TO_PIXELS: Mapping[Code, float] = MappingProxyType({HALF_MOTION: 100.0, FAST_
 
 
 def motion(speed: float, is_packed: bool = False) -> Attribute:
-    """Motion in the codes that keep the floor up to a speed in pixels a frame: halves, as upscalers read them, where
-    they do."""
+    """Return motion with the encodings that suit a speed in pixels per frame: half floats, as upscalers read them, or
+    above their speed 16 bits per component; with `is_packed` also square roots, up to their speed."""
     whole = next(code for code in (HALF_MOTION, FAST_MOTION) if speed <= UP_TO_PIXELS[code])
     packed = (ROOT_MOTION,) if is_packed and speed <= UP_TO_PIXELS[ROOT_MOTION] else ()
     codes = (whole, *packed)

@@ -46,7 +46,7 @@ class Bin:
         return TARGET_FORMATS[self.format].bits[0]
 
     def need(self, code: Code) -> Mapping[Channel, float] | None:
-        """Return the channels or bits that an encoding takes in this target; None if it does not fit."""
+        """Return how many channels by kind, or how many bits, an encoding takes here; None if it does not fit."""
         if self.blends and not code.blends:
             return None
         if self.fields:
@@ -72,7 +72,8 @@ class Bin:
         return [(UNORM, next(size for size in sizes if size >= bits)) for bits in code.bits]
 
     def _need_of_exact(self, code: Code) -> Mapping[Channel, float] | None:
-        """Return the narrowest whole channel for each part of an encoding; None if they do not fit."""
+        """Return how many whole channels of each size the parts of an encoding take, the narrowest for each part;
+        None if they do not fit."""
         sizes = sorted(bits for kind, bits in self.channels if kind == UNORM)
         taken: dict[Channel, float] = {}
         for bits in code.bits:

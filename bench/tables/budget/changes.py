@@ -24,7 +24,8 @@ def holds_other_quantities(layout: Layout) -> bool:
 
 
 def completed(layout: Layout) -> Layout:
-    """Return a layout with the metallic-roughness attributes that it lacks added in float targets."""
+    """Return a layout with the metallic-roughness attributes that it lacks added in float targets; unchanged if
+    `holds_other_quantities`."""
     if holds_other_quantities(layout):
         return layout
     lacks = [COMPONENTS[name][0] for name in NUMBERS if COMPONENTS[name][0] not in layout.components]
@@ -70,7 +71,8 @@ Errors = Mapping[str, Mapping[str, float]]
 def said(
     mine: Errors, proposal: Solution, errors_of: Callable[[str, str], Mapping[str, float]], classes: Sequence[str]
 ) -> str:
-    """Return the changes that improve the worst class the most, in order, each with the predicted PSNR after it.
+    """Return in words the changes that improve the worst class the most, in order, each with the predicted PSNR after
+    it; or that no encoding of the proposal is better.
 
     Args:
         mine: by attribute, the error of each class.
@@ -96,14 +98,17 @@ def said(
         now[best] = theirs[best][1]
         parts.append(f"{best} as {theirs[best][0]}, {psnr_db(_worst(now, classes)):.1f} dB")
     if not parts:
-        return "no encoding of a proposal of the same size is better in the worst class"
+        return "no encoding of a proposal of the same size improves the worst class"
     less = [f"{name} as {theirs[name][0]}" for name in now if name in theirs and _is_less(mine[name], theirs[name][1])]
-    in_return = f". It stores less of {', '.join(less)}" if less else ""
-    return f"predicted from {psnr_db(start):.1f} dB: {'; then '.join(parts)}{in_return}"
+    in_return = f". Less accurate than yours: {', '.join(less)}" if less else ""
+    return f"worst class, predicted from {psnr_db(start):.1f} dB: {'; then '.join(parts)}{in_return}"
 
 
 def _is_less(mine: Mapping[str, float], theirs: Mapping[str, float]) -> bool:
-    """Whether a code loses more than a layout's own, and so much that it may be seen."""
+    """Whether an encoding's largest error, in `theirs`, exceeds that of a layout's own, in `mine`, and is visible.
+
+    Args:
+        mine, theirs: the error of each class."""
     return max(theirs.values(), default=0.0) > max(max(mine.values(), default=0.0), UNSEEN)
 
 

@@ -22,10 +22,10 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def budget_chart(rows: Sequence[Row]) -> Chart:
-    """The worst class's dB over bytes: a line of proposals, a point for each other layout.
+    """Return a chart of the worst class's PSNR over bytes: a line of proposals, a point for each other layout.
 
     Args:
-        rows: with figures.
+        rows: rows with figures.
     """
     best = max(row["held_back_db"] for row in rows)
     points = tuple(
@@ -48,8 +48,8 @@ def budget_chart(rows: Sequence[Row]) -> Chart:
         ("x", "bytes per pixel"),
         ("y", "dB"),
         ("worst", "worst class (dB)"),
-        ("class", "class"),
-        ("frame", "frame"),
+        ("class", "worst class"),
+        ("frame", "whole frame (dB)"),
     )
     first = rows[0]
     return Chart(
@@ -76,7 +76,7 @@ def _judged(scenes: str) -> str:
     names = scenes.split(",")
     if len(names) == 1:
         return f"Worst class of surfaces in {scenes}, which also chose the proposals,"
-    others = "the other" if len(names) == 2 else "the others"
+    others = "the other scene" if len(names) == 2 else "the other scenes"
     return f"Worst class of surfaces in each of {', '.join(names)}, proposals chosen on {others},"
 
 
@@ -94,5 +94,5 @@ def _finding(ours: Sequence[Row], others: Sequence[Row]) -> str:
         if any(point["x"] <= other["x"] for point in ours)
     ]
     if gains:
-        return f"For the same bytes or fewer, {min(gains):.0f} to {max(gains):.0f} dB better"
+        return f"Proposals of at most as many bytes are {min(gains):.0f} to {max(gains):.0f} dB better"
     return f"{ours[0]['y']:.0f} dB with {ours[0]['x']} bytes, {ours[-1]['y']:.0f} dB with {ours[-1]['x']}"

@@ -37,7 +37,7 @@ NAMES = dict.fromkeys(name for word in (*KNOWN, *EXACT, "depth", "all", "none") 
 
 
 def as_known(words: Iterable[Word]) -> Names:
-    """Return words of attributes, joined by + or :, with each known name in its own spelling."""
+    """Return words of attributes, joined by + or :, with each known name in its own spelling; others as is."""
     known = re.compile(r"[^+:]+")
     return tuple(
         known.sub(lambda match: spelled("attribute", match[0], NAMES) or match[0], str(word)) for word in words
@@ -45,7 +45,8 @@ def as_known(words: Iterable[Word]) -> Names:
 
 
 def attributes_held(words: Names, speed: float) -> list[Attribute]:
-    """Return the attributes that words stand for, with motion up to a speed in pixels per frame.
+    """Return the attributes that words of --hold stand for, without those in the light buffer or the stencil; motion
+    is up to a speed in pixels per frame.
 
     Raises:
         UsageError: an unknown attribute, one named twice, or no normal.
@@ -54,7 +55,7 @@ def attributes_held(words: Names, speed: float) -> list[Attribute]:
     held = [attribute for attribute in attributes if attribute]
     names = [attribute.name for attribute in held]
     if twice := next((name for name in names if names.count(name) > 1), None):
-        raise UsageError(f"--hold: {twice} is named twice")
+        raise UsageError(f"--hold: {twice} is named twice; name it once")
     if NORMAL not in names:
         raise UsageError(f"--hold: {NORMAL} is missing; name for example {NORMAL},roughness")
     return held

@@ -68,7 +68,7 @@ class Slots:
         self._alone: dict[tuple[str, str, str], Layout] = {}
 
     def count(self, layouts: Iterable[Layout]) -> None:
-        """Counts layouts that are not known, all at once, which takes less time than one by one."""
+        """Count the slots of layouts that are not yet counted, all at once, which takes less time than one by one."""
         new = {layout.summary: layout for layout in layouts if layout.summary not in self._known}
         make = {PACK: pack_operation, UNPACK: unpack_operation}
         cases = [
@@ -126,7 +126,7 @@ def _key(code: Code, target_bin: Bin) -> tuple[str, str, str]:
 
 
 def alone(code: Code, target_bin: Bin) -> Layout:
-    """A layout that holds a code in a target, and a normal in floats where it is of another attribute."""
+    """Return a layout that stores one encoding in a target, and, unless it encodes the normal, a normal in floats."""
     placed, name = Placed(code, target_bin, 0), f"{code.attribute} {code.name}"
     if code.attribute == NORMAL:
         return layout_of(name, Solution((placed,), {}))

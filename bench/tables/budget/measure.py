@@ -65,7 +65,7 @@ HD, UHD = 1920 * 1080, 3840 * 2160
 
 
 def measure(device: Device, question: Question, tick: Tick) -> list[Row]:
-    """A row for each limit, then one for each layout that is compared."""
+    """Return a row for each limit, or one for the threshold, then the rows of the layouts that are compared."""
     with ExitStack() as stack:
         judges = [Exact(device, stack, stage) for stage in question.stages]
         judged = Judged(question, judges, tick)
@@ -94,7 +94,7 @@ class Judged:
         if not self.classes:
             asked = ", ".join(question.judging)
             raise UsageError(
-                f"--size: no class of surfaces ({asked}) has {LEAST_PIXELS} pixels in {question.scenes}; "
+                f"--size: no class of surfaces ({asked}) has at least {LEAST_PIXELS} pixels in {question.scenes}; "
                 "use a larger size"
             )
         self.unseen = [
@@ -102,7 +102,7 @@ class Judged:
         ]
 
     def _take(self, attributes: Sequence[Attribute], tick: Tick) -> None:
-        """Measures the codes of attributes that are not yet known."""
+        """Measure the errors of the encodings of attributes that are not yet known, in every scene, and keep them."""
         for attribute in attributes:
             new = [code for code in attribute.codes if code.key not in self._errors]
             for judge in self._judges:
@@ -122,7 +122,8 @@ class Judged:
         return [name for name in names if name.rpartition(" ")[2] in self._question.judging]
 
     def _usual(self, attributes: Sequence[Attribute]) -> list[Attribute]:
-        """Give attributes that no scene shows their usual bits, and drop needlessly wide encodings of the others."""
+        """Return attributes that no scene shows with only their encodings of the usual bits or more, and the others
+        without needlessly wide encodings."""
         return [
             usual(attribute) if attribute.is_seen and not self._shows(attribute) else self._in_one_word(attribute)
             for attribute in attributes
@@ -189,15 +190,16 @@ class Judged:
         return best(problem) if most is None else within(problem, most, self._slots, best)
 
     def _best(self, name: str, asked: Own, depth: DepthEncoding | None = None) -> tuple[Solution, Layout, Row] | None:
-        """Return the best layout and the row of its images. If these differ from the prediction, measure the layout's
-        pairs of encodings and solve again with the results."""
+        """Return the best layout and the row of its images; None if no layout fits. If the images differ from the
+        prediction, measure the layout's pairs of encodings and solve again with the results."""
         best = self._best_drawn(name, asked, depth)
         if best and self._is_off(best[0], best[2]) and self._measure_pairs(best[0]):
             return self._best_drawn(name, asked, depth)
         return best
 
     def _best_drawn(self, name: str, asked: Own, depth: DepthEncoding | None) -> tuple[Solution, Layout, Row] | None:
-        """Return the layout with the lowest FLIP among those that count as equal; the plainest if it is as good."""
+        """Return the layout with the lowest FLIP among those that count as equal, or the plainest if it is as good,
+        with its row; None if no layout fits."""
         best = None
         for solution in self._finalists(asked, FINALISTS):
             layout = _with_depth(layout_of(name, solution), depth)
@@ -230,7 +232,7 @@ class Judged:
         return len(self._together) > before
 
     def fewest(self) -> Iterator[Row]:
-        """The row of the fewest bytes whose layout keeps the threshold; one without figures where none does."""
+        """Yield the row of the fewest bytes that keep the threshold; if none does, a row without figures."""
         q, (low, high) = self._question, self._question.search
         first, last = q.rules[0], high
         while low < high:
@@ -251,7 +253,7 @@ class Judged:
         return all(flip <= threshold for flip in flips)
 
     def proposals(self, rules: Rules) -> Iterator[Row]:
-        """The row of a limit; one without figures where nothing keeps to the rules."""
+        """Yield the row of a limit; if no layout keeps to the rules, a row without figures."""
         asked = Own(self._question.attributes, self._question.bins, rules)
         enough = replace(rules, bytes=self._enough(asked))
         best = self._best(f"budget_{rules.bytes}", replace(asked, rules=enough))
@@ -269,7 +271,8 @@ class Judged:
         self._tick(layout.name)
 
     def _enough(self, asked: Own, unseen: float = HALF_STEP) -> int:
-        """The fewest bytes that are as good as a limit, to half a decibel, or whose error is at most `unseen`."""
+        """Return the fewest bytes whose layout is as good as that of the limit, to half a decibel, or has an error of
+        at most `unseen`; the limit itself if no size is known, or if instructions are limited."""
         problems = self._problems(asked) if self._question.most_instructions is None else ()
         sizes = (enough_bytes(_in_channels(problem), unseen) for problem in problems)
         return next((size for size in sizes if size is not None), asked.rules.bytes)
@@ -278,7 +281,7 @@ class Judged:
         """Yield the row of a user's layout, and of a proposal that holds the same in targets of the same formats."""
         row = self.row_of(MINE, layout)
         if changes.holds_other_quantities(layout):
-            note = "it has no metallic, and these encodings are for metallic-roughness materials"
+            note = "not compared, because it stores no metallic; the encodings are for metallic-roughness materials"
             yield row | {"changes": note}
             return
         asked = own(layout, self._question.rules[0])
@@ -286,8 +289,8 @@ class Judged:
         self._take(asked.attributes, lambda _: None)
         best = self._best(f"{layout.name}_improved", asked, layout.depth)
         if best is None:
-            within = " within WebGPU's bytes" if asked.rules.webgpu is not None else ""
-            yield row | {"changes": f"no encodings with the required bits fit its attributes into its targets{within}"}
+            within = " within WebGPU's limit" if asked.rules.webgpu is not None else ""
+            yield row | {"changes": f"its attributes do not fit into its targets{within} with the required bits"}
             return
         solution, _, improved = best
         yield row | {"changes": self._changes(layout, solution)}
@@ -323,7 +326,7 @@ class Judged:
         return f"{few}: {smallest}{self._dropped(problem)}"
 
     def _dropped(self, problem: Problem) -> str:
-        """Return a sentence on the attributes to leave out so that a layout fits, smallest loss first; empty if
+        """Return `. It fits` and the attributes to leave out so that a layout fits, smallest loss first; empty if
         nothing helps."""
         losses = {
             attribute.name: loss for attribute in problem.attributes if (loss := self._loss(attribute)) is not None
@@ -338,7 +341,7 @@ class Judged:
         light = [f"with {EMISSION.name} in the light buffer ({IN_LIGHT})"] if EMISSION.name in dropped else []
         parts = [f"{name} ({_loss_text(losses[name])})" for name in dropped if name != EMISSION.name]
         without = [f"without {' and '.join(parts)}"] if parts else []
-        return f". It fits {', and '.join([*light, *without])}" if dropped else ""
+        return f". A layout fits {', and '.join([*light, *without])}" if dropped else ""
 
     def _loss(self, attribute: Attribute) -> float | None:
         """Return the error of the worst class without an attribute: 0 if no image reads the attribute, None if images
@@ -361,11 +364,11 @@ class Judged:
                 into = " that decals blend into" if is_blended else ""
                 return f"no target{into} of these formats can hold {attribute.name} ({codes}); allow other --formats"
         more = "allow more --targets or --formats" + (", or --read-alone none" if rules.read else "")
-        return f"no targets of any size hold these attributes under these rules; {more}"
+        return f"no layout of any size holds these attributes under these rules; {more}"
 
     def _why_too_dear(self, problem: Problem, most: int) -> str:
         solution = least(problem, self._slots, partial(finalists, count=1))
-        slots = f"takes {whole(self._slots, solution):g} to pack and unpack" if solution else "is not known"
+        slots = f"takes {whole(self._slots, solution):g} slots to pack and unpack" if solution else "has unknown cost"
         families = " and ".join(self._question.families)
         return (
             f"{most} issue slots are too few: the cheapest layout of {problem.rules.bytes} bytes {slots} on {families}"
@@ -380,7 +383,7 @@ class Judged:
             if pair <= {placed.key for placed in solution.placed}:
                 shares[" with ".join(sorted(name for name, _ in pair))] = beyond.get(worst, 0.0)
         largest = sorted(shares.items(), key=lambda pair: -pair[1])
-        parts = [f"{name} {100 * e / total:.0f} %" for name, e in largest if total and abs(e) / total >= 0.01]
+        parts = [f"{name} {100 * e / total:.0f}%" for name, e in largest if total and abs(e) / total >= 0.01]
         frames = [e for name, e in solution.errors.items() if name.endswith(f" {FRAME}")]
         return {
             "predicted_db": psnr_db(max(frames, default=0.0)),
@@ -424,7 +427,7 @@ class Judged:
         }
 
     def _by_scene_db(self, errors: Mapping[str, float]) -> float:
-        """Return the PSNR of the mean over scenes of the error of each one's worst class."""
+        """Return the PSNR of the error of the worst class of a scene, as a mean over scenes."""
         worst: dict[str, float] = {}
         for name in self.classes:
             worst[_scene_of(name)] = max(worst.get(_scene_of(name), 0.0), errors[name])
@@ -479,7 +482,7 @@ class Judged:
         }
 
     def others(self, device: Device) -> list[Layout]:
-        """The layouts that are compared: a user's, and engines' that the pipeline draws."""
+        """Return the layouts compared, a user's and those of engines that the pipeline draws; count their slots."""
         layouts = [*self._question.against, *self._engines(device)]
         self._slots.count(layouts)
         return layouts
@@ -524,12 +527,12 @@ def _loss_text(loss: float) -> str:
 
 
 def _in_channels(problem: Problem) -> Problem:
-    """A problem without targets of whole numbers."""
+    """Return a problem without integer targets."""
     return replace(problem, bins=[home for home in problem.bins if not home.fields])
 
 
 def _with_depth(layout: Layout, depth: DepthEncoding | None) -> Layout:
-    """A layout whose depth, if it keeps one, is in a code."""
+    """Return a layout with its depth in an encoding; unchanged if it stores no depth, or if `depth` is None."""
     return replace(layout, depth=depth) if depth and "depth" in layout.components else layout
 
 
@@ -538,12 +541,13 @@ def _class_of(judge: Exact, name: str) -> str:
 
 
 def _scene_of(name: str) -> str:
-    """Return the scene of a class."""
+    """Return the scene of a class, whose name is the scene's, a space and the class's own."""
     return name.rpartition(" ")[0]
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Proposals by their limit, then a user's layouts, then engines' by bytes and the worst class."""
+    """Return rows sorted by kind: proposals by their limit, then a user's layouts, their improvements, and those of
+    engines by bytes and the worst class."""
     kinds = (PROPOSAL, MINE, IMPROVED, ENGINE)
     return sorted(
         rows,

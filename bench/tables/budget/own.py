@@ -53,7 +53,8 @@ def own(layout: Layout, asked: Rules) -> Own:
 
 
 def _reads_little(layout: Layout, read: frozenset[str]) -> bool:
-    """Whether a layout itself keeps to the bytes that a pass may fetch."""
+    """Whether a layout itself lets a pass read some attributes alone: their targets hold nothing else large, and at
+    most READ_BYTES per attribute."""
     mine = {component for name in read for component in COMPONENTS.get(name, ())}
     homes = {word.target for word in layout.words if word.component in mine}
     beside = [word for word in layout.words if word.target in homes and word.component not in mine]
@@ -71,7 +72,8 @@ def _format(target: Target) -> str:
 
 
 def _bins(name: str, count: int) -> Iterator[Bin]:
-    """Bins of a format, as many as the layout has targets of it."""
+    """Yield the known bins of a format, each with as many copies as the layout has targets of it; if none is known, a
+    bin with the format's own channels."""
     known = [replace(target_bin, copies=count) for target_bin in BINS.values() if target_bin.format == name]
     if known:
         yield from known

@@ -138,7 +138,7 @@ def question(options: BudgetOptions) -> Question:
 
 
 def _of_held(options: BudgetOptions) -> BudgetOptions:
-    """Return options whose usual passes read nothing that is not held."""
+    """Return options whose --read-alone and --readers, if they are the defaults, name only attributes held."""
     usual, held = BudgetOptions(), {str(word).partition(":")[0] for word in options.hold}
     if options.read_alone == usual.read_alone:
         options = replace(options, read_alone=tuple(name for name in usual.read_alone if name in held) or ("none",))
@@ -148,7 +148,8 @@ def _of_held(options: BudgetOptions) -> BudgetOptions:
 
 
 def _read_alone(attributes: Names, names: Sequence[str]) -> frozenset[str]:
-    """Return the attributes that a pass reads without the rest. Raises UsageError for attributes that are not held."""
+    """Return the attributes that a pass reads without the rest; empty for `none`. Raises UsageError for attributes
+    that are not held."""
     return frozenset() if attributes == ("none",) else frozenset(names_held("--read-alone", attributes, names))
 
 
@@ -204,6 +205,6 @@ def _bins(options: BudgetOptions, webgpu: bool) -> list[Bin]:
         bins = [replace(target_bin, shares=False) for target_bin in bins]
     if not bins:
         raise UsageError(
-            f"--formats {text_of(options.formats)}: --limit and --no-integers allow none of these; name others"
+            f"--formats {text_of(options.formats)}: --limit and --no-integers allow none of these; use other formats"
         )
     return bins

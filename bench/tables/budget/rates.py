@@ -62,7 +62,7 @@ class Stage:
         return self.maker.make(self.setting)
 
     def plan(self, layout: Layout) -> Plan:
-        """A frame of it by a layout, with exact light."""
+        """Return the plan that draws the stage with a layout, with exact light."""
         return Plan(self.size, 1, layout, LIGHT_BUFFERS["rgba32f"], 1, True, 1.0)
 
 
@@ -112,7 +112,7 @@ class Exact:
         return {name: float(apart[mask].mean()) for name, mask in self.classes.items()}
 
     def of(self, trip: Callable[[Surfaces], Surfaces]) -> dict[str, float]:
-        """The errors that a code makes by itself."""
+        """Return the mean squared error of each class that `trip`, a round trip of the surfaces, makes by itself."""
         return self.errors(self.display.image(self._made.lit(self._texels(trip(self.surfaces)))))
 
     def of_layout(self, layout: Layout) -> ImageErrors:
@@ -152,7 +152,7 @@ class ImageErrors:
 
 
 def rates_of_pair(exact: Exact, first: Code, second: Code) -> Mapping[str, float]:
-    """The errors that two codes make together."""
+    """Return the mean squared error of each class that two encodings make together. Cached."""
     trips = [code.trip for code in (first, second) if code.trip]
     key = cache.key_of("budget pair", exact.key, str(first.key), str(second.key))
     return cache.figures(key, lambda: exact.of(lambda seen: trips[1](trips[0](seen))))
@@ -162,7 +162,7 @@ Rates = Mapping[str, Mapping[str, float]]
 
 
 def rates(exact: Exact, codes: Sequence[Code], tick: Callable[[str], None]) -> Rates:
-    """Return the error of each class by the name of the encoding, for encodings that an image shows. Cached by
+    """Return the error of each class by the name of the encoding, without encodings that no image shows. Cached by
     everything that the image is made from."""
     key, errors = exact.key, {}
     for code in codes:

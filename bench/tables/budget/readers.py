@@ -46,7 +46,8 @@ class Readers:
     parts: tuple[tuple[str, ...], ...] = ()
 
     def bytes_of(self, layout: Layout) -> float:
-        """The bytes a pixel that all of them fetch: of a part the targets that hold it."""
+        """Return the bytes per pixel that all passes fetch: the whole layout for each full pass, and for each other
+        pass the targets that hold its attributes."""
         return self.full * layout.bytes_per_pixel + sum(_bytes_of(layout, part) for part in self.parts)
 
     @property
@@ -100,13 +101,13 @@ def _attributes(word: str) -> Iterator[str]:
     for name in map(str.strip, word.split(JOINED)):
         if name not in WORDS:
             raise UsageError(
-                f"--readers {word}: unknown; known: a number, {ALL}, {', '.join(WORDS)}, joined by {JOINED}"
+                f"--readers {word}: unknown; use a number, {ALL}, or attributes joined by {JOINED}: {', '.join(WORDS)}"
             )
         yield name
 
 
 def _bytes_of(layout: Layout, part: Collection[str]) -> int:
-    """The bytes of the targets that hold some attributes."""
+    """Return the bytes per pixel of the targets that hold some attributes."""
     names = {word for name in part for word in WORDS[name]}
     if "normal" in names:
         # A quantity that carries a sign of the normal is read with it.

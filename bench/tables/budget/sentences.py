@@ -27,7 +27,8 @@ NAMED = 3
 
 
 def told(row: Row) -> Iterator[str]:
-    """Yield the answer for a size limit, the sources of its error, the gain of more bytes, its rules and its cost."""
+    """Yield texts on a row of the budget table: the answer, its sources of error and the gain of more bytes, its
+    rules and its cost; only the reason if the row was skipped."""
     if row["skipped"]:
         yield f"{row['skipped'].rstrip('.')}."
         return
@@ -38,7 +39,7 @@ def told(row: Row) -> Iterator[str]:
 
 
 def in_short(row: Row) -> Iterator[str]:
-    """Yield the answer of a row with figures, and its cost."""
+    """Yield two texts on a row that has figures: the answer; then its cost and the gain of more bytes."""
     yield _answer(row)
     slots = "not counted on this machine"
     if row["pack_slots"] is not None:
@@ -48,7 +49,8 @@ def in_short(row: Row) -> Iterator[str]:
 
 
 def targets(row: Row) -> list[Row]:
-    """Return the targets as a table has them: format, bytes, and the code of each attribute in words."""
+    """Return a table row for each render target of a layout: `target` is its number, format and bytes, `holds` the
+    attributes that it stores and their codes, in words. Empty if the layout has no targets."""
     # The other words of a layout of yours are shown as they are.
     codes = dict(text.split(" ", 1) for text in row["codes"].split("; ") if text) if row["codes"] else {}
     if row["kind"] == IMPROVED:
@@ -76,8 +78,9 @@ def _subject(row: Row) -> str:
 
 
 def _answer(row: Row) -> str:
-    """Return the recommended layout with its worst class of surfaces, and whether errors are visible."""
-    fewer = f"{row['bytes_per_pixel']:g} are enough, for " if row["bytes_per_pixel"] != row["limit"] else ""
+    """Return two sentences: the recommended bytes with the PSNR of the worst class and of the frame; then whether
+    errors are visible."""
+    fewer = f"{row['bytes_per_pixel']:g} bytes are enough, for " if row["bytes_per_pixel"] != row["limit"] else ""
     scene, _, surfaces = row["worst_class"].rpartition(" ")
     worst = f"{row['worst_db']:.1f} dB in the worst class ({surfaces} in {scene})"
     frame = f"{row['psnr_db']:.1f} dB in the frame"
@@ -85,7 +88,8 @@ def _answer(row: Row) -> str:
 
 
 def _free(row: Row) -> str:
-    """Return a sentence on the bytes that a limit leaves free, and the missing attributes that they could hold."""
+    """Return a sentence on the bytes that a limit leaves free, and the missing attributes that they could hold; empty
+    if less than a byte is free, or the row is not a recommendation."""
     free = (row["limit"] or 0) - row["bytes_per_pixel"] if row["kind"] == PROPOSAL else 0
     uses = [use for size, word, use in FREE_FOR if size <= free and word not in row["targets"]]
     which = f" for {' or '.join(uses)}" if uses else ""
@@ -99,7 +103,7 @@ def _visible(flip: float) -> str:
 
 
 def _code(text: str) -> str:
-    """An attribute and its code in words, such as base colour 7:7:6 as square root."""
+    """Return a text such as `base_color square_root 7:7:6` in words: `base colour 7:7:6 as square root`."""
     name, _, code = text.partition(" ")
     code, is_root = code.removeprefix("square_root "), code.startswith("square_root ")
     code, _, most = code.removeprefix("linear ").replace("in halves", "in half floats").partition(" to ")
@@ -114,7 +118,7 @@ def _names(names: str) -> str:
 def _errors(row: Row) -> str:
     sentences = []
     if "," in row["scene"] and row["held_back_db"] is not None:
-        sentences.append(f"Scenes that did not choose it have {row['held_back_db']:.1f} dB in their worst class.")
+        sentences.append(f"In scenes left out of the choice, the worst class scores {row['held_back_db']:.1f} dB.")
     sentences.append(f"FLIP (99th percentile) is {row['flip_p99']:.3f}; up to {INVISIBLE:g} counts as invisible.")
     if row["error_from"]:
         parts = [_code(part) for part in row["error_from"].split(", ")[:NAMED]]
@@ -129,35 +133,35 @@ def _next(row: Row) -> str:
 
 
 def _rules(row: Row) -> str:
-    into = f"Decals blend into {_names(row['blends'] or '')}; the alpha of a target there is the blend factor."
+    into = f"Decals blend into {_names(row['blends'] or '')}; the alpha of these targets is the blend factor."
     sentences = [into if row["blends"] else "Not checked for hardware decal blending; use --blend to require it."]
     if "_uint: " in row["targets"]:
-        sentences.append("Integer targets gain 3 dB or more here, and are not blended, filtered or resolved.")
+        sentences.append("Integer targets gain at least 3 dB here, but cannot be blended, filtered or resolved.")
     sentences.append(
-        f"The G-buffer moves {row['mb_1080p']:.0f} MB at 1080p and {row['mb_4k']:.0f} MB at 4K, without compression, "
-        f"written {times(row['overdraw'])}, read {row['readers']}."
+        f"Memory traffic per frame, uncompressed: {row['mb_1080p']:.0f} MB at 1080p, {row['mb_4k']:.0f} MB at 4K "
+        f"(written {times(row['overdraw'])}; read {row['readers']})."
     )
     if row["webgpu_bytes"] is None:
         sentences.append("WebGPU does not render to all of its formats.")
     elif row["webgpu_bytes"] > WEBGPU_BYTES:
         over = row["webgpu_bytes"] - WEBGPU_BYTES
-        sentences.append(f"It exceeds WebGPU's limit of {WEBGPU_BYTES} bytes per sample by {over}.")
+        sentences.append(f"It exceeds WebGPU's limit of {WEBGPU_BYTES} bytes per sample; bytes in excess: {over}.")
     else:
         sentences.append(f"It uses {row['webgpu_bytes']} of WebGPU's {WEBGPU_BYTES} bytes per sample.")
     if row["in_tile"] is not None:
-        fits = ", which fit the tile" if row["in_tile"] else ": it takes tiles of half the size"
-        sentences.append(f"With the light buffer it takes {row['tile_bytes']} bytes in a tile{fits}.")
+        fits = ", which fit in the tile" if row["in_tile"] else ", which need tiles of half the size"
+        sentences.append(f"With the light buffer it takes {row['tile_bytes']} bytes per pixel{fits}.")
     return " ".join(sentences)
 
 
 def _unmeasured(row: Row) -> tuple[str, ...]:
-    """Return a sentence on the attributes that no scene shows; empty if there are no such attributes."""
+    """Return a tuple of one sentence on the attributes that no scene shows; empty without such attributes."""
     names = row["by_contract"]
     return (f"Not measured, because no scene shows them: {_names(names)}.",) if names else ()
 
 
 def conditions(row: Row) -> str:
-    """Return the conditions of the figures, and the attributes that were not measured."""
+    """Return as one text the free bytes, the scenes and size of the images, and the unmeasured attributes."""
     images = f"Images: {row['scene'].replace(',', ', ')} at {row['size']}."
     return " ".join(filter(None, [_free(row), images, *_unmeasured(row)]))
 
@@ -167,4 +171,4 @@ def _cost(row: Row) -> str:
         return "The cost of packing and unpacking is not known on this machine."
     parts = f"Packing takes {row['pack_slots']:g} issue slots and unpacking {row['unpack_slots']:g}"
     often = f"written {times(row['overdraw'])} and read {row['readers'].partition(', ')[0]}"
-    return f"{parts} on {row['dearest_family']}: {row['slots']:g} per pixel, {often}."
+    return f"{parts} on {row['dearest_family']}: {row['slots']:g} slots per pixel, {often}."

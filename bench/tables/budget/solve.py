@@ -99,7 +99,7 @@ class Solution:
     errors: Mapping[str, float]
 
     def worst_of(self, names: Sequence[str]) -> float:
-        """The largest error of some classes."""
+        """Return the largest error of the classes with these names; a class without an error counts as 0."""
         return max((self.errors.get(name, 0.0) for name in names), default=0.0)
 
 
@@ -258,21 +258,21 @@ class _Program:
                 self.row({**terms, self.both(index): -1.0}, 0, np.inf)
 
     def forbid(self, codes: Set[Key]) -> None:
-        """Not all of these codes together."""
+        """Forbid solutions that use all of these encodings together."""
         terms = {i: 1.0 for i, (code, *_) in enumerate(self.choices) if code.key in codes}
         self.row(terms, -np.inf, len(codes) - 1)
 
     def bytes(self) -> Terms:
-        """The bytes of the targets that are used."""
+        """Return the terms that sum to the total bytes of the targets that a solution uses."""
         return {self.used(slot): float(target_bin.bytes) for slot, (target_bin, _) in enumerate(self.slots)}
 
     def bytes_of(self, values: np.ndarray) -> int:
-        """The bytes of a solution's targets."""
+        """Return the total bytes of the targets that a solution uses, given the values of its variables."""
         return sum(target_bin.bytes for slot, (target_bin, _) in enumerate(self.slots) if values[self.used(slot)] > 0.5)
 
     def others(self, best: Solution) -> Terms:
-        """Return the sum of the errors of all classes, each relative to the best solution's error, or to UNSEEN if
-        that is larger."""
+        """Return the terms that sum the errors of all classes, each relative to the best solution's error, or to
+        UNSEEN if that is larger."""
         classes = self.problem.classes
         units = {name: max(best.errors.get(name, 0.0), UNSEEN) for name in classes}
         return {
@@ -281,12 +281,12 @@ class _Program:
         }
 
     def costs(self) -> Terms:
-        """Return the cost of each encoding by itself; 0 if no cost is requested."""
+        """Return the terms that sum the costs of the encodings, each by itself; all 0 if no cost is requested."""
         cost = self.problem.cost
         return {i: cost(code, self.slots[slot][0]) if cost else 0.0 for i, (code, slot, _) in enumerate(self.choices)}
 
     def fusses(self) -> Terms:
-        """Return the penalties for what an engineer would rather avoid."""
+        """Return the terms that sum the penalties for encodings and targets that an engineer would rather avoid."""
         codes = {i: fuss(code, self.slots[place][0]) for i, (code, place, _) in enumerate(self.choices)}
         return codes | {
             self.used(slot): target_bin.fuss + TARGET_FUSS for slot, (target_bin, _) in enumerate(self.slots)
@@ -398,7 +398,7 @@ def fuss(code: Code, target_bin: Bin) -> float:
 
 
 def solved(problem: Problem) -> Solution | None:
-    """The plainest of the best layouts; None where none keeps to the rules."""
+    """Return the plainest of the best layouts; None if no layout keeps to the rules."""
     return next(iter(finalists(problem, 1)), None)
 
 
@@ -428,7 +428,7 @@ def finalists(problem: Problem, count: int) -> list[Solution]:
 
 
 def _best(program: _Program) -> Solution | None:
-    """The layout whose worst class is best; None where none keeps to the rules."""
+    """Return the layout whose worst class has the smallest error; None if no layout keeps to the rules."""
     classes = program.problem.classes
     values = program.solved(1.0)
     if values is None:
@@ -452,8 +452,8 @@ def _best(program: _Program) -> Solution | None:
 
 
 def enough_bytes(problem: Problem, unseen: float = HALF_STEP) -> int | None:
-    """The bytes of the smallest layout whose worst class is within ENOUGH_DB of the best, or has an error of at most
-    `unseen`; None where none keeps to the rules."""
+    """Return the bytes of the smallest layout whose worst class is within ENOUGH_DB of the best, or has an error of
+    at most `unseen`; None if no layout keeps to the rules."""
     program = _Program(problem)
     best = _best(program)
     if best is None:
@@ -464,7 +464,7 @@ def enough_bytes(problem: Problem, unseen: float = HALF_STEP) -> int | None:
 
 
 def fewest_bytes(problem: Problem) -> int | None:
-    """The bytes of the smallest layout that keeps to the other rules; None where none does."""
+    """Return the bytes of the smallest layout that keeps to all rules but the byte limit; None if no layout does."""
     program = _Program(replace(problem, rules=replace(problem.rules, bytes=ANY_BYTES)))
     values = program.solved(1.0, least=program.bytes())
     if values is None:

@@ -147,12 +147,12 @@ COLUMNS = (
     ),
     Column("layout", "The layout's name.", KEY),
     Column("limit", "The requested bytes per pixel.", KEY, "bytes"),
-    Column("scene", "The scenes that judge; each figure is for the worst of them.", KEY, drops=3),
+    Column("scene", "The scenes to judge by; each figure is for the worst scene.", KEY, drops=3),
     Column("bytes_per_pixel", "Bytes per pixel of the targets, without native depth.", unit="bytes", better="less"),
     Column(
         "contract_bytes",
-        "The same, plus the motion, shading model, F0 and AO of --hold if the layout lacks them, and minus emissive "
-        "if it was not requested. Layouts are compared by this size.",
+        "`bytes_per_pixel`, plus the motion, shading model, F0 and AO of --hold if the layout lacks them, and minus "
+        "emissive if it was not requested. Layouts are compared by this size.",
         unit="bytes",
         better="less",
     ),
@@ -176,7 +176,7 @@ COLUMNS = (
     Column(
         "predicted_worst_db", "`worst_db`, predicted as the sum of the attributes' separate errors.", unit="dB", drops=7
     ),
-    Column("predicted_db", "`psnr_db`, predicted likewise.", unit="dB", drops=8),
+    Column("predicted_db", "`psnr_db`, predicted in the same way.", unit="dB", drops=8),
     Column("error_from", "The attributes that cause the error of the worst class.", HOW, drops=5),
     Column(
         "next_bytes",
@@ -184,7 +184,7 @@ COLUMNS = (
         unit="bytes",
     ),
     Column("next_db", "The gain of these bytes in the worst class.", unit="dB"),
-    Column("blends", "Attributes whose targets are kept for decals that hardware blends, as --blend requires.", HOW),
+    Column("blends", "Attributes in targets that hardware can blend decals into, as --blend requires.", HOW),
     Column("codes", "The encoding of each attribute.", HOW, drops=9),
     Column("by_contract", "Attributes that no scene shows: their bits are given, not measured.", HOW, drops=9),
     Column(
@@ -204,10 +204,10 @@ COLUMNS = (
         better="less",
         drops=4,
     ),
-    Column("mb_4k", "The same at 3840 x 2160.", unit="MB", better="less", drops=4),
+    Column("mb_4k", "Megabytes written and read per frame at 3840 x 2160.", unit="MB", better="less", drops=4),
     Column(
         "pack_slots",
-        "Issue slots to pack a surface into the targets, in a compute shader. Conversion by the formats costs nothing.",
+        "Issue slots to pack a surface into the targets, in a compute shader. Format conversion in hardware is free.",
         unit="slots",
         better="less",
         drops=6,
@@ -228,12 +228,12 @@ COLUMNS = (
     ),
     Column(
         "webgpu_bytes",
-        "Bytes of the targets, of WebGPU's 32 bytes per sample; empty if WebGPU does not render to one of the formats.",
+        "Bytes per sample that the targets use of WebGPU's 32; empty if WebGPU cannot render to one of the formats.",
         unit="bytes",
         better="less",
         drops=10,
     ),
-    Column("in_tile", "Whether targets and light buffer fit in the tile of --limit tile:BYTES.", HOW, drops=2),
+    Column("in_tile", "Whether the targets and the light buffer fit in the tile of --limit tile:BYTES.", HOW, drops=2),
     Column("tile_bytes", "Bytes per pixel of targets and light buffer in a tile, if --limit names one.", HOW, drops=2),
     Column("overdraw", "Number of times that each pixel is written.", HOW, drops=11),
     Column("readers", "How many passes read everything, and what other passes read.", HOW, drops=11),
@@ -265,7 +265,7 @@ TABLE = Table(
         view=View.LAYOUTS,
         intro="What is the smallest G-buffer that still looks right?",
         method="Each encoding of each attribute is measured separately: the error of the displayed image, by class "
-        "of surfaces. An integer program finds the layout with the best worst class in a number of bytes, and "
+        "of surfaces. An integer program finds the layout with the best worst class for a number of bytes, and "
         "takes the simplest layout within 0.2 dB. This layout is drawn whole. For other sizes, and engines' "
         "layouts, run `normalbench budget --bytes 12,14,16,20 --engines`.",
     ),

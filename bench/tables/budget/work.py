@@ -84,7 +84,7 @@ def _compared(rows: Sequence[Row], sentences: Sequence[str] = ()) -> Iterator[Sh
 
 def _shown(done: Measured) -> Iterator[Sheet]:
     more = " Emissive goes to the light buffer." * (IN_LIGHT in as_known(done.options.hold))
-    more += " -v says more." * (not done.outputs.verbose)
+    more += " Use -v for details." * (not done.outputs.verbose)
     for sheet in _sheets(done.rows) if done.outputs.verbose else _short_sheets(done.rows):
         yield replace(sheet, notes=tuple(note + more for note in sheet.notes))
 

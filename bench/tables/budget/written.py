@@ -14,7 +14,7 @@ from .solve import Placed, Solution
 
 
 def layout_of(name: str, solution: Solution) -> Layout:
-    """The layout of a solution."""
+    """Return a solution as a `Layout` with this name. Raises ValueError if the solution has no normal."""
     normal = next((placement.code for placement in solution.placed if placement.code.attribute == NORMAL), None)
     if normal is None:
         raise ValueError("a layout holds a normal")
@@ -24,7 +24,8 @@ def layout_of(name: str, solution: Solution) -> Layout:
 
 
 def _by_target(solution: Solution) -> Iterator[tuple[Bin, list[Placed]]]:
-    """The targets, wide ones first, so that WebGPU loses no bytes to their alignment; of equals the normal's."""
+    """Yield each target with its placed encodings, wide targets first, so that WebGPU loses no bytes to their
+    alignment; of equally wide targets the one with the normal comes first."""
     groups: dict[tuple[str, int], list[Placed]] = {}
     for placement in solution.placed:
         groups.setdefault((placement.bin.name, placement.copy), []).append(placement)
@@ -47,7 +48,8 @@ def target_of(target_bin: Bin, placed: Sequence[Placed]) -> Target:
 
 
 def _in_fields(target_bin: Bin, placed: Sequence[Placed]) -> list[str]:
-    """The words of a target of whole numbers: each code in a channel, where they fit so; else one after the other."""
+    """Return the words of a target with integer fields, each with its bits: every encoding inside one channel if they
+    fit in this way; otherwise one after the other without gaps."""
     channels: list[list[Code]] = []
     for p in placed:
         home = next((c for c in channels if sum(code.total_bits for code in (*c, p.code)) <= target_bin.part), None)
@@ -95,7 +97,7 @@ def _in_channels(target_bin: Bin, placed: Sequence[Placed]) -> Iterator[str]:
 
 
 def file_of(row: Mapping[str, Any]) -> str:
-    """Return the layout of a row as a file that `--layout` reads, with its scores in comments."""
+    """Return the text of a layout file for `--layout`, in TOML, with the scores of the row in comments."""
     normal = next(code for code in row["codes"].split("; ") if code.startswith(f"{NORMAL} "))
     lines = [
         f"# {row['bytes_per_pixel']} bytes per pixel; {row['scene']} at {row['size']}: {row['worst_class']} "

@@ -36,7 +36,7 @@ def front_chart(name: str, label: str, panels: Sequence[Panel]) -> Chart:
         title=_finding_sentence(panels),
         subtitle="; ".join([f"Instructions against {label}", GREY, *([BRANCHES] if is_starred else [])]),
         description="Each codec by the cost of encoding or decoding it, including packing, and by its error; grey "
-        "where another codec costs no more, is no less accurate and takes no more bits. The figures are "
+        "if another codec costs no more, is no less accurate and takes no more bits. The figures are "
         "in the tables.",
         x=Axis(title=UNIT, scale=Scale.COUNT, is_shared=False),
         y=Axis(title=f"{label} (dB)", scale=Scale.LINEAR, is_shared=False),
@@ -55,7 +55,7 @@ def front_chart(name: str, label: str, panels: Sequence[Panel]) -> Chart:
 
 
 def _rows(panel: Panel) -> list[Row]:
-    """A row for each point, those that no other beats first, by their cost."""
+    """Return a row for each point of a panel: first the Pareto front by cost, then the others, with `rest`."""
     front = pareto_front(panel.points)
     points = [*front, *(point for point in panel.points if point not in front)]
     return [_point_row(panel, point) | {"rest": point not in front} for point in points]
@@ -67,7 +67,7 @@ def _point_row(panel: Panel, point: Point) -> Row:
 
 
 def _switch(panels: Sequence[Panel]) -> Switch | None:
-    """A switch between machines, where there are several."""
+    """Return a switch between the machines of panels; None if there are fewer than two machines."""
     machines = tuple(dict.fromkeys(panel.machine for panel in panels))
     if len(machines) < 2:
         return None

@@ -35,10 +35,10 @@ PROCESSOR = "processor time of each finished pass"
 
 
 def clock(device: Device) -> Clock:
-    """The device's timer queries; of a software rasteriser the time that its threads spend on a processor.
+    """Return a device's clock: its timer queries; for a software rasteriser the processor time of its threads.
 
-    A wall clock counts whatever else the machine does: on two busy cores medians of nine differences were apart by 40 %
-    from run to run, and by 4 % on this clock.
+    A wall clock counts whatever else the machine does: on two busy cores medians of nine differences were apart by
+    40% from run to run, and by 4% on this clock.
     """
 
     def by_processor_time(run: Callable[[], object]) -> float:
@@ -60,7 +60,7 @@ class Field:
         self._points: dict[int, Texture] = {}
 
     def points(self, numbers: int) -> Texture:
-        """A texture of directions or codes."""
+        """Return a texture of random directions (three numbers) or codes, uploaded once for each count of numbers."""
         if numbers not in self._points:
             self._points[numbers] = self.device.owned(self.stack, self.device.upload(_points(self.size, numbers)))
         return self._points[numbers]
@@ -83,9 +83,10 @@ class Pair:
             self.turns = min(int(self.turns * min(max(PASS_MS / max(taken, 1e-3), 1.5), 8)), MOST_TURNS)
 
     def difference(self) -> float:
-        """Nanoseconds for a million pixels that the operation takes more than the empty one.
+        """Return the nanoseconds per megapixel that the operation takes in addition to the empty pass.
 
-        Of a few passes of each, in turns, the shortest: whatever else the machine does only ever makes one longer.
+        Both times are the shortest of several passes, because other load on the machine only ever makes a pass
+        longer.
         """
         taken = [[self._milliseconds(which, self.turns) for which in (0, 1)] for _ in range(PASSES)]
         operation, empty = (min(times) for times in zip(*taken, strict=True))
@@ -107,12 +108,12 @@ class Passes:
         ]
 
     def milliseconds(self, which: int, turns: int) -> float:
-        """Return the milliseconds that one of the two passes takes."""
+        """Return the milliseconds of a pass: the operation's if `which` is 0, the empty pass's if it is 1."""
         return self._clock.measure(lambda: self.render(which, turns))
 
     def render(self, which: int, turns: int, nothing: float = 0.0) -> None:
-        """Draw one of the two passes into the field's targets. `nothing` is added to the inputs at each turn, and is
-        0 except in a test."""
+        """Draw the operation's pass (`which` 0) or the empty pass (`which` 1) into the field's targets. `nothing` is
+        added to the inputs at each turn, and is 0 except in a test."""
         passed = self._passes[which]
         for name, value in (("kernel_turns", turns), ("kernel_nothing", nothing)):
             if name in passed.program:
@@ -131,7 +132,8 @@ def _points(size: tuple[int, int], numbers: int) -> np.ndarray:
 def time_rows(
     device: Device, chosen: Sequence[CostCase], size: tuple[int, int], repeats: int, tick: Callable[[str], None]
 ) -> Iterator[Row]:
-    """Yield the nanoseconds per megapixel of each case: the median of repeated differences, and its interval's width.
+    """Yield a row for each case: the median of repeated time differences in nanoseconds per megapixel, and the width
+    of its interval; or the reason in `skipped` if its shader does not compile.
 
     Each repetition covers all cases, so that other load on the machine is spread over all of them.
     """
@@ -166,7 +168,7 @@ def time_rows(
 
 
 def summary(column: str, taken: Sequence[float]) -> dict[str, float]:
-    """The median, and the width of its interval."""
+    """Return the median of the samples as `column`, and the width of its confidence interval as `spread`."""
     low, high = median_interval(taken)
     return {column: float(np.median(taken)), "spread": high - low}
 

@@ -51,10 +51,11 @@ class Costs:
         return CostSum(cost, any(row.get("branches") for _, row in rows))
 
     def _parts(self, codec: Codec, where: Where, operation: str) -> list[tuple[int, tuple[Any, ...]]]:
-        """The keys of the rows that add up to it, each with its sign."""
+        """Return the keys of the rows whose sum is the cost of a codec's operation, each with its sign, 1 or -1.
+        Raises LeftOutError if the code does not fit in the storage."""
         kind, packed = (where.measure, where.family, where.stage), PACKING_OPERATIONS[operation]
         if codec.misfit:
-            raise LeftOutError(f"does not fit in {codec.storage.name}: {codec.misfit}")
+            raise LeftOutError(f"it does not fit in {codec.storage.name}: {codec.misfit}")
         name = codec.encoding.name
         parts = [(1, (*kind, operation, name, None)), (1, (*kind, packed, None, packing_of(codec).name))]
         if codec.encoding.sign_bits:
@@ -67,5 +68,5 @@ class Costs:
         if row is None or row.get(column) is None:
             raise LeftOutError("its cost is not known" if encoding else f"the cost of {storage} is not known")
         if row.get("loops"):
-            raise LeftOutError(f"{encoding or storage} {operation} contains a loop, which counts once")
+            raise LeftOutError(f"{encoding or storage} {operation} contains a loop, which is counted only once")
         return row

@@ -59,15 +59,14 @@ def _mean_turns(turns: np.ndarray) -> list[list[float]]:
 def executed_slots(
     kinds: Sequence[str], rates: Mapping[str, int], loops: Sequence[range], turns: Sequence[Sequence[float]]
 ) -> float | None:
-    """The issue slots that a lane of a kernel takes when its loops run.
+    """Return the issue slots that a lane of a kernel takes when its loops run; None if the listing has more loops
+    than the source.
 
     Args:
         kinds: the kind of each instruction, in the order of the listing.
-        rates: slots by kind; a kind without one takes none.
-        loops: the places of each loop's instructions.
-        turns: mean and standard deviation of the turns of each loop of the text, in its order.
-
-    None where the listing has more loops than the text.
+        rates: slots by kind; a kind without a rate takes no slots.
+        loops: the positions of each loop's instructions in the listing.
+        turns: mean and standard deviation of the turns of each loop of the source, in its order.
     """
     if len(loops) > len(turns):
         return None

@@ -37,7 +37,7 @@ SOURCES = "source"
 
 
 def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Mapping[str, Any]:
-    """Return the charts of cost against error and the disassemblies.
+    """Return the charts of cost against error as `fronts`, and the disassemblies as `listings`.
 
     Args:
         folder: the folder of the run.
@@ -52,8 +52,8 @@ def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]
 
 
 def _fronts(tables: Mapping[str, Sequence[Row]], usual: str, remarks: list[str]) -> Iterator[Front]:
-    """A front for the first set of normals and one for the first scene: the error against the instructions of each GPU
-    family. Which codecs have no place among them is added to the remarks."""
+    """Yield a front for the first set of normals and one for the first scene: PSNR against the instructions of each
+    GPU family. A front without points is left out; remarks name the codecs that the fronts leave out, and why."""
     known = _counted(tables)
     families = dict.fromkeys(row["family"] for row in known)
     costs = {family: [row for row in known if row["family"] == family] for family in families}
@@ -66,18 +66,18 @@ def _fronts(tables: Mapping[str, Sequence[Row]], usual: str, remarks: list[str])
         if panels:
             yield Front(f"PSNR of {what} {as_text(where)}", panels)
     if costs:
-        remarks += [f"Not in cost against error, because {why}: {', '.join(names)}." for why, names in lost.items()]
+        remarks += [f"Not in the charts of cost, because {why}: {', '.join(names)}." for why, names in lost.items()]
 
 
 def _errors(rows: Sequence[Row], lost: dict[str, dict[str, None]]) -> dict[Codec, float]:
-    """The error of each codec; `lost` is told which codecs have none that can be drawn, by the reason."""
+    """Return the PSNR of each codec, in decibels; add codecs that cannot be drawn to `lost`, grouped by reason."""
     errors: dict[Codec, float] = {}
     for key, row in _row_of_each(rows).items():
         codec = _codec(row)
         if not is_number(row.get(LEADING)):
             why = f"its error is not known ({row.get('skipped') or 'it was not measured'})"
         elif not math.isfinite(row[LEADING]):
-            why = "it has no error"
+            why = "its error is 0"
         elif not codec:
             why = "its storage is not known"
         else:
@@ -88,7 +88,7 @@ def _errors(rows: Sequence[Row], lost: dict[str, dict[str, None]]) -> dict[Codec
 
 
 def _row_of_each(rows: Sequence[Row]) -> dict[CodecKey, Row]:
-    """A row of each codec: one with an error before one without, then JAX's before GLSL's before others."""
+    """Return one row for each codec: a row with a PSNR if there is one, by JAX before GLSL before other backends."""
     order = list(dict.fromkeys([*BACKENDS, *(row.get("backend", "jax") for row in rows)]))
     ranks: dict[CodecKey, tuple[bool, int]] = {}
     by_codec: dict[CodecKey, Row] = {}
@@ -106,7 +106,8 @@ def _counted(tables: Mapping[str, Sequence[Row]]) -> list[Row]:
 
 
 def usual_family(tables: Mapping[str, Sequence[Row]]) -> str:
-    """The GPU family that the page speaks of: the last of the first vendor; empty where nothing was counted."""
+    """Return the GPU family that the page shows first: the last counted family of the vendor that was counted first;
+    empty if no fragment shader was counted."""
     families = list(dict.fromkeys(str(row["family"]) for row in _counted(tables) if row["stage"] == STAGE))
     vendor_of = {name: FAMILIES[name].vendor if name in FAMILIES else "" for name in families}
     return [name for name in families if vendor_of[name] == vendor_of[families[0]]][-1] if families else ""
@@ -115,8 +116,8 @@ def usual_family(tables: Mapping[str, Sequence[Row]]) -> str:
 def _panels(
     costs: Mapping[str, Sequence[Row]], errors: Mapping[Codec, float], usual: str, lost: dict[str, dict[str, None]]
 ) -> Iterator[Panel]:
-    """Instructions on each GPU family, to encode and to decode; `lost` is told which codecs have no place, by the
-    reason."""
+    """Yield for each GPU family a panel of instructions to encode and one to decode, unless it has no points; add
+    codecs of unknown cost to `lost`, grouped by reason."""
     for family, rows in costs.items():
         machine = f"{FAMILIES[family].title} ({family})" if family in FAMILIES else as_text(family)
         for operation in OPERATIONS:
@@ -152,8 +153,10 @@ def _codec(row: Row) -> Codec | None:
 
 
 def _encoding(row: Row, storage: Storage) -> Encoding | None:
-    """Return the encoding of a row. A user's encoding, whose file the report does not read, gets its number of
-    components from the bits: apart from the name, its cost depends on nothing else."""
+    """Return the encoding of a row; None for a user's encoding whose bits do not fill channels of the storage.
+
+    A user's encoding, whose file the report does not read, gets its number of components from the bits: apart from
+    the name, its cost depends on nothing else."""
     name = str(row.get("encoding"))
     # octahedral:axis=y has as many numbers as octahedral, and a chain as many as its last encoding.
     if base := ENCODINGS.get(name.rpartition(CHAIN)[2].partition(MARK)[0]):
@@ -165,13 +168,14 @@ def _encoding(row: Row, storage: Storage) -> Encoding | None:
 
 
 def _kernels(folder: Path, family: str) -> Mapping[str, Path]:
-    """The files that hold a GPU family's kernels, by name."""
+    """Return the files of a GPU family's subfolder by name; empty if there is no such subfolder."""
     known = {path.name: path for path in folder.iterdir()} if folder.is_dir() else {}
     return files_of(known[family]) if family in known else {}
 
 
 def _listings(folder: Path, family: str) -> dict[str, Listing]:
-    """A GPU family's kernels with their encodings' GLSL, as far as a page holds them."""
+    """Return the disassemblies of a GPU family's kernels of the usual stage by title, each with its encoding's GLSL;
+    kernels beyond LISTED characters in total are left out."""
     sources = _kernels(folder, SOURCES)
     listed, size = {}, 0
     for name, path in sorted(_kernels(folder, family).items()):

@@ -56,7 +56,7 @@ KINDS = tuple(dict.fromkeys(name for reader in READERS.values() for name in read
 LISTED = ("issue_slots", "executed_slots", *KINDS, "packed", "branches", "loops", "looped")
 OPERATIONS = ("encode", "decode")
 PACKING_OPERATIONS = {"encode": "pack", "decode": "unpack"}
-NOT_ASKED = Failure("CUDA was not asked for")
+NOT_ASKED = Failure("CUDA was not requested")
 GLSLANG_STAGES = {"fragment": "frag", "compute": "comp"}
 
 
@@ -80,7 +80,7 @@ class CostCase:
         return f"{self.encoding.name if self.encoding else self.storage} {self.operation}"
 
     def row(self, measure: str, **more: Any) -> Row:
-        """A row of the table that is about it."""
+        """Return a row of the cost table about the case, with this measure and more columns; all others are empty."""
         name = self.encoding.name if self.encoding else None
         about = {"encoding": name, "storage": self.storage, "operation": self.operation}
         return TABLE.empty() | {"measure": measure} | about | more
@@ -114,7 +114,7 @@ class Prepared:
     cuda: tuple[Job, Job] | Failure = NOT_ASKED
 
     def jobs(self, family: str) -> tuple[Job, Job] | Failure:
-        """The kernel and the empty one as a family's compiler takes them."""
+        """Return the kernel and the empty kernel for a family's compiler, or why they could not be made."""
         return self.cuda if _takes_cuda(family) else (self.job, self.empty)
 
 
@@ -211,16 +211,16 @@ def _jobs(prepared: Iterable[Prepared | Failure], family: str) -> list[Job]:
 
 
 def _no_stage(family: str, stages: Sequence[str]) -> str:
-    """Why a family has no kernel of these stages; empty where it has one."""
+    """Return why a family can compile none of these stages, and which stages to use; empty if it can compile any."""
     known = FAMILIES[family].stages if family in FAMILIES else stages
     if set(known) & set(stages):
         return ""
     title = FAMILIES[family].title
-    return f"{title}: {' and '.join(stages)} shaders are not counted; use --stage {', '.join(known)}"
+    return f"{title}: {' and '.join(stages)} shaders are not supported; use --stage {', '.join(known)}"
 
 
 def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str) -> str:
-    """The first reason for which a family compiled nothing; empty where it compiled something, or there was nothing."""
+    """Return the first reason why a family compiled nothing; empty if it compiled something or had no jobs."""
     stages = FAMILIES[family].stages if family in FAMILIES else tuple(kernels.STAGES)
     attempts = [outcome for (name, job), outcome in outcomes.items() if name == family and job.stage in stages]
     failures = [outcome for outcome in attempts if isinstance(outcome, Failure)]
@@ -228,11 +228,12 @@ def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str) -> str:
 
 
 def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
-    """Return a row with the difference between its kernel and the empty kernel, and the kernel's disassembly."""
+    """Return a row with the difference between its kernel and the empty kernel, and the kernel's disassembly; if
+    either is missing, the reason in `skipped` and an empty text."""
     if isinstance(outcome, Failure):
         return row | {"skipped": outcome.reason}, ""
     if isinstance(empty, Failure):
-        return row | {"skipped": f"the empty kernel: {empty.reason}"}, ""
+        return row | {"skipped": f"empty kernel: {empty.reason}"}, ""
     compared = alike(outcome.kernels, empty.kernels)
     if compared is None:
         return row | {"skipped": _width_mismatch(outcome.kernels, empty.kernels)}, ""
@@ -268,7 +269,7 @@ def _width_mismatch(kernels: Iterable[Kernel], empties: Iterable[Kernel]) -> str
 
 
 def _total(kernel: Kernel, names: Iterable[tuple[str, ...]]) -> float | None:
-    """The sum of the statistics that the driver has of one of these sets; None where it has none."""
+    """Return the sum of the first set of statistics that the driver reports in full; None if there is no such set."""
     sets = ([kernel.statistics.get(name) for name in some] for some in names)
     return next((sum(numbers) for numbers in sets if None not in numbers), None)  # type: ignore[arg-type]
 
@@ -279,7 +280,8 @@ def _difference(a: float | None, b: float | None) -> float | None:
 
 @cache
 def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] | None:
-    """Return the figures of a kernel's disassembly; None if there is no disassembly, or it cannot be parsed."""
+    """Return the columns that a kernel's disassembly gives: issue slots, instructions by kind, branches and loops.
+    None if there is no disassembly, or it cannot be parsed."""
     read = listings_of(family)
     counts = read.kinds(assembly, total, family)
     if counts is None:
@@ -292,7 +294,8 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
 
 
 def _executed_slots(case: CostCase, row: Row, assembly: str) -> float | None:
-    """The issue slots that a case's loops make of its static ones; None where that is not known."""
+    """Return the issue slots of a case when its loops run, minus those of the empty kernel; equal to the static slots
+    without loops, None if not known."""
     read, family = listings_of(row["family"]), row["family"]
     if (rates := read.rates(family)) is None or any(row[kind] is None for kind in read.KINDS):
         return None
@@ -316,8 +319,8 @@ def listings_of(family: str) -> Any:
 
 
 def counted(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tuple[str, str], Row]:
-    """The rows of one family with instructions, by encoding, packing or layout, and operation. Where there are no
-    compilers, those that another machine's counted, which have `recorded_by`."""
+    """Return the rows of one family with instruction counts, by encoding, packing or layout, and operation. If
+    nothing can be compiled here, they are counts recorded on another machine, and have `recorded_by`."""
     try:
         pairs = isa_rows(chosen, [stage], [family], [], nobody)
         rows = [row for row, _ in pairs if row["family"] == family and row["instructions"] is not None]
@@ -354,8 +357,8 @@ def nobody(_: str) -> None:
 def static_notes(rows: Iterable[Row]) -> list[str]:
     """Return why the counts of some rows differ from what a lane runs: a line for loops and a line for branches."""
     notes = {
-        "loops": "contains a loop; its body counts once, however often it runs",
-        "branches": "contains a branch; both sides count",
+        "loops": "each loop body counts once, however often it runs",
+        "branches": "both sides of each branch count",
     }
     by_column: dict[str, dict[str, None]] = {column: {} for column in notes}
     for row in rows:
@@ -363,12 +366,12 @@ def static_notes(rows: Iterable[Row]) -> list[str]:
         if column:
             by_column[column][f"{row['encoding'] or row['storage']} {row['operation']}"] = None
     return [
-        f"static count: {', '.join(by_column[column])} {note}" for column, note in notes.items() if by_column[column]
+        f"static count: {', '.join(by_column[column])}: {note}" for column, note in notes.items() if by_column[column]
     ]
 
 
 def file_name(name: Any) -> str:
-    """An encoding's or a packing's name as files have it."""
+    """Return the name of an encoding or a packing for use in file names, with hyphens for spaces and colons."""
     return str(name).replace(" ", "-").replace(":", "-")
 
 

@@ -10,7 +10,8 @@ from .table import TABLE
 
 
 def article_rows(encodings: Iterable[str], operations: Iterable[str]) -> list[Row]:
-    """The article's figures of encodings that it has: instruction slots, and registers and cycles by GPU."""
+    """Return the article's figures of these operations, if it has them: for each a row with instruction slots, then
+    one for each GPU with registers and cycles."""
     operations = tuple(operations)
     rows = []
     for key in ((encoding, operation) for encoding in encodings for operation in operations):
@@ -24,7 +25,8 @@ def article_rows(encodings: Iterable[str], operations: Iterable[str]) -> list[Ro
 
 
 def isa_sheet(rows: Sequence[Row], article: Sequence[Row]) -> list[Row]:
-    """A line for each stage and operation: the families' instructions side by side, and SPIR-V's and the article's."""
+    """Return a row for each stage and operation, with a column of instructions for each family, for SPIR-V and,
+    unless `article` is empty, for the article."""
     slots = {(r["encoding"], r["operation"]): r["instructions"] for r in article if not r["device"]}
     lines: dict[tuple, Row] = {}
     for row in rows:
@@ -44,7 +46,7 @@ def isa_sheet(rows: Sequence[Row], article: Sequence[Row]) -> list[Row]:
 
 
 def article_sheet(article: Sequence[Row]) -> list[Row]:
-    """A line for each operation: the article's slots, and its cycles by GPU."""
+    """Return a row for each operation in `article`: its slots, and its cycles in a column for each GPU."""
     lines: dict[tuple, Row] = {}
     for row in article:
         key = (row["encoding"], row["operation"])

@@ -23,7 +23,7 @@ class CostOptions(SourceOptions):
     """Options for what `cost` measures. Names are comma-separated."""
 
     encoding: Encodings = ("all",)
-    isa: Annotated[bool, Option("--isa", "Count the instructions that compilers make of the GLSL; needs no GPU.")] = (
+    isa: Annotated[bool, Option("--isa", "Count the instructions that compilers generate from GLSL; needs no GPU.")] = (
         False
     )
     time: Annotated[bool, Option("--time", "Measure nanoseconds per megapixel on the OpenGL device.")] = False
@@ -83,7 +83,7 @@ COLUMNS = (
     _count_column(
         "issue_slots",
         "How long the instructions keep the vector unit busy, in full-rate instructions: on GCN slow instructions "
-        "count 4; on RDNA a transcendental instruction issues once and runs in another unit. Empty for Intel and "
+        "count 4; on RDNA a transcendental instruction issues once and runs in a separate unit. Empty for Intel and "
         "NVIDIA.",
     ),
     _count_column(
@@ -118,7 +118,7 @@ COLUMNS = (
     ),
     _count_column(
         "waiting",
-        "Waits and hints about order; NVIDIA: without the padding after a kernel's end.",
+        "Waits and scheduling hints; NVIDIA: without the padding after a kernel's end.",
         10,
     ),
     _count_column("control_flow", "Jumps and the ends of branches and programs. Radeon: in `scalar`.", 18),
@@ -126,24 +126,24 @@ COLUMNS = (
         "other_alu", "All other arithmetic, moves, compares and selections; also interpolation. Radeon: empty.", 19
     ),
     _count_column("packed", "Radeon: the part of full_rate that works on two 16-bit numbers at once.", 20),
-    _count_column("branches", "Conditional jumps, more than the empty kernel's. Both sides of a branch count.", 12),
-    _count_column("loops", "Jumps back, more than the empty kernel's. A loop's body counts once."),
+    _count_column("branches", "Conditional jumps, minus the empty kernel's. Both sides of a branch count.", 12),
+    _count_column("loops", "Backward jumps, minus the empty kernel's. The body of a loop counts once."),
     _count_column("looped", "Instructions in loops, which run again in each iteration.", 21),
     _count_column(
         "spirv_instructions",
-        "SPIR-V instructions after spirv-opt, with loops unrolled: portable, count vectors, and depend on the "
-        "spelling. Empty if a loop remains.",
+        "SPIR-V instructions after spirv-opt, with loops unrolled. The count is portable; it counts an operation on a "
+        "vector once, and depends on how the code is written. Empty if a loop remains.",
     ),
     _count_column(
         "vgprs",
-        "Vector registers, more than the empty kernel's; a driver allots 4, 8 or more at once. NVIDIA: all registers.",
+        "Vector registers, minus the empty kernel's; a driver allots 4, 8 or more at once. NVIDIA: all registers.",
         16,
     ),
-    _count_column("sgprs", "Scalar registers, more than the empty kernel's.", 8),
+    _count_column("sgprs", "Scalar registers, minus the empty kernel's.", 8),
     _count_column(
-        "spills", "Registers spilled to memory, or Intel's messages that do so, more than the empty kernel's.", 9
+        "spills", "Registers spilled to memory, or Intel's messages that spill, minus the empty kernel's.", 9
     ),
-    _count_column("code_bytes", "Bytes of code, more than the empty kernel's.", 7),
+    _count_column("code_bytes", "Bytes of code, minus the empty kernel's.", 7),
     _count_column(
         "stall_cycles",
         "NVIDIA: cycles that a warp waits after its instructions, as set by the compiler and added up along the "
@@ -163,7 +163,7 @@ COLUMNS = (
         "kernel_waves",
         "How many waves of 64 lanes of the whole kernel fit on a Radeon's SIMD, by its vector registers. Intel: "
         "threads of an execution unit, each with its own registers. NVIDIA: warps of 32 lanes in a quarter of a "
-        "multiprocessor. More of them hide more latency.",
+        "multiprocessor. More waves hide more latency.",
         HOW,
         drops=6,
     ),
@@ -189,14 +189,14 @@ COLUMNS = (
         "ns",
         "less",
     ),
-    Column("spread", "Width of the median's 95% interval.", TIME),
+    Column("spread", "Width of the 95% confidence interval of the median.", TIME),
     Column("turns", "How often the operation runs in the timed shader.", HOW),
     Column("size", "Width and height of the target in pixels.", HOW),
     Column("repeats", "Number of repetitions that the median is taken over.", HOW),
     Column("software", "Whether the OpenGL device is a software rasteriser.", HOW),
     Column("clock", "Clock that measured the time.", HOW, drops=15),
     shared.DEVICE,
-    Column("driver", "The compiler of the counts.", HOW, drops=1),
+    Column("driver", "The compiler whose instructions were counted.", HOW, drops=1),
     Column("compiler", "The compiler from GLSL to SPIR-V.", HOW, drops=1),
     shared.SKIPPED,
 )
@@ -204,11 +204,11 @@ ALSO = (
     Column("what", "An encoding, or a storage's packing of bit fields into channels.", KEY),
     Column("article", "The article's instruction slots: ps_3_0, up to four numbers each, scale and bias included."),
     Column("spirv", "SPIR-V instructions after spirv-opt."),
-    Column("polaris*", "Instructions that Mesa's RADV compiles it to, for that GPU family.", better="less"),
-    Column("vega*", "Instructions that Mesa's RADV compiles it to, for that GPU family.", better="less"),
-    Column("navi*", "Instructions that Mesa's RADV compiles it to, for that GPU family.", better="less"),
+    Column("polaris*", "Instructions that Mesa's RADV generates for that GPU family.", better="less"),
+    Column("vega*", "Instructions that Mesa's RADV generates for that GPU family.", better="less"),
+    Column("navi*", "Instructions that Mesa's RADV generates for that GPU family.", better="less"),
     *(
-        Column(name, f"Instructions that Mesa's {driver} compiles it to, for that GPU family.", better="less")
+        Column(name, f"Instructions that Mesa's {driver} generates for that GPU family.", better="less")
         for driver, names in (
             ("hasvk", ("hsw", "bdw")),
             ("anv", ("skl", "tgl", "adl", "dg2")),
@@ -218,7 +218,7 @@ ALSO = (
     *(
         Column(
             name,
-            "Instructions that NVIDIA's NVRTC compiles it to, for that GPU family, in a compute shader.",
+            "Instructions that NVIDIA's NVRTC generates for that GPU family, in a compute shader.",
             better="less",
         )
         for name in CHOICES["nvidia"]
@@ -251,8 +251,8 @@ TABLE = Table(
         title="Encoding cost",
         short="Cost",
         view=View.CODECS,
-        intro="The instructions that a current compiler makes of each encoder and decoder, and whether they are "
-        "worth it.",
+        intro="How many instructions does a current compiler generate for each encoder and decoder, and are they "
+        "worth it?",
         method="A kernel with the encoding's own GLSL is compiled by Mesa's drivers, minus an empty kernel that "
         "moves the same numbers, so that doing nothing costs exactly 0. The GPUs are not needed. Counts hold "
         "for one version of Mesa.",

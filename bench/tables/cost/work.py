@@ -39,7 +39,7 @@ MOST_LISTED = 5
 
 
 def measures(options: CostOptions) -> list[str]:
-    """The measures asked for by name, or all of them."""
+    """Return the names of the requested measures; all of MEASURES if no measure is requested."""
     asked = [name for name in MEASURES if getattr(options, name)]
     return asked or list(MEASURES)
 
@@ -50,7 +50,7 @@ def packings(names: Names) -> list[Packing]:
     known = {**PACKINGS, **{word: packings_of(storage) for word, storage in storages.items() if storage}}
     if few := next((word for word, several in known.items() if not several), None):
         raise UsageError(
-            f"--storage {few}: a normal's code has two or three numbers; use a storage of two or more channels"
+            f"--storage {few}: a normal's code has two or three numbers; use a storage with two or more channels"
         )
     chosen = choose("storage", storages, known)
     return list(dict.fromkeys(packing for several in chosen for packing in several))
@@ -85,7 +85,7 @@ class Costing:
 
     @cached_property
     def texts(self) -> dict[str, str]:
-        """The kernels that rows were counted in, by the rows' names; once they are counted."""
+        """The disassemblies in which rows were counted, by the rows' names; to be read only after the count."""
         return {TABLE.name_of(row): text for row, text in self.listed if text}
 
 
@@ -167,7 +167,7 @@ def _isa(asked: Costing) -> list[Row]:
 
 
 def _listings(asked: Costing, missing: list[str]) -> Iterator[tuple[Row, str]]:
-    """Rows with their disassembly; from the cache once they were measured."""
+    """Yield the rows of instruction counts with their disassembly; `missing` receives what this machine lacks."""
     return measure.isa_rows(asked.cases, asked.stages, asked.families, missing, measure.nobody)
 
 
@@ -198,7 +198,8 @@ def _lacking(done: Measured) -> list[str]:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    """Families side by side where there are several."""
+    """Yield a sheet of instructions for each stage, with families side by side if there are several, then the sheets
+    of times and of the article's figures, if any."""
     by_measure = {
         name: [r for r in done.rows if r["measure"] == name and r["operation"]] for name in (*MEASURES, "article")
     }
@@ -216,13 +217,15 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _texts(done: Measured) -> list[tuple[Row, str]]:
-    """The disassembly of the rows, from the cache where they were measured before."""
+    """Return the rows of instruction counts with their disassembly, from the cache if the rows were measured before;
+    empty if instructions were not requested."""
     asked = next((step.case.asked for step in done.steps if step.case.name == "isa"), None)
     return [] if not asked else asked.listed or list(_listings(asked, []))
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a sentence with the instructions on one family of the cheapest encodings and of the most expensive."""
+    """Yield a sentence with the instructions on one family of the cheapest encodings and of the most expensive;
+    nothing if no encoding has several operations."""
     listed = [row for row in rows if row["measure"] == "isa" and row["encoding"] and row["instructions"] is not None]
     family = next((row["family"] for row in sorted(listed, key=lambda row: row["family"] != families.USUAL)), None)
     counts: dict[str, dict[str, int]] = {}
@@ -237,7 +240,8 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield the families next to each other, with one sheet for each vendor."""
+    """Yield a sheet of instructions for each GPU vendor, with its families side by side: the encodings at the first
+    stage of the rows, with the article's figures."""
     first = next((row for row in rows if row["stage"]), None)
     chosen = [row for row in rows if first and row["stage"] == first["stage"] and row["encoding"]]
     article = sheets.article_rows(dict.fromkeys(row["encoding"] for row in chosen), measure.OPERATIONS)
@@ -245,7 +249,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         part = [row for row in chosen if _vendor(row) == vendor]
         drivers = ", ".join(dict.fromkeys(row["driver"] for row in part if row["driver"]))
         title = f"instructions, {', '.join(filter(None, (vendor, part[0]['stage'], drivers)))}"
-        title += "; the article's are of ps_3_0"
+        title += "; the article's figures are for ps_3_0"
         yield Sheet(title, sheets.isa_sheet(part, article))
 
 
@@ -261,13 +265,13 @@ def _write(done: Measured, _: Tick) -> None:
 
 
 def _front_charts(run: Any) -> Iterator[Chart]:
-    """Draw instructions against each error of a run."""
+    """Yield a chart of instructions against error for each of the run's fronts."""
     for index, front in enumerate(run.fronts):
         yield front_chart(f"cost-{index}", front.label, front.panels)
 
 
 def _listing(step: Step, row: Row) -> str | None:
-    """Return the kernel in which a row was counted; None if no compiler made a kernel for the row."""
+    """Return the disassembly in which a row was counted; None if no compiler made a kernel for the row."""
     return step.case.asked.texts.get(TABLE.name_of(row))
 
 
@@ -287,7 +291,7 @@ def write_sources(folder: Path, encodings: Iterable[Encoding]) -> None:
 
 
 def _missing() -> str:
-    """Why `run` leaves the table out on this machine; empty where it does not."""
+    """Return why `run` leaves the table out on this machine; empty if it does not."""
     return spirv.NO_COMPILER if spirv.version(spirv.COMPILER) is None else isa.missing()
 
 

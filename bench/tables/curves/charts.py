@@ -10,17 +10,18 @@ from ..table import Row
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """The largest distance that a viewer sees over the bits, a line for each curve, where there are several bits."""
+    """Yield the chart of the largest error on the sRGB curve over the bits, a line for each curve; nothing unless
+    rows have several numbers of bits."""
     usable = [row for row in one_backend(having(rows, "bits", "display_max")) if row["display_max"] > 0]
     if len({row["bits"] for row in usable}) > 1:
         yield curves_chart(sorted(usable, key=lambda row: row["bits"]))
 
 
 def curves_chart(rows: Sequence[Row]) -> Chart:
-    """The largest distance on the sRGB curve over the bits.
+    """Return the chart of the largest error on the sRGB curve over the bits.
 
     Args:
-        rows: of the curves table, one back end: encoding, rounding, range, bits, display_max.
+        rows: rows of the curves table for one backend: encoding, rounding, range, bits, display_max.
     """
     points = [
         {"line": _called(row), "curve": _curve(row), "how": row["rounding"], "x": row["bits"], "y": row["display_max"]}
@@ -59,5 +60,5 @@ def _curve(row: Row) -> str:
 
 
 def _called(row: Row) -> str:
-    """A curve, and how it is rounded where that is not to the nearest."""
+    """Return the name of a row's curve, with the rounding unless it is to the nearest."""
     return _curve(row) + ("" if row["rounding"] == "nearest" else f", {row['rounding']}")

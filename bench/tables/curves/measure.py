@@ -109,7 +109,10 @@ def _figures(case: CurveCase, trip: Trip) -> Row:
 
 
 def _display_columns(case: CurveCase, trip: Trip, shown: np.ndarray) -> Row:
-    """Return the errors of colours on the sRGB curve; `shown` are values on that curve."""
+    """Return `display_mean` and `display_max`: the errors of colours on the sRGB curve, in steps of 1/255.
+
+    Args:
+        shown: values on that curve, 0 to 1."""
     largest = case.codec.range
     x = np.asarray(from_srgb(shown.astype(np.float32))) * np.float32(largest)
     back = _through(case, trip, x.astype(np.float32)) / np.float32(largest)
@@ -118,7 +121,7 @@ def _display_columns(case: CurveCase, trip: Trip, shown: np.ndarray) -> Row:
 
 
 def _through(case: CurveCase, trip: Trip, x: np.ndarray, is_still: bool = False) -> np.ndarray:
-    """Quantities (float32, any number) through a codec, dithered where that is asked for unless `is_still`."""
+    """Return float32 quantities after a codec's round trip, dithered if the codec is and `is_still` is false."""
     noise = np.zeros_like(x)
     if case.codec.is_dithered and not is_still:
         tile = Dither((case.codec.step,), 0).added[..., 0].ravel()
@@ -128,7 +131,8 @@ def _through(case: CurveCase, trip: Trip, x: np.ndarray, is_still: bool = False)
 
 
 def _least(case: CurveCase, trip: Trip, zero: np.float32) -> float | None:
-    """The smallest quantity that is told from 0, to a thousandth; None where the range is not."""
+    """Return the smallest quantity in the codec's range that does not decode to `zero`, the decoded 0, accurate to a
+    thousandth; None if every quantity does."""
     low, high = LEAST * case.codec.range, case.codec.range
     for _ in range(2):
         tried = np.geomspace(low, high, WIDTH * 4).astype(np.float32)

@@ -30,7 +30,7 @@ class CurvesOptions(SourceOptions):
         Option("--range", "Largest values to store, comma-separated. Default: each curve's usual range."),
     ] = None
     count: Annotated[
-        int, Option("--count", "Number of values, spread at random in equal steps from 0 to the range.")
+        int, Option("--count", "Number of values: one at random in each of as many equal steps from 0 to the range.")
     ] = 2**16
     seed: Seed = 0
 

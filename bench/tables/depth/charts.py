@@ -11,17 +11,18 @@ from ..table import Row
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """The worst position error over the distance."""
+    """Yield the chart of the largest position error over the distance; nothing if no row has figures."""
     usable = one_backend(having(rows, "distance", "error_max", "near", "far", "fov"))
     if usable:
         yield depth_chart(usable)
 
 
 def depth_chart(rows: Sequence[Row]) -> Chart:
-    """The worst position error over the distance, a line for each depth code in its storage, a panel for each range.
+    """Return the chart of the largest position error over the distance, with a line for each depth encoding in its
+    storage and a panel for each range of near and far.
 
     Args:
-        rows: of depth codes, whose distances are numbers.
+        rows: rows of depth encodings, whose distances are numbers.
     """
     points = [
         {name: row[name] for name in ("depth", "storage", "rounding", "rebuilt")}
@@ -68,7 +69,7 @@ def _line_name(row: Row, rows: Sequence[Row]) -> str:
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:
-    """Return which line is the best and which the worst at the greatest distance."""
+    """Return a sentence with the best and the worst line at the greatest distance; "No error" without points."""
     if not points:
         return "No error"
     farthest = max(point["x"] for point in points)

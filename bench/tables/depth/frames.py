@@ -41,7 +41,8 @@ class DepthFrame:
 
 @lru_cache(maxsize=4)
 def seen(frame: DepthImage, camera: Camera) -> DepthFrame:
-    """Return the points of a frame to measure."""
+    """Return a frame's points between near and far, the number of background pixels, and the interval between
+    measured pixels, which keeps the points within MOST_PIXELS."""
     surface = frame.surface(camera)
     index = np.flatnonzero(surface)
     every = max(1, -(-len(index) // MOST_PIXELS))
@@ -73,23 +74,24 @@ def _read(word: Word, reading: DepthReading) -> Pixels:
 
 
 def _checked(words: Names, options: DepthOptions) -> DepthOptions:
-    """Return the options with the known spelling of `depths_are`. Raises UsageError."""
+    """Return the options with the known spelling of `depths_are`. Raises UsageError if no file is named, two files
+    share a name, or an option does not suit depth images."""
     names = [Path(str(word)).name for word in words]
     if not words:
         raise UsageError("--depths: no file named; name at least one, such as depth.exr")
     if twice := next((name for name in names if names.count(name) > 1), None):
-        raise UsageError(f"--depths: two files are called {twice}, which rows could not tell apart; rename one")
+        raise UsageError(f"--depths: two files are called {twice}, so their rows would have the same key; rename one")
     if options.distance is not None:
         raise UsageError("--distance applies only to generated points; it cannot be used with --depths")
     code = choose_one("code of --depths-are", options.depths_are, (VIEW, *CODES))
     if not LEAST_UNIT <= abs(options.depth_unit) <= MOST_UNIT:
         raise UsageError(
             f"--depth-unit {options.depth_unit:g}: out of range; use {LEAST_UNIT:g} to {MOST_UNIT:g}, or "
-            "the same below 0"
+            "the negative of such a value"
         )
     if code != VIEW and options.depth_unit != DepthOptions.depth_unit:
         raise UsageError(
-            f"--depth-unit cannot be used with --depths-are {code}, whose unit is that of --near and --far"
+            f"--depth-unit cannot be used with --depths-are {code}, which uses the unit of --near and --far"
         )
     if options.count != DepthOptions.count:
         tell("--count has no effect on depth images: every pixel between near and far is measured")

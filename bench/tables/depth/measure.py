@@ -33,8 +33,8 @@ BLOCK = 2**14
 
 
 def points(camera: Camera, distance: float | None, count: int, seed: int) -> Points:
-    """Points anywhere on the screen, their depths spread evenly over a distance's band, or for None over the whole
-    range; the ends of it are among them, and so are the screen's corners."""
+    """Return points anywhere on the screen, their depths spread evenly over the band around a distance, or over the
+    camera's whole range if the distance is None. Both ends and two corners of the screen are included."""
     low, high = (camera.near, camera.far) if distance is None else (distance * (1 - BAND), distance * (1 + BAND))
     low, high = np.float32(max(low, camera.near)), np.float32(min(high, camera.far))
     random = np.random.default_rng([seed, 0 if distance is None else 1])
@@ -48,7 +48,7 @@ def points(camera: Camera, distance: float | None, count: int, seed: int) -> Poi
 
 @lru_cache(maxsize=4)
 def all_points(camera: Camera, distances: tuple[float | None, ...], count: int, seed: int) -> Points:
-    """The points of every distance, one after the other."""
+    """Return the points of `points` for each distance, one distance after the other."""
     parts = [points(camera, distance, count, seed) for distance in distances]
     return Points(np.concatenate([p.places for p in parts]), np.concatenate([p.depths for p in parts]))
 
@@ -92,18 +92,19 @@ class DepthCase:
 
 
 def ways(codec: DepthCodec) -> list[str]:
-    """Return the ways to rebuild positions from a codec's numbers."""
+    """Return the names of the ways in which positions can be rebuilt from a codec's numbers."""
     return [name for name, way in REBUILDS.items() if codec.is_window or not way.by_projection]
 
 
 def usual_ways(codec: DepthCodec) -> list[str]:
-    """Return the ways in which renderers rebuild positions from such numbers: by the projection if the number is a
-    depth buffer's."""
+    """Return the names of the ways in which renderers rebuild positions from a codec's numbers: by the projection if
+    the codec stores what a depth buffer does, otherwise directly."""
     return [name for name, way in REBUILDS.items() if way.by_projection == codec.is_window]
 
 
 def _in_blocks(function: Callable[..., Sequence[Any]], *arrays: np.ndarray) -> list[np.ndarray]:
-    """Apply a function to arrays, BLOCK rows at a time, because JAX compiles every operation for every shape."""
+    """Return the arrays that a function gives for the rows of arrays. It is called with BLOCK rows at a time, because
+    JAX compiles every operation for every shape."""
     count, blocks = len(arrays[0]), []
     for start in range(0, count, BLOCK):
         parts = [array[start : start + BLOCK] for array in arrays]
@@ -168,8 +169,8 @@ class Measured:
 
 @lru_cache(maxsize=1)
 def _limits(codec: DepthCodec, camera: Camera, on: Points) -> tuple[np.ndarray, np.ndarray]:
-    """Return how far positions may move, without and with float32 arithmetic; the same for every backend. NaN for an
-    encoding that exists only in shaders: the exact maps are in JAX."""
+    """Return how far each position may move, without and with float32 arithmetic; the same for every backend. NaN for
+    an encoding that exists only in shaders: the exact maps are in JAX."""
     if codec.storage.code:
         unknown = np.full(len(on.depths), np.nan)
         return unknown, unknown
@@ -184,10 +185,11 @@ def _limits(codec: DepthCodec, camera: Camera, on: Points) -> tuple[np.ndarray, 
 
 
 def through(case: DepthCase, on: Points) -> Measured:
-    """Points through a case's codec. Every other normal faces away, where the encoding keeps that.
+    """Return the errors and the rebuilt positions of points after a case's round trip. Every other normal faces away
+    from the viewer, if the encoding stores that.
 
     Raises:
-        NoDeviceError, ShaderError, FormatError: the device cannot; UNMEASURABLE.
+        NoDeviceError, ShaderError, FormatError: the device does not support the codec.
     """
     away = (np.arange(len(on.depths)) % 2 == 1) & case.codec.encoding.signed
     rebuilt, how = BACKENDS[case.backend](case, np.where(away, -on.depths, on.depths), on)
@@ -201,7 +203,8 @@ def through(case: DepthCase, on: Points) -> Measured:
 
 
 def measure(case: DepthCase) -> list[Row]:
-    """A case's rows; those that the device cannot give have its reason in `skipped` and no figures."""
+    """Return a row for each distance of a case; if the device cannot measure the case, its rows have the reason in
+    `skipped` and no figures."""
     camera, codec = case.camera, case.codec
     shared = TABLE.empty() | {
         "depth": codec.encoding.name,
@@ -257,5 +260,5 @@ def _figures(case: DepthCase, measured: Measured, part: slice) -> Row:
 
 
 def _known(figure: float) -> float | None:
-    """A figure; None where it is not known."""
+    """Return a figure as a float; None if it is NaN."""
     return None if np.isnan(figure) else float(figure)

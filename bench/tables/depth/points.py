@@ -30,6 +30,6 @@ class Points:
         return self.rays(camera) * self.depths[:, None].astype(np.float64)
 
     def rays(self, camera: Camera) -> np.ndarray:
-        """The eye's rays at depth 1, float64 of shape (count, 3)."""
+        """Return the rays from the eye through the points, at depth 1: float64 of shape (count, 3)."""
         straight = np.full((len(self.places), 1), -1.0)
         return np.concatenate([self.places.astype(np.float64) * camera.rays, straight], axis=1)

@@ -40,8 +40,7 @@ class DepthOptions(SourceOptions):
         float | None,
         Option(
             "--fov",
-            "Vertical field of view in degrees. Default: 60 (16:9 image); with --depths none, points are on the view "
-            "axis.",
+            "Vertical field of view in degrees. Default: 60 (16:9 image); with --depths, points are on the view axis.",
         ),
     ] = None
     depths: Annotated[
@@ -60,7 +59,7 @@ class DepthOptions(SourceOptions):
         ),
     ] = "view"
     depth_unit: Annotated[
-        float, Option("--depth-unit", "Depth images: length of 1 in the unit of --near; 0.001 for millimetres.")
+        float, Option("--depth-unit", "Depth images: their unit in units of --near, such as 0.001 for millimetres.")
     ] = 1.0
     backend: Backends = ("jax", "glsl")
     count: Annotated[int, Option("--count", "Number of points at each distance.")] = 2**14
@@ -108,7 +107,11 @@ COLUMNS = (
         "Mean error of the depth along the view axis, as a fraction of the depth.",
         better="less",
     ),
-    Column("relative_max", "The largest such error.", better="less"),
+    Column(
+        "relative_max",
+        "Largest error of the depth along the view axis, as a fraction of the depth.",
+        better="less",
+    ),
     Column(
         "error_mean", "Mean distance between true and rebuilt position, in the unit of near and far.", better="less"
     ),
@@ -151,7 +154,7 @@ TABLE = Table(
         short="Depth",
         intro="A view-space position is rebuilt from the stored depth: how large is its error at each distance?",
         method="Points are anywhere on the screen: at each distance, within a sixteenth of it, and spread evenly "
-        "over the range. Errors are distances in the unit of the planes. z/w and reversed z/w go through real "
-        "depth buffers.",
+        "over the range. Errors are distances in the unit of the near and far planes. z/w and reversed z/w go "
+        "through real depth buffers.",
     ),
 )

@@ -58,7 +58,7 @@ USUAL_FOV = 60.0
 
 
 def cases(options: DepthOptions) -> list[measure.DepthCase]:
-    """Return one case for each encoding, way to the position, near and far plane, and backend.
+    """Return one case for each backend, encoding with a way to rebuild positions, and camera or depth image.
 
     Raises:
         UsageError: unknown names, or numbers out of range.
@@ -90,7 +90,7 @@ def cases(options: DepthOptions) -> list[measure.DepthCase]:
 
 
 def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
-    """Codecs with the ways to their positions; those that cannot be are named on standard error."""
+    """Return pairs of a codec and a way to rebuild positions; impossible pairs are named on standard error."""
     pairs: list[tuple[DepthCodec, str]] = []
     complaints: list[str] = []
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
@@ -119,7 +119,8 @@ def _ranges(options: DepthOptions) -> list[tuple[float, float]]:
 
 
 def _distances(options: DepthOptions, camera: Camera) -> tuple[float | None, ...]:
-    """The distances asked for, or every power of ten; and None, the whole range."""
+    """Return the requested distances, or every power of ten in the camera's range; then None, for the whole range.
+    Raises UsageError for a distance outside the range."""
     if options.distance is None:
         powers = range(math.ceil(math.log10(camera.near) - 1e-9), math.floor(math.log10(camera.far) + 1e-9) + 1)
         return (*(10.0**power for power in powers), None)
@@ -158,14 +159,14 @@ def _key(case: measure.DepthCase) -> Row:
 
 
 def _write(done: Measured, tick: Tick) -> None:
-    """The pictures, where they were asked for."""
+    """Write the images of all cases, if a folder for images was given."""
     chosen, folder = [step.case for step in done.steps], done.outputs.images
     if folder:
         _write_pictures(_for_drawing(chosen), _pictured(folder, chosen), folder, tick)
 
 
 def _plotted(done: Measured) -> list[Chart]:
-    """The chart of many distances, close to each other."""
+    """Return the chart of errors at many distances, in a list; empty if no case of generated points has figures."""
     chosen = [step.case for step in done.steps if not step.case.frame]
     rows = [row for case in _for_drawing(chosen) for row in _curve(case)]
     return [depth_chart(usable)] if (usable := having(rows, "distance", "error_max")) else []
@@ -178,7 +179,8 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Name the codes with the smallest error relative to the distance, of depth buffers and of other targets."""
+    """Yield for each range of near and far up to two sentences with the smallest error relative to the distance: for
+    depth buffers and for other targets."""
     ranges = dict.fromkeys((row["near"], row["far"]) for row in rows)
     for near, far in ranges:
         worst: dict[tuple[Any, ...], Row] = {}
@@ -212,8 +214,8 @@ def _is_at(row: Row, near: float, far: float) -> bool:
 
 
 def _beside(rows: Sequence[Row]) -> list[Row]:
-    """A line for each code, camera, way and back end: the worst error at each distance, and of points spread evenly the
-    worst and the mean."""
+    """Return a row for each codec, camera, way to rebuild positions and backend: the largest error at each distance,
+    and the largest and the mean error of points spread evenly over the range."""
     lines: dict[tuple[object, ...], Row] = {}
     names = ("depth", "storage", "rounding", "bits", "rebuilt", "backend", "near", "far", "fov")
     for row in rows:
@@ -230,7 +232,7 @@ def _beside(rows: Sequence[Row]) -> list[Row]:
 
 
 def _of_frames(rows: Sequence[Row]) -> list[Row]:
-    """A line for each row of a frame."""
+    """Return the rows of depth images with only the columns to show."""
     names = ("depth", "storage", "rounding", "bits", "rebuilt", "backend", "depths", "near", "far", "fov")
     figures = ("relative_mean", "relative_max", "error_mean", "error_max", "signs_lost")
     how = ("count", "background", "not_finite", "rounded_by", "device")
@@ -238,7 +240,7 @@ def _of_frames(rows: Sequence[Row]) -> list[Row]:
 
 
 def _said(value: object) -> object:
-    """Return a requested value as it was typed, without the additional digits of a figure."""
+    """Return a float as text of up to six digits, such as `0.1`; any other value is unchanged."""
     return f"{value:g}" if isinstance(value, float) else value
 
 
@@ -249,7 +251,7 @@ def _for_drawing(cases: Iterable[measure.DepthCase]) -> list[measure.DepthCase]:
 
 
 def _curve(case: measure.DepthCase) -> list[Row]:
-    """A case's rows at many distances, close to each other; by JAX where the device cannot."""
+    """Return the rows of a case at many distances, close to each other, measured by JAX if the device cannot."""
     distances = np.geomspace(case.camera.near, case.camera.far, CURVE).tolist()
     fine = replace(case, distances=tuple(distances), count=CURVE_COUNT)
     rows = measure.measure(fine)
@@ -281,7 +283,7 @@ class Surface:
         return (self.depths >= np.float32(camera.near)) & (self.depths <= np.float32(camera.far))
 
     def points(self, camera: Camera) -> measure.Points:
-        """Return the centres of the pixels at their visible depths; pixels outside the range are at its far end."""
+        """Return the centres of all pixels at their visible depths; at the far end if not in the camera's range."""
         height, width = self.depths.shape
         x, y = (np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2
         places = np.stack(np.meshgrid(x, y), axis=-1).astype(np.float32).reshape(-1, 2)
@@ -291,7 +293,7 @@ class Surface:
 
 @cache
 def _seen(device: Device) -> Surface:
-    """The pictures' scene, rendered once: it is asked for before anything is measured, and again for the pictures."""
+    """Return the surface of the images' scene, rendered once for the checks and for the images."""
     plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     scene = SCENE.make(Setting())
     with rendering(device, PIPELINES["prepass"], scene, plan) as drawing:
@@ -300,7 +302,7 @@ def _seen(device: Device) -> Surface:
 
 
 def _pictured(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface | None:
-    """Return the scene that the images show, or None if each case has a frame of its own. Raises as `_scene`."""
+    """Return the scene that the images show; None if cases have frames of their own. Raises as `_scene` does."""
     if not any(case.frame for case in cases):
         return _scene(folder, cases)
     check_folder(folder)
@@ -338,7 +340,7 @@ def _scene(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface:
 def _write_pictures(
     cases: Iterable[measure.DepthCase], pictured: Surface | None, folder: Path, tick: Callable[[str], None]
 ) -> None:
-    """Write two pictures of each case."""
+    """Write two images of each case: the position errors in colour, and the rebuilt surface, shaded."""
     for case in cases:
         scene = _seen_by(case, pictured)
         camera = replace(case.camera, fov=scene.fov, aspect=scene.aspect)

@@ -21,12 +21,12 @@ def device_of(row: Row) -> str:
 
 
 def codec_of(row: Row) -> tuple[Any, ...]:
-    """A row's codec, with the target that it was rendered to."""
+    """Return the values that identify a row's codec: encoding, storage, rounding and render target."""
     return tuple(row[name] for name in CODEC)
 
 
 def differs(row: Row) -> bool:
-    """Whether any of a row's codes is not the run's."""
+    """Whether any of a row's codes differs from the run's."""
     return bool(row["one_step"] or row["further"])
 
 
@@ -44,12 +44,13 @@ def by_device(rows: Sequence[Row]) -> dict[str, list[Row]]:
 
 
 def many(count: int, what: str) -> str:
-    """A number of things."""
+    """Return a number with its noun, such as `3 codecs` or `1 codec`."""
     return f"{count} {what}" + ("" if count == 1 else "s")
 
 
 def sentences(rows: Sequence[Row]) -> list[str]:
-    """Return which devices agree in every code, then a sentence for each of the others, the worst first."""
+    """Return sentences: which devices agree with the run in every code, then one for each other device, the worst
+    first, and last a warning if the codes come from several versions of the program."""
     parts = by_device(rows)
     off = {name: part for name, part in parts.items() if any(map(differs, part))}
     whole = [name for name in parts if name not in off]
@@ -73,12 +74,12 @@ def _agreement_sentence(names: Sequence[str], rows: Sequence[Row]) -> str:
 
 
 def _listed(names: Sequence[str]) -> str:
-    """Names that have commas themselves."""
+    """Return names in one text, with semicolons, because names contain commas, and "and" before the last."""
     return "; ".join(names[:-1]) + (" and " if len(names) > 1 else "") + names[-1]
 
 
 def difference(rows: Sequence[Row]) -> str:
-    """Return how a device's codes differ from the run's, as a sentence without its subject."""
+    """Return how a device's codes differ from the run's, or that they agree, as a sentence without its subject."""
     off = [row for row in rows if differs(row)]
     if not off:
         return f"agrees with the run in every code of {many(len(rows), 'codec')}"
@@ -88,7 +89,7 @@ def difference(rows: Sequence[Row]) -> str:
 
 
 def share_of(row: Row) -> str:
-    """The share of a row's codes that differ, so that it never reads as none."""
+    """Return the percentage of a row's codes that differ, as text; "less than 0.001%" for every smaller share."""
     share = SAME - row["same_percent"]
     return f"{share:.3g}%" if share >= 0.001 else "less than 0.001%"
 
@@ -98,9 +99,10 @@ def _distance_text(row: Row) -> str:
 
 
 def pivot(rows: Sequence[Row]) -> list[Row]:
-    """A row for each codec that a device differs in, with a column for each such device: the share that differs.
+    """Return a row for each codec in which a device differs, with a column for each such device: the percentage of
+    its codes that differ.
 
-    Rounding and target are columns where they tell codecs apart.
+    Rounding and target are columns only if they distinguish codecs.
     """
     shown = [row for row in rows if differs(row)]
     keys = [name for name in CODEC if name in CODEC[:2] or len({row[name] for row in rows}) > 1]
@@ -112,7 +114,7 @@ def pivot(rows: Sequence[Row]) -> list[Row]:
 
 
 def sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield the sheets that people look at first."""
+    """Yield the sheet of codes that differ from the run's, if any, and the sheet of devices; nothing without rows."""
     if not rows:
         return
     lines = tuple(sentences(rows))
@@ -123,7 +125,7 @@ def sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def overview(rows: Sequence[Row]) -> list[Row]:
-    """A row for each device: in how many codecs it agrees, and where it differs most."""
+    """Return a row for each device: in how many codecs it agrees with the run, and where it differs most."""
     return [_overview_row(part) for part in by_device(rows).values()]
 
 
@@ -139,7 +141,7 @@ def _overview_row(rows: Sequence[Row]) -> Row:
 
 
 def time_of(row: Row) -> float | None:
-    """Milliseconds to encode and decode; None where one of them was not measured."""
+    """Return the milliseconds to encode and decode together; None if either was not measured."""
     encode, decode = row["encode_ms"], row["decode_ms"]
     return None if encode is None or decode is None else encode + decode
 

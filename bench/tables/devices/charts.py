@@ -15,7 +15,7 @@ MOST_DRAWN = 60
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """A dot for each codec and device; none where no row has a time."""
+    """Yield the chart of times, with a dot for each codec and device; nothing if no row has a time."""
     drawn = timed(rows)
     if drawn:
         devices = Names("device", distinct(drawn, "device"))

@@ -51,7 +51,8 @@ def _plain_line(text: str) -> str:
 
 
 def _utc_time(text: str) -> str:
-    """Return a time as UTC, to the second, so that the order of texts is that of times."""
+    """Return a time as UTC text, to the second, so that the order of texts is that of times. Raises ValueError if it
+    is not an ISO 8601 time, or is in the future."""
     try:
         moment = datetime.fromisoformat(text)
         moment = moment.replace(tzinfo=moment.tzinfo or UTC).astimezone(UTC)
@@ -65,7 +66,7 @@ def _utc_time(text: str) -> str:
 
 def _checked_fact(value: Any) -> Any:
     if isinstance(value, str) and len(value) > TEXT:
-        raise ValueError(f"is longer than {TEXT} letters")
+        raise ValueError(f"is longer than {TEXT} characters")
     if isinstance(value, str):
         return _plain_line(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -79,7 +80,7 @@ def _checked_fact(value: Any) -> Any:
 def _checked_facts(facts: dict[str, Any]) -> dict[str, Any]:
     plain = {_plain_line(name): value for name, value in facts.items()}
     if len(plain) < len(facts) or "" in plain:
-        raise ValueError("has two names that look the same, or one without letters")
+        raise ValueError("has two names that look the same, or a name without visible characters")
     return plain
 
 
@@ -119,7 +120,7 @@ class CodecRow(BaseModel):
 
     @model_validator(mode="after")
     def adds_up(self) -> CodecRow:
-        """Raise ValueError if the counts do not add up to the number of normals."""
+        """Return the row unchanged. Raises ValueError if the counts do not add up to the number of normals."""
         total = self.equal + self.one_step + self.further
         if total != self.normals:
             raise ValueError(f"equal, one_step and further add up to {total}; normals is {self.normals}")
@@ -155,20 +156,20 @@ class DeviceFile(BaseModel):
 
     @model_validator(mode="after")
     def has_each_codec_once(self) -> DeviceFile:
-        """Raise ValueError if two rows are of the same codec and target."""
+        """Return the file unchanged. Raises ValueError if two rows are of the same codec and target."""
         key, count = Counter(row.key for row in self.codecs).most_common(1)[0]
         if count > 1:
-            raise ValueError(f"codecs has {' '.join(key)} twice")
+            raise ValueError(f"codecs lists {' '.join(key)} twice")
         return self
 
     @cached_property
     def digest(self) -> str:
-        """A fingerprint of the file's contents."""
+        """A fingerprint of the file's contents: 16 hexadecimal digits."""
         return hashlib.sha256(self.model_dump_json().encode()).hexdigest()[:16]
 
     @property
     def identity(self) -> tuple[str, str]:
-        """A device and a browser: its GPU as the browser names it, and the browser's major version."""
+        """The GPU as the browser names it, and the browser's name with its major version."""
         return self.renderer, browser_name(self.browser)
 
 
@@ -181,10 +182,10 @@ class Read:
 
 
 def read_device_file(path: Path) -> Read:
-    """A device file, checked.
+    """Return the contents of a device file, checked, with its path.
 
     Raises:
-        UsageError: it cannot be read or is not one; the message names the file, and the place in it.
+        UsageError: it cannot be read or is not a device file; the message names the file, and the place in it.
     """
     try:
         return Read(path, _checked_file(_parsed(file_bytes(path, MOST_BYTES))))
@@ -193,10 +194,10 @@ def read_device_file(path: Path) -> Read:
 
 
 def file_of_rows(codecs: Sequence[Mapping[str, Any]], facts: Mapping[str, Any]) -> DeviceFile:
-    """The file that rows of a device came from, but that its browser has the short name alone.
+    """Return the device file that rows of a device came from, except that its browser has only the short name.
 
     Raises:
-        ValueError: no device file has such rows.
+        ValueError: the rows do not form a valid device file.
     """
     about = {name: codecs[0].get(name) or "" for name in ABOUT} if codecs else {}
     rows = [{**row, "equal": row["normals"] - row["one_step"] - row["further"]} for row in codecs]
@@ -225,7 +226,7 @@ def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _checked_file(content: Any) -> DeviceFile:
-    """Return the checked file. Raises ValueError if it is not a device file, or has another version."""
+    """Return JSON content as a checked device file. Raises ValueError if the content or the version is wrong."""
     if not isinstance(content, dict) or "normalbench_device" not in content:
         raise ValueError('not a device file; use one that "Save this device" saved in the live section of a page')
     version = content["normalbench_device"]
@@ -253,13 +254,13 @@ WRONG = {
     "finite_number": "is too large",
     "greater_than_equal": "is less than {ge}",
     "less_than_equal": "is more than {le}",
-    "string_too_long": "is longer than {max_length} letters",
-    "string_too_short": "has no letters",
+    "string_too_long": "is longer than {max_length} characters",
+    "string_too_short": "has no visible characters",
 }
 
 
 def _first_fault(error: ValidationError) -> str:
-    """The first that is wrong, and its place in the file."""
+    """Return the message for the first error of a validation: its place in the file, the value and what is wrong."""
     first = error.errors(include_url=False)[0]
     names = [f"row {part + 1}" if isinstance(part, int) else _short_text(part) for part in first["loc"] if part != KEY]
     where, context = ", ".join(names), first.get("ctx", {})
@@ -276,7 +277,7 @@ def _first_fault(error: ValidationError) -> str:
 
 
 def _short_text(value: Any) -> str:
-    """The beginning of a value's text; a number may have more digits than Python prints."""
+    """Return a value as text, shortened to SHOWN characters; "a number" if it has more digits than Python prints."""
     try:
         text = value if isinstance(value, str) else repr(value)
     except ValueError:

@@ -33,7 +33,8 @@ BROWSERS = (
 
 
 def device_name(renderer: str) -> str:
-    """A GPU's short name: `GeForce RTX 4090` of `ANGLE (NVIDIA, NVIDIA GeForce RTX 4090 Direct3D11 vs_5_0, D3D11)`."""
+    """Return a GPU's short name from its renderer's name: `GeForce RTX 4090` from `ANGLE (NVIDIA, NVIDIA GeForce RTX
+    4090 Direct3D11 vs_5_0, D3D11)`."""
     wrapped = ANGLE.fullmatch(renderer.strip())
     parts = _comma_parts(wrapped[1]) if wrapped else [renderer]
     name = parts[1] if len(parts) > 1 else parts[0]
@@ -61,7 +62,8 @@ def _comma_parts(text: str) -> list[str]:
 
 
 def browser_name(agent: str) -> str:
-    """A browser and its major version: `Firefox 153`."""
+    """Return a browser and its major version, such as `Firefox 153`, from its user agent; a shortened user agent if
+    the browser is not known."""
     for pattern, name in BROWSERS:
         if match := re.search(pattern, agent):
             return f"{name} {match[1][:6]}"

@@ -16,7 +16,7 @@ from .names import browser_name, told_apart
 from .table import CODEC, FACT
 
 MOST_FILES = 2048
-SAVED = 'the live section of a page saves one by "Save this device"'
+SAVED = 'to save one, use "Save this device" in the live section of a page'
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Device:
 
     @property
     def called(self) -> str:
-        """The device and its browser, as sentences call them."""
+        """The device and its browser as text, as sentences name them."""
         return called(self.name, self.browser)
 
     def key(self, row_of: str) -> Row:
@@ -43,7 +43,7 @@ class Device:
 
 
 def called(device: Any, browser: Any) -> str:
-    """A device and its browser."""
+    """Return a device's name and its browser's, with a comma between them."""
     return f"{device}, {browser}"
 
 
@@ -72,14 +72,15 @@ def _folder_files(folder: Path) -> list[Path]:
 
 
 def checked_number(paths: list[Path]) -> list[Path]:
-    """The paths. Raises UsageError where they are more than a page can show."""
+    """Return the paths unchanged. Raises UsageError if there are more than MOST_FILES."""
     if len(paths) > MOST_FILES:
         raise UsageError(f"--devices: {len(paths)} device files are too many; name at most {MOST_FILES}")
     return paths
 
 
 def devices(read_files: Iterable[Read]) -> list[Device]:
-    """The devices of files: of one GPU in one browser the newest file alone; the others are named on standard error."""
+    """Return the devices of files; of files from the same GPU and browser only the newest, and the others are named
+    on standard error."""
     newest: dict[tuple[str, str], Read] = {}
     for read in read_files:
         other = newest.setdefault(read.file.identity, read)
@@ -91,7 +92,8 @@ def devices(read_files: Iterable[Read]) -> list[Device]:
 
 
 def reads_of_rows(rows: Iterable[Row], path: Path) -> list[Read]:
-    """The devices of a run's rows; one whose rows no device file has is named on standard error."""
+    """Return the device files that a run's rows came from, with the path; a device whose rows form no valid file is
+    left out and named on standard error."""
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault((row.get("device"), row.get("renderer"), row.get("browser")), []).append(row)
@@ -100,7 +102,7 @@ def reads_of_rows(rows: Iterable[Row], path: Path) -> list[Read]:
         try:
             reads.append(Read(path, _file_of(part)))
         except (KeyError, TypeError, ValueError) as error:
-            tell(f"left out: {called(device, browser)} of {path}: {error}")
+            tell(f"left out: {called(device, browser)} in {path}: {error}")
     return reads
 
 
@@ -111,26 +113,26 @@ def _file_of(rows: Sequence[Row]) -> DeviceFile:
 
 
 def named(files: Sequence[DeviceFile]) -> list[Device]:
-    """Devices, each by a name that no other GPU has."""
+    """Return the device of each file, with a short name that no other GPU has."""
     names = told_apart(file.renderer for file in files)
     return [Device(names[file.renderer], file) for file in files]
 
 
 def steps_of(words: Names, is_of_facts: bool) -> list[Step]:
-    """A step for each device: its facts, or its codecs. Raises UsageError for a file that cannot be read or is not a
-    device's."""
+    """Return a step for each device in the files that words name: for its facts, or for its codecs. Raises UsageError
+    for a file that cannot be read or is not a device file."""
     reads = devices(read_device_file(path) for path in files_named(words))
     row_of = FACT if is_of_facts else CODEC
     return [Step(device.key(row_of), (device, row_of), device.called) for device in reads]
 
 
 def rows_of(device: Device, row_of: str) -> list[Row]:
-    """The rows of a device that are of codecs, or those that are of facts."""
+    """Return the rows of a device: of its facts if `row_of` is FACT, otherwise of its codecs."""
     return fact_rows(device) if row_of == FACT else codec_rows(device)
 
 
 def codec_rows(device: Device) -> list[Row]:
-    """A row for each codec."""
+    """Return a row of the devices table for each codec in a device's file."""
     return [_device_row(device, CODEC) | _codec_row(row) for row in device.file.codecs]
 
 
@@ -142,7 +144,7 @@ def _codec_row(row: CodecRow) -> Row:
 
 
 def fact_rows(device: Device) -> list[Row]:
-    """A row for each fact."""
+    """Return a row for each fact in a device's file: `value` as text, and `number` unless the value is text."""
     return [
         _device_row(device, FACT)
         | {"name": name, "value": str(value), "number": None if isinstance(value, str) else value}
@@ -157,7 +159,7 @@ def _device_row(device: Device, row_of: str) -> Row:
 
 
 def newest(rows: Sequence[Row], keys: Sequence[str]) -> list[Row]:
-    """Return the newest of the rows that share their keys: a run may hold an older file's rows as well."""
+    """Return the newest row for each combination of `keys`: a run may also hold rows of an older file."""
     latest: dict[tuple[Any, ...], Row] = {}
     for row in rows:
         key = tuple(row.get(name) for name in keys)

@@ -43,14 +43,14 @@ COLUMNS = (
         better="more",
     ),
     Column("one_step", "Codes with one number that is one step away from the run's code.", better="less"),
-    Column("further", "Codes that differ from the run's codes by more than that.", better="less"),
+    Column("further", "Codes that differ from the run's codes by more than one step.", better="less"),
     Column(
         "mean_deg",
         "Mean angle between the normal and the device's decode, encoded and stored on the device.",
         unit="degrees",
         better="less",
     ),
-    Column("max_deg", "The largest of those angles.", unit="degrees", better="less"),
+    Column("max_deg", "Largest angle between the normal and the device's decode.", unit="degrees", better="less"),
     Column("run_mean_deg", "Mean angle of the run's own codes, on the same normals.", unit="degrees", drops=7),
     Column(
         "encode_ms",
@@ -67,12 +67,12 @@ COLUMNS = (
     Column("normals", "How many normals the device encoded.", HOW, drops=10),
     Column("name", "The subject of the fact.", KEY, option="facts"),
     Column("value", "Result on the device, as text.", HOW, option="facts"),
-    Column("number", "The same as a number, if it is one, for gates and comparisons.", option="facts"),
+    Column("number", "`value` as a number, for gates and comparisons; empty if it is text.", option="facts"),
     Column("made", "When the device was saved, in UTC.", HOW, drops=5),
-    Column("program", "The version of normalbench that made the page.", HOW, drops=6),
+    Column("program", "The version of normalbench that generated the page.", HOW, drops=6),
     Column("sources", "The fingerprint of the run on the page.", HOW, drops=3),
-    Column("renderer", "The GPU as the browser calls it.", HOW, drops=1),
-    Column("vendor", "The vendor as the browser calls it.", HOW, drops=4),
+    Column("renderer", "The name of the GPU, as the browser reports it.", HOW, drops=1),
+    Column("vendor", "The vendor of the GPU, as the browser reports it.", HOW, drops=4),
 )
 
 TABLE = Table(

@@ -31,7 +31,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
-    """Devices whose codes differ from the run's by more than one step: no rounding explains that."""
+    """Yield the sentences on devices whose codes differ by more than one step, which rounding does not explain."""
     for sheet in agreement.sheets(_of_codecs(rows)):
         yield from (line for line in sheet.said if "more than one step" in line)
 

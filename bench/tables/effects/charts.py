@@ -23,7 +23,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
         for row in usable
         if row["normal_mean_deg"] > 0
     ]
-    tips = (("codec", "codec"), ("x", "normals (degrees)"), ("y", "the effect (dB)"), ("effect", "effect"))
+    tips = (("codec", "codec"), ("x", "normals (degrees)"), ("y", "effect (dB)"), ("effect", "effect"))
     if points:
         yield Chart(
             name="effects",

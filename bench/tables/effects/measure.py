@@ -115,7 +115,8 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
         return row | {"invalid": max(image["invalid"], int(lost))} | self._method(case.reference)
 
     def _method(self, case: EffectsCase) -> Row:
-        """Return how far the effect from exact normals is from ray casting; empty without an oracle or ray caster."""
+        """Return the columns on how far the effect from exact normals is from ray casting; empty without a ray
+        caster, or if the effect is not ambient occlusion."""
         if not self._rays or not isinstance(case.effect.effect, AmbientOcclusion):
             return {}
         if case not in self._methods:
@@ -133,7 +134,7 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
 
 
 def _effect_times(case: EffectsCase, rendered: Rendering, repeats: int) -> Row:
-    """Time the effect's passes, and the frame."""
+    """Return the milliseconds of each of the effect's passes, of all of them and of the frame, and the clock."""
     columns = time_columns(*rendered.timings(repeats))
     names = [f"ms_{stage.name}" for stage in case.effect.passes()]
     row: Row = {name: columns[name] for name in (*names, "ms_frame", "clock")}
@@ -179,7 +180,8 @@ def moved_percent(hits: np.ndarray, exact: np.ndarray) -> float | None:
 
 
 def _angles(drawn: Drawn, exact: Drawn) -> np.ndarray:
-    """Degrees between the normals of two frames, where both have one."""
+    """Return the degrees between the normals of two frames at the pixels where the exact frame has a normal, 180 for
+    a normal that is not a number; a single 0 if there are no such pixels."""
     normals, other = drawn.normals[exact.covered], exact.normals[exact.covered]
     there = np.any(other != 0, axis=-1)
     return np.nan_to_num(angles_deg(other[there], normals[there]), nan=180.0) if np.any(there) else np.zeros(1)

@@ -30,7 +30,7 @@ def _file_stem(row: Row, of_reference: bool = False) -> str:
 
 
 def write(folder: Path, row: Row, drawn: Drawn, exact: Drawn) -> None:
-    """Write the effect's own image and the final one, and those of the reference, which rows of one effect share."""
+    """Write the effect's own image and the final image of a row, and those of the reference, which rows share."""
     # What few pixels mirror of a lamp would leave all others black.
     peak = float(np.quantile(exact.own, WHITE)) or float(np.max(exact.own)) or 1.0
     for stem, frame in ((_file_stem(row), drawn), (f"{_file_stem(row, True)}-{REFERENCE}", exact)):
@@ -51,7 +51,8 @@ def own_picture(own: np.ndarray, peak: float) -> np.ndarray:
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """Yield the subjects of rows from the images in a folder. Names are looked up: none leads out of the folder."""
+    """Yield a subject for each effect, scene and pipeline of the rows, with the images in a folder; no subject if the
+    reference image or all others are missing. Names are looked up, so that they cannot lead out of the folder."""
     there = files_of(folder)
     groups: dict[str, list[Row]] = {}
     for row in rows:

@@ -106,8 +106,8 @@ COLUMNS = (
         better="more",
     ),
     Column("effect_rms", "Root mean square difference of the two images, in the effect's own unit.", better="less"),
-    Column("effect_mean", "Their mean absolute difference.", better="less", drops=6),
-    Column("effect_max", "Their largest difference in any channel.", better="less"),
+    Column("effect_mean", "Mean absolute difference of the two images.", better="less", drops=6),
+    Column("effect_max", "Largest difference of the two images in any channel.", better="less"),
     Column(
         "moved_percent",
         "Of the pixels whose ray meets something with an exact G-buffer: the share whose ray now meets nothing, or "
@@ -122,12 +122,23 @@ COLUMNS = (
         "far below this does not matter. Empty if no rays can be cast.",
         better="less",
     ),
-    Column("method_mean", "The mean of that difference; above 0 the method is too bright.", HOW, drops=12),
+    Column(
+        "method_mean",
+        "Mean difference between the effect and ray casting; above 0, the effect is too bright.",
+        HOW,
+        drops=12,
+    ),
     Column("slope", "Mean change of the effect per degree of error in the normals.", unit="1/degree", drops=8),
     Column(
         "normal_mean_deg", "Mean angle between the G-buffer's normals and the exact normals.", HOW, "degrees", drops=7
     ),
-    Column("normal_max_deg", "The largest of those angles.", HOW, "degrees", drops=10),
+    Column(
+        "normal_max_deg",
+        "Largest angle between the G-buffer's normals and the exact normals.",
+        HOW,
+        "degrees",
+        drops=10,
+    ),
     Column(
         "psnr_db",
         "PSNR of the displayed image with the effect, against the same image from a G-buffer in 32-bit floats; every "
@@ -135,10 +146,10 @@ COLUMNS = (
         unit="dB",
         better="more",
     ),
-    Column("flip", "NVIDIA FLIP of those images, a perceptual difference.", better="less", option="flip"),
+    Column("flip", "NVIDIA FLIP of the displayed images, a perceptual difference.", better="less", option="flip"),
     Column("invalid", "Pixels of the image that are NaN or infinite.", better="less", shown=False),
     Column("size", "Width and height in pixels.", HOW, drops=13),
-    Column("lights", "Point lights.", HOW, drops=14),
+    Column("lights", "Number of point lights.", HOW, drops=14),
     Column("objects", "Number of objects in the scene `objects`.", HOW, drops=15),
     Column("ms_effect", "Median milliseconds of the effect's passes together.", TIME, "ms", "less"),
     Column("ms_frame", "Median milliseconds per frame over the repeats.", TIME, "ms", "less"),
@@ -175,7 +186,7 @@ TABLE = Table(
         "How much of an encoding's error reaches them?",
         method="Each effect's own image from a G-buffer with one encoding is compared with the same effect from a "
         "G-buffer in 32-bit floats, with the same noise and the same taps. The method's own error is measured "
-        "against rays through the scene, if there is an oracle.",
+        "against rays through the scene, if rays can be cast.",
         parts="effect",
     ),
 )

@@ -53,7 +53,7 @@ def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
     layouts = [(layout, None) for layout in layouts_named(options.layout)] if options.layout else []
     asked = (options.encoding, options.depth)
     if asked[0] is None and asked[1] == (NO_DEPTH,) and not options.layout:
-        raise UsageError("--depth none leaves nothing to measure; name --encoding or --layout")
+        raise UsageError("--depth none leaves nothing to measure; add --encoding or --layout")
     if options.layout and asked == (None, None):
         return list(layouts)
     normals = _with_normals(options, complaints) if options.encoding or not any(asked) else []
@@ -88,7 +88,8 @@ def _depth_codec(name: str) -> DepthCodec:
 
 
 def cases(options: EffectsOptions, device: Device) -> list[EffectsCase]:
-    """Return a case for each effect, pipeline, scene and content of the G-buffer; impossible cases are reported.
+    """Return a case for each effect, pipeline, scene and content of the G-buffer; impossible cases are named on
+    standard error.
 
     Raises:
         UsageError: unknown names, counts and sizes beyond what is possible, or nothing left.
@@ -115,7 +116,8 @@ def cases(options: EffectsOptions, device: Device) -> list[EffectsCase]:
 def _suitable(
     effect: ChosenEffect, names: Names | None, setting: Setting, complaints: list[str]
 ) -> dict[SceneMaker, bool]:
-    """The scenes asked for, or the effect's own, that have something for it; whether each is metal/rough."""
+    """Return the requested scenes, or the effect's own, and whether each is metallic-roughness; scenes that lack what
+    the effect needs are left out, with the reason in `complaints`."""
     suitable: dict[SceneMaker, bool] = {}
     for maker in scene_makers_named(names or (effect.effect.scene,)):
         scene = maker.make(setting)

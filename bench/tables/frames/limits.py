@@ -22,7 +22,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
 def ball_moment(theta: float, power: int) -> float:
-    """The integral of angle^power over the rotations by up to `theta`, in radians; all rotations are 1."""
+    """Return the integral of angle^power, in radians, over rotations by up to `theta`; all rotations measure 1."""
     angle = (NODES + 1) * theta / 2
     # The density (1 - cos angle) / pi, written so that it does not cancel.
     return float(WEIGHTS @ (angle**power * 2 * np.sin(angle / 2) ** 2)) / math.pi * theta / 2
@@ -46,8 +46,8 @@ def frame_limit(codes: int, hands: int = HANDS) -> CodeLimit:
 
 
 def frame_effective_bits(rms_deg: float, hands: int = HANDS) -> float:
-    """log2 of how many codes, ideally placed, have this RMS angle over all frames, or over all rotations; infinite for
-    none."""
+    """Return log2 of the number of ideally placed codes with this RMS angle over all frames, or over all rotations if
+    `hands` is 1; infinite if the angle is 0."""
     if rms_deg == 0:
         return math.inf
     square = math.radians(rms_deg) ** 2
@@ -63,10 +63,11 @@ def frame_effective_bits(rms_deg: float, hands: int = HANDS) -> float:
 
 
 def frames_broken(codes: int, count: int, mean_deg: float, rms_deg: float, hands: int = HANDS) -> str:
-    """Return which figure of a measurement over uniform frames is below the bound for this number of codes, apart
-    from scatter; empty if none is. A lower figure means a wrong measurement or a set that is not uniform."""
+    """Return which figure of a measurement over uniform frames, the RMS or the mean, is below the bound for this
+    number of codes, apart from scatter; empty if neither is. A lower figure means a wrong measurement or a set that
+    is not uniform."""
     least, spared = frame_limit(codes, hands), 1 - SCATTER / math.sqrt(count)
     for what, figure, bound in (("RMS", rms_deg, least.rms_deg), ("mean", mean_deg, least.mean_deg)):
         if figure < bound * spared:
-            return f"{what} {figure:.5g} degrees, of {bound:.5g} at least"
+            return f"{what} {figure:.5g} degrees is below the bound of {bound:.5g} degrees"
     return ""

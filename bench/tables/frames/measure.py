@@ -171,7 +171,7 @@ def _supremum_columns(case: FrameCase) -> Row:
 
 
 def _whole_chunk(frames: Frames) -> Frames:
-    """A chunk with its last frame repeated until it is one of CHUNK: compiled once, and a rectangle of pixels."""
+    """Return a chunk with its last frame repeated up to CHUNK frames: compiled once, and a rectangle of pixels."""
     missing = CHUNK - len(frames.normals)
     return Frames(*(np.pad(a, ((0, missing), (0, 0)), mode="edge") for a in (frames.normals, frames.tangents)))
 
@@ -187,8 +187,8 @@ def _figures(total: FrameTotal, codec: FrameCodec) -> Row:
 
 
 def _limit_columns(case: FrameCase, total: FrameTotal, figures: Row) -> Row:
-    """The limit, and the row's share of it; nothing on sets that are not uniform, and no share of a limit that float32
-    frames cannot tell from none."""
+    """Return the limits of theory and how closely the row approaches them; empty for a set that is not uniform.
+    Without percentages if errors as small as the limit are lost in float32."""
     if not case.frame_set.is_uniform:
         return {}
     hands = 1 if case.codec.encoding.hand_in is None else HANDS

@@ -63,8 +63,8 @@ class FrameSet:
 
 
 def rotations(count: int, seed: int) -> FrameSet:
-    """Rotations spread evenly by Haar's measure (K. Shoemake, Uniform Random Rotations, Graphics Gems III, 1992), of
-    either hand."""
+    """Return a set of random rotations, uniform by Haar's measure (K. Shoemake, Uniform Random Rotations, Graphics
+    Gems III, 1992), half of them left-handed on average."""
 
     def chunk(start: int) -> Frames:
         random = np.random.default_rng([seed, start])
@@ -120,7 +120,7 @@ def _as_in_files(mesh: Mesh) -> np.ndarray:
 
 
 def mesh_frames(name: str, meshes: list[Mesh]) -> FrameSet:
-    """The frames of all vertices: authored tangents, or the direction in which u grows."""
+    """Return the frames of all vertices as a set: with authored tangents, or else the direction in which u grows."""
     normals, with_hands = (
         np.concatenate(parts) for parts in zip(*((m.normals, _as_in_files(m)) for m in meshes), strict=True)
     )

@@ -35,7 +35,9 @@ class FramesOptions(SourceOptions):
     worst_case: Annotated[
         bool,
         Option(
-            "--worst-case", "The true largest rotation, by search in float64; takes seconds per encoding.", in_run=True
+            "--worst-case",
+            "Find the true largest rotation, by float64 search; takes seconds per encoding.",
+            in_run=True,
         ),
     ] = False
 
@@ -59,7 +61,7 @@ COLUMNS = (
     Column("invalid", "Decodes that were NaN or infinite; each counts as 180 degrees.", better="less", drops=17),
     Column(
         "hands_lost",
-        "Tangent frames decoded with the wrong handedness. Empty for encodings of rotations, which have none.",
+        "Tangent frames decoded with the wrong handedness. Empty for encodings of rotations, which store none.",
         better="less",
     ),
     *_angle_columns("normal", "angle between a tangent frame's normal and its decode.", 11, 9, 16),
@@ -75,7 +77,7 @@ COLUMNS = (
     ),
     Column(
         "sup_moved_deg",
-        "How much the last round of the search still raised this rotation.",
+        "How much the last round of the search still raised rotation_sup_deg.",
         HOW,
         "degrees",
         drops=2,

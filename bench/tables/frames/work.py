@@ -22,7 +22,7 @@ from .table import FramesOptions
 
 
 def cases(options: FramesOptions) -> list[measure.FrameCase]:
-    """Return one case for each row.
+    """Return one case for each frame set, codec and backend.
 
     Raises:
         UsageError: unknown names, a file that cannot be read, or nothing that fits.
@@ -66,7 +66,7 @@ def _failures(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Rows by set and bits, the best codec first; those without figures last."""
+    """Return the rows by set, then by bits, then by the codec's smallest RMS angle; codecs without figures last."""
     sets = list(dict.fromkeys(row["frame_set"] for row in rows))
     best: dict[tuple, float] = {}
     for row in rows:

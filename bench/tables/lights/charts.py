@@ -24,7 +24,8 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
-    """A line for each light buffer, a panel of equal lights and one of coloured ones; dotted: the most it can be."""
+    """Return the chart with a line for each light buffer, and panels for equal and for coloured lights; dotted: the
+    error's bound."""
     looks: dict[str, Any] = {"by": ("light_buffer", "panel"), "colour": "light_buffer"}
     tips = (("light_buffer", "light buffer"), ("x", "lights"), ("error", "error"), ("bound", "bound"))
     counts = sorted({point["x"] for point in points})
@@ -33,7 +34,7 @@ def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
         title=_finding_sentence(points),
         subtitle="Error by number of lights; dotted: number of blends times half a step; errors below 1e-6 are drawn "
         "at 1e-6",
-        description="Error of the sum by the number of lights, by the model, with a line for each light buffer; "
+        description="Error of the sum, from the model, by the number of lights, with a line for each light buffer; "
         "dotted: the bound on the error. The figures are in the rows of the experiments equal and random.",
         x=Axis(title="lights", scale=Scale.LOG, ticks=tuple((count, str(count)) for count in counts)),
         y=Axis(title="error in light (model)", scale=Scale.LOG),
@@ -50,19 +51,19 @@ def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
 
 
 def _equal_rows(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of equal lights with the smallest sum: the worst channel of each buffer."""
+    """Return the points of equal lights with the smallest sum: the error of each buffer's worst channel."""
     total = min((row["sum"] for row in rows), default=0.0)
     panel = f"equal lights that sum to {total:g}, worst channel"
     return _worst(panel, [(row, abs(row["error"])) for row in rows if row["sum"] == total])
 
 
 def _random_rows(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of coloured lights: the largest error of the worst order."""
+    """Return the points of coloured lights: the largest error of each buffer's worst order."""
     return _worst(RANDOM, [(row, row["model_max"]) for row in rows])
 
 
 def _worst(panel: str, errors: Sequence[tuple[Row, float]]) -> list[Row]:
-    """A point for each buffer and number of lights, of the largest error, by the number."""
+    """Return a point for each buffer and number of lights, with the largest of the errors, sorted by the number."""
     largest: dict[tuple[str, int], tuple[float, float]] = {}
     for row, error in errors:
         key = (row["light_buffer"], row["lights"])

@@ -34,7 +34,7 @@ class Sums:
     seed: int
 
     def equal(self, adder: Adder) -> Iterator[Row]:
-        """Equal lights, blended one by one."""
+        """Return the rows of equal lights that are blended one by one."""
         return equal_lights(adder, self.sums, self.counts)
 
     def random(self, adder: Adder) -> Iterator[Row]:
@@ -42,11 +42,11 @@ class Sums:
         return random_lights(adder, min(self.sums), self.counts, self.seed)
 
     def banding(self, adder: Adder) -> Iterator[Row]:
-        """A lamp's falloff."""
+        """Return the rows of banding in a lamp's falloff, for each peak."""
         return banding(adder, self.peaks)
 
     def chromaticity(self, adder: Adder) -> Iterator[Row]:
-        """Return the rows of a highlight's colour, for encodings with the channel from which it is rebuilt."""
+        """Return the rows of a highlight's rebuilt colour; empty if the encoding lacks the channel for that."""
         return chromaticity(adder) if adder.encoding.has_alpha else iter(())
 
 
@@ -67,12 +67,13 @@ CONDITIONS = (
 
 
 def check_light_twin(encoding: LightCodec) -> None:
-    """Traces a light encoding's Python half. Raises UsageError where it fails; one line with its file."""
+    """Trace a light encoding's Python version. Raises UsageError if tracing fails, in one line with the file; an
+    encoding that exists only in shaders passes."""
     light = Vec4(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 4)
     try:
         decoded = jax.eval_shape(lambda light: encoding.decode(encoding.encode(light)), light)
         if len(decoded) != 4:
-            raise TypeError(f"{len(decoded)} components of light, not 4")
+            raise TypeError(f"decode returns {len(decoded)} components; return 4")
     except NoTwinError:
         return
     except Exception as error:  # whatever a user's own file raises
@@ -86,7 +87,8 @@ def _filled_row(experiment: str, encoding: LightCodec, device: Device | None, **
 
 
 def sum_rows(names: list[str], encoding: LightCodec, sums: Sums, device: Device | None) -> Iterator[Row]:
-    """Rows of some of EXPERIMENTS; where the device cannot measure, the model's alone and the reason."""
+    """Yield the rows of the named EXPERIMENTS; if the device cannot measure them, with figures of the model alone and
+    the reason in `skipped`."""
     try:
         with Adder(encoding, device) as adder:
             rounding = adder.rounding
@@ -101,7 +103,7 @@ def sum_rows(names: list[str], encoding: LightCodec, sums: Sums, device: Device 
 
 
 def sorted_rows(rows: list[Row]) -> list[Row]:
-    """The rows by experiment and then by CONDITIONS, each in the order in which its values came up."""
+    """Return the rows by experiment and then by CONDITIONS, whose values are in the order of their first row."""
     places = {
         column: {value: i for i, value in enumerate(dict.fromkeys(row[column] for row in rows))}
         for column in CONDITIONS

@@ -41,12 +41,12 @@ PIXELS, GRADIENT, REACH = 1024, 4096, 4.0
 
 
 def planes(array: np.ndarray) -> Vec4:
-    """float32 planes of an array of shape (..., 4)."""
+    """Return an array of shape (..., 4) as four float32 planes."""
     return Vec4(*(jnp.asarray(np.ascontiguousarray(array[..., i], np.float32)) for i in range(4)))
 
 
 def array(planes: Sequence[Any]) -> np.ndarray:
-    """The other way: float32 of shape (..., channels)."""
+    """Return planes as one float32 array of shape (..., channels): the inverse of `planes`."""
     return np.stack([np.asarray(c, np.float32) for c in planes], axis=-1)
 
 
@@ -85,12 +85,15 @@ class Adder:
 
     @property
     def channels(self) -> int:
-        """Numbers of light that it holds."""
+        """The number of channels of light: 4 if the encoding has alpha, otherwise 3."""
         return 4 if self.encoding.has_alpha else 3
 
     def model(self, lights: np.ndarray, count: int | None = None, blending: Blending = IDEAL) -> Sum | None:
-        """The first `count` of lights, float32 of shape (lights, width, 4), added up by the model; None of a code that
-        is written for shaders alone."""
+        """Return the sum of the first `count` lights by the model, of all lights by default; None for an encoding
+        that exists only in shaders.
+
+        Args:
+            lights: float32 of shape (lights, width, 4)."""
         if not self._has_model:
             return None
         light, texels = _sum_and_texels(
@@ -104,7 +107,7 @@ class Adder:
 
     @cached_property
     def rounding(self) -> Rounding | None:
-        """The way in which the OpenGL device adds up: the plainest way that explains it best; None without a device."""
+        """The plainest way that best explains how the OpenGL device adds up; None without a device or a model."""
         lights = (np.random.default_rng(0).uniform(0, 1, (64, PIXELS, 4)) ** 2 * 0.05).astype(np.float32)
         got = self.device(lights) if self._has_model else None
         if not got:
@@ -132,7 +135,8 @@ class Adder:
         return float(np.mean(np.all(apart <= allowed, axis=-1)))
 
     def _conversion_error(self) -> str:
-        """Return the largest error, in steps, of a fixed-point number that the device stores; at best half a step."""
+        """Return text on the largest error of a fixed-point number that the device stores, at best half a step: `,
+        0.50 steps off`; empty for other formats."""
         if self.encoding.storage.kind != "unorm":
             return ""
         lights = np.repeat(np.linspace(0, self.encoding.limit, 2**14, dtype=np.float32)[:, None], 4, axis=1)[None]
@@ -144,7 +148,7 @@ class Adder:
 
 
 def steps_apart(storage: Storage, texels: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Texels' distance in steps of the format, of shape (..., channels that it has)."""
+    """Return the distances of texels in steps of the format, of shape (..., channels of the format)."""
     if storage.kind == "unorm":
         return np.abs(steps_of(storage, texels) - steps_of(storage, other))
     apart = []
@@ -174,8 +178,10 @@ def has_light_twin(codec: LightCodec) -> bool:
 
 
 def worst_rounding(adder: Adder, light: np.ndarray) -> np.ndarray | None:
-    """The most that storing once moves each number of light, over light of shape (width, 4), below the limit; None
-    without a model."""
+    """Return the largest change of each channel when light is stored once; None without a model.
+
+    Args:
+        light: array of shape (width, 4); light above the encoding's limit does not count."""
     below = np.where(np.max(light, axis=1, keepdims=True) <= adder.encoding.limit, light, 0.0).astype(np.float32)
     # A light that multiplies is stored beside none.
     stored = adder.model(below[None])
@@ -183,7 +189,10 @@ def worst_rounding(adder: Adder, light: np.ndarray) -> np.ndarray | None:
 
 
 def _channel_labels(by_channel: list[tuple[Any, ...]]) -> dict[tuple[Any, ...], str]:
-    """Return a label for each group of channels with equal figures: rgba, or rgb and a."""
+    """Return a label, rgba or rgb and a, for each distinct tuple of figures.
+
+    Args:
+        by_channel: the figures of each channel."""
     names: dict[tuple[Any, ...], str] = {}
     for channel, what in zip(CHANNELS, by_channel, strict=False):
         names[what] = names.get(what, "") + channel
@@ -191,7 +200,7 @@ def _channel_labels(by_channel: list[tuple[Any, ...]]) -> dict[tuple[Any, ...], 
 
 
 def equal_lights(adder: Adder, sums: Sequence[float], counts: Sequence[int]) -> Iterator[Row]:
-    """Yield the result and the error of blending N equal lights with the sum S one by one, and the error's bound."""
+    """Yield rows with the result of blending N equal lights of sum S one by one, its error and the error's bound."""
     for total in sums:
         ramp = np.repeat(np.linspace(0, min(total, adder.encoding.limit), GRADIENT)[:, None], 4, axis=1)
         half_step = worst_rounding(adder, ramp)
@@ -215,15 +224,16 @@ def _off(summed: float | None, total: float) -> float | None:
 
 
 def falloff(distance: np.ndarray, radius: float) -> np.ndarray:
-    """A lamp's share at a distance, as `light.glsl` has it."""
+    """Return a lamp's share of light at a distance, with the formula of `light.glsl`: 1 at 0, and 0 at the radius."""
     window = np.maximum(1 - (distance / radius) ** 4, 0)
     return window**2 / (distance**2 + 1)
 
 
 def coloured_lights(count: int, total: float, seed: int) -> np.ndarray:
-    """Random lamps over a field of pixels, (count, PIXELS, 4); the brightest pixel's largest channel sums to `total`.
+    """Return random lamps over a field of pixels, (count, PIXELS, 4); the brightest pixel's largest channel sums to
+    `total`.
 
-    Colours are diffuse light, the fourth number a highlight's luminance; brightness spreads over a factor of 30.
+    Three channels are diffuse light, the fourth is a highlight's luminance; brightness spreads over a factor of 30.
     """
     rng = np.random.default_rng(seed)
     pixels, lamps = rng.uniform(-3, 3, (PIXELS, 2)), rng.uniform(-3, 3, (count, 2))
@@ -236,13 +246,13 @@ def coloured_lights(count: int, total: float, seed: int) -> np.ndarray:
 
 
 def ordered(lights: np.ndarray, order: str) -> np.ndarray:
-    """Lights in one of ORDERS, the same for every pixel."""
+    """Return lights in one of ORDERS, the same order for every pixel."""
     by_brightness = np.argsort(lights.sum(axis=(1, 2)), kind="stable")
     return lights[{ORDERS[0]: np.arange(len(lights)), ORDERS[1]: by_brightness, ORDERS[2]: by_brightness[::-1]}[order]]
 
 
 def random_lights(adder: Adder, total: float, counts: Sequence[int], seed: int) -> Iterator[Row]:
-    """Yield the errors of coloured lights with falloff in three orders, over pixels and channels, and their bound."""
+    """Yield rows with the errors, over pixels and channels, of coloured lights in three orders, and their bound."""
     for count in counts:
         lights = coloured_lights(count, total, seed)
         exact = lights.sum(axis=0, dtype=np.float64)[:, : adder.channels]
@@ -266,13 +276,13 @@ def _partial_sums(light: np.ndarray) -> np.ndarray:
 
 
 def gradient(peak: float) -> np.ndarray:
-    """White light from a lamp's centre to its edge, (GRADIENT, 4)."""
+    """Return white light from a lamp's centre to its edge, float32 of shape (GRADIENT, 4)."""
     light = peak * falloff(np.linspace(0, REACH, GRADIENT), REACH)
     return np.repeat(light[:, None], 4, axis=1).astype(np.float32)
 
 
 def banding(adder: Adder, peaks: Sequence[float]) -> Iterator[Row]:
-    """Yield how many levels of one lamp's falloff are left, and the largest step, in light and as displayed."""
+    """Yield rows with the levels left of a lamp's falloff, and the largest step, in light and as displayed."""
     for peak in peaks:
         light = gradient(peak)
         by_channel: list[tuple[Any, ...]] = []
@@ -296,8 +306,8 @@ def _band_figures(light: np.ndarray) -> tuple[int, float, float]:
 
 
 def chromaticity(adder: Adder) -> Iterator[Row]:
-    """Yield the error of a highlight's colour that is rebuilt from the diffuse light's, and how far it exceeds the
-    error of the stored value."""
+    """Yield rows with the error of a highlight's colour that is rebuilt from the diffuse light's, and how many times
+    larger it is than the error of the stored value."""
     for name, colour in COLOURS.items():
         lights = np.zeros((GRADIENT, 4), np.float32)
         lights[:, :3] = colour

@@ -72,14 +72,18 @@ COLUMNS = (
         "Ratio of the error of a rebuilt highlight to the error of the stored values, by the model.",
         better="less",
     ),
-    Column("gl_amplification", "The same on the device.", better="less"),
+    Column(
+        "gl_amplification",
+        "Ratio of the error of a rebuilt highlight to the error of the stored values, on the device.",
+        better="less",
+    ),
     Column("rounds", "How this device rounds when it blends.", HOW),
     Column("agree_percent", "Pixels that equal the model with this rounding.", HOW, "%", drops=7),
     shared.DEVICE,
     shared.SEED,
     shared.SKIPPED,
 )
-ALSO = (Column("*_lights", "The sum of that many lights in the light buffer."),)
+ALSO = (Column("*_lights", "The sum in the light buffer of this number of lights."),)
 
 TABLE = Table(
     package=__package__ or "",

@@ -34,12 +34,12 @@ PLOTTED = {"equal", "random"}
 
 
 def experiments(options: LightsOptions) -> list[str]:
-    """The experiments asked for. Raises UsageError."""
+    """Return the names of the requested experiments. Raises UsageError for an unknown name."""
     return choose("experiment", options.experiment, {name: name for name in measure.EXPERIMENTS})
 
 
 def encodings(options: LightsOptions) -> list[LightCodec]:
-    """The light buffers asked for, checked. Raises UsageError."""
+    """Return the requested light buffers, checked. Raises UsageError for an unknown name or faulty Python code."""
     chosen = light_codecs_named(options.light_buffer)
     for encoding in chosen:
         measure.check_light_twin(encoding)
@@ -47,7 +47,7 @@ def encodings(options: LightsOptions) -> list[LightCodec]:
 
 
 def added(options: LightsOptions) -> measure.Sums:
-    """Return the values to add up. Raises UsageError."""
+    """Return the sums, counts, peaks and seed that the options name. Raises UsageError if they are out of range."""
     check_seed(options.seed)
     return measure.Sums(
         checked_numbers("--sum", options.sums, float, 1e-6, MOST_LIGHT),
@@ -58,7 +58,7 @@ def added(options: LightsOptions) -> measure.Sums:
 
 
 def _check(outputs: LightsOutputs, names: Sequence[str]) -> None:
-    """Raise UsageError for output that cannot be written."""
+    """Raise UsageError for an image folder that cannot be written to, or output that needs another experiment."""
     if outputs.plot and not PLOTTED & set(names):
         raise UsageError("--plot: plots only the experiments equal and random; add one of them to --experiment")
     if outputs.images:
@@ -91,20 +91,20 @@ def _sum_step(
 
 
 def _bands(encoding: LightCodec, peaks: tuple[float, ...], gl: Device | None) -> np.ndarray:
-    """A lamp's falloff for each peak, a strip each, as displayed."""
+    """Return an image of a lamp's falloff as displayed, with a strip for each peak."""
     strips = [displayed(measure.banded(encoding, peak, gl) / max(peak, 1.0)) for peak in peaks]
     return pictures.strips([strip[::2] for strip in strips], 64)
 
 
 def _finish(rows: Sequence[Row]) -> list[Row]:
     if not rows:
-        raise UsageError("nothing to measure: chromaticity needs an encoding with a fourth component")
+        raise UsageError("nothing to measure: chromaticity requires an encoding with a fourth component")
     return measure.sorted_rows(list(rows))
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     """Yield a sentence with the errors of sums of the most random lights, in buffers that blend and in those that are
-    read first."""
+    read first; nothing without such rows."""
     sums = _random(rows)
     most = max((row["lights"] for row in sums), default=0)
     errors: dict[str, list[str]] = {}
@@ -120,7 +120,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _random(rows: Sequence[Row]) -> list[Row]:
-    """Return sums of random lights in the order in which they were drawn, the darkest."""
+    """Return the rows of random lights with the smallest sum, in the order in which the lights were drawn."""
     drawn = [row for row in rows if row["experiment"] == "random" and row["order"] == ORDERS[0] and _errors(row)]
     darkest = min((row["sum"] for row in drawn), default=None)
     return [row for row in drawn if row["sum"] == darkest]

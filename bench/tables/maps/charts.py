@@ -19,14 +19,15 @@ COLUMNS = [column for column, *_ in MARKED]
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """A chart for each image and decoder."""
+    """Yield a chart for each image and decoder."""
     usable = in_order(having(rows, *COLUMNS))
     for index, group in enumerate(dict.fromkeys(map(group_of, usable))):
         yield _chart(index, group, [row for row in usable if group_of(row) == group])
 
 
 def _chart(index: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
-    """Angles of each code in each format, a line for each, in the order of the rows, the first on top."""
+    """Return the chart of an image and a decoder: a line of angles for each encoding and format, in the order of the
+    rows, the first on top."""
     lines = [
         {"codec": f"{row['encoding']} {row['block']}", "line": _line_name(row)}
         | {column: max(row[column], LEAST_DEG) for column in COLUMNS}

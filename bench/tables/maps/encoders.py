@@ -52,17 +52,17 @@ class Encoder:
 
     @property
     def release(self) -> str:
-        """Package and version; empty for none."""
+        """The package and its version; empty without a package."""
         return f"{self.package} {version(self.package)}" if self.package else ""
 
     @property
     def name(self) -> str:
-        """Package, version and effort."""
+        """The package, its version and the effort as one text, separated by commas."""
         return ", ".join(filter(None, (self.release, self.said)))
 
     @property
     def missing(self) -> str:
-        """Why it cannot be used; empty where it can."""
+        """Why the encoder cannot be used, and how to install its package; empty if it can be used."""
         try:
             self._modules()
         except ImportError as error:
@@ -70,11 +70,12 @@ class Encoder:
         return ""
 
     def encoded(self, given: Texels) -> bytes:
-        """The blocks of an image, row by row. Raises MissingError where the package is not installed."""
+        """Return the blocks of an image, row by row. Raises MissingError if the package is not installed."""
         return self.make(self._found_modules(), given)
 
     def decoded(self, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
-        """The texels of blocks, float32 of shape (height, width, 4) in [0, 1]. Raises MissingError as `encoded`."""
+        """Return the texels of blocks, float32 of shape (height, width, 4) in [0, 1]. Raises MissingError if the
+        package is not installed."""
         assert self.undo
         return self.undo(self._found_modules(), blocks, size)
 
@@ -133,7 +134,8 @@ def _astc_bytes(modules: Sequence[Any], given: Texels) -> bytes:
 
 
 def _astc_texels(modules: Sequence[Any], blocks: bytes, size: tuple[int, int]) -> np.ndarray:
-    """Return the texels of ASTC blocks, decoded in the precision of the specification, 16-bit floats."""
+    """Return the texels of ASTC blocks, float32 of shape (height, width, 4), decoded in the precision of the
+    specification, 16-bit floats."""
     (astc,) = modules
     image = astc.ASTCImage(astc.ASTCType.F32, *size)
     _astc_context(astc, "rgba").decompress(blocks, image, astc.ASTCSwizzle())

@@ -35,13 +35,13 @@ class Swizzle:
     read: str
 
     def texels(self, numbers: np.ndarray) -> np.ndarray:
-        """Numbers, uint8 of shape (height, width, components), as texels, (height, width, 4)."""
+        """Return numbers, uint8 of shape (height, width, components), as texels of shape (height, width, 4)."""
         full = np.full(numbers.shape[:2], ONE, np.uint8)
         planes = {"0": 0 * full, "1": full, **{CHANNELS[i]: numbers[..., i] for i in range(numbers.shape[-1])}}
         return np.ascontiguousarray(np.stack([planes[letter] for letter in self.laid], axis=-1))
 
     def numbers(self, texels: np.ndarray) -> np.ndarray:
-        """The channels of texels, (height, width, 2 or 4), that hold the numbers."""
+        """Return the channels of texels that hold the numbers, of shape (height, width, components)."""
         return texels[..., [CHANNELS.index(letter) for letter in self.read]]
 
 
@@ -84,11 +84,12 @@ class BlockFormat:
         return bool(self.internal_format)
 
     def bits(self, components: int) -> int:
-        """Bits of a texel: 128 a block, or 8 for each of two channels or four."""
+        """Return the bits per texel: 8 if compressed (128 per block), 16 for two components, otherwise 32."""
         return 8 if self.is_compressed else 16 if components == 2 else 32
 
     def by_specification(self, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
-        """The texels of an image of blocks, row by row, float32 of shape (height, width, channels) in [0, 1].
+        """Return the texels of blocks that are stored row by row, decoded as specified: float32 of shape (height,
+        width, channels) in [0, 1].
 
         Args:
             size: width and height, multiples of 4.
@@ -103,7 +104,8 @@ class BlockFormat:
 
 
 def _bc_texels(number: int, blocks: np.ndarray) -> np.ndarray:
-    """Return the texels of BC3 or BC7 as Pillow decodes them: BC3's interpolated ends in whole numbers."""
+    """Return the texels of BC3 or BC7 blocks, float32 of shape (blocks, 16, 4), as Pillow decodes them: BC3's
+    interpolated ends in whole numbers."""
     image = Image.frombytes("RGBA", (SIDE, SIDE * len(blocks)), blocks.tobytes(), "bcn", (number,))
     return np.asarray(image, np.float32).reshape(-1, TEXELS, len(CHANNELS)) / np.float32(ONE)
 

@@ -54,7 +54,7 @@ class MapCase:
 
     @property
     def codec(self) -> Codec:
-        """The code in the 8 bits that an encoder is given."""
+        """The encoding in `rgba8`: encoders take 8 bits per channel."""
         return Codec(self.encoding, STORAGES["rgba8"])
 
 
@@ -85,7 +85,7 @@ class Clock:
 
 
 def bands(normals: NormalSet) -> Iterator[Band]:
-    """An image in bands of whole blocks, each of at most CHUNK texels where one row of blocks has no more."""
+    """Yield an image in bands of whole blocks, of at most CHUNK texels unless a single row of blocks has more."""
     assert normals.shape
     height, width = normals.shape
     n, view, covered = planes_of(normals)
@@ -117,7 +117,7 @@ def _meter() -> Meter:
 
 
 def _vectors(pixels: np.ndarray) -> list[jax.Array]:
-    """Pixels as planes of a multiple of CHUNK numbers, so that programs are compiled once."""
+    """Return pixels as planes, padded to a multiple of CHUNK numbers so that programs are compiled once."""
     flat = pixels.reshape(-1, pixels.shape[-1])
     whole = np.pad(flat, ((0, -len(flat) % CHUNK), (0, 0)), mode="edge")
     return [jnp.asarray(np.ascontiguousarray(plane).reshape(-1, CHUNK_WIDTH)) for plane in whole.T]
@@ -129,14 +129,14 @@ def _pixels(planes: Any, shape: tuple[int, ...]) -> np.ndarray:
 
 
 def code_texels(codec: Codec, band: Band) -> np.ndarray:
-    """The code of each normal in 8 bits, uint8 of shape (height, width, components): c/2 + 1/2 of 255."""
+    """Return the code of each normal in 8 bits, uint8 of shape (height, width, components): c/2 + 1/2 of 255."""
     code = _encoder(codec)(*(Vec3(*_vectors(a)) for a in (band.n, band.view)))
     numbers = _pixels(code, band.n.shape[:2])
     return np.rint((numbers * 0.5 + 0.5) * ONE).astype(np.uint8)
 
 
 def decoded_normals(encoding: Encoding, numbers: np.ndarray, view: np.ndarray) -> np.ndarray:
-    """The normals of codes that are stored as numbers in [0, 1], float32 of shape (height, width, 3)."""
+    """Return the normals of codes that are stored as numbers in [0, 1]: float32 of shape (height, width, 3)."""
     code = _vectors(numbers.astype(np.float32) * 2 - 1)
     kind = type(jax.eval_shape(encoding.encode, *[Vec3(*[code[0]] * 3)] * 2))
     return _pixels(_decoder(encoding)(kind(*code), Vec3(*_vectors(view))), numbers.shape[:2])
@@ -158,7 +158,8 @@ DECODERS: Mapping[str, Callable[[MapCase, bytes, tuple[int, int]], np.ndarray]] 
 
 
 def through(case: MapCase, band: Band, clock: Clock) -> np.ndarray:
-    """A band encoded, compressed, decoded: its normals, float32 of shape `band.real` and 3. Adds to the clock."""
+    """Return the normals of a band after encoding, compression and decoding: float32 of shape (*band.real, 3). Add
+    times and errors to the clock."""
     given = code_texels(case.codec, band)
     height, width = given.shape[:2]
     texels = Texels(case.swizzle.texels(given).tobytes(), (width, height), case.swizzle.read)
@@ -175,7 +176,7 @@ def through(case: MapCase, band: Band, clock: Clock) -> np.ndarray:
 
 
 def measure(case: MapCase) -> list[Row]:
-    """Return one row; a row that cannot be measured here has its reason in `skipped` and no figures."""
+    """Return a list of one row; a row that cannot be measured here has its reason in `skipped` and no figures."""
     row, clock, whole = _case_columns(case), Clock(), case.normal_set
 
     def loads() -> Iterator[Callable[[], Decoded]]:

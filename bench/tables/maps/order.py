@@ -19,5 +19,5 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
 
 
 def group_of(row: Row) -> tuple[str, str]:
-    """The set and the decoder of a row."""
+    """Return the set of normals and the decoder of a row."""
     return row["normals"], row["decoder"]

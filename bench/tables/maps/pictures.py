@@ -22,7 +22,8 @@ def stem(case: MapCase) -> str:
 
 
 def write(cases: Iterable[MapCase], folder: Path) -> None:
-    """The decoded normals and their error, times `pictures.GAIN`, of each case. Raises OSError."""
+    """Write images of the decoded normals and of their error, times `pictures.GAIN`, for each case that can be
+    measured here. Raises OSError."""
     for case in cases:
         try:
             images = _case_pictures(case)

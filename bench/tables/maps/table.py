@@ -19,7 +19,7 @@ BLOCKS: Mapping[str, str] = MappingProxyType(
     {
         "none": "8 bits per channel, uncompressed: RG8 or RGBA8",
         "bc5": "two channels of BC4, also called RGTC2, ATI2 and 3Dc",
-        "bc3": "RGB with 5:6:5 bits and alpha with 8, also called DXT5: `dxt5nm`",
+        "bc3": "RGB in 5:6:5 bits and alpha in 8 bits, also called DXT5, for `dxt5nm`",
         "bc7": "RGBA in one of eight modes, also called BPTC",
         "eac_rg11": "two channels of EAC, 11 bits each",
         "astc_4x4": "RGBA in one of many modes, LDR",
@@ -29,8 +29,8 @@ BLOCKS: Mapping[str, str] = MappingProxyType(
 SWIZZLES: Mapping[str, str] = MappingProxyType(
     {
         "rg": "red and green",
-        "rrrg": "red, green and blue together, and alpha: what astcenc does with normal maps",
-        "dxt5nm": "alpha and green, the others 1: Unity's layout",
+        "rrrg": "one number in red, green and blue, the other in alpha, as astcenc stores normal maps",
+        "dxt5nm": "alpha and green, with the other channels 1, as Unity stores normal maps",
         "rgb": "three numbers in red, green and blue",
     }
 )
@@ -54,9 +54,7 @@ class MapsOptions(Reading, SourceOptions):
     block: Annotated[Names, Option("--block", f"{', '.join(BLOCKS)}; comma-separated, or all.")] = ("all",)
     swizzle: Annotated[
         Names,
-        Option(
-            "--swizzle", f"{', '.join(SWIZZLES)}; comma-separated, or all. Default: the usual ones for each format."
-        ),
+        Option("--swizzle", f"{', '.join(SWIZZLES)}; comma-separated, or all. Default: each format's usual swizzles."),
     ] = ()
     normals: Annotated[
         Names,
@@ -94,7 +92,7 @@ COLUMNS = (
     _angle_column("angle_max_deg", "The largest angle."),
     Column(
         "psnr_db",
-        "Peak signal-to-noise ratio of the normals, peak 1; decodes are compared as they come, not renormalised.",
+        "Peak signal-to-noise ratio of the normals, peak 1. Decodes are not renormalised before the comparison.",
         unit="dB",
         better="more",
     ),

@@ -58,7 +58,8 @@ def cases(options: MapsOptions) -> list[MapCase]:
 
 
 def _blocks(names: Names) -> list[BlockFormat]:
-    """The formats asked for. Of "all" those are left out whose encoder is not installed."""
+    """Return the requested formats. With "all", formats whose encoder is not installed are left out and named; if
+    they are requested by name, or nothing else is left, MissingError is raised."""
     chosen = choose("block format", names, FORMATS)
     missing = {block.name: why for block in chosen if (why := block.encoder.missing)}
     left = [block for block in chosen if block.name not in missing]
@@ -70,8 +71,8 @@ def _blocks(names: Names) -> list[BlockFormat]:
 
 
 def _is_possible(encoding: Encoding, complaints: list[str]) -> bool:
-    """Tell whether a code survives compression: it has two numbers or more, no sign bit, and none that must be exact.
-    Where it does not, the reason is added to `complaints`."""
+    """Whether an encoding survives compression: it needs two components or more, no sign bit, and no component that
+    must be exact. If it does not survive, the reason is added to `complaints`."""
     check_twin(encoding)
     why = ""
     if encoding.sign_bits:
@@ -96,7 +97,7 @@ def _swizzles(encoding: Encoding, block: BlockFormat, asked: list[Any], complain
 
 
 def _images(options: MapsOptions, needs_rays: bool) -> list[NormalSet]:
-    """The sets that are images. Raises UsageError where one is not."""
+    """Return the sets that --normals names. Raises UsageError if a set is not an image."""
     words = tuple(
         Given(word, MAPS[word]()) if isinstance(word, str) and word in MAPS else word for word in options.normals
     )
@@ -149,7 +150,7 @@ def _write(done: Measured, _: Any) -> None:
 
 
 def _missing() -> str:
-    """Why a run leaves the table out: none of the encoders is installed."""
+    """Return why a run leaves the table out, if none of the encoders is installed; otherwise empty."""
     compressed = [block for block in FORMATS.values() if block.is_compressed]
     if all(block.encoder.missing for block in compressed):
         return "compressed normal maps require encoders; run: pip install normalbench[maps]"

@@ -77,7 +77,7 @@ def _garbage_text(percent: float) -> str:
 
 
 def _finding_sentence(cells: Sequence[Row]) -> str:
-    """Return how many codecs survive all mixing, and which one suffers the most."""
+    """Return a sentence: how many codecs give no garbage, and which codec gives the most, with the operation."""
     codecs = distinct(cells, "codec")
     bad = {cell["codec"] for cell in cells if cell["garbage"]}
     worst = max(cells, key=lambda cell: (cell["garbage"], cell["angle"]))

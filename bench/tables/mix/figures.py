@@ -38,7 +38,7 @@ class Figures:
         return self._held & self._mixes.held_by(operation, self._domain)
 
     def of(self, operation: str) -> Row:
-        """The figures of an operation; the reason where the encoding can hold none of its mixes."""
+        """Return the figures of an operation; only the reason, as `skipped`, if no mix can be represented."""
         held = self._held_mask(operation)
         if not held.any():
             return {"skipped": outside(self._mixes.patches.name, self._domain)}
@@ -95,7 +95,7 @@ def _lengths(v: np.ndarray) -> np.ndarray:
 
 
 def outside(name: str, domain: str) -> str:
-    """Why a set has nothing for an encoding."""
+    """Return the reason, in words, why a set has nothing to mix for an encoding: every patch leaves the domain."""
     return f"no patch of {name} is entirely in the domain of the encoding ({domain})"
 
 
@@ -109,5 +109,5 @@ def error_of_percent(which: np.ndarray) -> float:
 
 
 def percent(which: np.ndarray) -> float:
-    """The share of true values."""
+    """Return the percentage of true values, 0 to 100."""
     return 100.0 * float(np.mean(which))

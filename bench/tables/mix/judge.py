@@ -46,7 +46,7 @@ def _usual_mixes(seed: int) -> tuple[Mixes, ...]:
 
 
 def _mixes_of_set(normals: NormalSet) -> tuple[Mixes, ...]:
-    """An image's own neighbours; of any other set, the usual ones."""
+    """Return the mixes of an image's own neighbours; for any other set the usual mixes with its seed."""
     if not normals.shape:
         return _usual_mixes(normals.seed)
     return tuple(mixes_of(patches, SAMPLES) for patches in patches_of(normals, ANGLES, COUNT, normals.seed))
@@ -101,7 +101,7 @@ def judgements(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: st
 
 
 def judged_now(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> dict[str, Judgement]:
-    """Measure the effects that `judgements` returns."""
+    """Measure the effects that `judgements` returns, without recorded results."""
     rows = _measured_rows(codec, uses, normals, domain)
     return {use: _judged(codec, [use], [row for row in rows if row["operation"] in USES[use]]) for use in uses}
 

@@ -27,14 +27,14 @@ def _blended_normals(texels: np.ndarray, mixes: Mixes) -> np.ndarray:
 
 
 def _bilinear_weights(shares: np.ndarray) -> np.ndarray:
-    """The weights of the first four texels, (4, patches, 1)."""
+    """Return the bilinear weights of the first four texels, of shape (4, patches, 1)."""
     x, y = shares.T
     return np.stack([(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y])[..., None]
 
 
 def _upsampled_normals(texels: np.ndarray, mixes: Mixes) -> np.ndarray:
-    """The mean normals, weighed as gbuffer/glsl/filter.glsl weighs light: bilinear, by those whose normal is close to
-    the nearest one's."""
+    """Return the mean normals, (patches, 3), weighed as gbuffer/glsl/filter.glsl weighs light: bilinear, only over
+    texels whose normal is close to that of the texel with the largest weight."""
     quad, weights = unit_rows(texels[QUAD, :]), _bilinear_weights(mixes.quarters)
     nearest = np.take_along_axis(quad, weights.argmax(axis=0)[None], axis=0)
     weights = weights * (np.sum(quad * nearest, axis=-1, keepdims=True) > CONSTANTS["FILTER_COSINE"])

@@ -86,7 +86,7 @@ class Modelled:
         self._views = mixes.patches.views
 
     def decoded(self, codes: np.ndarray) -> np.ndarray:
-        """Normals of codes (numbers, ..., patches): (..., patches, 3)."""
+        """Return the normals of codes (numbers, ..., patches), of shape (..., patches, 3)."""
         shape = codes.shape[1:]
         views = np.broadcast_to(self._views, (*shape, 3)).reshape(-1, 3)
         return self._programs.normals(codes.reshape(len(codes), -1), views).reshape(*shape, 3)
@@ -99,7 +99,7 @@ class Modelled:
         return raw, stored
 
     def texels(self) -> np.ndarray:
-        """Stored codes of the patches' texels, (numbers, TEXELS, patches)."""
+        """Return the stored codes of the patches' texels, of shape (numbers, TEXELS, patches)."""
         return self._raw_and_stored(self._mixes.patches.normals)[1]
 
     def given(self, codes: np.ndarray) -> Given:
@@ -110,7 +110,7 @@ class Modelled:
         return Given(self._texels.written(self._texels.of(codes), self._codec.rounding), written[:, 0], written[:, 1])
 
     def mixed(self, operation: str, given: Given, way: Way) -> np.ndarray:
-        """The numbers that an operation on stored codes leaves, (numbers, patches)."""
+        """Return the numbers to which an operation mixes stored codes by the model, of shape (numbers, patches)."""
         return self._texels.code(BY_MODEL[operation](self._texels, given, self._mixes, way))
 
     def of_normals(self, operation: str, texels: np.ndarray) -> np.ndarray:
@@ -146,13 +146,14 @@ def _result_by_glsl(case: MixCase) -> Result:
 
 
 def _blocked_image(image: np.ndarray, height: int, width: int) -> np.ndarray:
-    """An image of patches as (TEXELS, patches, ...)."""
+    """Return an image of `height` by `width` patches in the shape (TEXELS, patches, channels)."""
     split = image.reshape(height, SIDE, width, SIDE, -1)
     return split.transpose(1, 3, 0, 2, 4).reshape(TEXELS, height * width, -1)
 
 
 def _compared(case: MixCase, codes: np.ndarray, decoded: Mapping[str, Decoded]) -> dict[str, Row]:
-    """Return by operation the way of mixing that best explains the device's numbers, and the share that agrees.
+    """Return for each operation the columns with the way of mixing that best explains the device's numbers, and the
+    percentage that agrees; no columns for an encoding that exists only in shaders.
 
     The model mixes the codes that the device stored.
     """
@@ -195,7 +196,7 @@ BACKENDS: Mapping[str, Callable[[MixCase], Result]] = MappingProxyType(
 
 
 def measure(case: MixCase) -> list[Row]:
-    """A row for each operation; rows that cannot be measured have the reason in `skipped`."""
+    """Return a row for each operation of a case; rows that cannot be measured have the reason in `skipped`."""
     described = _case_columns(case)
     domain = case.domain or case.codec.encoding.domain
     if not case.mixes.patches.held_by(domain).any():
@@ -209,7 +210,7 @@ def measure(case: MixCase) -> list[Row]:
 
 
 def _measured(case: MixCase, domain: str) -> list[Row]:
-    """A row for each operation that a code allows."""
+    """Return a row for each operation of a case; the reason is in `skipped` if the backend cannot measure it."""
     described = _case_columns(case)
     try:
         outcome = BACKENDS[case.backend](case)
@@ -228,7 +229,8 @@ def _measured(case: MixCase, domain: str) -> list[Row]:
 
 
 def _worst_columns(case: MixCase, figures: Figures, operation: str) -> Row:
-    """The worst mix of codes, searched for by the model, where that is asked for; its angle and its normals."""
+    """Return the largest error of an operation on codes that a search by the model finds, and its normals; empty if
+    no search is requested, or the case is not by the model."""
     is_searched = case.worst_case and operation in BY_MODEL and case.backend == BY_THE_MODEL
     errors = figures.errors(operation) if is_searched else np.array([-1.0])
     if errors.max() < 0:

@@ -161,14 +161,14 @@ class Texels:
         return (np.floor(sixteen * (scale + 1) / 2**16) / scale).astype(F32)
 
     def _whole_values(self, texels: np.ndarray) -> np.ndarray:
-        """Return the integer that stands for 1 in each plane, of a shape that broadcasts; 0 for floats and signs."""
+        """Return the integer that represents 1 in each plane, of a shape that broadcasts; 0 for floats and signs."""
         channels = len(texels) - self._signs
         is_float = self._storage.kind == "float"
         scales = [0 if is_float else self._storage.scale(c) for c in range(channels)] + [0] * self._signs
         return np.array(scales, np.float64).reshape(-1, *[1] * (texels.ndim - 1))
 
     def lerped(self, a: np.ndarray, b: np.ndarray, share: np.ndarray, way: Way) -> np.ndarray:
-        """a + (b - a) share."""
+        """Return a + (b - a) share, computed as `way` describes: with a rounded share, or in integers."""
         step = 2.0**way.fraction_bits
         share = np.rint(share * step) / step if way.fraction_bits else share
         mixed = a + (b - a) * share.astype(F32)
@@ -180,7 +180,7 @@ class Texels:
         return np.where(scale > 0, whole / np.maximum(scale, 1), mixed).astype(F32)
 
     def blended(self, base: np.ndarray, source: np.ndarray, alpha: np.ndarray, way: Way) -> np.ndarray:
-        """source alpha + base (1 - alpha), written."""
+        """Return source alpha + base (1 - alpha) as the target stores it, computed as `way` describes."""
         source = self.written(source, self._codec.rounding) if way.rounds_source else source
         x = alpha.astype(F32)
         mixed = self.written(source * x + base * (F32(1) - x), way.rounding)
@@ -209,14 +209,14 @@ def _filtered_texels(texels: Texels, quad: np.ndarray, mixes: Mixes, way: Way) -
 
 
 def _averaged_texels(texels: Texels, quad: np.ndarray, way: Way) -> np.ndarray:
-    """The mean of four texels (planes, 4, ...), written."""
+    """Return the mean of four texels (planes, 4, ...) as the target stores it."""
     half = np.full(quad.shape[2:], 0.5)
     low, high = (texels.lerped(quad[:, first], quad[:, first + 1], half, way) for first in (0, 2))
     return texels.written(texels.lerped(low, high, half, way), way.rounding)
 
 
 def _reduced_texels(texels: Texels, planes: np.ndarray, way: Way) -> np.ndarray:
-    """The mip level below texels of shape (planes, side, side, patches)."""
+    """Return the next smaller mip level of texels of shape (planes, side, side, patches)."""
     quad = np.stack([planes[:, y::2, x::2] for y in (0, 1) for x in (0, 1)], axis=1)
     return _averaged_texels(texels, quad, way)
 

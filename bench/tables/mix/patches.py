@@ -86,8 +86,8 @@ class Mixes:
     details: np.ndarray
 
     def held_by(self, operation: str, domain: str) -> np.ndarray:
-        """Return which mixes an encoding of a domain can represent, besides the patches' texels: a detail may be
-        outside the domain."""
+        """Return which mixes an encoding of a domain can represent, bool of shape (patches,); the patches' own texels
+        are not checked. Only details may be outside the domain."""
         if operation != "detail":
             return np.ones(len(self.alphas), bool)
         both = np.stack([self.decals, self.details])
@@ -117,7 +117,7 @@ def _with_fourth(vectors: np.ndarray) -> np.ndarray:
 
 
 def mixes_of(patches: Patches, samples: int) -> Mixes:
-    """Patches with random weights, the same for the same seed."""
+    """Return the patches with random weights, decals and details; the same for the same seed."""
     random = np.random.default_rng([patches.seed, 1])
     width, height = patches.size
     count = width * height
@@ -142,8 +142,8 @@ def mixes_of(patches: Patches, samples: int) -> Mixes:
 def patches_of(
     normals: NormalSet, angles_deg: tuple[float, ...], count: int, seed: int, edges_deg: tuple[float, ...] = ()
 ) -> Iterator[Patches]:
-    """The patches of a set: an image's own neighbours; or of each angle patches about the set's directions, then of
-    each edge the patches of the first angle with that edge through them."""
+    """Yield the patches of a set: of an image its own neighbours; otherwise for each angle patches about the set's
+    directions, then for each edge the patches of the first angle with that edge through them."""
     if normals.shape:
         yield from _own_neighbours(normals, count, seed)
         return
@@ -157,13 +157,13 @@ def patches_of(
 
 
 def _patch_indices(count: int) -> np.ndarray:
-    """Indices of `count` patches, and of as many again as make a power of two."""
+    """Return the indices of `count` patches, repeated from 0 up to a power of two."""
     whole = max(1 << (count - 1).bit_length(), LEAST_SIDE**2)
     return np.arange(whole) % count
 
 
 def _set_arrays(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Normals, views and coverage of a set: (count, 3), (count, 3) and (count,)."""
+    """Return the normals, views and coverage of a set: arrays of shape (count, 3), (count, 3) and (count,)."""
     gathered = ([], [], [])
     for load in normals.loads():
         chunk = load()
@@ -200,8 +200,9 @@ def _turned_patches(name: str, directions: np.ndarray, angle_deg: float, seed: i
 
 
 def _with_edge(patches: Patches, edge_deg: float, seed: int) -> Patches:
-    """Patches whose texels on one side of a line are turned by an angle about a tangent: another surface. The line runs
-    between the first texel and the second, at any angle, so that every mix has texels of both.
+    """Return patches whose texels on one side of a line are turned by an angle about a tangent, as on another
+    surface. The line runs between the first texel and the second, at any angle, so that every mix has texels of both
+    sides.
 
     n' = n cos a + (t x n) sin a + t (t . n) (1 - cos a), with t unit (Rodrigues).
     """
@@ -221,7 +222,8 @@ def _with_edge(patches: Patches, edge_deg: float, seed: int) -> Patches:
 
 
 def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patches]:
-    """Squares of an image's pixels that are all covered, at random places; none of an image that has none."""
+    """Yield up to two sets of squares of an image's pixels at random places, all covered: first those inside a
+    surface, then those across an edge, with the median angle of the edges. Nothing if no square is covered."""
     assert normals.shape
     height, width = normals.shape
     n, view, covered = (a.reshape(height, width, -1) for a in _set_arrays(normals))
@@ -247,12 +249,15 @@ def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patch
 
 
 def _steepest_deg(normals: np.ndarray) -> np.ndarray:
-    """The largest angle between neighbours of each patch (TEXELS, patches, 3), in degrees."""
+    """Return the largest angle between adjacent texels of each patch, in degrees, of shape (patches,).
+
+    Args:
+        normals: array of shape (TEXELS, patches, 3)."""
     grid = normals.reshape(SIDE, SIDE, *normals.shape[1:])
     pairs = ((grid[1:], grid[:-1]), (grid[:, 1:], grid[:, :-1]))
     return np.max([angles_between(first, other).max(axis=(0, 1)) for first, other in pairs], axis=0)
 
 
 def rounded(n: np.ndarray) -> np.ndarray:
-    """Return normals rounded to float32, the input precision of encoders."""
+    """Return normals rounded to the precision of float32, the input of encoders, but as float64."""
     return n.astype(np.float32).astype(np.float64)

@@ -55,7 +55,8 @@ class Programs:
         self._like, self._scales = shared(codec.storage, codec.encoding.components)
 
     def codes(self, normals: np.ndarray, views: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Codes as encoded and as stored, float32 of shape (numbers, count), of unit normals (count, 3)."""
+        """Return the codes of unit normals (count, 3), as encoded and as stored: two float32 arrays of shape
+        (numbers, count)."""
         encode = _encoder(self._codec.encoding, self._like, self._codec.rounding)
         parts = [
             [np.asarray(array)[:, :count] for array in encode(Vec3(*n), Vec3(*view), *self._scales)]
@@ -74,7 +75,8 @@ class Programs:
         return np.concatenate(parts)
 
     def _blocks(self, *planes: np.ndarray):
-        """Blocks of planes (rows, count): how many count, and JAX's planes of each."""
+        """Yield planes, arrays of shape (rows, count), in padded blocks: how many columns are real, then JAX's rows
+        of each array."""
         total = planes[0].shape[1]
         for start in range(0, total, self._block):
             cut = [a[:, start : start + self._block].astype(np.float32) for a in planes]

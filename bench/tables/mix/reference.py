@@ -8,7 +8,7 @@ from ...ground.angles import angles_deg
 
 
 def unit_rows(v: np.ndarray) -> np.ndarray:
-    """Rows at length 1, (..., 3); a row of length 0 stays 0."""
+    """Return vectors (..., 3) scaled to length 1; a vector of length 0 stays 0."""
     length = np.linalg.norm(v, axis=-1, keepdims=True)
     return np.divide(v, length, out=np.zeros_like(v), where=length > 0)
 
@@ -24,21 +24,22 @@ def lerp_angle(theta, t):
 
 
 def lerp_length(theta, t):
-    """The length of that mix, 1 where both normals are the same."""
+    """Return the length of the mix in `lerp_angle`, before it is normalised: 1 if both normals are the same."""
     # |a (1 - t) + b t|^2 = 1 - 2 t (1 - t) (1 - cos theta)
     return np.sqrt(1.0 - 2.0 * t * (1.0 - t) * (1.0 - np.cos(theta)))
 
 
 def tilted(tilt: np.ndarray, turn: np.ndarray) -> np.ndarray:
-    """Unit normals tilted from +z by an angle in a direction, radians; (..., 3)."""
+    """Return unit normals, (..., 3), tilted from +z by the angle `tilt` in the direction `turn`, both in radians."""
     return np.stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)], axis=-1)
 
 
 def reoriented(base: np.ndarray, detail: np.ndarray) -> np.ndarray:
-    """A detail's normal laid over a base's: turned as +z is turned to the base along the shortest way; unit, (..., 3).
+    """Return a detail's normal laid over a base's: rotated as +z is rotated to the base along the shortest way. The
+    result has length 1, shape (..., 3).
 
-    Source: C. Barre-Brisebois and S. Hill, Blending in Detail, 2012 (reoriented normal mapping). At a base of -z, which
-    has no shortest way, it is turned about x.
+    Source: C. Barre-Brisebois and S. Hill, Blending in Detail, 2012 (reoriented normal mapping). For a base of -z,
+    where no way is the shortest, the detail is rotated about x.
     """
     # t = base + z, r = t (t . d') / t.z - d' with d' = (-d.x, -d.y, d.z)
     flipped = detail * np.array([-1.0, -1.0, 1.0])

@@ -22,7 +22,8 @@ DONE: Mapping[str, str] = {
 
 
 def _excess(row: Row) -> float:
-    """Return the largest error minus that of geometry and twice that of the texels alone: a read and a write."""
+    """Return a row's largest error in degrees, minus that of geometry, and minus twice the part of the texels' own
+    error that is excused: a read and a write."""
     return row["angle_max_deg"] - row["geometry_max_deg"] - 2 * excused(row["operation"], row["alone_max_deg"])
 
 
@@ -31,7 +32,7 @@ def _allowed_deg(row: Row) -> float:
 
 
 def is_faulty(row: Row) -> bool:
-    """Whether a row speaks against its codec."""
+    """Whether a row counts against its codec: it has garbage, or more error in excess than is allowed."""
     return bool(row["garbage_percent"]) or _excess(row) > _allowed_deg(row)
 
 
@@ -59,8 +60,8 @@ def _severity(row: Row) -> tuple[bool, float]:
 
 
 def judged(rows: Sequence[Row]) -> list[Row]:
-    """The rows with the verdicts of their codec and back end; a use is judged where all of its operations were
-    measured."""
+    """Return the rows with the verdicts of their codec and backend; a use is judged only if all of its operations
+    were measured."""
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault(codec_of(row), []).append(row)
@@ -93,7 +94,7 @@ def _verdict_columns(rows: Sequence[Row]) -> Row:
 
 
 def _is_integer(row: Row, is_across: bool) -> bool:
-    """Whether a row has no figures because its code is an integer."""
+    """Whether a row with an edge (`is_across`), or without, has no figures because its code is an integer."""
     return row.get("skipped") == OF_INTEGER and bool(row["edge_deg"]) == is_across
 
 
@@ -104,18 +105,18 @@ def decides(row: Row) -> bool:
 
 
 def decides_across(row: Row) -> bool:
-    """Whether a row decides across an edge."""
+    """Whether a row decides across an edge: it has figures and an edge."""
     return row["angle_max_deg"] is not None and bool(row["edge_deg"])
 
 
 def worst_fault(rows: Sequence[Row]) -> Row | None:
-    """The worst of the rows that speak against their codec; None where none does."""
+    """Return the worst of the rows that count against their codec; None if no row does."""
     faulty = [row for row in rows if row["angle_max_deg"] is not None and is_faulty(row)]
     return max(faulty, key=_severity) if faulty else None
 
 
 def lines(rows: Sequence[Row]) -> Iterator[Row]:
-    """A line for each codec and back end: its verdicts, and the worst figures of the rows that decide."""
+    """Yield a row for each codec and backend: its verdicts, and the worst figures of the rows that decide."""
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         if decides(row):

@@ -124,7 +124,8 @@ def _group(row: Row) -> tuple[Any, ...]:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    """The verdicts, each operation's worst figures by one back end, and how the device mixes; files have every row."""
+    """Yield the sheets of verdicts, of each operation's worst figures by one backend, and of how the device mixes;
+    files have every row."""
     yield from _summary(done.rows)
     shown = ("encoding", "storage", "backend", "operation", "normals", "angle_deg", "edge_deg", "alone_max_deg")
     shown += ("angle_mean_deg", "angle_max_deg", "angle_worst_deg", "garbage_percent", "garbage_error_percent")
@@ -139,7 +140,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _ways(rows: Sequence[Row]) -> list[Row]:
-    """A line for each storage, operation and arithmetic of the device."""
+    """Return a row for each storage, operation and device arithmetic, with its lowest agreement with the model."""
     agreed: dict[tuple[str, ...], float] = {}
     for row in rows:
         if row["mixed_by"] and row["agree_percent"] is not None:
@@ -167,7 +168,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _surviving(rows: Sequence[Row], column: str) -> str:
-    """Return the codes that a verdict holds for by every backend."""
+    """Return in one text the encodings whose verdict is "yes" by every backend, or "none of them"."""
     failing = {codec_name(line) for line in rows if line[column] != "yes"}
     surviving = {codec_name(line): line for line in rows if codec_name(line) not in failing}
     halves = [line["encoding"] for line in surviving.values() if _is_of_half(line["encoding"])]
@@ -176,7 +177,7 @@ def _surviving(rows: Sequence[Row], column: str) -> str:
 
 
 def _is_of_half(name: str) -> bool:
-    """Whether an encoding of the catalogue holds a hemisphere alone."""
+    """Whether a name is that of an encoding in the catalogue that represents only a hemisphere."""
     return name in ENCODINGS and ENCODINGS[name].domain == "hemisphere"
 
 

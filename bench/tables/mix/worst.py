@@ -25,7 +25,7 @@ Errors = Callable[[Mixes], np.ndarray]
 
 
 def climbed(mixes: Mixes, errors: np.ndarray, of: Errors, seed: int) -> Mixes:
-    """Return the worst mix that is found, alone.
+    """Return the worst mix that a random search finds, alone.
 
     Args:
         mixes: the sample; if its patches may be anywhere on the sphere, they are turned.
@@ -48,7 +48,7 @@ def climbed(mixes: Mixes, errors: np.ndarray, of: Errors, seed: int) -> Mixes:
 
 
 def chosen(mixes: Mixes, index: np.ndarray) -> Mixes:
-    """Some of the mixes, by their numbers."""
+    """Return the mixes with these indices."""
     patches = mixes.patches
     patches = replace(patches, count=len(index), normals=patches.normals[:, index], views=patches.views[index])
     return replace(mixes, patches=patches, **{name: getattr(mixes, name)[index] for name in OF_EACH})
@@ -87,7 +87,7 @@ def _between(base: np.ndarray, detail: np.ndarray, alpha: np.ndarray) -> np.ndar
 
 
 def _random_rotations(degrees: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """Rotations by angles about random axes, (count, 3, 3)."""
+    """Return rotations by the given angles about random axes, matrices of shape (count, 3, 3)."""
     k = unit_rows(random.standard_normal((len(degrees), 3)))
     c, s = np.cos(np.radians(degrees))[:, None, None], np.sin(np.radians(degrees))[:, None, None]
     zero = np.zeros(len(k))

@@ -14,10 +14,10 @@ CONDITIONS = ("space", "moves", "axis")
 
 
 def wobble_chart(rows: Sequence[Row]) -> Chart:
-    """The wobble over the turn, a line for each code, its colour the codec's.
+    """Return the chart of the wobble over the turn, a line for each code, coloured by its codec.
 
     Args:
-        rows: of the motion table; none make an empty chart.
+        rows: rows of the motion table; without rows the chart is empty.
     """
     points = [
         {"codec": CodecKey.of(row).label, "line": _line_name(row, rows), "x": row["turn_deg"], "y": row["wobble_deg"]}
@@ -32,7 +32,7 @@ def wobble_chart(rows: Sequence[Row]) -> Chart:
         name="motion",
         title=_finding_sentence(points),
         subtitle="Wobble by speed of the turn",
-        description="RMS change of the error from one frame to the next by the degrees that the camera or the object "
+        description="RMS change of the error from one frame to the next, by the angle that the camera or the object "
         "turns, with a line for each codec. Codecs with a ratio of 0.01 or less are not drawn. The "
         "figures are in the table below.",
         x=Axis(title="turn (degrees per frame)", scale=Scale.LOG),
@@ -58,7 +58,7 @@ def _conditions_text(row: Row, rows: Sequence[Row]) -> str:
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:
-    """Return which codec wobbles the most."""
+    """Return a sentence with the codec that wobbles the most; "No codec wobbles" without points."""
     if not points:
         return "No codec wobbles"
     worst = max(points, key=lambda point: point["y"])

@@ -63,7 +63,7 @@ class WobbleTotal:
         self.jump_sum += float(np.sum(change[jumped]))
 
     def row(self) -> Row:
-        """The figures; none where there was nothing to follow."""
+        """Return the figures; only `invalid` if no normal was followed from a frame to the next."""
         if not self.pairs:
             return {"invalid": self.invalid}
         static = math.degrees(math.sqrt(self.squares / self.points))

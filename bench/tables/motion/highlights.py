@@ -19,7 +19,7 @@ LIGHTS = (
 
 
 def lit_scene(scene: Scene) -> Scene:
-    """Scene gloss with nothing but highlights: its spheres alone, black, under LIGHTS."""
+    """Return scene gloss with nothing but highlights: only its spheres, in black, under LIGHTS."""
     spheres = tuple(replace(material, albedo=(0.0,) * 3) for material in scene.materials[: len(POWERS)])
     return replace(scene, parts=scene.parts[:1], materials=spheres, lights=LIGHTS, ambient=(0.0,) * 3)
 

@@ -53,7 +53,7 @@ class FrameSequence:
     setting: Setting
 
     def views(self, view: View) -> Iterator[View]:
-        """The camera of each frame, about the scene's own."""
+        """Yield the camera of each frame, rotated by equal amounts to both sides of the given camera."""
         angles = turning.angles(self.turn, self.frames, PICTURE_SWING_DEG)
         for angle in angles - np.max(angles) / 2:
             yield view.turned(self.axis, float(angle))
@@ -137,7 +137,7 @@ class Bench:
         return row | columns | {"device": self._device.renderer}, filmed
 
     def reference(self, case: MotionCase) -> Filmed:
-        """The frames of exact normals. Raises ValueError for a case without frames."""
+        """Return the frames of exact normals, rendered once. Raises ValueError for a case without frames."""
         if not case.pictures or not self._device:
             raise ValueError(f"{case.name} has no frames")
         pictures = case.pictures
@@ -196,12 +196,12 @@ class Differences:
 
     @property
     def static_db(self) -> float:
-        """PSNR of the images, peak 1."""
+        """The PSNR of the images in decibels, peak 1."""
         return psnr_db(float(np.mean(self.static)))
 
     @property
     def wobble_db(self) -> float:
-        """PSNR of the changes of the images' errors from frame to frame."""
+        """The PSNR, in decibels, of the changes of the images' errors from frame to frame."""
         return psnr_db(float(np.mean(self.moving)))
 
 
@@ -215,16 +215,16 @@ class Projector:
     of_lit: Rendering
 
     def views(self) -> Iterator[View]:
-        """The camera of each frame."""
+        """Yield the camera of each frame."""
         return self.pictures.views(self.scene.view)
 
     def image(self, view: View, keeps: Keeps | None = None) -> np.ndarray:
-        """A frame as displayed, float32 of shape (height, width, 3)."""
+        """Return a frame as displayed, float32 of shape (height, width, 3); of exact normals without `keeps`."""
         self.of_scene.draw(replace(self.scene, view=view, previous=view), keeps)
         return Display(SCENES[SCENE].exposure or 0.0).image(self.of_scene.image()).astype(np.float32)
 
     def highlights(self, keeps: Keeps | None = None) -> np.ndarray:
-        """A frame of highlights in linear light, (height, width, 3): one light in each channel."""
+        """Return a frame of highlights in linear light, (height, width, 3): each channel shows one light."""
         self.of_lit.draw(keeps=keeps)
         return self.of_lit.image()
 
@@ -285,12 +285,13 @@ def on_surfaces(trip: Trip, of_normals: np.ndarray, of_positions: np.ndarray) ->
 
 
 def turned(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    """Vectors under a matrix, float32 of shape (count, 3)."""
+    """Return vectors, (count, 3), multiplied by a matrix, as float32."""
     return (rows.astype(np.float64) @ matrix.T).astype(np.float32)
 
 
 def _of_highlights(filmed: Filmed, exact: Filmed) -> Row:
-    """The columns of highlights; `found.worst` is the sphere whose highlights move the most."""
+    """Return the columns of highlights, and set `filmed.worst` to the sphere, from 1, whose highlights move the most;
+    empty if no highlight can be followed."""
     moved, flickered = highlights.wobble(filmed.spots, exact.spots[0])
     if not np.isfinite(moved).any():
         return {}

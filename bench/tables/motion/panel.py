@@ -45,13 +45,13 @@ class Around:
     frames: int
 
     def views(self) -> Iterator[View]:
-        """The camera of each frame."""
+        """Yield the camera of each frame."""
         angles = turning.angles(self.turn, self.frames, 2 * SWING_DEG)
         for angle in angles - np.max(angles) / 2:
             yield around(self.scene.view, self.axis, float(angle))
 
     def light(self, view: View, keeps: Keeps | None = None) -> np.ndarray:
-        """A frame's linear light, (height, width, 3)."""
+        """Return a frame's linear light, (height, width, 3); with exact normals unless `keeps` is given."""
         self.made.draw(replace(self.scene, view=view, previous=view), keeps)
         return self.made.image()
 
@@ -80,7 +80,7 @@ def going_around(device: Device, axis: str, turn: float, frames: int) -> Iterato
 
 
 def exact(panel: Around) -> Exact:
-    """The frames of exact normals, exposed once for all."""
+    """Return the frames of exact normals, all with the exposure that is measured in the middle frame."""
     light, covered = [], []
     for view in panel.views():
         light.append(panel.light(view))

@@ -25,7 +25,8 @@ def _file_stem(row: Row) -> str:
 
 
 def write(folder: Path, row: Row, filmed: Filmed, exact: Filmed) -> None:
-    """The sphere whose highlights move the most: the code next to exact normals next to their difference."""
+    """Write an animation of the sphere whose highlights move the most: decoded normals, exact normals and their
+    difference, side by side. Write nothing if there is no such sphere."""
     if exact.spheres is None or not np.any(where := exact.spheres == filmed.worst) or not filmed.worst:
         return
     window = _window(where)
@@ -43,12 +44,13 @@ def _window(where: np.ndarray) -> tuple[slice, slice]:
 
 
 def films(folder: Path, rows: Sequence[Row]) -> Iterator[Film]:
-    """The animation of the row whose highlights move the most. A name is looked up, so that none leads out of it."""
+    """Yield the animation of the row whose highlights move the most, if the folder has it. A name is looked up, so
+    that it cannot lead out of the folder."""
     there = files_of(folder)
     usable = sorted(having(rows, "highlight_px", "turn_deg"), key=lambda row: -row["highlight_px"])
     for row in usable[:1]:
         if path := there.get(f"{_file_stem(row)}.png"):
             code = f"{row['encoding']} {row['storage']} in {row['space']} space"
-            caption = f"The highlight that moves the most: {code}, at {row['turn_deg']:g} degrees per frame of "
-            caption += f"{row['axis']}. Decoded normals, exact normals and {chart.GAIN:g} times their difference."
+            caption = f"The highlight that moves the most: {code}, at {row['turn_deg']:g} degrees of {row['axis']} "
+            caption += f"per frame. Decoded normals, exact normals, and their difference times {chart.GAIN:g}."
             yield Film(caption, path)

@@ -29,7 +29,7 @@ class MotionOptions(SourceOptions):
         Option(
             "--space",
             "view, world: the space that normals are encoded in; comma-separated, or all. With several spaces, an "
-            "encoding is measured in those it supports.",
+            "encoding is measured in the spaces that it supports.",
         ),
     ] = ("view", "world")
     moves: Annotated[Names, Option("--moves", "camera, object: what turns; comma-separated, or all.", in_run=True)] = (
@@ -55,7 +55,7 @@ class MotionOptions(SourceOptions):
         int,
         Option(
             "--count",
-            "Number of normals whose codes are followed. Frames take longer; --picture-turn none leaves them out.",
+            "Number of normals whose codes are followed. Rendering frames takes longer; --picture-turn none skips it.",
         ),
     ] = 2**16
     size: Size = "320x240"
@@ -95,7 +95,7 @@ COLUMNS = (
         better="less",
     ),
     Column("jumps_percent", "Normals whose code changes from one frame to the next.", unit="%", better="less"),
-    Column("jump_deg", "Mean change of the error where the code changes.", unit="degrees", better="less", drops=8),
+    Column("jump_deg", "Mean change of the error when the code changes.", unit="degrees", better="less", drops=8),
     Column(
         "highlight_px",
         "RMS change of a highlight's centroid from one frame to the next, on the surface: the image turns with the "
@@ -122,14 +122,14 @@ COLUMNS = (
     ),
     Column(
         "wobble_psnr_db",
-        "The same for the change of that difference from one frame to the next, pixel by pixel while surfaces move "
-        "across the pixels. 3 dB below static_psnr_db if the errors of two frames are unrelated.",
+        "PSNR of the change of the two images' difference from one frame to the next, pixel by pixel while surfaces "
+        "move across the pixels. 3 dB below static_psnr_db if the errors of two frames are unrelated.",
         unit="dB",
         better="more",
     ),
     Column(
         "reprojected_psnr_db",
-        "The same for an image that turns with the camera, with every surface at its pixel, as after exact "
+        "`wobble_psnr_db` for an image that turns with the camera, with every surface at its pixel, as after exact "
         "reprojection: the remaining change is due to the encoding. Infinite if codes do not change.",
         unit="dB",
         better="more",
@@ -144,7 +144,7 @@ COLUMNS = (
     ),
     Column(
         "crawl_psnr_db",
-        "The same for the change of that difference from one frame to the next: steps that crawl.",
+        "`wobble_psnr_db` for the image of the panel. It is low if steps crawl over the panel.",
         unit="dB",
         better="more",
     ),
@@ -161,13 +161,13 @@ COLUMNS = (
     Column(
         "backend", "jax emulates the storage; glsl is used if the encoding has no Python implementation.", HOW, drops=3
     ),
-    Column("device", "The device that was measured on; the renderer's if frames were rendered.", HOW, drops=1),
+    Column("device", "The device of the measurement; the renderer's device if frames were rendered.", HOW, drops=1),
     Column("seed", "The random seed of the normals and of the scene's lights.", HOW, drops=4),
     shared.EXACT,
     shared.SKIPPED,
 )
 ALSO = (
-    Column("worst_turn_deg", "The measured turn with the largest wobble; empty for none.", unit="degrees"),
+    Column("worst_turn_deg", "The measured turn with the largest wobble; empty if nothing wobbles.", unit="degrees"),
     Column("worst_wobble_deg", "wobble_deg at that turn.", unit="degrees", better="less"),
 )
 
@@ -194,6 +194,6 @@ TABLE = Table(
         method="Normals fixed on surfaces are encoded in each frame of a turn, stored and decoded; the error is "
         "followed on the surface. Highlights and images are rendered with these decodes instead of exact "
         "normals. Highlights are taken from an image that turns with the camera, so that only the encoding "
-        "changes them. The image is from a turning camera, so the pixel grid also has an effect.",
+        "changes them. The displayed image is from a turning camera, so the pixel grid also has an effect.",
     ),
 )

@@ -40,7 +40,7 @@ class Points:
 
 
 def angles(turn: float, frames: int, swing: float = SWING_DEG) -> np.ndarray:
-    """Degrees at each frame, (frames,): `turn` more each frame, up to `swing`, and back, and so on."""
+    """Return the degrees at each frame, (frames,): `turn` more in each frame, up to `swing`, then back, and so on."""
     steps = max(1, math.floor(swing / turn + 1e-9))
     phase = np.arange(frames) % (2 * steps)
     return turn * np.minimum(phase, 2 * steps - phase)
@@ -56,14 +56,14 @@ def rotations(axis: str, turn: float, frames: int) -> np.ndarray:
 
 
 def points(space: str, count: int, seed: int) -> Iterator[Points]:
-    """Points in chunks of at most CHUNK.
+    """Yield points in chunks of at most CHUNK.
 
-    A camera may look anywhere in the world: in world space normals are of all directions.
+    A camera may look anywhere in the world: in world space normals have all directions.
 
     Args:
         space: one of SPACES.
-        count: of points, 1 or more.
-        seed: of where the sequence begins; the first points of a larger count are the same.
+        count: number of points, 1 or more.
+        seed: seed of the start of the sequence; the first points of a larger count are the same.
     """
     least = LEAST_Z if space == SPACES[0] else -1.0
     low, high = np.array([least, 0, -HALF_WIDTH, -HALF_HEIGHT]), np.array([1, 2 * np.pi, HALF_WIDTH, HALF_HEIGHT])

@@ -37,13 +37,13 @@ OTHER_DOMAIN = "in world space normals have all directions, and this encoding is
 
 
 def motions(options: MotionOptions) -> list[Motion]:
-    """Return the rotation of each row. Raises UsageError."""
+    """Return the rotations to measure: each space, moving thing, axis and turn. Raises UsageError."""
     in_range("--frames", options.frames, 2, MAX_FRAMES)
     chosen = [
         choose(what, given, {name: name for name in known})
         for what, given, known in (
             ("space", options.space, turning.SPACES),
-            ("thing that moves", options.moves, turning.MOVES),
+            ("value of --moves", options.moves, turning.MOVES),
             ("axis", options.axis, TURNS),
         )
     ]
@@ -58,7 +58,7 @@ def motions(options: MotionOptions) -> list[Motion]:
 
 
 def codecs(options: MotionOptions) -> list[Codec]:
-    """The codecs asked for; those that do not fit are named on standard error. Raises UsageError."""
+    """Return the requested codecs; those that do not fit are named on standard error. Raises UsageError."""
     chosen, left_out = fitting(codecs_named(options.encoding, options.storage, options.rounding))
     for encoding in dict.fromkeys(codec.encoding for codec in chosen):
         check_twin(encoding)
@@ -66,7 +66,8 @@ def codecs(options: MotionOptions) -> list[Codec]:
 
 
 def picture_turns(options: MotionOptions) -> tuple[float, ...]:
-    """The turns that frames are rendered of. Raises UsageError."""
+    """Return the turns of which frames are rendered: those requested, empty for "none", by default the turn nearest
+    to USUAL_PICTURE_TURN_DEG. Raises UsageError for a turn that is not among --turn."""
     turns = checked_numbers("--turn", options.turn, float, LEAST_TURN_DEG, MOST_TURN_DEG)
     possible = tuple(turn for turn in turns if turn <= PICTURE_SWING_DEG)
     if options.picture_turn is None:
@@ -76,7 +77,7 @@ def picture_turns(options: MotionOptions) -> tuple[float, ...]:
     asked = checked_numbers("--picture-turn", options.picture_turn, float, LEAST_TURN_DEG, PICTURE_SWING_DEG)
     if missing := [turn for turn in asked if turn not in turns]:
         raise UsageError(
-            f"--picture-turn {missing[0]:g}: not among --turn {text_of(options.turn)}; add it there, or use none"
+            f"--picture-turn {missing[0]:g}: not among --turn {text_of(options.turn)}; add it to --turn, or use none"
         )
     return asked
 
@@ -138,7 +139,7 @@ STILL_DEG = 1e-4
 
 
 def _lines(rows: Sequence[Row]) -> list[list[Row]]:
-    """Rows that differ in the turn alone, together."""
+    """Return the rows with figures in groups that differ only in the turn."""
     lines: dict[tuple, list[Row]] = {}
     for row in having(rows, "wobble_deg", "turn_deg"):
         lines.setdefault(tuple(row.get(name) for name in LINE), []).append(row)
@@ -153,7 +154,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         worst = max(part, key=lambda row: row["wobble_deg"])
         largest = f"up to {worst['wobble_deg']:.2g}° RMS ({codec_name(worst)})"
         phrases.append(
-            f"{'none' if worst['wobble_deg'] < STILL_DEG else largest} in {space} space as the {moves} turns"
+            f"{'none' if worst['wobble_deg'] < STILL_DEG else largest} in {space} space while the {moves} turns"
         )
     if phrases:
         yield f"Change of the error from frame to frame: {'; '.join(phrases)}."

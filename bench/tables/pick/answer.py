@@ -66,22 +66,23 @@ ERRORS = 2
 
 
 def places_of(row: Row) -> list[str]:
-    """Return the places of a row in the answer, as listed in `place`; only an empty name if the row has no place."""
+    """Return the names of a row's places in the answer; `[""]` if the row has no place."""
     return str(row.get("place") or "").split(", ")
 
 
 def largest(row: Row) -> float | None:
-    """Return the supremum or a larger sampled angle: float32 may lose what exact arithmetic does not."""
+    """Return the supremum of the angle, or a larger sampled angle: float32 may lose what exact arithmetic does not.
+    None if neither is known."""
     return _largest_angle(row["angle_max_deg"], row["angle_sup_deg"])
 
 
 def mean(row: Row) -> float | None:
-    """The mean angle, or the mean error after the mixing that is asked for, if that is larger."""
+    """Return the mean angle, or the mean error after the requested mixing, if that is larger; None if not known."""
     return _largest_angle(row["angle_mean_deg"], row.get("mixed_mean_deg"))
 
 
 def largest_mixed(row: Row) -> float | None:
-    """The largest angle, or the largest error after the mixing that is asked for, if that is larger."""
+    """Return the larger of the largest angle and the largest error after requested mixing; None if unknown."""
     return _largest_angle(largest(row), row.get("mixed_max_deg"))
 
 
@@ -90,14 +91,14 @@ def _largest_angle(*angles: float | None) -> float | None:
 
 
 def images(row: Row) -> dict[tuple[str, str], float]:
-    """The PSNR of a row's images by scene and specular power, which is empty where materials have none; nothing where
-    none was rendered."""
+    """Return the PSNR of a row's images by scene and specular power, which is empty for materials without a power; an
+    empty dict if no image was rendered."""
     figures = {name.removeprefix(IMAGE): value for name, value in row.items() if name.startswith(IMAGE)}
     return {_scene_and_power(name): value for name, value in figures.items() if value is not None}
 
 
 def image_name(scene: str, power: float | None) -> str:
-    """Return the name of an image: `gloss_47`, or `studio`, whose materials have no specular power."""
+    """Return the name of an image: `gloss_47`, or only the scene, `studio`, if materials have no specular power."""
     return scene if power is None else f"{scene}_{power:g}"
 
 
@@ -107,12 +108,12 @@ def _scene_and_power(name: str) -> tuple[str, str]:
 
 
 def image_db(row: Row) -> float | None:
-    """The lowest PSNR of a row's images; None where none was rendered."""
+    """Return the lowest PSNR of a row's images; None if no image was rendered."""
     return min(images(row).values(), default=None)
 
 
 def decibels(angle: float | None) -> float:
-    """An angle in decibels, less is better; infinite where it is not known."""
+    """Return 20 log10 of an angle in degrees, as decibels; lower is better, infinite if the angle is None."""
     return math.inf if angle is None else 20 * math.log10(max(angle, 1e-12))
 
 
@@ -143,7 +144,7 @@ def floor(row: Row) -> float:
 
 
 def _hidden(row: Row) -> float:
-    """The issue slots of a pass that take no time, where a question supposes others."""
+    """Return the issue slots of a pass that take no time: those of the question, or else HIDDEN_SLOTS."""
     return row.get("hidden_slots") or HIDDEN_SLOTS
 
 
@@ -201,7 +202,7 @@ def clear_gap_db(candidate: Row, other: Row) -> float:
 
 
 def is_clearly_better(candidate: Row, other: Row) -> bool:
-    """Whether a code loses less than another one, by more than chance explains."""
+    """Whether an encoding's loss is smaller than another's by at least `clear_gap_db`, beyond chance."""
     return loss_db(other) - loss_db(candidate) >= clear_gap_db(candidate, other)
 
 
@@ -211,7 +212,7 @@ def to_a_step(figure: float) -> float:
 
 
 def _to_a_tenth(loss: float) -> float:
-    """Round a loss to a tenth of a decibel, so that the storage that comes first among equals stays first."""
+    """Return a loss rounded to 0.1 dB, so that the storage that comes first among equals stays first."""
     return round(loss, 1) if math.isfinite(loss) else loss
 
 
@@ -221,17 +222,17 @@ def figures(row: Row) -> tuple[float, float, float]:
 
 
 def beats(candidate: Row, other: Row) -> bool:
-    """Whether a code is nowhere worse than another one and somewhere better."""
+    """Whether an encoding is better than another in at least one of `figures`, and worse in no figure."""
     pairs = list(zip(figures(candidate), figures(other), strict=True))
     return all(a <= b for a, b in pairs) and any(a < b for a, b in pairs)
 
 
 def why_unfit(row: Row) -> str:
-    """Why a code can never be the answer to a question, whatever it costs; empty where it can."""
+    """Return why an encoding can never be the answer to a question, whatever it costs; empty if it can be."""
     if row["skipped"]:
         return row["skipped"]
     if row["invalid"]:
-        return f"{row['invalid']} decodes that are NaN or infinite"
+        return f"{row['invalid']} decodes are NaN or infinite"
     if row["needs"] and row["domain"] not in HOLDS[row["needs"]]:
         return f"only for {MADE_FOR[row['domain']]}"
     if not row["needs"] and row["lost_percent"]:
@@ -239,12 +240,12 @@ def why_unfit(row: Row) -> str:
     if (row["length_share"] or 0) > LENGTH and not row["accept_lengths"]:
         return LENGTH_SAID
     if row["bits"] and row["code_bits"] and row["bits"] - row["code_bits"] > WASTED_BITS:
-        return f"it has {row['code_bits']:.0f} bits in any storage"
+        return f"uses only {row['code_bits']:.0f} bits in any storage"
     return ""
 
 
 def why_left_out(row: Row) -> str:
-    """Why a code does not qualify by itself; empty where it does."""
+    """Return why an encoding does not qualify, regardless of the other encodings; empty if it qualifies."""
     if why := why_unfit(row):
         return why
     if row["table"] and not row.get("look_ups", True):
@@ -264,7 +265,8 @@ def why_left_out(row: Row) -> str:
 
 
 def edges_decide(needs: str | None) -> bool:
-    """Whether neighbours may be of two surfaces: decals have edges, and surfaces end. Texels of a map are of one."""
+    """Whether neighbouring pixels may be of two surfaces: true unless only a hemisphere is needed, as in a normal
+    map, whose texels are of one surface."""
     return needs != "hemisphere"
 
 
@@ -275,12 +277,13 @@ def lost(row: Row) -> str:
 
 
 def shown_share(percent: float) -> str:
-    """A share that is not 0, as a sentence has it."""
+    """Return a percentage above 0 as text, so that it is never shown as 0: `1.2%` or "less than 0.01%"."""
     return f"{percent:.2g}%" if percent >= 0.01 else "less than 0.01%"
 
 
 def groups(rows: Sequence[Row]) -> dict[tuple[str, str, str], list[Row]]:
-    """Rows by the question that they answer: a storage or a number of bytes and how it rounds, normals, and scenes."""
+    """Return the rows grouped by the question that they answer: the storage or bytes with the rounding, the set of
+    normals, and the scenes."""
     by_question: dict[tuple[str, str, str], list[Row]] = {}
     for row in rows:
         by_question.setdefault((asked_of(row), row["normals"], row["scene"]), []).append(row)
@@ -290,12 +293,12 @@ def groups(rows: Sequence[Row]) -> dict[tuple[str, str, str], list[Row]]:
 def asked_of(row: Row) -> str:
     """Return what was requested, in words; rounding to nearest is not mentioned."""
     rounding = row.get("rounding") or "nearest"
-    return row["asked"] if rounding == "nearest" else f"{row['asked']} rounded by {rounding}"
+    return row["asked"] if rounding == "nearest" else f"{row['asked']} with {rounding} rounding"
 
 
 def answered(rows: Sequence[Row]) -> list[Row]:
-    """The rows with `left_out`, `front` and `place`: those that qualify by their order, then others, for each question.
-    Of other storages of the same bytes those stay that are much better."""
+    """Return the rows of each question with `left_out`, `front` and `place`: first those that qualify, by their
+    order, then the others. Of other storages with the same bytes only a row that is much better stays."""
     return [row for group in groups(rows).values() for row in _answered_rows(group)]
 
 
@@ -320,7 +323,8 @@ def _answered_rows(group: Sequence[Row]) -> list[Row]:
 
 
 def _with_ties(fit: list[Row]) -> tuple[list[Row], list[int]]:
-    """Rows in their order, of those whose images tie with the best the cheapest first; and which of the others tie."""
+    """Return the qualifying rows in their order, but first the cheapest of those whose images tie with the best; and
+    the indices of the others that tie."""
     if not fit or fit[0]["aim"] != "image" or order(fit[0])[0] != 1:
         return fit, []
     tied = [row for row in fit[1:] if score(row) - score(fit[0]) < clear_gap_db(fit[0], row)]
@@ -330,7 +334,8 @@ def _with_ties(fit: list[Row]) -> tuple[list[Row], list[int]]:
 
 
 def _only_inside(judged: Sequence[Row], best: Sequence[Row]) -> Row | None:
-    """The best of the codes that survive mixing inside a surface alone, if it is better than the answer."""
+    """Return the best encoding among those that survive mixing only inside a surface; None unless it is clearly
+    better than the answer."""
     codes = [row for row in judged if row["left_out"] == EDGE_SAID and not row["hole"] and not row["beside"]]
     first = min(codes, key=order, default=None)
     return first if first and all(is_clearly_better(first, row) for row in best) else None
@@ -375,7 +380,7 @@ def _lacks_price(row: Row) -> bool:
 
 
 def _places(fit: Sequence[Row]) -> list[list[str]]:
-    """Return the places of each qualifying encoding among the alternatives; the encodings are given in their order."""
+    """Return for each qualifying encoding, in the given order, the names of its places among the alternatives."""
     places: list[list[str]] = [[] for _ in fit]
     if not fit:
         return places
@@ -408,7 +413,7 @@ def _is_cheaper(row: Row, best: Row) -> bool:
 
 
 def _is_smaller(row: Row, best: Row) -> bool:
-    """Whether an encoding takes fewer bits at no higher cost."""
+    """Whether an encoding takes fewer bits than the best at about the same cost or less."""
     return _bits(row) < _bits(best) and (price(row) <= price(best) or is_same_price(row, best))
 
 
@@ -417,13 +422,13 @@ def _bits(row: Row) -> float:
 
 
 def _first_of_each_size(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
-    """Return the first alternative of each number of bits, in their order, the most bits first."""
+    """Return the index of the first alternative of each number of bits, the most bits first."""
     first = {_bits(fit[i]): i for i in reversed(chosen)}
     return [first[size] for size in sorted(first, reverse=True)]
 
 
 def _rungs_apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
-    """Return the alternatives, given from the least accurate, that gain enough over the alternative before."""
+    """Return the indices that are kept: each alternative must be clearly better than the last that was kept."""
     kept: list[int] = []
     for index in chosen:
         if not kept or is_clearly_better(fit[index], fit[kept[-1]]):
@@ -440,7 +445,8 @@ def is_much_better(row: Row, best: Row) -> bool:
 
 
 def _elsewhere_rows(judged: Sequence[Row], fit: Sequence[Row]) -> list[Row]:
-    """The best code of other storages of the same bytes, where it is much better, at its worst as well."""
+    """Return a list of the best encoding in another storage of the same bytes, if it is much better and its largest
+    error is not higher; else empty."""
     others = [row for row in judged if row["beside"] and not row["left_out"]]
     better = [row for row in others if fit and is_much_better(row, fit[0])]
     kept = sorted(better, key=lambda row: order(row)[:-TIES])[:1]

@@ -38,12 +38,13 @@ def chart_name(index: int) -> str:
 
 
 def spread_name(index: int) -> str:
-    """The name of the chart of its angles."""
+    """Return the name of a question's chart of angles, from the question's index among those of the rows."""
     return f"spread-{index}"
 
 
 def _has_place(row: Row) -> bool:
-    """Whether some reader's constraints may let a code in, and it has both figures."""
+    """Whether an encoding qualifies under some constraints that a reader may choose, and its mean error and its issue
+    slots are known."""
     is_known = bool(mean(row)) and row["slots_once"] is not None
     return is_known and not row["beside"] and not why_unfit({**row, "accept_lengths": True})
 
@@ -54,7 +55,7 @@ def _point(row: Row) -> Row:
 
 
 def _front(points: Sequence[Row]) -> list[Row]:
-    """The points that no other one beats in both, the cheapest first."""
+    """Return the Pareto front of the points without `rest`, in cost and error, the cheapest first."""
     kept: list[Row] = []
     for point in sorted(
         (candidate for candidate in points if not candidate["rest"]), key=lambda row: (row["x"], row["y"])
@@ -101,7 +102,7 @@ def _spread(name: str, counted: Sequence[tuple[Row, Bins]]) -> Chart:
         for x, percents in zip(angles, zip(*lines.values(), strict=True), strict=True)
     )
     first = counted[0][0]
-    tips = (("codec", "codec"), ("x", "angle (degrees)"), ("y", "% of normals below it"))
+    tips = (("codec", "codec"), ("x", "angle (degrees)"), ("y", "normals below this angle (%)"))
     return Chart(
         name=name,
         title=f"{question(first)}: {_median_sentence(first, *next(iter(shares.values())))}",
@@ -109,7 +110,7 @@ def _spread(name: str, counted: Sequence[tuple[Row, Bins]]) -> Chart:
         description="The share of normals with an error below an angle, by angle, on a logarithmic scale. The area "
         "covers all encodings that could be the answer; each is a thin line in the area.",
         x=Axis(title="angle between normal and decode (degrees)", scale=Scale.LOG),
-        y=Axis(title="% of normals", domain=(0.0, 100.0)),
+        y=Axis(title="share of normals (%)", domain=(0.0, 100.0)),
         rows=points,
         height=HEIGHT,
         marks=(
@@ -132,7 +133,8 @@ def _share_at(angle: float, edges: Sequence[float], below: Sequence[float]) -> f
 
 
 def _angles(shares: Iterable[tuple[Sequence[float], Sequence[float]]]) -> list[float]:
-    """Edges of bins, up to that which all normals of all codes are below."""
+    """Return the edges of bins, ascending and at most MOST_ANGLES: from the lowest below which a codec has
+    LOWEST_SHARE percent of its normals up to the highest."""
     pairs = [pair for edges, below in shares for pair in zip(edges, below, strict=True)]
     low = min(edge for edge, share in pairs if share >= LOWEST_SHARE)
     every = sorted({edge for edge, _ in pairs if edge >= low}, reverse=True)
@@ -142,5 +144,5 @@ def _angles(shares: Iterable[tuple[Sequence[float], Sequence[float]]]) -> list[f
 def _median_sentence(row: Row, edges: Sequence[float], below: Sequence[float]) -> str:
     half, most = (next(edge for edge, share in zip(edges, below, strict=True) if share >= part) for part in (50, 99))
     return (
-        f"with {called(row)} half of the normals are off by less than {half:.2g} degrees, 99% by less than {most:.2g}"
+        f"{called(row)} has errors below {half:.2g} degrees for half of the normals, below {most:.2g} degrees for 99%"
     )

@@ -45,7 +45,7 @@ ASKED = (
 
 
 def extras(_folder: Path, tables: Mapping[str, Sequence[Row]], _remarks: list[str]) -> Mapping[str, Any]:
-    """The questions of a run, for the page; nothing where it answers none."""
+    """Return the questions of a run, for the page, as `choices`; empty if the run answers no question."""
     asked = enumerate(groups(tables[TABLE.name]).values())
     questions = [
         _question(group) | {"chart": chart_name(index), "spread": spread_name(index)}
@@ -80,7 +80,7 @@ def _on(first: Row) -> str:
 
 
 def _needs_text(first: Row) -> Sequence[str]:
-    """The constraints that a reader cannot change here, in words."""
+    """Return the constraints of a question that a reader cannot change on the page, in words."""
     return constraints({**first, "most_instructions": None, "mixing": None})
 
 
@@ -116,6 +116,7 @@ def _code(row: Row) -> dict[str, Any]:
         "free": row["free_bits"],
         "table": bool(row["table"]),
         "image": answer.image_db(row),
+        "pole": {"y": "z axis up", None: ""}.get(row.get("image_pole"), "z axis sideways"),
         "beside": row["beside"],
         "packed": row["packed"],
         "lost": " ".join(not_held(row)),
@@ -125,16 +126,16 @@ def _code(row: Row) -> dict[str, Any]:
 
 
 def _turns(row: Row) -> list[list[float]]:
-    """The errors of each image, at the code's pole, of each yaw."""
+    """Return for each image the list of its errors at the encoding's pole, by yaw."""
     errors = _read(row.get("image_errors")) or {}
     return [by_pole[row["image_pole"] or VIEW_SPACE] for by_pole in errors.values()]
 
 
 def _read(text: str | None) -> Any:
-    """Return the content of a column for programs; None if it was not measured."""
+    """Return the content of a column that holds JSON; None if it was not measured."""
     return json.loads(text) if text else None
 
 
 def _finite(value: float) -> float | None:
-    """A loss as JSON can hold it: None where it is not known."""
+    """Return a loss, or None if it is not finite, which JSON cannot store."""
     return value if math.isfinite(value) else None

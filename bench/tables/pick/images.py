@@ -83,7 +83,8 @@ class Images:
         return row
 
     def _errors(self, case: PickCase, first: int, count: int, poles: Sequence[str]) -> Found:
-        """Errors of `count` yaws from number `first` on, and of as many rotations for TURNED."""
+        """Return the errors by image and pole: of `count` yaws from number `first` on, or of as many rotations for
+        the pole TURNED. Scenes that the device cannot draw are left out."""
         errors: Found = {}
         for maker in case.makers:
             known = maker.name if maker is SCENES.get(maker.name) else None
@@ -121,7 +122,8 @@ class Images:
         return self._trips[codec]
 
     def _images(self, case: PickCase, maker: SceneMaker) -> Mapping[float | None, WholeImage]:
-        """A scene's images, drawn once for all codes."""
+        """Return a scene's images by specular power (None without powers), drawn once for all codecs. Raises
+        UsageError if the scene shows no surface."""
         question = (maker, case.setting, case.powers, case.pipeline)
         if question not in self._whole:
             powers = case.powers_of(maker)
@@ -165,7 +167,7 @@ class Images:
 
 
 def _with_conditions(row: Row, case: PickCase) -> Row:
-    """Return columns of images, if there are any, with their size, exposure and display in words."""
+    """Return columns of images with each scene's size, exposure and display in words; an empty row unchanged."""
     parts = []
     for maker in case.makers:
         exposure = "a measured exposure" if maker.exposure is None else f"{maker.exposure:g} stops"
@@ -196,7 +198,7 @@ def _extend(image_errors: Found, more: Found) -> None:
 
 
 def _frames(image_errors: Found) -> turns.Errors:
-    """The errors of whole frames, by pole."""
+    """Return the errors of whole frames, by image and pole, without the pole TURNED."""
     return {
         name: {pole: by_class[""] for pole, by_class in by_pole.items() if pole != TURNED}
         for name, by_pole in image_errors.items()
@@ -209,7 +211,7 @@ def _frames_and_pole(image_errors: Found) -> tuple[turns.Errors, str]:
 
 
 def columns(image_errors: Found) -> Row:
-    """Return the columns of a code's images; nothing where it has none."""
+    """Return the columns of a codec's images; empty if the codec has no images."""
     if not image_errors:
         return {}
     frames, pole = _frames_and_pole(image_errors)

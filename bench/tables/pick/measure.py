@@ -85,16 +85,16 @@ class PickCase:
 
     @property
     def name(self) -> str:
-        """Name of the case among those of a question, which all have the same rounding."""
+        """The case's name in a question, whose cases all have the same rounding: `encoding/storage`."""
         return f"{self.codec.encoding.name}/{self.codec.storage.name}"
 
     @property
     def is_beside(self) -> bool:
-        """Whether it is of another storage of the same bytes, and is compared by its angles alone."""
+        """Whether the case is of another storage of the same bytes, and is compared only by its angles."""
         return bool(self.said["beside"])
 
     def powers_of(self, maker: SceneMaker) -> tuple[float | None, ...]:
-        """The specular powers that a scene is drawn at; None alone where its materials have none."""
+        """Return the specular powers with which a scene is drawn; `(None,)` if its materials have no powers."""
         return (None,) if maker.is_metal_rough else self.powers
 
 
@@ -152,12 +152,14 @@ class Question:
         self._angle_columns = pool.submit(_angle_columns, self._by_jax)
 
     def _most_price(self, case: PickCase) -> float:
-        """Return the highest cost at which a codec is still compared."""
+        """Return the highest cost at which a codec is still compared; infinite unless its storage is another storage
+        of the same bytes or a packing."""
         cheap = AFFORDABLE * floor(self._rows[case.name])
         return cheap if case.is_beside else 2 * cheap if case.said["packed"] else math.inf
 
     def measure(self, tick: Callable[[str], None]) -> None:
-        """Angles; the suprema that they ask for are still computed in the other thread."""
+        """Measure the angles of all cases and, if requested, the mixing, and start the computation of the suprema
+        that are then needed in the other thread."""
         measured = zip(
             [*self._by_gl, *self._by_jax], [*_angle_columns(self._by_gl), *self._angle_columns.result()], strict=True
         )
@@ -237,7 +239,8 @@ class Question:
                 self._rows[name] |= images.of(self._cases[name])
 
     def _measure_axes(self, cases: Sequence[PickCase]) -> None:
-        """Errors of axis-aligned normals: of all, or of those with z >= 0 where the code need not hold others."""
+        """Measure the largest error of axis-aligned normals: of all, or of those with z >= 0 if an encoding need not
+        represent the rest."""
         axes = {case.name: replace(case, normal_set=_axis_set(_is_half(case))) for case in cases}
         for name, row in zip(axes, _angle_columns(list(axes.values())), strict=True):
             self._rows[name][AXES] = row["angle_max_deg"]
@@ -272,13 +275,13 @@ class Question:
             self._rows[name][SUPREMUM] = future.result()
 
     def rows(self) -> list[Row]:
-        """The rows, in the order of the cases."""
+        """Return the rows, in the order of the cases, once their suprema are computed."""
         self._take_suprema()
         return list(self._rows.values())
 
 
 def _is_half(case: PickCase) -> bool:
-    """Whether a code need not hold all directions, or does not."""
+    """Whether an encoding need not represent all directions, or cannot."""
     return bool(case.said["needs"] not in (None, "", "sphere") or case.codec.encoding.domain != "sphere")
 
 
@@ -298,12 +301,13 @@ def _axis_set(is_half: bool) -> NormalSet:
 
 
 def _case_name(row: Row) -> str:
-    """The name of a row's case."""
+    """Return the name of a row's case: `encoding/storage`."""
     return f"{row['encoding']}/{row['storage']}"
 
 
 def _by_use(case: PickCase) -> Row:
-    """Return for each use why a codec cannot be used that way, and the sum, number and maximum of its errors."""
+    """Return for each use the reason why a codec cannot be used in this way (empty if it can), and the sum, number
+    and maximum of its errors."""
     domain, at_edges = _mixed_domain(case), edges_decide(case.said["needs"])
     key = figures_key("each use", case.codec, domain, at_edges, _normals_key(case))
 
@@ -345,7 +349,8 @@ def _mixing_columns(case: PickCase) -> Row:
 
 
 def _mixed_domain(case: PickCase) -> str:
-    """The normals that are mixed: those asked for, or those that the code holds and the set has."""
+    """Return the domain of the normals that are mixed: the requested domain or else the encoding's, and "hemisphere"
+    instead of "sphere" if the set has no other normals."""
     domain = case.said["needs"] or case.codec.encoding.domain
     return "hemisphere" if domain == "sphere" and not _lost_percent(case.normal_set, "hemisphere") else domain
 
@@ -371,7 +376,7 @@ def _case_columns(case: PickCase) -> Row:
 
 
 def _angle_columns(chosen: Sequence[PickCase]) -> list[Row]:
-    """The columns of angles of each case, measured together where they are not kept."""
+    """Return the columns of angles of each case; cases that are not in the cache are measured together."""
     keys = [figures_key("angles", case.codec, _normals_key(case)) for case in chosen]
     rows = [kept.read_figures(key) for key in keys]
     missing = [_quality_case(case) for case, row in zip(chosen, rows, strict=True) if row is None]
@@ -387,12 +392,13 @@ def _angle_columns(chosen: Sequence[PickCase]) -> list[Row]:
 
 
 def length_shares(codecs: Sequence[Codec]) -> dict[str, float | None]:
-    """Return by codec the ratio of its length error to its direction error, over a few normals of the sphere."""
+    """Return by codec name the ratio of the length error to the direction error, over a few normals of the sphere;
+    None if it is not known."""
     return {name: row["length_share"] for name, row in _angles_of(codecs, NORMAL_SETS["sphere"](FEW, 0))}
 
 
 def mean_angles(codecs: Sequence[Codec], normals: NormalSet) -> dict[str, float]:
-    """Return by codec the mean angle in degrees over normals; codecs without figures are left out."""
+    """Return by codec name the mean angle in degrees over normals; codecs without figures are left out."""
     return {name: row["angle_mean_deg"] for name, row in _angles_of(codecs, normals) if not row["skipped"]}
 
 
@@ -402,7 +408,8 @@ def _angles_of(codecs: Sequence[Codec], normals: NormalSet) -> Iterator[tuple[st
 
 
 def _length_share(row: Row) -> float | None:
-    """Return the root mean squared error of the decoded lengths divided by that of the directions in radians.
+    """Return the root mean squared error of the decoded lengths divided by that of the directions in radians; None if
+    there is no direction error, or no figures.
 
     |n - n'|^2 = (1 - |n'|)^2 + 2 |n'| (1 - cos theta), and the last term's mean is close to that of theta^2.
     """
@@ -417,7 +424,8 @@ def _quality_case(case: PickCase) -> quality.QualityCase:
 
 
 def _supremum_deg(case: PickCase) -> float | None:
-    """The largest angle in exact arithmetic; None of a code in GLSL alone and of a set without a domain."""
+    """Return the largest angle in exact arithmetic; None for an encoding that exists only in shaders, and for a set
+    without a domain."""
     quality_case = _quality_case(case)
     if quality_case.backend != "jax":
         return None

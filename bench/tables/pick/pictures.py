@@ -31,7 +31,8 @@ PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 
 
 def write(folder: Path, chosen: Sequence[PickCase], rows: Sequence[Row], drawing: Images) -> None:
-    """The images of every code that has a place, and of the exact normals."""
+    """Write the images of every encoding that has a place in the answer, and of exact normals, in PNG files;
+    encodings that the device does not support are left out."""
     poles = {CodecKey.of(row): row.get("image_pole") or VIEW_SPACE for row in rows}
     for case, maker in ((pick_case, maker) for pick_case in placed(chosen, rows) for maker in pick_case.makers):
         # A code that the device has no room for has no image.
@@ -43,7 +44,7 @@ def write(folder: Path, chosen: Sequence[PickCase], rows: Sequence[Row], drawing
 
 
 def placed(chosen: Sequence[PickCase], rows: Sequence[Row]) -> Iterator[PickCase]:
-    """The cases whose code the answer names."""
+    """Yield the cases whose codec the answer names, without those of other storages of the same bytes."""
     named = {CodecKey.of(row) for row in rows if set(places_of(row)) & set(PLACES)}
     yield from (case for case in chosen if not case.is_beside and _key_of_case(case) in named)
 

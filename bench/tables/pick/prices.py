@@ -33,7 +33,7 @@ class Costs:
         return max(prices, key=lambda row: (row["slots"] is None, row["slots"] or 0.0), default={})
 
     def slots_of(self, codec: Codec) -> dict[str, tuple[float | None, float | None]]:
-        """Return by family the slots to encode and to decode; a family without a figure is left out."""
+        """Return by family the slots to encode and to decode, as a pair; a family without figures is left out."""
         prices = {family: self._price_columns(family, codec) for family in self._rows}
         return {family: (row["encode_slots"], row["decode_slots"]) for family, row in prices.items() if row}
 

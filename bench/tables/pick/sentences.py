@@ -43,7 +43,7 @@ from .answer import (
 )
 from .table import TEXEL_DEG
 
-AIM_TITLES = {"angle": "mean error", "worst": "largest error", "image": "worst image", "cost": "mean error"}
+AIM_TITLES = {"angle": "mean error", "worst": "largest error", "image": "the worst image", "cost": "mean error"}
 # Percent of the visible normals of a scene, from which on the first line says that they are not held.
 MUCH_LOST = 1.0
 # The rungs, as a sentence begins with each.
@@ -72,10 +72,11 @@ FREE_SLOTS, ENOUGH = (8, 32), (0.5, 1.5)
 FAR, MAP = 10.0, "a 1k environment map"
 OF_SPACE = {
     "hemisphere": "For tangent space and terrain, where every normal with z >= 0 is equally likely. Normals of a map "
-    "are near z: `normalbench maps` measures them in the formats of maps. In world space a G-buffer must store every "
+    "are near z: `normalbench maps` measures them in texture formats. In world space a G-buffer must store every "
     "direction.",
-    "view": "In view space a code that ends 100° from the line of sight gains at most 2.3 dB over one of every "
-    "direction. But its steps crawl when the camera turns: 26.0 dB on a slow mirror panel, 36.6 dB in world space.",
+    "view": "In view space, an encoding of the directions up to 100° from the line of sight gains at most 2.3 dB over "
+    "an encoding of all directions. But its steps crawl when the camera turns: 26.0 dB on a slow mirror panel, 36.6 dB "
+    "in world space.",
 }
 
 
@@ -86,7 +87,7 @@ def sentences(group: Sequence[Row]) -> list[str]:
 
 
 def told(group: Sequence[Row]) -> list[str]:
-    """Return the same sentences without the codecs that do not qualify."""
+    """Return the same texts as `sentences`, without the codecs that do not qualify."""
     best = next((row for row in group if BEST in places_of(row)), None)
     if best is None:
         return [f"{question(group[0])}: no encoding qualifies{_constraints_text(group[0])}.", *_instead(group)]
@@ -108,7 +109,8 @@ def _first_sentences(group: Sequence[Row], best: Row) -> str:
 
 
 def in_short(group: Sequence[Row]) -> list[str]:
-    """Return which encoding to use, with its errors and its cost; a table lists the alternatives."""
+    """Return texts on the encoding to use, its errors and its cost, without the alternatives, which a table lists;
+    all sentences if no encoding qualifies."""
     best = next((row for row in group if BEST in places_of(row)), None)
     if best is None:
         return [*told(group), *left_out(group)]
@@ -127,19 +129,20 @@ def in_short(group: Sequence[Row]) -> list[str]:
 
 
 def conditions(group: Sequence[Row]) -> Iterator[str]:
-    """Yield a line on the encodings that were left out, and a line on how images were made."""
+    """Yield a line on the encodings that were left out, and a line on how images were made, if there are images;
+    nothing if no encoding qualifies."""
     if not any(BEST in places_of(row) for row in group):
         return
     count = sum(bool(row["left_out"]) and not row["against"] for row in group)
-    more = f"Left out: {count} of {len(group)} codes. " if count else ""
-    yield f"{more}-v says why, and what each alternative gains."
+    more = f"Left out: {count} of {len(group)} codecs. " if count else ""
+    yield f"{more}Use -v for the reasons and for the gain of each alternative."
     shown = next((row["image_conditions"] for row in group if row.get("image_conditions") and images(row)), "")
     if shown:
         yield f"Images: {shown}."
 
 
 def _of_maps(best: Row) -> Iterator[str]:
-    """Yield a note that texture maps, which are filtered, are a separate question."""
+    """Yield a note that texture maps are a separate question, if normals with z >= 0 are to be filtered."""
     if best["needs"] == "hemisphere" and "filter" in (best.get("mixing") or "").split(","):
         yield "Figures are for all normals with z >= 0. Normals of a texture map are near z: use normalbench maps."
 
@@ -153,20 +156,20 @@ def _space_sentences(best: Row) -> str:
 
 
 def question(row: Row) -> str:
-    """Return the question, and the normals that were measured."""
+    """Return the question as text: the requested storage or bytes, and the normals that were measured."""
     return f"{asked_of(row)}, on {row['normals']}"
 
 
 def not_held(best: Row) -> Iterator[str]:
-    """Yield the share of visible normals that the answer cannot represent, if it is large."""
+    """Yield a sentence with the share of visible normals that the answer cannot represent, if the share is large."""
     lost = best.get("image_lost_percent") or 0.0
     if lost >= MUCH_LOST:
         yield f"It cannot represent {lost:.2g}% of the visible normals in {best['image_lost_scene']}."
 
 
 def _much_better(group: Sequence[Row], best: Row) -> list[Row]:
-    """Return the rows of other storages that are worth a sentence: those in the place ELSEWHERE, else at most one that
-    is much more exact."""
+    """Return the rows of other storages that are worth a sentence: those in the place ELSEWHERE, or else at most one
+    row that is much more accurate."""
     others = [row for row in group if ELSEWHERE in places_of(row)]
     rungs = [row for row in group if {MORE_EXACT, MOST_EXACT} & {*places_of(row)} and row["storage"] != best["storage"]]
     return others or sorted((row for row in rungs if is_much_better(row, best)), key=order)[:1]
@@ -182,7 +185,7 @@ def _instead(group: Sequence[Row]) -> Iterator[str]:
             yield f"{RUNGS[INSIDE]}: {code_text}. Across an edge: {row['mixed_across']}."
         uses = group[0]["mixing"].split(",")
         if {*uses} & {"blend", "resolve"}:
-            yield "Hardware blending and resolving need three numbers: in rgb10a2 xyz_renormalised survives both."
+            yield "Hardware blending and resolving require three numbers: in rgb10a2, xyz_renormalised survives both."
         if "filter" in uses:
             yield f"Decode each texel and mix the normals instead ({UPSAMPLE}). This works with every encoding."
             if group[0]["needs"] not in ("hemisphere", "view"):
@@ -197,7 +200,7 @@ def _instead(group: Sequence[Row]) -> Iterator[str]:
         holed = min((row for row in priced if row.get("hole")), key=_slots_once, default=None)
         if holed and _slots_once(holed) <= most:
             phrase = f"{called(holed)}, with {_slots_once(holed):g} issue slots and a hole of {holed['hole']}"
-            yield f"--accept-holes takes {phrase}."
+            yield f"With --accept-holes, the answer is {phrase}."
 
 
 def _slots_once(row: Row) -> float:
@@ -205,21 +208,24 @@ def _slots_once(row: Row) -> float:
 
 
 def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
-    """A sentence for each rung of the ladder."""
+    """Yield a sentence on images that tie with the best, if any do, and one for each alternative."""
     titles = RUNGS | (BETTER_IMAGE if best["aim"] == "image" else {})
     if tied := [called(row) for row in group if TIE in places_of(row)]:
-        yield f"Images tie with {', '.join(tied)}: gaps below {STEP:g} dB or within chance. The cheapest is taken."
+        yield (
+            f"Tied with {', '.join(tied)}: the images differ by less than {STEP:g} dB, or by chance. "
+            "The cheapest encoding is recommended."
+        )
     for place, title in titles.items():
         yield from (f"{title}: {_rung_text(row, best)}" for row in group if place in places_of(row))
 
 
 def _hangs_on(group: Sequence[Row], best: Row) -> Iterator[str]:
-    """Yield the answers that constants near the assumed ones would give, if they differ."""
+    """Yield one sentence with the answers under constants near the assumed ones; nothing if the answer stays."""
     worth, enough = best["worth"], best["enough"]
     supposed = [
         ({"worth": worth + change}, f"at {worth + change:g} dB per doubling") for change in (-1, 1) if worth > 1
     ]
-    supposed += [({"hidden_slots": slots}, f"if {slots} slots of a pass are free") for slots in FREE_SLOTS]
+    supposed += [({"hidden_slots": slots}, f"if {slots} slots per pass are free") for slots in FREE_SLOTS]
     supposed += [({"enough": share * enough}, f"with --enough {share * enough:.2g}") for share in ENOUGH if enough]
     others: dict[str, list[str]] = {}
     for values, assumption in supposed:
@@ -233,7 +239,7 @@ def _hangs_on(group: Sequence[Row], best: Row) -> Iterator[str]:
 
 
 def called(row: Row) -> str:
-    """A code's name, with its storage where another one was asked for."""
+    """Return an encoding's name, followed by its storage if this is not what was requested."""
     return row["encoding"] if row["asked"] == row["storage"] else f"{row['encoding']} in {row['storage']}"
 
 
@@ -267,7 +273,7 @@ def _error_sentences(row: Row) -> str:
 
 
 def _largest_text(row: Row) -> str:
-    """The supremum where it was searched, else the largest of the samples, which may be smaller."""
+    """Return the supremum as text if it was searched, otherwise the largest sampled angle, which may be smaller."""
     return f"largest {'sampled ' * (row['angle_sup_deg'] is None)}{degrees(largest(row))}"
 
 
@@ -282,11 +288,11 @@ def _seen_sentences(row: Row) -> str:
         return ""
     text = f"A mirror's reflection moves by {degrees(moved[0])} on average and by at most {degrees(moved[1])}: "
     if moved[1] >= ELSEWHERE_DEG:
-        return f"{text}it shows another place."
+        return f"{text}it shows a different place."
     texels = " and ".join(f"{value / TEXEL_DEG:.2g}" for value in moved)
     far = " and ".join(_length_text(100 * FAR * math.tan(math.radians(value))) for value in moved)
     text += f"{texels} texels of {MAP}, {far} cm at {FAR:g} m."
-    enough = f" That is within --enough {row['enough']:.2g}; banding may be visible." if is_enough(row) else ""
+    enough = f" That is within --enough {row['enough']:.2g}°; banding may be visible." if is_enough(row) else ""
     return f"{text}{enough} To find the roughness above which banding is invisible, run: {_roughness_command(row)}"
 
 
@@ -312,12 +318,12 @@ def _price_sentence(row: Row) -> str:
 def _slots_text(row: Row) -> str:
     """Return the slots to encode and to decode, the GPU family, and who counted them if that was elsewhere."""
     slots = f"{row['encode_slots']:g} issue slots to encode and {row['decode_slots']:g} to decode"
-    elsewhere = f" (recorded with {row['recorded_by']}: no compiler is here)" if row["recorded_by"] else ""
+    elsewhere = f" (recorded with {row['recorded_by']}; no compiler here)" if row["recorded_by"] else ""
     return f"{slots} on {row['dearest_family']}{elsewhere}"
 
 
 def _of_hidden(row: Row) -> str:
-    """The cost next to the slots that cost no time."""
+    """Return the cost as text, compared with the slots that memory traffic hides."""
     if price(row) == floor(row):
         return f"{floor(row):g}, the minimum: {TRAFFIC} {HIDDEN_SLOTS} slots per pass"
     return f"{price(row):g}, {price(row) / floor(row):.2g} times the slots that {TRAFFIC}"
@@ -353,13 +359,14 @@ def _images_text(row: Row) -> str:
 
 
 def _spread_text(row: Row) -> str:
-    """The standard error of a row's worst image; empty where it is not known."""
+    """Return the standard error of a row's worst image in parentheses, after a space; empty if not known."""
     error = row.get("image_se_db")
     return f" (standard error {error:.1f} dB over orientations)" if error is not None else ""
 
 
 def _pole_sentence(row: Row, names: str | None = None) -> str:
-    """Return how to point an encoding's z axis, if that matters more than chance; `names` is how to write it."""
+    """Return a sentence, with a leading space, on how to point an encoding's z axis; empty unless that matters more
+    than chance. `names` is the text on how to write it, by default for encodings of the catalogue."""
     pole, cost = row.get("image_pole"), row.get("image_wrong_pole_db") or 0.0
     if not pole or cost < max(STEP, ERRORS * (row.get("image_se_db") or 0.0)):
         return ""
@@ -374,7 +381,7 @@ def _mixing_text(row: Row) -> str:
     """Return how mixing affects a codec that survives it inside a surface; empty if mixing was not requested."""
     if not row.get("mixing"):
         return ""
-    upsampled = "Upsampling decodes each texel before it weighs it, which works with every encoding. "
+    upsampled = "Upsampling decodes each texel before weighting it, which works with every encoding. "
     opening = upsampled if UPSAMPLE in row["mixing"].split(",") else ""
     left = f"then mean error {degrees(mean(row))}, largest {degrees(largest_mixed(row))}"
     edges = f". Across an edge: {row['mixed_across']}" if row["mixed_across"] else " and across an edge"
@@ -386,15 +393,15 @@ def _uses_text(row: Row) -> str:
 
 
 def _reservation_sentence(row: Row) -> str:
-    return f" Note the {lost(row)}." if row["lost_percent"] else ""
+    return f" It {lost(row)}." if row["lost_percent"] else ""
 
 
 def _gain_text(row: Row, best: Row) -> str:
-    """Return by how much a codec is better or worse than the answer."""
+    """Return text on how many decibels a codec is better or worse than the answer; "as accurate" below 0.05 dB."""
     gain = loss_db(best) - loss_db(row)
     if math.isnan(gain) or abs(gain) < 0.05:
-        return "as accurate"
-    return f"{abs(gain):.1f} dB {'better' if gain > 0 else 'worse'} by the {AIM_TITLES[row['aim']]}"
+        return "equally accurate"
+    return f"{abs(gain):.1f} dB {'better' if gain > 0 else 'worse'} in {AIM_TITLES[row['aim']]}"
 
 
 def _rung_text(row: Row, best: Row) -> str:
@@ -412,7 +419,7 @@ def _errors_text(row: Row) -> str:
 def _price_text(row: Row, best: Row) -> str:
     if row["slots"] is None:
         return "at an unknown cost"
-    table = " and a table" if row["table"] and not best["table"] else ""
+    table = " and a lookup table" if row["table"] and not best["table"] else ""
     if is_same_price(row, best):
         return f"at the same cost{table}"
     if price(row) == floor(row):
@@ -422,7 +429,7 @@ def _price_text(row: Row, best: Row) -> str:
     if ratio <= 1 or gain <= 0 or is_enough(best):
         return text
     rate = gain / math.log2(ratio)
-    tie = f", about the {row['worth']:g} that --worth asks: the cheaper one is taken" if rate >= row["worth"] else ""
+    tie = f", about --worth {row['worth']:g}, so the cheaper encoding is recommended" if rate >= row["worth"] else ""
     return f"{text}: {rate:.1f} dB per doubling{tie}"
 
 
@@ -433,7 +440,7 @@ def _bits_clause(row: Row, best: Row) -> str:
 
 
 def _elsewhere_text(row: Row, best: Row) -> str:
-    """Another storage of the same bytes that is much better."""
+    """Return the sentence on an encoding in another storage of the same bytes that is much better."""
     begin, end = around_gain(row, degrees(mean(row)))
     return f"{begin}{loss_db(best) - loss_db(row):.0f}{end}"
 
@@ -456,7 +463,7 @@ def _rival_sentence(row: Row, best: Row) -> str:
 
 
 def left_out(group: Sequence[Row]) -> Iterator[str]:
-    """Yield the codecs that do not qualify, and why."""
+    """Yield one sentence with the codecs that do not qualify, grouped by the reason; nothing if all do."""
     reasons: dict[str, list[Row]] = {}
     for row in group:
         if row["left_out"] and not row["against"]:
@@ -481,4 +488,4 @@ def _with_reason(rows: Sequence[Row], why: str) -> str:
 
 
 def _names_text(names: Sequence[str]) -> str:
-    return ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} codes"
+    return ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} codecs"

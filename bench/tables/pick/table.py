@@ -105,7 +105,7 @@ class PickOptions(Reading, SourceOptions):
         str | None,
         Option(
             "--domain",
-            "Normals that the encoding must hold, and is measured on: sphere; tangent, terrain or map (z >= 0); view "
+            "Normals to represent and to measure on: sphere; tangent, terrain or map (z >= 0); view "
             "(facing the viewer). Default: your normals.",
         ),
     ] = None
@@ -117,7 +117,7 @@ class PickOptions(Reading, SourceOptions):
         bool,
         Option(
             "--survey",
-            "Measure also what users of the report page may ask: each use of --needs, and other GPU families.",
+            "Also measure what users of the report page may ask: each use of --needs, and other GPU families.",
         ),
     ] = False
     count: Count = COUNT
@@ -136,7 +136,7 @@ class PickOutputs:
 COLUMNS = (
     Column("asked", "The requested storage, or the number of bytes.", KEY, shown=False),
     shared.STORAGE,
-    replace(shared.ROUNDING_NOW_SAID, says="How the storage rounds; a user's integer is as its encoder makes it."),
+    replace(shared.ROUNDING_NOW_SAID, says="How the storage rounds; your own packed integers are stored unchanged."),
     shared.ENCODING,
     Column("normals", "The set of normals that was measured.", KEY),
     Column("scene", "The scenes that were rendered.", KEY),
@@ -144,7 +144,7 @@ COLUMNS = (
         "place",
         "best: the answer. tie: its image ties with the best. more accurate, most accurate, cheaper, fewer bits: the "
         "alternatives. inside a surface: better, but survives --needs only there. plain channels: the first that is "
-        "not packed. against: named by --against. elsewhere: in another storage with the same bytes, 6 dB better.",
+        "not packed. against: named by --against. elsewhere: in a different storage of the same size, 6 dB better.",
         HOW,
     ),
     Column(
@@ -192,13 +192,13 @@ COLUMNS = (
     Column("image_conditions", "Size, exposure and display of each image.", HOW, shown=False),
     Column(
         "image_se_db",
-        "The standard error of the lowest of these PSNRs, by leaving out one yaw at a time (jackknife).",
+        "Standard error of the lowest image PSNR, by leaving out one yaw at a time (jackknife).",
         HOW,
         "dB",
         shown=False,
     ),
     Column(
-        "image_two_worst_db", "PSNR of that image over only its two worst yaws.", unit="dB", better="more", shown=False
+        "image_two_worst_db", "Lowest image PSNR, over only its two worst yaws.", unit="dB", better="more", shown=False
     ),
     Column(
         "image_pole",
@@ -230,7 +230,7 @@ COLUMNS = (
         better="less",
         shown=False,
     ),
-    Column("image_lost_scene", "That scene.", HOW, shown=False),
+    Column("image_lost_scene", "The scene of `image_lost_percent`.", HOW, shown=False),
     Column("image_view_angles", "The angle of visible normals to the line of sight, in words.", HOW, shown=False),
     Column(
         "slots",
@@ -243,8 +243,8 @@ COLUMNS = (
     Column("instructions", "Instructions to encode and decode, as in the shader.", better="less", shown=False),
     Column("encode_instructions", "Instructions to encode.", better="less", shown=False),
     Column("decode_instructions", "Instructions to decode.", better="less", shown=False),
-    Column("loops", "Jumps back in those shaders.", better="less", drops=3),
-    Column("table", "Whether the encoding reads a lookup table; a fetch is not in the cost.", HOW, drops=3),
+    Column("loops", "Backward jumps in the shaders that encode and decode.", better="less", drops=3),
+    Column("table", "Whether the encoding reads a lookup table; the cost excludes the fetches.", HOW, drops=3),
     Column("invalid", "Decodes that were NaN or infinite; each counts as the opposite direction.", better="less"),
     Column(
         "length_share",
@@ -253,40 +253,43 @@ COLUMNS = (
         shown=False,
     ),
     Column("domain", "The normals that the encoding can represent: sphere, hemisphere (z >= 0) or view.", HOW, drops=1),
-    Column("lost_percent", "The share of the normals outside that domain.", unit="%", better="less", drops=5),
+    Column("lost_percent", "The share of the normals outside `domain`.", unit="%", better="less", drops=5),
     Column("left_out", "Why the encoding does not qualify.", HOW),
     Column("hole", "The size of the encoding's hole in degrees, and the normal where it is.", HOW, shown=False),
     Column("effects", "Effects in the image.", HOW),
     Column("family", "The GPU families that slots were counted for.", HOW),
     Column("dearest_family", "The GPU family with the highest cost; the slots are for this family.", HOW),
-    Column("recorded_by", "Compiler that counted the slots on another machine, if this machine has no compilers.", HOW),
+    Column("recorded_by", "Compiler that counted the slots elsewhere, if this machine has no compilers.", HOW),
     Column("aim", "The quality to optimise.", HOW),
     Column("readers", "Number of decoding passes.", HOW),
     Column("worth", "Decibels that an encoding must gain for twice the cost.", HOW, "dB"),
     Column("enough", "Angle by which a mirror's reflection may move.", HOW, "degrees", shown=False),
-    Column("accept_holes", "Whether encodings with a hole may be the answer.", HOW, shown=False),
+    Column("accept_holes", "Whether encodings with a hole may be recommended.", HOW, shown=False),
     Column(
-        "accept_lengths", "Whether encodings whose decodes are not unit length may be the answer.", HOW, shown=False
+        "accept_lengths",
+        "Whether encodings that decode to normals of other than unit length may be recommended.",
+        HOW,
+        shown=False,
     ),
-    Column("look_ups", "Whether encodings that read a lookup table may be the answer.", HOW, shown=False),
+    Column("look_ups", "Whether encodings that read a lookup table may be recommended.", HOW, shown=False),
     Column("most_instructions", "The maximum number of issue slots to encode and decode once.", HOW),
     Column("needs", "The requested domain.", HOW),
     Column("mixing", "Operations that stored codes must survive, as in --needs.", HOW),
-    Column("cannot_mix", "Why codes do not survive that mixing inside a surface: the verdict of `mix`.", HOW),
+    Column("cannot_mix", "Why codes do not survive the required mixing inside a surface, according to `mix`.", HOW),
     Column(
         "mixed_mean_deg",
-        "Mean error after that mixing inside a surface, over neighbours 1 and 5 degrees apart or an image's own. It "
-        "decides if it is larger than the mean angle.",
+        "Mean error after the required mixing inside a surface, over neighbours 1 and 5 degrees apart or an image's "
+        "own. It decides if it is larger than the mean angle.",
         HOW,
         "degrees",
         shown=False,
     ),
-    Column("mixed_max_deg", "Largest error after that mixing inside a surface.", HOW, "degrees", shown=False),
-    Column("mixed_across", "The result of that mixing across an edge, if it is garbage.", HOW),
+    Column("mixed_max_deg", "Largest error after the required mixing inside a surface.", HOW, "degrees", shown=False),
+    Column("mixed_across", "The result of the required mixing across an edge, if it is unusable.", HOW),
     Column("by_use", "The result of each use of mixing, for the constraints on the page.", RAW, shown=False),
     Column("by_family", "The issue slots on other GPU families, for the constraints on the page.", RAW, shown=False),
     Column("against", "Whether the encoding was named by --against.", HOW, shown=False),
-    Column("beside", "Whether the row is for another storage with the same bytes.", HOW, shown=False),
+    Column("beside", "Whether the row is for a different storage of the same size.", HOW, shown=False),
     Column("packed", "Whether the encoding is packed into the requested texel.", HOW, shown=False),
     Column(
         "code_bits",
@@ -334,15 +337,15 @@ TABLE = Table(
         view=View.CHOOSE,
         intro="The best encoding for each storage, its cost, and the alternatives.",
         method="Encodings that do not meet the constraints are left out. If the error of an encoding is not visible, "
-        "it is accurate enough: among those with a low cost the cheapest is chosen. Otherwise an encoding may "
+        "it is accurate enough: among such encodings of low cost the cheapest is chosen. Otherwise an encoding may "
         "cost twice as much if it is 3 dB better, which is half a bit per component. The cost is in executed "
-        "issue slots, to encode once and to decode for four passes; 80 of these are hidden by the target's "
+        "issue slots, to encode once and to decode for four passes; 80 of the slots are hidden by the target's "
         "memory traffic. Angles are over the named normals, and the largest is a supremum found in float64. "
         "Images are 640 x 480 frames of deferred shading, with everything else in 32-bit floats, lit by the "
         "decoded normals. Some thousand pixels of each image are compared, in 16 or more yaws of the "
-        "encoding's axes, because a single orientation depends on chance; effects are drawn whole, in four. "
-        "Slots are counted in shaders as the vendors' compilers make them, without the conversion by the "
-        "render target.",
+        "encoding's axes, because the result of a single orientation depends on chance; images with effects are "
+        "drawn whole, in four yaws. Slots are counted in the output of the vendors' compilers, without the "
+        "conversion by the render target.",
         leads=True,
     ),
 )

@@ -100,7 +100,7 @@ def questions(options: PickOptions) -> list[list[measure.PickCase]]:
         for name in (name for name, storages in asked.items() if not _is_held(codec, storages, codec.rounding)):
             leave_out(
                 f"{codec.encoding.name} packs into a {codec.storage.texel_bytes}-byte integer; "
-                f"texels of {name} have another size"
+                f"texels of {name} have a different size"
             )
     for line in misfits if "all" not in options.encoding else ():
         leave_out(line)
@@ -138,10 +138,13 @@ def _scenes(options: PickOptions, needs: str | None) -> tuple[SceneMaker, ...]:
 
 
 def _say_if_few(sets: Iterable[NormalSet]) -> None:
-    """A line where an answer is of so few random normals that another seed may give another answer."""
+    """Print a line for each count of random normals that is so low that another seed may give another answer."""
     few = {normals.count: normals.name for normals in sets if normals.area is not None and normals.count < FEW}
     for count, name in few.items():
-        tell(f"--count {count}: with fewer than {FEW} random normals ({name}), another --seed may give another answer")
+        tell(
+            f"--count {count}: with fewer than {FEW} random normals ({name}), "
+            "a different --seed may give a different answer"
+        )
 
 
 def _asked(options: PickOptions) -> dict[str, list[Storage]]:
@@ -184,7 +187,7 @@ def _compared(
 
 
 def _is_held(codec: Codec, storages: Sequence[Storage], rounding: str) -> bool:
-    """Whether a code is one of a question: in its storages and rounded so, or an integer of as many bytes."""
+    """Whether a codec belongs to a question: by its storage and rounding, or as an integer of as many bytes."""
     is_integer = codec.encoding.is_packed and codec.storage.texel_bytes == storages[0].texel_bytes
     return is_integer or (codec.storage in storages and codec.rounding == rounding)
 
@@ -225,7 +228,7 @@ def _question(options: PickOptions) -> Row:
 
 
 def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
-    """The codecs that fit, and a line for each reason why others do not. Raises UsageError where none fits."""
+    """Return the codecs that fit, and a line for each reason against others. Raises UsageError if no codec fits."""
     misfits, fit = [], []
     for codec in codecs:
         if codec.misfit:
@@ -300,7 +303,8 @@ def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _alternative(row: Row) -> Row:
-    """A code that has a place in the answer, as its short table has it: errors in degrees, the image in decibels."""
+    """Return an encoding that has a place in the answer as a row of its short table, with errors in degrees and the
+    worst image in decibels."""
     figures = {"mean (°)": mean(row), "worst (°)": largest_mixed(row), "slots": row["slots"], "bits": row["bits"]}
     worst = min(images(row).values(), default=None)
     return {"encoding": called(row), "place": row["place"]} | figures | {"image (dB)": worst}

@@ -23,7 +23,7 @@ MOST_DEG = 200.0
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """A chart for each set of normals; none where rows keep no histogram."""
+    """Yield a chart for each set of normals whose rows have histograms."""
     usable = [r for r in having(rows, "bits", "angle_mean_deg") if bins(r.get("angle_counts"))]
     for index, normals in enumerate(dict.fromkeys(str(row.get("normals")) for row in usable)):
         part = one_backend([row for row in usable if str(row.get("normals")) == normals])
@@ -31,11 +31,12 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def histogram_chart(index: int, rows: Sequence[Row]) -> Chart:
-    """Return a histogram of angles for each codec, the best mean on top; mean, 99th percentile and largest are marked.
+    """Return a histogram of angles for each codec, the best mean on top; mean, 99th percentile and largest are
+    marked.
 
     Args:
         index: its index among the charts of the table.
-        rows: of the quality table, one set, in that order: encoding, storage, bits, angle_counts and angles.
+        rows: rows of the quality table for one set, in that order: encoding, storage, bits, angle_counts and angles.
     """
     lines = lines_of(rows)
     feet = [float(len(rows) - 1 - i) for i in range(len(rows))]
@@ -92,7 +93,8 @@ def steps(counts: Sequence[tuple[float, float, int]]) -> tuple[list[float], list
 
 
 def _outline_points(row: Row, foot: float) -> list[Row]:
-    """A codec's histogram as the points of a line of steps, the highest as high as the others'."""
+    """Return a codec's histogram as the points of a stepped line above `foot`; its highest step has the same height
+    for every codec."""
     edges, heights = steps(bins(row["angle_counts"]))
     highest = max(heights)
     return [

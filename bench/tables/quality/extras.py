@@ -16,7 +16,8 @@ from .table import TABLE
 
 
 def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Mapping[str, Any]:  # noqa: ARG001
-    """Find errors over the sphere, of the folder of a run, and how far the figures of two back ends are apart."""
+    """Return the errors over the sphere in the folder of a run, as `maps`, and a sentence on how far the figures of
+    two backends differ, as `agreement`."""
     rows = tables.get(TABLE.name, ())
     return {"maps": list(_sphere_maps(folder / TABLE.files["maps"], rows)), "agreement": agreement(rows)}
 

@@ -13,7 +13,7 @@ SURVIVES = 10.0
 
 
 def with_half_loss(rows: Sequence[Row]) -> list[Row]:
-    """Return rows with the increase of the RMS angle by half arithmetic, if the float32 row is among them."""
+    """Return the rows, in half arithmetic with the increase of the RMS angle if the float32 row is given too."""
     known = {_case_key(row): row["angle_rms_deg"] for row in rows if not _is_half(row)}
     return [row | _loss_column(row, known.get(_case_key(row))) if _is_half(row) else row for row in rows]
 

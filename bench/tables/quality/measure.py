@@ -109,7 +109,7 @@ def _noise_of(codec: Codec, width: int, count: int) -> tuple[np.ndarray, ...]:
 
 
 def _trip(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Vec3]:
-    """A round trip that fixed-point formats share: they give it their scales. It is compiled once for all."""
+    """Return a round trip that fixed-point formats share, each with its scales, so that it is compiled once."""
 
     def round_trip(n: Vec3, view: Vec3, *scales: Scale) -> Vec3:
         return Codec(encoding, fixed(like, scales), rounding).round_trip(n, view)
@@ -152,7 +152,7 @@ def _decoded_meter() -> Meter:
 
 
 def rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
-    """Planes as the pixels of an image, float32 of shape (height, width, 4)."""
+    """Return three planes as the pixels of an image, float32 of shape (height, width, 4); the fourth channel is 0."""
     pixels = np.zeros((height * width, 4), np.float32)
     for channel, plane in enumerate(planes):
         pixels[:, channel] = np.asarray(plane).ravel()
@@ -232,7 +232,7 @@ def _decodings_by_wgsl(case: QualityCase) -> Iterator[Decoding]:
 
 
 def identity(value: Any) -> Any:
-    """The value, for a load that is there already."""
+    """Return the value unchanged: the load of a chunk that is already in memory."""
     return value
 
 
@@ -244,7 +244,11 @@ BACKENDS: Mapping[str, Callable[[QualityCase], AbstractContextManager[Decoding]]
 def cases(
     codecs: Iterable[Codec], normal_sets: Iterable[NormalSet], backends: Iterable[str], *exact: bool
 ) -> list[QualityCase]:
-    """Return every codec on every set by every back end, a codec's rows side by side; `exact`: a case's last fields."""
+    """Return a case for every codec on every set by every backend; those that differ only in the backend are
+    adjacent.
+
+    Args:
+        exact: the cases' last fields: whether to find the worst case, and whether to count codes."""
     normal_sets, backends = list(normal_sets), list(backends)
     return [
         QualityCase(codec, chosen, backend, *exact)
@@ -313,7 +317,7 @@ def _measured_columns(case: QualityCase, measured: Statistics) -> Row:
 
 
 def worst(case: QualityCase) -> Worst | None:
-    """The normal that a case turns the most, of those that it measures; None where the device cannot measure it."""
+    """Return the measured normal with the largest error in a case; None if the device cannot measure it."""
     try:
         with BACKENDS[case.backend](case) as decoding:
             return decoding.total().worst
@@ -341,12 +345,12 @@ def _figures(s: Statistics, area: float | None) -> Row:
 
 
 def _components_text(vector: np.ndarray) -> str:
-    """A vector as text, with all digits of its three float32."""
+    """Return a vector as text in parentheses, with all digits of its three float32."""
     return f"({', '.join(map(str, vector))})"
 
 
 def rows(chosen: Iterable[QualityCase], tick: Callable[[QualityCase], None]) -> Iterator[Row]:
-    """The table, a row at a time, in the order of the cases."""
+    """Yield the row of each case, in the order of the cases."""
     # By JAX the codecs on one set are measured together, so that it is made once; a few dozens, for memory's sake.
     for _, cases_of_a_set in itertools.groupby(chosen, lambda case: id(case.normal_set)):
         group = list(cases_of_a_set)
@@ -355,7 +359,7 @@ def rows(chosen: Iterable[QualityCase], tick: Callable[[QualityCase], None]) -> 
 
 
 def _rows_together(group: list[QualityCase], tick: Callable[[QualityCase], None]) -> Iterator[Row]:
-    """A row for each case; cases that JAX can measure share the normals of their set."""
+    """Yield a row for each case; cases that JAX can measure share the normals of their set."""
     shared = [case for case in group if _is_shared(case)]
     measured: dict[int, ErrorTotal] = {}
     if shared:
@@ -393,15 +397,16 @@ class RoundTrip:
 
 
 def planes_of(normals: NormalSet) -> tuple[Vec3, Vec3, np.ndarray]:
-    """Join the chunks of a set that is an image: normals and view positions as Vec3 of (count,), coverage (count,),
-    pixel by pixel."""
+    """Return the normals and view positions of a set that is an image, as Vec3 of planes (count,), and the coverage
+    (count,), pixel by pixel."""
     assert normals.shape
     count, chunks = math.prod(normals.shape), [load() for load in normals.loads()]
     return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *chunks)
 
 
 def seen(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A set that is an image: normals and positions, (height, width, 3), and which pixels are covered."""
+    """Return the normals and the view positions of a set that is an image, each of shape (height, width, 3), and the
+    mask of covered pixels, (height, width)."""
     assert normals.shape
     n, view, covered = planes_of(normals)
     images = [np.stack([np.asarray(p) for p in planes], axis=-1).reshape(*normals.shape, 3) for planes in (n, view)]
@@ -409,7 +414,7 @@ def seen(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def image_of(normals: NormalSet) -> tuple[np.ndarray, np.ndarray]:
-    """A set that is an image: normals of shape (height, width, 3), and which pixels are covered."""
+    """Return the normals of a set that is an image, (height, width, 3), and the mask of covered pixels."""
     n, _, covered = seen(normals)
     return n, covered
 

@@ -37,7 +37,7 @@ def _error_key(row: Row) -> float:
 
 
 def with_limits(rows: Sequence[Row]) -> list[Row]:
-    """Ordered rows, and after each group of one set and size the limit of that many bits."""
+    """Return ordered rows, and after each group with the same set and bits a row with the limit for these bits."""
     shared = {column: rows[0][column] for column in SHARED if len({row[column] for row in rows}) == 1}
     return [row for _, group in groupby(rows, _group_key) for row in _rows_with_limit(list(group), shared)]
 

@@ -15,9 +15,8 @@ COUNT = 2**14
 
 
 def best_columns(codec: Codec) -> Row:
-    """The most exact code of the catalogue with as many bits, and its mean angle, which is kept in the cache.
-
-    Nothing for a code that does not pack itself.
+    """Return the columns with the most accurate codec of the catalogue that has as many bits, and its mean angle,
+    which is cached; empty for an encoding that is not packed.
     """
     encoding = codec.encoding
     return _best_columns(encoding.packed_bits, encoding.domain) if encoding.is_packed else {}

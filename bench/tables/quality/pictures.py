@@ -74,7 +74,7 @@ def _write_png(path: Path, pixels: np.ndarray) -> None:
 
 
 def _write_pixels(path: Path, codec: Codec, trip: measure.RoundTrip) -> None:
-    """The angle and the stored bits of every pixel."""
+    """Write the angle and the stored bits of every pixel to an array file (.npz)."""
     with np.errstate(invalid="ignore"):
         angle = angle_bytes(angles_deg(trip.normals, trip.decoded), trip.covered)
     codes, bits = _codes_and_bits(codec, trip.encoded)
@@ -84,8 +84,8 @@ def _write_pixels(path: Path, codec: Codec, trip: measure.RoundTrip) -> None:
 
 
 def _codes_and_bits(codec: Codec, encoded: np.ndarray) -> tuple[np.ndarray, list[int]]:
-    """The stored bits of every component, uint32 of shape (height, width, components), and how many each has. A sign
-    bit is 1 for +1."""
+    """Return the stored bits of every component, uint32 of shape (height, width, components), and the number of bits
+    of each. A sign bit is 1 for +1."""
     stored = codec.encoding.components
     planes = [words(encoded[..., i], codec.storage, i) for i in range(stored)]
     planes += [(encoded[..., stored + i] > 0).astype(np.uint32) for i in range(codec.encoding.sign_bits)]
@@ -100,13 +100,14 @@ def _write_originals(chosen: Sequence[measure.QualityCase], folder: Path) -> Non
 
 
 def write_scenes(chosen: Sequence[measure.QualityCase], folder: Path) -> None:
-    """The normals of each set that is an image, as a page's laboratory takes them."""
+    """Write the normals of each set that is an image in the form in which a page's laboratory reads them."""
     for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
         write_scene(case.normal_set.name, *measure.seen(case.normal_set), folder)
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """Yield a folder's subjects for the codecs of rows. Names are looked up, so that none leads out of the folder."""
+    """Yield a subject for each set of normals of the rows, if the folder has its images. Names are looked up, so that
+    they cannot lead out of the folder."""
     there = files_of(folder)
     for normals in dict.fromkeys(str(row.get("normals")) for row in rows):
         original = there.get(f"{normals}-normals.png")
@@ -124,8 +125,9 @@ def _pictured(there: dict[str, Path], name: str, key: CodecKey, rank: int) -> Pi
 
 
 def in_order(rows: Sequence[Row]) -> dict[CodecKey, int]:
-    """The codecs of rows of one set, the best of the fewest bits first, with their ranks: the best of each number of
-    bits with the second best of the fewest, the other second best, the article's, the others."""
+    """Return the ranks of the codecs of one set's rows, ordered by bits and then the best first. Rank 0: the best of
+    each number of bits and the second best of the fewest bits; 1: the other second best; 2: codecs of the article; 3:
+    the rest."""
     figures = {CodecKey.of(row): row for row in rows if is_count(row.get("bits")) and is_number(row.get(LEADING))}
     ranks: dict[CodecKey, int] = {}
     for key, row in sorted(figures.items(), key=lambda item: (item[1]["bits"], -item[1][LEADING])):
@@ -138,7 +140,7 @@ ARTICLES = {CodecKey(name, published.STORAGE, "nearest") for name in published.P
 
 
 def _pixels(arrays: Path, decoded: Path) -> NormalPixels | None:
-    """The files of a codec; None where they are damaged or do not fit together."""
+    """Return the pixels of a codec from its files; None if they are damaged or do not match."""
     try:
         angle, codes, bits = read_npz(arrays, PIXELS, MOST_BYTES)
     except (OSError, DamagedError):

@@ -62,8 +62,8 @@ def _grid() -> tuple[np.ndarray, np.ndarray]:
 
 
 def sphere_map(codec: Codec) -> SphereMap:
-    """A codec's errors over the sphere, by JAX, or by GLSL where it has no twin in JAX; over the half that faces the
-    viewer where it can hold no more."""
+    """Return a codec's errors over the sphere, measured by JAX, or by GLSL if the encoding exists only in shaders.
+    For an encoding that does not represent the whole sphere, the half that faces away from the viewer is NaN."""
     halves, inside = _grid()
     held = 2 if codec.encoding.domain == WHOLE_SPHERE else 1
     n = Vec3(*(np.ascontiguousarray(plane) for plane in np.moveaxis(halves[:held, inside], -1, 0)))
@@ -78,7 +78,7 @@ def sphere_map(codec: Codec) -> SphereMap:
 
 
 def _angles(codec: Codec, n: Vec3) -> Any:
-    """Angles of planes of shape (halves, pixels), by the program that the table is measured with."""
+    """Return the angular errors of planes of shape (halves, pixels), by the program that measures the table."""
     given = np.stack([plane.ravel() for plane in n], axis=1)
     ahead = np.broadcast_to(np.array([0.0, 0.0, -1.0], np.float32), given.shape)
     decoded = round_trip(codec, given, ahead).T.reshape(3, *n.x.shape)
@@ -110,7 +110,7 @@ def file_name(encoding: str, storage: str, rounding: str) -> str:
 
 
 def write_maps(codecs: Iterable[Codec], folder: Path) -> None:
-    """A file for each codec that can be measured. Raises UsageError where it cannot be written."""
+    """Write a file for each codec that can be measured. Raises UsageError if a file cannot be written."""
     for codec in dict.fromkeys(codecs):
         try:
             error_map = sphere_map(codec)

@@ -51,7 +51,8 @@ class QualityOptions(Reading, SourceOptions):
     count: Count = DEFAULT_COUNT
     seed: Seed = 0
     worst_case: Annotated[
-        bool, Option("--worst-case", "The supremum and where it is, in float64; takes seconds per codec.", in_run=True)
+        bool,
+        Option("--worst-case", "Find the supremum and its normal, in float64; takes seconds per codec.", in_run=True),
     ] = False
     codes: Annotated[
         bool,
@@ -112,7 +113,7 @@ COLUMNS = (
     Column("mse", "Mean squared error of a normal's three components.", better="less", drops=8),
     Column(
         "psnr_db",
-        "Peak signal-to-noise ratio, peak 1, over covered pixels; decodes are compared as they come, not renormalised.",
+        "Peak signal-to-noise ratio, peak 1, over covered pixels. Decodes are not renormalised before the comparison.",
         unit="dB",
         better="more",
     ),
@@ -127,12 +128,12 @@ COLUMNS = (
     _angle_column("angle_p99_deg", "99th percentile of the angles.", drops=14),
     _angle_column("angle_max_deg", "The largest sampled angle; the supremum is angle_sup_deg."),
     Column("worst_normal", "The normal with the largest error: x, y and z.", RAW, drops=1),
-    Column("worst_decode", "The decode of that normal.", RAW, drops=1),
+    Column("worst_decode", "The decode of `worst_normal`.", RAW, drops=1),
     _supremum_column(
         "angle_sup_deg",
         "The supremum: the largest angle in exact arithmetic, searched for in float64. For a finite set it is the "
-        "maximum over the set; it is empty where the set is larger than `domain`. The error of float32 is in "
-        "angle_max_deg only.",
+        "maximum over the set. Empty if the set is larger than `domain`. The error of float32 is in angle_max_deg "
+        "only.",
         unit="degrees",
     ),
     _supremum_column("sup_x", "The normal at the supremum, x.", RAW, drops=11),
@@ -176,7 +177,7 @@ COLUMNS = (
     Column(
         "best_codec",
         "For an encoding that packs itself: the codec of the catalogue with the smallest mean angle at the same bit "
-        "count, or at the next lower one.",
+        "count, or at the next lower bit count.",
         HOW,
         drops=2,
     ),
@@ -193,9 +194,9 @@ COLUMNS = (
     shared.BELOW_LIMIT,
     Column(
         "codes_unused",
-        "Codes that no normal of `domain` was encoded to. Tried are the middle, edges and corners of each cell, and "
-        "64 directions per code (4 for 24 bits, where this is an upper bound for three components and for lookup "
-        "tables).",
+        "Codes that no normal of `domain` was encoded to. The search tries the middle, edges and corners of each "
+        "cell, and 64 directions per code (4 for 24 bits, where the count is an upper bound for three components and "
+        "for lookup tables).",
         better="less",
         option="codes",
     ),

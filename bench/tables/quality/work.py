@@ -88,7 +88,7 @@ def cases(options: QualityOptions) -> list[measure.QualityCase]:
 
 
 def _as_wgsl(backends: Sequence[str]) -> list[str]:
-    """Back ends where no device compiles GLSL."""
+    """Return the backends with "wgsl" in place of "glsl", and print why: no device here compiles GLSL."""
     if "glsl" in backends:
         tell(f"shaders run as WGSL instead of GLSL, because this system supports OpenGL only up to {LAST_OPENGL}")
     return list(dict.fromkeys("wgsl" if name == "glsl" else name for name in backends))
@@ -103,19 +103,19 @@ def _not_of_noise(options: QualityOptions, backends: Sequence[str]) -> str:
 
 
 def _set_names(words: Sequence[str], codec: Codec) -> Iterator[str]:
-    """Yield the normal sets that words stand for with a given codec."""
+    """Yield the normal sets that words name for a codec: `domain` names the sets of the encoding's domain."""
     for word in words:
         yield from (OF_SPHERE if codec.encoding.domain == "sphere" else OF_HALF) if word == DOMAIN else (word,)
 
 
 def _is_asked(case: measure.QualityCase, words: Sequence[str]) -> bool:
-    """Whether words name the set of a case, which `domain` does for codes of that domain alone."""
+    """Whether words request the set of a case: the word `domain` requests it only for encodings of that domain."""
     name = case.normal_set.name
     return DOMAIN not in words or name not in OF_SPHERE + OF_HALF or name in _set_names(words, case.codec)
 
 
 def steps(options: QualityOptions, outputs: QualityOutputs) -> list[Step]:
-    """A step for each row."""
+    """Return a step for each row. Raises UsageError, also for an output folder that cannot be written to."""
     row_steps = [_step(case, _key(case, options)) for case in cases(options)]
     for folder in filter(None, (outputs.images, outputs.maps, outputs.live)):
         check_folder(folder)
@@ -162,7 +162,7 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
-    """Rows whose errors are smaller than this many codes can have: then the measurement is wrong."""
+    """Yield a line for each row with errors below the limit for its number of codes, which is impossible."""
     for row in rows:
         if row["below_limit"]:
             wrong = f"{row['codes']} codes cannot be that accurate: the measurement is wrong, or the set is not uniform"
@@ -182,11 +182,11 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _not_shown(rows: Sequence[Row]) -> Iterator[str]:
-    """A line for each reason why rows have no figures."""
+    """Yield a line for each reason why rows have no figures, with the names or the number of these rows."""
     skipped = ((_named(row, row["skipped"]), row["skipped"]) for row in rows if row["skipped"])
     for reason, names in names_by_reason(skipped).items():
         listed = ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} rows"
-        what = "by OpenGL alone" if lacks_twin(reason) else "not shown, without figures"
+        what = "by OpenGL alone" if lacks_twin(reason) else "not shown, because they have no figures"
         yield f"{what}: {listed} ({reason})"
 
 
@@ -240,7 +240,7 @@ def beside(rows: Iterable[Row]) -> list[Row]:
 
 
 def _is_beyond(column: str, lines: Iterable[Row]) -> bool:
-    """Whether a figure is infinite for some codes, among which it then tells nothing."""
+    """Whether a column is infinite for some encodings; it cannot compare them."""
     return any(line.get(column) == math.inf for line in lines)
 
 
@@ -255,7 +255,7 @@ def _merge(column: str, lines: Sequence[Row]) -> None:
 
 
 def _psnr_order(column: str) -> tuple[bool, bool]:
-    """The article's measure before the plain one, JAX before GLSL."""
+    """Return the sort key of a PSNR column: the article's measure before the plain one, JAX before GLSL."""
     return ARTICLE not in column, "glsl" in column
 
 

@@ -14,7 +14,7 @@ IMAGE, NORMALS = "the image", "the normals"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """A chart for each scene."""
+    """Yield a chart for each scene, or for each power of a scene."""
     usable = having(rows, "psnr_db", "normal_psnr_db")
     for index, scene in enumerate(dict.fromkeys(map(shown_scene, usable))):
         part = [row for row in usable if shown_scene(row) == scene]
@@ -22,18 +22,19 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def image_chart(index: int, scene: str, rows: Sequence[Row]) -> Chart:
-    """The final image next to the normals it was lit by, a line for each codec, the best image on top.
+    """Return the chart of the final image's PSNR next to that of the normals that lit it, a line for each codec, the
+    best image on top.
 
     Args:
-        index: its place among the charts of the table.
-        rows: of one scene, in that order.
+        index: its index among the charts of the table.
+        rows: rows of one scene, in that order.
     """
     lines = [
         {"codec": CodecKey.of(row).label, "line": line, "image": row["psnr_db"], "normals": row["normal_psnr_db"]}
         for row, line in zip(rows, lines_of(rows), strict=True)
     ]
     points = [line | {"what": what, "x": line[field]} for line in lines for what, field in FIELDS]
-    tips = (("line", "codec"), ("image", "the image (dB)"), ("normals", "the normals (dB)"))
+    tips = (("line", "codec"), ("image", "image (dB)"), ("normals", "normals (dB)"))
     what = Names("what", (IMAGE, NORMALS))
     return Chart(
         name=f"image-{index}",

@@ -67,7 +67,7 @@ class RenderCase:
 
     @property
     def is_metal_rough(self) -> bool:
-        """Whether its materials are."""
+        """Whether the scene's materials are metallic-roughness."""
         return self.environment is not None
 
     @property
@@ -172,7 +172,8 @@ class RenderBench(Bench[RenderCase, Drawn]):
         return row
 
     def worst(self, case: RenderCase) -> Worst | None:
-        """Return the normal of a case's first frame with the largest G-buffer error; None without a normal."""
+        """Return the normal of a case's first frame with the largest G-buffer error; None if there are no normals, or
+        the case cannot be measured."""
         try:
             return _farthest(self.frames(case)[0], self.reference(case)[0])
         except UNMEASURABLE:
@@ -223,7 +224,8 @@ def _farthest(own: Drawn, other: Drawn) -> Worst | None:
 
 
 def _normal_error(own: Drawn, other: Drawn, has_kind: bool) -> float:
-    """Mean squared error over the components of covered normals; hair's strand only where the layout knows hair."""
+    """Return the mean squared error over the components of covered normals; pixels of hair, whose normal is the
+    direction of a strand, count only if `has_kind`."""
     assert own.normals is not None and other.normals is not None and other.kinds is not None
     compared = (other.kinds >= 0) & (has_kind | (other.kinds != KINDS.index("hair")))
     return float(np.mean((own.normals[compared].astype(np.float64) - other.normals[compared]) ** 2))
@@ -285,12 +287,13 @@ def _group_key(row: Row) -> tuple[Any, ...]:
 
 
 def _error_key(row: Row) -> tuple[bool, float]:
-    """Images that are exact first, rows without figures last."""
+    """Return the sort key of a row by the error of its image: exact images first, rows without figures last."""
     return row["mse"] is None, row["mse"] or 0.0
 
 
 def ranked(given: Sequence[Row]) -> list[Row]:
-    """The rows with each codec's place by its image and by its normals, among the rows that differ in nothing else."""
+    """Return the rows with each codec's `rank` by its image and `normal_rank` by its normals, among the rows that
+    differ only in the codec; rows without others to compare with stay unchanged."""
     rows = [dict(row) for row in given]
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:

@@ -34,7 +34,8 @@ def scene_stem(row: Row, content: Sequence[str] = ()) -> str:
 
 
 def _surfaces(row: Row) -> Iterator[str]:
-    """Yield the environment and smoothing of metallic-roughness surfaces that are not the defaults."""
+    """Yield the parts of a file name for the environment and the smoothing of metallic-roughness surfaces; nothing
+    for the defaults."""
     if (around := row.get("environment")) and not around.startswith(f"{AROUND} "):
         yield name_of_file(around)
     if row.get("specular_antialiasing") is False:
@@ -53,7 +54,7 @@ def stem(row: Row) -> str:
 
 
 def write(folder: Path, row: Row, drawn: Drawn, reference: Drawn) -> None:
-    """The first frame, how far it is off, and its reference, which rows of one scene share."""
+    """Write the first frame of a row, its errors, and its reference, which the rows of one scene share."""
     images = {f"{stem(row)}-{kind}": pixels for kind, pixels in _named_pictures(drawn, reference).items()}
     # Written anew each time: the folder may hold one of other settings.
     images[f"{scene_stem(row)}-{REFERENCE}"] = pictures.picture(reference.shown)
@@ -69,7 +70,8 @@ def _named_pictures(drawn: Drawn, reference: Drawn) -> dict[str, np.ndarray]:
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """Yield the subjects in a folder for rows. Names are looked up, so that none leads out of the folder."""
+    """Yield a subject for each scene of the rows, if the folder has its images. Names are looked up, so that they
+    cannot lead out of the folder."""
     there = files_of(folder)
     groups: dict[str, list[Row]] = {}
     for row in rows:
@@ -115,6 +117,6 @@ def in_order(rows: Sequence[Row]) -> list[tuple[Row, int]]:
 
 
 def _pixels(final: Path, flip: Path | None) -> ImagePixels | None:
-    """The files of a row; None where they are damaged."""
+    """Return the pixels of a row's files; None if the image is damaged, without FLIP if its file is missing."""
     image, apart = read_png(final), read_png(flip) if flip else None
     return None if image is None else ImagePixels(image, None if apart is None else apart[..., 0])

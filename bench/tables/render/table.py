@@ -174,7 +174,7 @@ COLUMNS = (
     ),
     Column(
         "psnr_covered_db",
-        "The same over covered pixels, those with an opaque surface.",
+        "`psnr_db` over only the covered pixels, which show an opaque surface.",
         unit="dB",
         better="more",
         drops=12,
@@ -187,7 +187,7 @@ COLUMNS = (
     ),
     Column(
         "black_percent",
-        "Covered pixels of the reference that are black in 8 bits. Errors there are not visible either.",
+        "Covered pixels of the reference that are black in 8 bits. Errors there are not visible.",
         unit="%",
         drops=18,
     ),

@@ -112,7 +112,8 @@ def cases(options: RenderOptions, device: Device) -> list[RenderCase]:
 
 
 def _as_engines_keep(plan: Plan) -> Plan:
-    """Return a plan that measures only an encoding with its normal in world space, if it is made for that."""
+    """Return a plan that measures only an encoding with its normal in world space if the encoding is made for that;
+    any other plan unchanged."""
     layout, exact = plan.layout, LAYOUTS["fp32"]
     if layout.name != exact.name or layout == exact:
         return plan
@@ -130,12 +131,12 @@ def _around(scene: Scene) -> str | None:
 
 
 def _key_around(scene: Scene) -> str:
-    """Return a key that distinguishes environments of the same name."""
+    """Return a key that distinguishes environments of the same name; empty without an environment."""
     return key_of(scene.environment.radiance) if scene.environment else ""
 
 
 def _exposure(asked: str | None, maker: SceneMaker) -> float | None:
-    """Stops; None to measure them. Raises UsageError."""
+    """Return the exposure in stops, by default the scene's own; None for "auto", to measure it. Raises UsageError."""
     if asked is None:
         return maker.exposure
     if asked.strip().lower() == "auto":
@@ -169,7 +170,7 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
         yield from says_little(scene, covered)
     for scene, black in _most(rows, "black_percent").items():
         if black > MOSTLY_BLACK:
-            remedy = "no light reaches the visible surfaces, or it needs --exposure auto"
+            remedy = "use --exposure auto, or add light that reaches the visible surfaces"
             yield f"{scene}: {black:.0f}% of the covered pixels are black; errors there are not visible; {remedy}"
     for scene, clipped in _most(rows, "clipped_percent").items():
         if clipped > MUCH_CLIPPED:
@@ -178,7 +179,7 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _most(rows: Sequence[Row], column: str) -> dict[str, float]:
-    """The largest value of a column, in percent, by scene."""
+    """Return the largest value of a column by scene; scenes without a value are left out."""
     largest: dict[str, float] = {}
     for row in rows:
         scene = shown_scene(row)
@@ -193,7 +194,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _usual_columns(rows: Sequence[Row]) -> tuple[str, ...]:
-    """Return the columns that only repeat the usual case."""
+    """Return the names of the columns to hide because they only repeat the usual case."""
     usual = {
         ("samples_asked",): all(row["samples"] == row["samples_asked"] for row in rows),
         ("exposure",): not any(row["exposure"] for row in rows),

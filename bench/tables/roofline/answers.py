@@ -30,7 +30,8 @@ def _answers_by_gpu(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _answer_text(rows: Sequence[Row], places: Sequence[Place]) -> str:
-    """The fastest codes at each place; places with the same ones together."""
+    """Return the fastest codecs as text, for each combination of size and reads; combinations with the same codecs
+    are named together."""
     groups: dict[str, list[Place]] = {}
     for size, reads in places:
         best = [row for row in rows if (row["size"], row["reads"], row["rank"]) == (size, reads, 1)]
@@ -41,7 +42,7 @@ def _answer_text(rows: Sequence[Row], places: Sequence[Place]) -> str:
 
 
 def _codes_text(rows: Sequence[Row]) -> str:
-    """Codes that are equally fast: "xyz in rgb10a2", "spheremap and octahedral in rg8"."""
+    """Return text on the codecs that are equally fast, such as "spheremap and octahedral in rg8 are equally fast"."""
     by_storage: dict[str, list[str]] = {}
     for row in rows:
         by_storage.setdefault(row["storage"], []).append(row["encoding"])
@@ -50,7 +51,8 @@ def _codes_text(rows: Sequence[Row]) -> str:
 
 
 def _places_text(some: Sequence[Place], every: Sequence[Place]) -> str:
-    """Some of the places: by the size alone, or the reads alone, where these tell them from the others."""
+    """Return some combinations of size and reads in words: only sizes, or only reads, if these are enough to
+    distinguish them from the others."""
     sizes, reads = (list(dict.fromkeys(column)) for column in zip(*some, strict=True))
     if sum(size in sizes for size, _ in every) == len(some):
         return f"at {_listed_text(sizes)}"
@@ -64,5 +66,5 @@ def _reads_text(counts: Sequence[int]) -> str:
 
 
 def _listed_text(names: Sequence[str]) -> str:
-    """Names as a sentence has them."""
+    """Return names as one text, with commas, and "and" before the last."""
     return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)

@@ -9,11 +9,11 @@ from ..charts import having
 from ..table import Row
 
 STEPS = 40
-MEMORY, CACHE = "where bytes take as long as instructions", "the same, from the cache"
+MEMORY, CACHE = "bytes from memory take as long as instructions", "bytes from the cache take as long"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Bytes over instructions of a pixel and frame, of each GPU."""
+    """Yield the chart of bytes over instructions, if any row has both."""
     usable = having(rows, "instructions", "bytes_per_pixel")
     if usable:
         yield roofline_chart(usable)
@@ -38,8 +38,8 @@ def points(rows: Sequence[Row]) -> list[Row]:
 
 
 def ridge_lines(point_rows: Sequence[Row], gpu: str) -> dict[bool, list[tuple[float, float]]]:
-    """Instructions, and the bytes that take as long, from the fewest bytes that are drawn on: a line for codes in
-    memory, and one, under True, for those that the cache holds."""
+    """Return the lines along which bytes take as long as instructions on a GPU, as points (instructions, bytes), from
+    the lowest bytes of the axis: False for codecs in memory, True for codecs that the cache holds."""
     most, (least, _) = _axis_end(point_rows), _bytes_axis(point_rows)
     ridges = {point["in_cache"]: point["ridge"] for point in point_rows if point["gpu"] == gpu}
     across = [most * (step / STEPS) ** 2 for step in range(1, STEPS + 1)]
@@ -51,15 +51,17 @@ def _axis_end(point_rows: Sequence[Row]) -> float:
 
 
 def _bytes_axis(point_rows: Sequence[Row]) -> tuple[float, float]:
-    """The axis of bytes, which has room for the points alone."""
+    """Return the ends of the axis of bytes, with room only for the points."""
     return min(point["y"] for point in point_rows) / 1.5, max(point["y"] for point in point_rows) * 1.5
 
 
 def roofline_chart(rows: Sequence[Row]) -> Chart:
-    """Bytes over instructions of a pixel and frame: above the line memory takes longer, below it arithmetic.
+    """Return the chart of bytes over instructions, per pixel and frame, of each GPU: above the line memory takes
+    longer, below it arithmetic.
 
     Args:
-        rows: of the roofline table: encoding, storage, gpu, reads, overdraw, instructions, bytes_per_pixel, ridge.
+        rows: rows of the roofline table: encoding, storage, gpu, reads, overdraw, instructions, bytes_per_pixel,
+            ridge.
     """
     drawn_points = [{**point, "where": CACHE if point["in_cache"] else MEMORY} for point in points(rows)]
     gpus, reads = distinct(drawn_points, "gpu"), drawn_points[0]["reads"]

@@ -60,7 +60,7 @@ class Work:
         return frame.overdraw * self.encode + frame.reads * self.decode
 
     def traffic(self, frame: Frame) -> float:
-        """Bytes of a frame."""
+        """Return the bytes that a frame writes and reads."""
         return frame.pixels * self.bytes * (frame.overdraw + frame.reads)
 
     def is_cached(self, frame: Frame, rates: Rates) -> bool:
@@ -68,12 +68,12 @@ class Work:
         return 0 < frame.pixels * self.bytes <= frame.cache_share * rates.cache * 1e6
 
     def times(self, frame: Frame, rates: Rates) -> tuple[float, float]:
-        """Seconds that bytes take, and that instructions do."""
+        """Return the seconds that a frame's bytes take, and those that its instructions take."""
         moved = self.traffic(frame) / (self.bandwidth(frame, rates) * 1e9)
         return moved, frame.pixels * self.instructions(frame) / rates.instructions
 
     def bandwidth(self, frame: Frame, rates: Rates) -> float:
-        """GB/s at which the normals move: the cache's where they fit into their share of it."""
+        """Return the GB/s at which normals move: the cache's if they fit into their share, else the memory's."""
         return rates.cached if self.is_cached(frame, rates) else rates.memory
 
 
@@ -93,7 +93,7 @@ class RooflineCase:
     is_shared: bool = False
 
     def rows(self) -> Iterator[Row]:
-        """A row for each code and frame."""
+        """Yield a row for each codec and frame, with the reason in `skipped` if the codec's cost is not known."""
         driver = next((row["driver"] for row in self._counts if row["driver"]), None)
         for codec in self.codecs:
             work = self._works[codec]
@@ -156,7 +156,7 @@ def _figures(work: Work, frame: Frame, rates: Rates) -> Row:
 
 
 def ranked(rows: Sequence[Row]) -> list[Row]:
-    """Rows by GPU, size and reads, the fastest first, with their ranks; those without figures last."""
+    """Return the rows by GPU, size and reads, the fastest first, with their ranks; rows without figures come last."""
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault((row["gpu"], row["size"], row["reads"]), []).append(row)

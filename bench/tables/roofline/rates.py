@@ -38,7 +38,7 @@ class Rates:
 
     @property
     def instructions(self) -> float:
-        """Lanes' instructions in a second."""
+        """Instructions per second, summed over all lanes."""
         return self.lanes * self.clock * 1e9
 
     def ridge(self, bandwidth: float) -> float:
@@ -77,8 +77,8 @@ RANGES = MappingProxyType(
 
 
 def gpus_named(words: Names) -> dict[str, Rates]:
-    """Return the GPUs of names, or all. NAME:memory=400:clock=2 changes one's rates; a family's name with
-    lanes, clock and memory is a GPU of that family.
+    """Return GPUs' rates by name: of known GPUs, or of all. NAME:memory=400:clock=2 changes rates of a GPU; a
+    family's name with lanes, clock and memory is a GPU of that family.
 
     Raises:
         UsageError: an unknown name or setting, or a rate that no GPU has.
@@ -90,7 +90,8 @@ def gpus_named(words: Names) -> dict[str, Rates]:
 
 
 def _named_rates(word: str) -> tuple[str, Rates]:
-    """A GPU's word and its rates: of a known GPU, or of a family with settings."""
+    """Return a GPU's name, in its known spelling and with its settings, and its rates: of a known GPU, or of a family
+    with settings. Raises UsageError."""
     typed, *settings = word.split(":")
     name = spelled("family", typed, (*GPUS, *FAMILIES)) or typed
     word = ":".join([name, *settings])

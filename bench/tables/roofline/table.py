@@ -66,7 +66,7 @@ COLUMNS = (
     Column("size", "Width and height of the G-buffer in pixels.", KEY),
     Column("reads", "Number of passes that read and decode each pixel's normal.", KEY),
     shared.BITS,
-    Column("bytes_per_pixel", "Bits of the texel; with --shared, the encoding's own bits.", better="less"),
+    Column("bytes_per_pixel", "Bytes of the texel; with --shared, only of the encoding's own bits.", better="less"),
     Column(
         "encode",
         "Instructions to encode and pack; in full-rate instructions if these are known.",
@@ -78,19 +78,19 @@ COLUMNS = (
     Column("megabytes", "Megabytes written and read per frame.", better="less", drops=8),
     Column("memory_us", "Time for the bytes.", unit="us", better="less", drops=4),
     Column("alu_us", "Time for the instructions.", unit="us", better="less", drops=4),
-    Column("frame_us", "The longer of the two times, because both run at once.", unit="us", better="less"),
-    Column("bound", "Which of the two is longer: memory or alu.", HOW),
+    Column("frame_us", "The longer of memory_us and alu_us, because both run at once.", unit="us", better="less"),
+    Column("bound", "Which time is longer: memory, for the bytes, or alu, for the instructions.", HOW),
     Column(
         "rank",
-        "Rank by frame_us among the codecs on this GPU, at this size and these reads; equal times share a rank.",
+        "Rank by frame_us among the codecs with the same GPU, size and number of reads; equal times share a rank.",
         HOW,
     ),
     Column("in_cache", "Whether the normals fit into their share of the last-level cache.", HOW, drops=7),
-    Column("ridge", "Instructions that take as long as one byte, at the bandwidth of the row.", HOW, drops=6),
+    Column("ridge", "Instructions that take as long as moving one byte, at the bandwidth of the row.", HOW, drops=6),
     Column("shared", "Whether other data uses the rest of the texel.", HOW, drops=10),
     Column("overdraw", "How often each pixel's normal is encoded and written.", HOW, drops=10),
     Column("family", "The GPU family that instructions are counted for.", HOW, drops=9),
-    Column("driver", "The compiler of the counts.", HOW, drops=11),
+    Column("driver", "The compiler whose instructions were counted.", HOW, drops=11),
     shared.SKIPPED,
 )
 ALSO = (
@@ -100,9 +100,9 @@ ALSO = (
 
 TABLE = Table(
     package=__package__ or "",
-    help="Estimate which encoding is faster on which GPU, with a model.\n\nBytes take memory bandwidth. "
-    "Instructions, as `cost --isa` counts them, take arithmetic. The longer of the two times counts. Nothing is "
-    "timed, and no GPU is needed.",
+    help="Estimate which encoding is faster on which GPU, with a model.\n\nThe time for bytes depends on "
+    "memory bandwidth, the time for instructions, as `cost --isa` counts them, on arithmetic. The longer time counts. "
+    "Nothing is timed, and no GPU is needed.",
     example="normalbench roofline --encoding xyz,octahedral --storage rgba16f,rg8 --gpu rx6800xt,iris_xe",
     options=RooflineOptions,
     outputs=RooflineOutputs,

@@ -56,7 +56,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """A table for each GPU and size, the fastest code first, of the fewest reads; the answers above the first."""
+    """Yield a sheet for each GPU and size at the fewest reads, the fastest codec first; answers are on the first."""
     hidden = ["encoding", "storage", "gpu", "size", "shared", "overdraw", "ridge", "family", "driver", "skipped"]
     known = [row for row in rows if row["frame_us"] is not None]
     sentences = answers(rows)
@@ -76,8 +76,8 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _duels(case: RooflineCase) -> Iterator[str]:
-    """Yield for each pair of codecs of different size from how many reads the smaller is faster, and at which
-    sizes. If there are many pairs, only those in which it is not always faster."""
+    """Yield lines on how many reads make the smaller of two codecs faster, and at which sizes, for each pair of
+    different bytes. If there are many pairs, only those in which the smaller is not always faster."""
     works = {f"{codec.encoding.name} {codec.storage.name}": case.work(codec) for codec in case.codecs}
     known = sorted(((name, work) for name, work in works.items() if work), key=lambda entry: entry[1].bytes)
     pairs = [pair for pair in combinations(known, 2) if pair[0][1].bytes < pair[1][1].bytes]
@@ -95,7 +95,7 @@ def _duels(case: RooflineCase) -> Iterator[str]:
 
 
 def _by_size(case: RooflineCase, candidate: measure.Work, other: measure.Work) -> dict[str, list[str]]:
-    """The sizes by the answer that holds for them."""
+    """Return the sizes, such as 1920x1080, by the answer of `from_reads` for them."""
     groups: dict[str, list[str]] = {}
     for size, frame in {frame.size: frame for frame in case.frames}.items():
         answer = measure.from_reads(candidate, other, case.rates, frame)
@@ -109,7 +109,7 @@ def _said(answer: str, sizes: Sequence[str]) -> str:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """A line for each code, GPUs and sizes side by side."""
+    """Yield a sheet for each number of reads: a row for each codec, with GPUs and sizes side by side."""
     known = [row for row in rows if row["frame_us"] is not None]
     sentences = answers(rows)
     for reads in dict.fromkeys(row["reads"] for row in known):

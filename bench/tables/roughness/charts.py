@@ -17,18 +17,19 @@ MOST_WITH_POINTS = 40
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield one chart, if there are images with FLIP."""
+    """Yield the chart of FLIP over roughness, if any row has FLIP."""
     usable = [r for r in having(rows, "flip_p99", "roughness") if r.get("threshold") is None or r.get("decides")]
     if usable:
         yield roughness_chart(usable, sorted({row["threshold"] for row in rows if row.get("threshold") is not None}))
 
 
 def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
-    """FLIP's 99th percentile over roughness, the worst of objects and environments, a line for each code.
+    """Return the chart of FLIP's 99th percentile over roughness, the worst of objects and environments, a line for
+    each codec.
 
     Args:
-        rows: of the roughness table, with FLIP: single pictures, and crossings that decide, the worst there.
-        thresholds: drawn as dotted lines.
+        rows: rows of the roughness table with FLIP: single images, and crossings that decide.
+        thresholds: values to draw as dotted lines.
     """
     worst: dict[tuple[str, float], Row] = {}
     for row in rows:
@@ -66,6 +67,6 @@ def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
 
 
 def _called(row: Row) -> str:
-    """The code, and how it was drawn where that is not the usual."""
+    """Return the name of a codec, with its noise and its number of frames unless they are the usual ones."""
     noise = "" if row["dither"] == NONE else f", {row['dither']} noise"
     return CodecKey.of(row).label + noise + ("" if row["frames"] == 1 else f", {row['frames']} frames")

@@ -75,7 +75,8 @@ class Frames:
         self.covered = np.any(self._covered, axis=0)
 
     def light(self, roughness: float) -> np.ndarray:
-        """The mean of all frames at a roughness: linear light, float64 of shape (height, width, 3), black around."""
+        """Return the mean of all frames at a roughness: linear light, float64 of shape (height, width, 3), black
+        around the object."""
         total = np.zeros((*self.covered.shape, 3))
         for rendered, covered in zip(self.made, self._covered, strict=True):
             if OBJECTS[self._what.name].is_metal:
@@ -93,8 +94,8 @@ def layout_of(codec: Codec) -> Layout:
 
 
 def draw_again(rendered: Rendering, roughness: float) -> None:
-    """Draw the picture of another roughness of a metal, in a fifth of the time: of the G-buffer one target changes, to
-    a constant."""
+    """Draw the image of a metal with another roughness, in a fifth of the time: only one target of the G-buffer
+    changes, to a constant."""
     number = next(w.target for w in rendered.frame.plan.layout.words if w.component == "power")
     # Reflectance head on, and the roughness, which a metal/rough surface has in place of a power.
     rendered.frame.framebuffer([rendered.frame.textures(GBUFFER)[number]]).clear(*WHITE, roughness)
@@ -113,14 +114,15 @@ def views(view: View, size: tuple[int, int], frames: int) -> Sequence[View]:
 
 
 def moved(view: View, size: tuple[int, int], x: float, y: float) -> View:
-    """The view of a picture of this size through points x pixels to the right and y pixels above the middles of its
-    own. The camera turns, which at so small an angle is the same to 1e-4 of a pixel."""
+    """Return the view of an image of this size through points x pixels to the right and y pixels above the centres of
+    its pixels. The camera turns, which at so small an angle is the same to 1e-4 of a pixel."""
     pixel = float(np.degrees(np.arctan(2 * np.tan(np.radians(view.fov) / 2) / size[1])))
     return view.turned("yaw", -x * pixel).turned("pitch", y * pixel)
 
 
 def halton(index: int, base: int) -> float:
-    """Element `index`, from 1 on, of van der Corput's sequence: its digits mirrored at the point, in (0, 1)."""
+    """Return element `index`, from 1 on, of van der Corput's sequence: the digits of `index` in a base, mirrored at
+    the point, in (0, 1)."""
     fraction, share = 0.0, 1.0
     while index:
         index, digit = divmod(index, base)

@@ -51,7 +51,7 @@ class RoughnessCase:
 
     @property
     def light(self) -> str:
-        """Name of its environment, or of the sun."""
+        """Name of the case's environment, or of the sun."""
         return self.environment.name if self.environment else SUN
 
     @property
@@ -81,17 +81,17 @@ class Pictures:
         return self._exact[frames]
 
     def image(self, frames: Frames, roughness: float) -> np.ndarray:
-        """A picture in [0, 1], float32 of shape (height, width, 3); black around the object."""
+        """Return an image as displayed, in [0, 1], float32 of shape (height, width, 3); black around the object."""
         return self.display.image(frames.light(roughness)).astype(np.float32)
 
     def right(self, frames: int, roughness: float) -> Flip:
-        """Return the picture by exact normals, for others to be compared with."""
+        """Return a FLIP comparison with the image of exact normals, drawn once for each roughness and `frames`."""
         if (frames, roughness) not in self._right:
             self._right[frames, roughness] = Flip(self.image(self.exact(frames), roughness))
         return self._right[frames, roughness]
 
     def figures(self, frames: Frames, roughness: float, with_flip: bool) -> Row:
-        """Return the columns of one image."""
+        """Return the columns of one image, compared with exact normals; `flip` and `flip_p99` only if `with_flip`."""
         image, exact = self.image(frames, roughness), self.right(len(frames.made), roughness)
         pixels, right = (picture[frames.covered].astype(np.float64) for picture in (image, exact.reference))
         bytes_off = np.abs(np.round(255 * pixels) - np.round(255 * right)).max(axis=-1)
@@ -130,14 +130,14 @@ def _rows_of(pictures: Pictures, codec: Codec, seen: Accumulation, thresholds: S
 
 
 def _curve(pictures: Pictures, frames: Frames, thresholds: Sequence[float]) -> list[Row]:
-    """A row for each threshold, then one for each roughness; no picture's FLIP is measured twice."""
+    """Return a row for each threshold, then a row for each roughness; FLIP is computed once for each image."""
     with_flip = cache(lambda roughness: pictures.figures(frames, roughness, True))
     singles = [with_flip(r) if r in WITH_FLIP else pictures.figures(frames, r, False) for r in ROUGHNESSES]
     return [*(_crossing(with_flip, singles, threshold) for threshold in thresholds), *singles]
 
 
 def size_of(environment: Environment) -> str:
-    """The texels of an environment, WIDTHxHEIGHT."""
+    """Return the size of an environment in texels, WIDTHxHEIGHT."""
     height, width, _ = environment.radiance.shape
     return f"{width}x{height}"
 
@@ -184,5 +184,5 @@ def _least(row: Row) -> float:
 
 
 def answers(rows: Sequence[Row]) -> Iterator[Row]:
-    """Yield the finished rows that decide from which roughness each codec is acceptable everywhere."""
+    """Yield the finished rows that decide: each has the roughness from which a codec is acceptable everywhere."""
     yield from (row for row in rows if row.get("decides"))

@@ -60,7 +60,7 @@ class Shown:
     view: View
 
     def scene(self, roughness: float) -> Scene:
-        """Return it, of a roughness."""
+        """Return the scene of the object with this roughness, under its environment or otherwise in the sun."""
         material = MetalRough(WHITE, float(OBJECTS[self.name].is_metal), roughness)
         direction = tuple(-float(x) / np.sqrt(3) for x in SUN_FROM)
         lights = () if self.environment else (Light("sun", SUN_COLOUR, direction=direction),)
@@ -81,7 +81,7 @@ def shown(name: str, environment: Environment | None) -> Shown:
 
 
 def busiest(environment: Environment) -> np.ndarray:
-    """The direction around which brightness varies most within a window, unit, (3,)."""
+    """Return the direction around which brightness varies most within a window: a unit vector, (3,)."""
     light = np.log2(environment.radiance.mean(axis=-1, dtype=np.float64) + 1e-3)
     height = len(light)
     window = max(round(WINDOW / 180 * height), 3)

@@ -36,11 +36,11 @@ class RoughnessOptions(SourceOptions):
     size: Size = "256x256"
     dither: Annotated[
         Names,
-        Option("--dither", "Noise added before rounding, in addition to none: still, moving; comma-separated, or all."),
+        Option("--dither", "Noise to add before rounding, besides none: still, moving; comma-separated, or all."),
     ] = ("none",)
     frames: Annotated[
         Names | None,
-        Option("--frames", "Number of frames to average per image, comma-separated. Default: 1; with --dither 1,8."),
+        Option("--frames", "Number of frames to average per image, comma-separated. Default: 1; with --dither: 1,8."),
     ] = None
 
 
@@ -98,8 +98,8 @@ COLUMNS = (
     Column("flip", "Mean FLIP over the object's pixels, at 67 pixels per degree.", better="less", drops=6),
     Column(
         "flip_p99",
-        "FLIP (99th percentile) over the object's pixels: 0.1 is a grey that is off by 5 to 6 of 255, 0.05 one that "
-        "is off by 2.",
+        "FLIP (99th percentile) over the object's pixels: 0.1 is a grey that is off by 5 to 6 of 255, 0.05 a grey "
+        "that is off by 2 of 255.",
         better="less",
     ),
     Column("off_percent", "Share of the object's pixels that are off by more than 1 of 255.", unit="%", better="less"),

@@ -28,7 +28,7 @@ CODE, USUAL = ("encoding", "storage", "rounding"), {"dither": NONE, "frames": 1}
 
 
 def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
-    """A step for each code. Raises UsageError and MissingError."""
+    """Return a step for each object and environment, with all codecs. Raises UsageError and MissingError."""
     require_jax()
     device = require_device()
     seen = _seen(options)
@@ -61,7 +61,7 @@ def _environments(words: Names) -> tuple[Environment, ...]:
     if not environments:
         raise UsageError("--environment: no environment given; name at least one, such as studio")
     if twice := next((name for name in names if names.count(name) > 1), None):
-        raise UsageError(f"--environment: {twice} is named twice")
+        raise UsageError(f"--environment: {twice} is named twice; name it once")
     return environments
 
 
@@ -73,12 +73,12 @@ def _key(case: RoughnessCase) -> Row:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    notes = ("Below these, bands are visible. The rows of -o FILE have FLIP and PSNR of each image.",)
+    notes = ("Below these roughnesses, bands are visible. With -o FILE the rows have FLIP and PSNR of each image.",)
     yield from (replace(sheet, notes=notes) for sheet in _summary(done.rows))
 
 
 def _said(rows: Sequence[Row]) -> tuple[str, ...]:
-    """The columns that name a code, and how it was drawn where that is not the usual."""
+    """Return the names of the columns that identify a codec, and of those in which some row is not drawn as usual."""
     return *CODE, *(name for name, usual in USUAL.items() if any(row[name] != usual for row in rows))
 
 
@@ -99,7 +99,7 @@ def _from(row: Row) -> str:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield a table of the lowest roughness from which each codec keeps each threshold."""
+    """Yield a table of the lowest roughness from which each codec keeps each threshold; nothing if no row decides."""
     lines: dict[tuple[object, ...], Row] = {}
     for row in answers(rows):
         about = {name: row[name] for name in (*_said(rows), "bits")}

@@ -21,7 +21,8 @@ MORE = ("layout", "light_buffer", "light_targets")
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Frames over the number of objects where there are several numbers, and for each number the passes."""
+    """Yield the chart of frames over the number of objects, if there are several numbers, and for each number the
+    chart of passes."""
     known = having(rows, FRAME)
     counts = list(dict.fromkeys(row.get("objects") for row in known))
     if len(counts) > 1:
@@ -79,13 +80,13 @@ def _pass_rows(row: Row, line: str) -> list[Row]:
 
 
 def passes_of(row: Row) -> dict[str, float]:
-    """A frame's milliseconds by pass, without the frame's own."""
+    """Return the milliseconds of a frame by pass, without the whole frame's."""
     names = [n for n in row if n.startswith("ms_") and not n.endswith(SPREAD) and n not in (FRAME, EACH)]
     return {name.removeprefix("ms_"): row[name] for name in names if is_number(row[name])}
 
 
 def frame_total(row: Row) -> float:
-    """The milliseconds of a frame's passes together."""
+    """Return the total milliseconds of a frame's passes."""
     return sum(passes_of(row).values())
 
 
@@ -97,10 +98,11 @@ def frame_label(row: Row) -> str:
 
 
 def frames_chart(rows: Sequence[Row]) -> Chart:
-    """Milliseconds a frame over the number of objects, a line for each pipeline, a panel with shadows and one without.
+    """Return the chart of milliseconds per frame over the number of objects, a line for each pipeline, a panel with
+    shadows and a panel without.
 
     Args:
-        rows: of a sweep: pipeline, objects, shadow, ms_frame and its spread, size, lights, clock, device.
+        rows: rows of a sweep: pipeline, objects, shadow, ms_frame and its spread, size, lights, clock, device.
     """
     points = [
         {"line": _line_name(row, rows, MORE), "x": row["objects"], "y": row[FRAME], "shadow": _shadow_text(row)}

@@ -31,7 +31,7 @@ class Point:
         return f"{self.pipeline.name}, {self.setting.objects} objects, {shadow} shadow map"
 
     def key(self, device: Device) -> Row:
-        """Everything that determines the row."""
+        """Return the columns that determine a row: the pipeline, its settings and the device."""
         return described(self.pipeline, self.plan, self.setting, self.asked) | {
             "holds": self.plan.layout.summary if self.pipeline.has_gbuffer else None,
             "scene": "objects",

@@ -86,7 +86,7 @@ COLUMNS = (
     Column("triangles", "Triangles per frame that reach the rasteriser; light volumes count twice.", better="less"),
     Column(
         "triangles_*",
-        "Triangles of that pass; light volumes count twice, once marked and once shaded.",
+        "Triangles of that pass; light volumes count twice, because they are marked and then shaded.",
         better="less",
         drops=10,
     ),
@@ -112,8 +112,8 @@ TABLE = Table(
         title="Pass times",
         short="Passes",
         intro="A frame of each pipeline in the layout that it was published with: where do its milliseconds go?",
-        method="Medians over repeated frames after a warm-up; the spread is the interquartile range. On a GPU, timer "
-        "queries; on a software rasteriser, a clock around each finished pass, which compares passes with "
-        "each other and is not GPU time. The clock is named below.",
+        method="Times are medians over repeated frames after a warm-up; the spread is the interquartile range. A GPU "
+        "is timed by timer queries, a software rasteriser by a clock around each finished pass. Its times compare "
+        "passes with each other and are not GPU times. The clock is named below.",
     ),
 )

@@ -36,7 +36,7 @@ class Normals:
         return Normals(self.n[::step], self.view[::step])
 
     def planes(self) -> tuple[Vec3, Vec3]:
-        """Normals and positions as planes."""
+        """Return the normals and the positions as planes: a Vec3 each."""
         return tuple(Vec3(*(jnp.asarray(c) for c in a.T)) for a in (self.n, self.view))  # type: ignore[return-value]
 
 
@@ -81,7 +81,7 @@ def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
 
 
 def _tile_numbers(chosen: NormalSet) -> np.ndarray:
-    """Return the number of each pixel's tile; without pixels, each normal is a tile of its own."""
+    """Return the number of each pixel's tile; without an image or in a small image each normal is a tile."""
     index = np.arange(chosen.count)
     if not chosen.shape or min(chosen.shape) < 4 * TILE:
         return index

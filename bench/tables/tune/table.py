@@ -19,8 +19,8 @@ KEY, HOW = Role.KEY, Role.HOW
 class TuneOptions(Reading):
     """Options of `tune`: what to fit, and to which normals."""
 
-    encoding: Annotated[str, Option("ENCODING", "An encoding; `normalbench list encodings` shows them.")] = ""
-    normals: Annotated[Names, Option("--normals", "A normal set or a file of one.", files=True)] = ("playground",)
+    encoding: Annotated[str, Option("ENCODING", "An encoding; `normalbench list encodings` lists all.")] = ""
+    normals: Annotated[Names, Option("--normals", "A normal set or a file of normals.", files=True)] = ("playground",)
     storage: Annotated[Names, Option("--storage", "A storage.")] = ("rgba8",)
     parameter: Annotated[
         Names, Option("--parameter", "The encoding's own parameters, or table; comma-separated. Default: all.")
@@ -48,8 +48,8 @@ COLUMNS = (
     Column("seed", "The random seed of uniform sets and of the hold-out.", HOW, drops=1),
     Column("tuned_encoding", "The tuned encoding, by a name that --encoding accepts.", HOW),
     Column("quantity", "A parameter, or a figure of the hold-out.", KEY),
-    Column("published", "Its value as published."),
-    Column("tuned", "Its value as tuned."),
+    Column("published", "The published value of the quantity."),
+    Column("tuned", "The value of the quantity after tuning."),
     Column("gain", "Gain of tuning on the hold-out.", better="more"),
     Column("unit", "Unit of the gain: dB, or percent of an angle.", HOW),
     Column("glsl", "The macro that sets the parameter in GLSL.", HOW, drops=2),

@@ -46,7 +46,7 @@ class Scale:
         return np.where(self._is_log, np.log(np.where(self._is_log, values, 1.0)), values)
 
     def shares(self, values: Mapping[str, float]) -> np.ndarray:
-        """Numbers from 0 to 1 for values."""
+        """Return the positions of parameter values in their ranges, as numbers from 0 to 1."""
         low, high = self._ends
         return (self._log_values(np.array([values[name] for name in self.names])) - low) / (high - low)
 
@@ -96,7 +96,7 @@ def search(codec: Codec, normals: Normals, goal: str) -> Values:
 
 
 def _searched(measure: Measure, scale: Scale, values: Values) -> Values:
-    """Values that are changed by ever smaller steps, each as long as the measured error falls."""
+    """Return values changed by ever smaller steps, each repeated as long as the measured error falls."""
     ways = [np.array(way) for way in itertools.product((-1, 0, 1), repeat=len(scale.names)) if any(way)]
     for step in STEPS:
         while True:
@@ -108,7 +108,7 @@ def _searched(measure: Measure, scale: Scale, values: Values) -> Values:
 
 
 def fitted(codec: Codec, normals: Normals, goal: str, names: list[str]) -> Values:
-    """Return the values of the parameters `names` with the smallest measured error."""
+    """Return the values of the parameters `names` with the smallest measured error; empty without parameters."""
     chosen = tuple(p for p in codec.encoding.parameters if p.name in names)
     return search(replace(codec, encoding=replace(codec.encoding, parameters=chosen)), normals, goal) if chosen else {}
 

@@ -68,7 +68,7 @@ class Tuning:
     scales: np.ndarray | None = None
 
     def measured(self) -> list[Row]:
-        """Fit to one half, and measure both codecs on the other."""
+        """Fit a codec to one half of the normals, measure both codecs on the other, and return the rows."""
         chosen, halves, goal = self.chosen, self.halves, self.options.error
         self.scales = fitted_table(chosen.codec, halves.fitting, goal) if chosen.has_table else None
         parameters = fitted(chosen.codec, halves.fitting, goal, chosen.names)
@@ -128,7 +128,7 @@ def chosen_of(name: str, options: TuneOptions) -> Chosen:
 
 
 def _has_table(codec: Codec) -> bool:
-    """Whether it has a look-up that can be tuned in its storage."""
+    """Whether a codec has a lookup table that can be tuned in its storage."""
     look_up, storage = codec.encoding.look_up, codec.storage
     counts = {storage.count(i) for i in range(codec.encoding.components)}
     return bool(look_up) and storage.kind != "float" and len(counts) == 1 and counts <= set(look_up.levels)
@@ -205,7 +205,7 @@ def _row(quantity: str, published: float, tuned: float) -> Row:
 
 
 def _gain(figure: str, published: float, tuned: float) -> Row:
-    """Decibels more, or by how many percent an angle is smaller."""
+    """Return `gain` with its `unit`: the increase of a PSNR in dB, or by how many percent an angle is smaller."""
     if figure == FIGURES["psnr"]:
         return {"gain": tuned - published if tuned != published else 0.0, "unit": "dB"}
     return {"gain": 100 * (1 - tuned / published) if published else 0.0, "unit": "%"}

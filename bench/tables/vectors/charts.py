@@ -16,17 +16,18 @@ LOST = "error equal to the motion"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """The mean error over the speed: a panel for each number of bits, a line for each code."""
+    """Yield the chart of the mean error over the speed, if any row has figures."""
     usable = sorted(one_backend(having(rows, "speed", "error_mean_px")), key=place)
     if usable:
         yield vectors_chart(usable)
 
 
 def vectors_chart(rows: Sequence[Row]) -> Chart:
-    """The mean error of motion vectors over their speed.
+    """Return the chart of the mean error of motion vectors over their speed: a panel for each number of bits, a line
+    for each codec.
 
     Args:
-        rows: of the vectors table, one back end: encoding, storage, bits, range, speed, error_mean_px.
+        rows: rows of the vectors table for one backend: encoding, storage, bits, range, speed, error_mean_px.
     """
     points = [
         {"line": name, "encoding": row["encoding"], "storage": row["storage"], "bits": _bits_text(row["bits"])}

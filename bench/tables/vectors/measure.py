@@ -99,7 +99,7 @@ BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _trip_by_jax, "glsl":
 
 
 def measure(case: MotionVectorCase) -> list[Row]:
-    """A row for each speed; rows that the device cannot give have the reason in `skipped` and no figures."""
+    """Return a row for each speed; if the device cannot measure them, with the reason in `skipped` and no figures."""
     rows = [_case_columns(case, speed) for speed in case.speeds]
     try:
         with ExitStack() as stack:
@@ -137,7 +137,8 @@ def _case_columns(case: MotionVectorCase, speed: float) -> Row:
 
 
 def _of_any_count(trip: Trip) -> Trip:
-    """Chunks of CHUNK motions, the last repeated: compiled once, and a rectangle of pixels."""
+    """Return the same round trip for up to CHUNK motions: the last is repeated up to CHUNK, so that the trip is
+    compiled once and the motions form a rectangle of pixels."""
 
     def whole(motions: np.ndarray) -> np.ndarray:
         padded = np.pad(motions, ((0, CHUNK - len(motions)), (0, 0)), mode="edge")

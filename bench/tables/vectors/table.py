@@ -69,7 +69,12 @@ COLUMNS = (
         unit="px",
         better="less",
     ),
-    Column("error_max_px", "Largest length of that difference.", unit="px", better="less"),
+    Column(
+        "error_max_px",
+        "Largest length of the difference between decoded and true motion, in pixels.",
+        unit="px",
+        better="less",
+    ),
     Column(
         "lost_percent",
         "Share of the motions that decode to the same vector as no motion.",

@@ -87,7 +87,7 @@ def _line(row: Row) -> tuple:
 
 
 def _by_speed(rows: Sequence[Row], figure: str, names: Sequence[str]) -> list[Row]:
-    """A line for each code with a figure at each speed, after some of its columns."""
+    """Return a row for each codec and range: the columns `names`, then a figure at each speed."""
     lines: dict[tuple, Row] = {}
     for row in rows:
         line = lines.setdefault(_line(row), {name: _said(row[name]) for name in names})
@@ -96,7 +96,7 @@ def _by_speed(rows: Sequence[Row], figure: str, names: Sequence[str]) -> list[Ro
 
 
 def _said(value: object) -> object:
-    """Return a requested value as it was typed, not with the digits of a figure."""
+    """Return a float of at least 0.001 as text of up to six digits, such as `0.5`; any other value is unchanged."""
     return f"{value:g}" if isinstance(value, float) and value >= 1e-3 else value
 
 
@@ -116,7 +116,8 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Name the codes that keep still pixels still and have the smallest error at an everyday speed."""
+    """Yield a sentence with the encodings that keep still pixels still and have the smallest error at an everyday
+    speed, or that no encoding does; nothing without figures."""
     measured = one_backend([row for row in rows if row["error_mean_px"] is not None])
     speed = min((row["speed"] for row in measured), key=lambda speed: abs(speed - EVERYDAY_PX), default=0.0)
     still = [row for row in sorted(measured, key=place) if row["speed"] == speed and not row["still_px"]]

@@ -10,16 +10,17 @@ TEXELS = SIDE * SIDE
 
 
 def bits_of(blocks: np.ndarray) -> np.ndarray:
-    """The bits of blocks, uint8 of shape (count, bytes): the lowest of the first byte first, (count, 8 bytes)."""
+    """Return the bits of blocks (uint8, (count, bytes)) as 0 and 1, uint8 of shape (count, 8 * bytes): byte by byte,
+    the lowest bit first."""
     return np.unpackbits(blocks, axis=1, bitorder="little")
 
 
 def field(bits: np.ndarray, start: int, width: int) -> np.ndarray:
-    """`width` bits from `start` on as whole numbers, the lowest bit first; int32 of shape (count)."""
+    """Return the whole number in `width` bits of each block, the lowest bit at `start`; int32 of shape (count)."""
     return bits[:, start : start + width].astype(np.int32) @ (1 << np.arange(width, dtype=np.int32))
 
 
 def fields(bits: np.ndarray, start: int, width: int, count: int) -> np.ndarray:
-    """`count` such numbers one after the other; int32 of shape (blocks, count)."""
+    """Return `count` whole numbers of `width` bits, one after the other from bit `start`; int32, (blocks, count)."""
     part = bits[:, start : start + width * count].reshape(len(bits), count, width)
     return part.astype(np.int32) @ (1 << np.arange(width, dtype=np.int32))

@@ -25,7 +25,7 @@ HOMES = ("packed", "channel", "attachment", "bytes")
 
 
 def depth_defines(encoding: DepthEncoding) -> dict[str, object]:
-    """The macros that make `depth_code.glsl` speak of an encoding.
+    """Return the macros that adapt `depth_code.glsl` to an encoding.
 
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of the two functions.
@@ -93,11 +93,12 @@ class DepthPasses(Passes):
         super().__init__(device, shaders, defines, names, {"texels": codec.storage.format}, tables)
 
     def round_trip(self, points: np.ndarray, camera: Camera, way: int) -> Rebuilt:
-        """Points on the screen through the storage.
+        """Encode and store the depths of points on the screen, and return the positions rebuilt from them, with the
+        numbers and depths that they are computed from.
 
         Args:
             points: place (from -1 to 1, right and up) and view depth, float32 of shape (height, width, 3).
-            way: to the position, a Rebuild's; one by the projection only where the number is a depth buffer's.
+            way: number of a Rebuild's way to the position; ways by the projection need a depth buffer's number.
         """
         given = _camera_uniforms(camera, self._codec.encoding) | {"way": way}
         for program in (self._encode.program, self._decode.program):
@@ -142,7 +143,8 @@ def _stored_texture(
 
 @cache
 def rounds_by_itself(device: Device, storage: DepthStorage, rounding: str) -> bool:
-    """Whether the device's own conversion into a storage is the emulation's; into a depth buffer that to the nearest.
+    """Whether the device's own conversion into a storage rounds as the emulation does by `rounding`; always True for
+    packed integers and bytes. A depth buffer is compared with rounding to nearest, whatever `rounding` is.
 
     Raises:
         FormatError: the device cannot render to it.

@@ -14,7 +14,7 @@ from ..harness import Passes, check_functions, dithering, exact
 
 
 def frame_defines(encoding: FrameEncoding, least: float) -> dict[str, object]:
-    """The macros that make `frame_code.glsl` speak of an encoding.
+    """Return the macros that adapt `frame_code.glsl` to an encoding; `least` is the codec's smallest number.
 
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of its functions.
@@ -53,7 +53,8 @@ class FramePasses(Passes):
         super().__init__(device, shaders, defines, names, {"texels": storage.target}, tables)
 
     def round_trip(self, normals: np.ndarray, tangents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Normals with hands, and tangents, float32 of shape (height, width, 4), encoded, stored and decoded.
+        """Return normals with hands, and tangents, float32 of shape (height, width, 4), after encoding, storage and
+        decoding; two arrays of the same shape.
 
         Raises:
             FormatError: the device cannot render to the storage's format.

@@ -20,7 +20,7 @@ BLEND_OF = {"add": ADD, "multiply": MULTIPLY, "read": None}
 
 
 def light_defines(codec: LightCodec) -> dict[str, object]:
-    """The macros that make `light_code.glsl` speak of an encoding.
+    """Return the macros that adapt `light_code.glsl` to a codec.
 
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of the two functions.
@@ -69,7 +69,8 @@ class LightPasses(Passes):
         super().__init__(device, shaders, light_defines(codec), names, {"texels": codec.storage.target})
 
     def accumulate(self, lights: np.ndarray) -> Sum:
-        """Lights, float32 of shape (count, width, 4), added one by one in their order; each column is a pixel.
+        """Add lights, float32 of shape (count, width, 4), one by one in their order; each column is a pixel. Return
+        the sum of each pixel, decoded, and its texel.
 
         Raises:
             FormatError: the device cannot render to the encoding's format.

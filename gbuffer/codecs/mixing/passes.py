@@ -64,7 +64,8 @@ class Meetings:
 
     @property
     def places(self) -> np.ndarray:
-        """Positions that a filter reads, in texture coordinates. Widths that are powers of two make them exact."""
+        """Positions that a filter reads, in texture coordinates, (height, width, 2). Widths that are powers of two
+        make them exact."""
         width, height = self.size
         x, y = np.meshgrid(np.arange(width), np.arange(height))
         corners = np.stack([x, y], axis=-1) * SIDE + 0.5
@@ -114,14 +115,14 @@ class MixPasses:
         self._stack.close()
 
     def _pass_array(self, shader: str) -> VertexArray:
-        """The pass of a fragment shader, which is compiled once."""
+        """Return the full-screen pass of a fragment shader, which is compiled at the first call and kept."""
         if shader not in self._passes:
             vertex_array = self._device.fragment_pass(shader, self._defines, self._names)
             self._passes[shader] = self._device.owned(self._stack, vertex_array)
         return self._passes[shader]
 
     def _targets(self, size: tuple[int, int], depths: str, texels: str, samples: int = 1) -> Textures:
-        """Return targets for a code, by their names in shaders."""
+        """Return a code's targets by their names in shaders: `texels`, and with sign bits also `depths`."""
         device = self._device
         targets = {
             depths if name else texels: device.target(size, form, samples) for name, form in self._formats.items()
@@ -137,12 +138,12 @@ class MixPasses:
 
     @contextmanager
     def _given_textures(self, **arrays: np.ndarray) -> Iterator[Textures]:
-        """Arrays as textures for a while."""
+        """Yield arrays as textures with the same names, and release them at the end."""
         with ExitStack() as stack:
             yield uploaded(self._device, stack, arrays)
 
     def _decoded_pass(self, shader: str, size: tuple[int, int], given: Textures, **uniforms: int) -> Decoded:
-        """Return the normals that a pass decodes, and the numbers that it decodes them from."""
+        """Return the normals that a pass decodes, (height, width, 3), and the numbers that it decodes them from."""
         device, passed = self._device, self._pass_array(shader)
         set_uniforms(passed.program, {"level": 0, **uniforms})
         with ExitStack() as stack:
@@ -161,20 +162,23 @@ class MixPasses:
             )
 
     def filtered(self) -> Decoded:
-        """The sampler's bilinear filter between the first four texels of each patch."""
+        """Return each patch's normal, and the numbers that it is decoded from: its first 2 x 2 texels as the
+        sampler's bilinear filter mixes them."""
         for texture in self._texels.values():
             self._device.smooth(texture)
         with self._given_textures(places=self.meetings.places.astype(np.float32)) as given:
             return self._decoded_pass("mix_filter.frag", self._size, {**self._texels, **given})
 
     def mip(self, level: int) -> Decoded:
-        """The first texel of each patch in a level that the device generated: of 2 x 2 texels, or 4 x 4."""
+        """Return each patch's normal, and the numbers that it is decoded from: its first texel in a mip level that
+        the device generated, 1 of 2 x 2 texels or 2 of 4 x 4."""
         for texture in self._texels.values():
             self._device.build_mips(texture)
         return self._decoded_pass("mix_texel.frag", self._size, self._texels, stride=SIDE >> level, level=level)
 
     def _sampled(self) -> Textures:
-        """Return the samples of each pixel, as textures by their names in shaders."""
+        """Return the samples of each pixel, encoded from each patch's first two normals, as textures by their names
+        in shaders."""
         textures = self._targets(self._size, "signed_samples", "samples", self.samples)
         counts = self.meetings.counts[..., None].astype(np.float32)
         with self._given_textures(normals=self.meetings.firsts, others=self.meetings.seconds, counts=counts) as given:
@@ -183,18 +187,20 @@ class MixPasses:
         return textures
 
     def resolved(self) -> Decoded:
-        """The first two normals of each patch in the samples of a pixel, whose codes the device averages."""
+        """Return each patch's normal, and the numbers that it is decoded from: the device's average of the codes in a
+        pixel's samples, which hold the patch's first two normals."""
         sampled, pixels = self._sampled(), self._targets(self._size, "signed_depths", "texels")
         for source, target in zip(sampled.values(), pixels.values(), strict=True):
             self._device.resolve(source, target)
         return self._decoded_pass("mix_texel.frag", self._size, pixels, stride=1)
 
     def resolved_decoded(self) -> Decoded:
-        """Return the mean of the same samples, each decoded first; no numbers."""
+        """Return each patch's normal as the mean of the samples of `resolved`, each decoded first; no numbers."""
         return self._decoded_pass("mix_resolve.frag", self._size, self._sampled())
 
     def blended(self, decals: np.ndarray) -> Decoded:
-        """Normals (height, width, 4) drawn over each patch's first one by the device's blending."""
+        """Return each patch's normal, and the numbers that it is decoded from: the code of the patch's first normal
+        after the device's blending has drawn `decals`, normals of shape (height, width, 4), over it."""
         targets = self._encoded_textures(self.meetings.firsts, self.meetings.views)
         passed, device = self._pass_array("encode.frag"), self._device
         framebuffer = device.owned(self._stack, device.framebuffer(list(targets.values())))
@@ -210,7 +216,8 @@ class MixPasses:
         return self._decoded_pass("mix_texel.frag", self._size, targets, stride=1)
 
     def blended_decoded(self) -> Decoded:
-        """The second normal of each patch over the first by a shader that decodes both and stores their blend."""
+        """Return each patch's normal, and the numbers that it is decoded from: the code that a shader stores after it
+        has decoded the patch's first two normals and blended the second over the first."""
         pair = (self.meetings.firsts, self.meetings.seconds)
         base, over = (self._encoded_textures(normals, self.meetings.views) for normals in pair)
         over = {name.replace("texels", "decals").replace("depths", "decals"): t for name, t in over.items()}
@@ -222,13 +229,13 @@ class MixPasses:
         return self._decoded_pass("mix_texel.frag", self._size, targets, stride=1)
 
     def upsampled(self) -> Decoded:
-        """The first four texels of each patch by the discontinuity-sensitive filter; no numbers."""
+        """Return each patch's normal by the discontinuity-sensitive filter of its first 2 x 2 texels; no numbers."""
         with self._given_textures(shares=self.meetings.quarters.astype(np.float32)) as given:
             return self._decoded_pass("mix_upsample.frag", self._size, {**self._texels, **given}, stride=SIDE)
 
 
 def bands(alphas: np.ndarray) -> Iterator[tuple[float, int, int]]:
-    """Rows of pixels that share an alpha: it, the first row, and how many."""
+    """Yield each run of neighbouring rows with the same alpha: the alpha, the first row and the row count."""
     starts = np.flatnonzero(np.diff(alphas, prepend=np.nan))
     for start, end in zip(starts, [*starts[1:], len(alphas)], strict=True):
         yield float(alphas[start]), int(start), int(end - start)

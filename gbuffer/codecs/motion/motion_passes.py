@@ -13,7 +13,7 @@ from ..harness import Passes, check_functions, dithering, exact, set_uniforms
 
 
 def motion_defines(encoding: MotionEncoding, needs_range: bool) -> dict[str, object]:
-    """The macros that make `motion_code.glsl` speak of an encoding.
+    """Return the macros that adapt `motion_code.glsl` to an encoding.
 
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of its functions.
@@ -52,7 +52,7 @@ class MotionPasses(Passes):
         super().__init__(device, shaders, defines, names, {"texels": storage.target}, tables)
 
     def round_trip(self, motions: np.ndarray, largest: float) -> np.ndarray:
-        """Motions in screens a frame, float32 of shape (height, width, 2), encoded, stored and decoded.
+        """Return motions (screens per frame), float32 of shape (height, width, 2), encoded, stored and decoded.
 
         Args:
             largest: the range in screens.

@@ -43,7 +43,8 @@ def tried(
     more: np.ndarray,
     codes: np.ndarray | None = None,
 ) -> Tried:
-    """Return the results of the two functions for these values.
+    """Run the adapters of a user's encoder and decoder on the device; return the codes, the decoder's results and,
+    for each input, whether a loop of either function was ended.
 
     Args:
         glsl: a file with the adapters of both functions, whose names begin with the prefix.

@@ -13,17 +13,19 @@ from .passes import inject, lookup, propagate
 from .volumes import FORMATS, INDIRECT, SUMS, Volumes
 
 SETTINGS = {
-    "iterations": Number(8, 0, 8, "Steps of propagation; each carries light one cell further."),
-    "cascades": Number(2, 1, 3, "Volumes, each with cells twice as wide as those of the one before."),
+    "iterations": Number(8, 0, 8, "Number of propagation steps; each moves light by one cell."),
+    "cascades": Number(2, 1, 3, "Number of volumes; the cells of each are twice as wide as in the previous volume."),
     "cells": Number(16, 4, 64, "Cells along each axis of a volume."),
     "extent": Number(
-        0.0, 0.0, 1000.0, "Metres along each axis of the finest volume; 0 makes the coarsest as large as the scene."
+        0.0, 0.0, 1000.0, "Side of the finest volume in metres; 0 makes the coarsest volume as large as the scene."
     ),
-    "amplifier": Number(1.0, 0.0, 4.0, "Times what surfaces block of the light that passes; 0 blocks nothing."),
-    "blend": Number(0.2, 0.0, 0.5, "The outer share of a volume over which the next coarser one takes over."),
-    "format": Choice(tuple(FORMATS), "Format of the volumes; `shared` is an exponent and four numbers in RGBA8."),
-    "sums": Choice(SUMS, "Format in which the light and blockers of a cell are added up first."),
-    "texels": Number(128, 16, 1024, "Texels on a side of each reflective shadow map."),
+    "amplifier": Number(1.0, 0.0, 4.0, "Factor on the light that surfaces block; 0 blocks nothing."),
+    "blend": Number(0.2, 0.0, 0.5, "Outer fraction of a volume that blends into the next coarser volume."),
+    "format": Choice(
+        tuple(FORMATS), "Format of the volumes; `shared` packs four numbers with a shared exponent into RGBA8."
+    ),
+    "sums": Choice(SUMS, "Format in which the light and the blockers of each cell are summed first."),
+    "texels": Number(128, 16, 1024, "Texels per side of each reflective shadow map."),
 }
 
 
@@ -53,7 +55,7 @@ def _lack_text(scene: Scene) -> str | None:
 
 EFFECT = Effect(
     "lpv",
-    "light propagation volumes: one bounce of the sun's and the spots' light",
+    "light propagation volumes: one bounce of sunlight and spotlights",
     "Kaplanyan 2009; Kaplanyan and Dachsbacher 2010",
     INDIRECT,
     _passes,

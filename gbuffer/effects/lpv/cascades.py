@@ -61,11 +61,11 @@ class LightSight:
     is_parallel: bool
 
     def matrix(self) -> np.ndarray:
-        """World to view space, (4, 4)."""
+        """Return the matrix from world to view space, (4, 4)."""
         return np.array(self.rows).reshape(4, 4)
 
     def projection(self, aspect: float) -> np.ndarray:  # noqa: ARG002 (the picture is square whatever it is drawn into)
-        """View to clip space, (4, 4)."""
+        """Return the matrix from view to clip space, (4, 4), parallel or in perspective; `aspect` is ignored."""
         (x, y), near, far = self.half, self.near, self.far
         matrix = np.diag([1 / x, 1 / y, 0.0, 0.0])
         if self.is_parallel:
@@ -75,7 +75,7 @@ class LightSight:
         return matrix
 
     def rays(self, size: tuple[int, int]) -> tuple[float, float, float, float]:  # noqa: ARG002
-        """Half the picture, right and up, and the near and the far plane."""
+        """Return half the image's extent, right and up, and the near and far distances; `size` is ignored."""
         return *self.half, self.near, self.far
 
 
@@ -91,7 +91,8 @@ def box_of(scene: Scene) -> np.ndarray:
 
 
 def finest_cell(box: np.ndarray, extent: float, cells: int, cascades: int) -> float:
-    """The side of the finest cascade's cells in metres: extent / cells, or so that the coarsest holds the box if 0."""
+    """Return the side of the finest cascade's cells in metres: extent / cells, or, if the extent is 0, the side with
+    which the coarsest cascade holds the box."""
     if extent > 0:
         return extent / cells
     longest = max(float((box[1] - box[0]).max()), LEAST)
@@ -116,8 +117,8 @@ def _placed_cascade(view: View, box: np.ndarray, cell: float, cells: int) -> Cas
 
 
 def sun_sight(sun: Light, cascade: Cascade, box: np.ndarray, texels: int) -> Sight:
-    """The sun's parallel rays through a cascade, from before the whole scene; texels stay where they are in the world
-    as the cascade moves."""
+    """Return a parallel view along the sun's rays that covers a cascade, from before the whole scene; its texels stay
+    where they are in the world as the cascade moves."""
     back = -np.array(sun.direction)
     right = np.cross(back, np.eye(3)[np.argmin(abs(back))])
     right = right / np.linalg.norm(right)
@@ -135,7 +136,7 @@ def sun_sight(sun: Light, cascade: Cascade, box: np.ndarray, texels: int) -> Sig
 
 
 def spot_sight(spot: Light) -> Sight:
-    """The camera of a spot's shadow, which sees its cone."""
+    """Return the perspective view of a spot's shadow: its cone, up to WIDEST degrees from its axis."""
     way = np.array(spot.direction)
     up = tuple(np.eye(3)[np.argmin(abs(way))].tolist())
     view = View(spot.position, tuple((np.array(spot.position) + way).tolist()), 90.0, 1.0, 2.0, up)

@@ -30,15 +30,15 @@ class Lattice:
         return cascades_of(view, self.box, self.cell, self._volumes.cells, self._volumes.cascades)
 
     def place(self, *programs: Program) -> None:
-        """Tell programs where the cascades are."""
+        """Set the uniform `origins` of programs to the cascades' origins in cells, the finest first."""
         first, *others = (cascade.origin for cascade in self.cascades)
         for program in programs:
             program["origins"] = [first, *others] if others else first
 
 
 def inject(volumes: Volumes, extent: float, blocks: bool) -> Pass:
-    """A reflective shadow map for each light, and for the sun for each cascade; VPLs and surfels from it, and surfels
-    from the camera's G-buffer if they are to block light."""
+    """Return the pass that draws a reflective shadow map for each spot, and for the sun one per cascade, and adds
+    VPLs from it; if `blocks`, also surfels from these maps and the camera's G-buffer, which block light."""
     maps = (*volumes.reflective, volumes.reflective_depth)
     writes = (*maps, *volumes.injected, volumes.blockers)
     build = partial(Injection, volumes, extent, blocks)
@@ -73,7 +73,8 @@ class Injection:
                 self._add_surfels(view, cascades)
 
     def _views(self) -> Iterator[tuple[int, Sight, range]]:
-        """Yield each light's index, its view, and the cascades that it lights from there."""
+        """Yield the index of each sun and spot, its view, and the cascades that it lights from there: one per view of
+        a sun, all for a spot."""
         number, all_of_them = self._volumes.texels, range(self._volumes.cascades)
         for index, light in enumerate(self._canvas.frame.scene_buffers.lights):
             if light.kind == "sun":
@@ -160,7 +161,7 @@ class Propagation:
 
 
 def lookup(volumes: Volumes, extent: float, blend: float) -> Pass:
-    """The light that arrives at each pixel of the G-buffer."""
+    """Return the pass that writes the indirect light arriving at each pixel of the G-buffer."""
     build = partial(_lookup, volumes, extent, blend)
     reads: tuple[Resource, ...] = (*SURFACE, *volumes.light)
     return Pass("lpv_lookup", reads, (INDIRECT,), build, after=("linear_depth",), tells={"HAS_INDIRECT": 1})

@@ -77,7 +77,7 @@ class Volumes:
         return self._map_resource("lpv_depth", DEPTH_STENCIL)
 
     def defines(self, cell: float) -> dict[str, object]:
-        """Macros; `cell` is the finest cascade's, in metres."""
+        """Return the macros of the shaders of the volumes; `cell` is the finest cascade's cell size in metres."""
         marks = {"SHIFT": SHIFT, "COVERED_SHARE": COVERED_SHARE}
         own = {"CELLS": self.cells, "CORNERS": self.corners, "CASCADES": self.cascades, "TEXELS": self.texels}
         packs = {"PACKS": int(self.format == "shared"), "CELL": float(cell)}

@@ -30,7 +30,7 @@ HALF_BENT_NORMAL = Resource("half_bent_normal", "rgba32f", scale=0.5, follows=SU
 # Depth in metres whatever the layout keeps; 0 where nothing is covered. Many taps read it, few read a normal.
 OCCLUDERS = Resource("occluder_depth", "r32f", follows=SURFACES)
 
-SIZE = Choice(("full", "half"), "Size of the buffer that it is computed in, to the G-buffer's.")
+SIZE = Choice(("full", "half"), "Size of the occlusion buffer relative to the G-buffer.")
 RADIUS = Number(1.0, 0.01, 100.0, "Distance in metres beyond which nothing occludes.")
 
 CONSTANTS: Mapping[str, float] = {

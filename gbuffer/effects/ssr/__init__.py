@@ -15,10 +15,10 @@ from .passes import HITS, REFLECTED, passes
 
 AROUND = ("environment", "nothing")
 SETTINGS = {
-    "steps": Number(64, 1, 4096, "Steps of a ray at most; none is shorter than a pixel."),
-    "rays": Number(2, 1, 1024, "Rays of a pixel, by the lobe of its roughness; a mirror needs one."),
-    "thickness": Number(0.1, 0.001, 100.0, "Metres behind a surface in which a ray is stopped."),
-    "misses": Choice(AROUND, "Light of a ray that meets nothing on the screen."),
+    "steps": Number(64, 1, 4096, "Maximum number of steps per ray; a step is at least one pixel long."),
+    "rays": Number(2, 1, 1024, "Number of rays per pixel, spread by its roughness; a mirror needs one."),
+    "thickness": Number(0.1, 0.001, 100.0, "Distance in metres behind a surface within which a ray hits it."),
+    "misses": Choice(AROUND, "Light of a ray that hits nothing on the screen."),
     "seed": SEED,
 }
 

@@ -17,19 +17,19 @@ from .profile import GAUSSIANS
 SETTINGS = {
     "method": Choice(
         ("separable", "gaussians", "burley"),
-        "Jimenez' kernel in two steps, a sum of Gaussians, or Christensen and Burley's profile on a disc.",
+        "Jimenez's kernel in two steps, a sum of Gaussians, or Christensen and Burley's profile on a disc.",
     ),
-    "samples": Choice(("17", "11", "25", "33", "65", "97"), "Taps of each step; kernels from 25 on reach 3 mm, not 2."),
-    "width": Number(0.01, 0.0001, 10.0, "Metres on the surface that 3 mm of the profile take; skin's own is 0.003."),
+    "samples": Choice(("17", "11", "25", "33", "65", "97"), "Taps per step; 25 or more reach 3 mm, fewer 2 mm."),
+    "width": Number(0.01, 0.0001, 10.0, "Metres on the surface for 3 mm of the profile; 0.003 is true to scale."),
     "follow": Number(
         0.5,
         0.0,
         100.0,
-        "Share of light that a step of one width in depth keeps out; 0 ignores depth. Burley: on or off.",
+        "Fraction of light that a depth step of one width blocks; 0 ignores depth. Burley: on or off.",
     ),
-    "pairs": Choice(tuple(map(str, GAUSSIANS)), "Of the method gaussians: blurs along rows and columns."),
-    "transmittance": Number(1, 0, 1, "Whether sunlight comes through thin parts; only where it has a shadow map."),
-    "translucency": Number(0.83, 0.0, 0.999, "How clear skin is: its thickness counts 1 - translucency times."),
+    "pairs": Choice(tuple(map(str, GAUSSIANS)), "Method gaussians: number of blurs along rows and columns."),
+    "transmittance": Number(1, 0, 1, "Whether sunlight shines through thin parts; requires a shadow map."),
+    "translucency": Number(0.83, 0.0, 0.999, "Clarity of the skin: its thickness is multiplied by 1 - translucency."),
     "seed": SEED,
 }
 
@@ -61,7 +61,7 @@ def _lack_text(scene: Scene) -> str | None:
 
 EFFECT = Effect(
     "subsurface",
-    "subsurface scattering in screen space, of skin",
+    "screen-space subsurface scattering of skin",
     "Jimenez and Gutierrez 2012; Jo Kyeong-jun 2011; Christensen and Burley 2015",
     SCATTERED,
     _passes,

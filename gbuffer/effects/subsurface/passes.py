@@ -61,7 +61,8 @@ class Scatter:
     samples: int
 
     def defines(self, light: Resource, **more: object) -> dict[str, object]:
-        """Macros of a blur of some light; a step in depth is measured in metres."""
+        """Return the macros of a blur that reads the resource `light`, and the macros in `more`; a step in depth is
+        measured in metres."""
         scale = {"SOURCE": light.name, "METRES": self.width / MILLIMETRES, "SAMPLES_TAKEN": self.samples}
         return {**scale, "FOLLOW": self.follow / self.width, **more}
 
@@ -150,12 +151,13 @@ class Blur:
 
 
 def separable(scatter: Scatter) -> tuple[Pass, ...]:
-    """Rows, then columns, by one kernel."""
+    """Return two passes that blur skin's light along rows and then along columns, both by one kernel."""
     return _pair("", scatter, separable_kernel(scatter.samples), SKIN_LIGHT, SCATTERED)
 
 
 def gaussians(scatter: Scatter, pairs: int) -> tuple[Pass, ...]:
-    """Return a row pass and a column pass per Gaussian, each blurring the previous result; the last adds all up."""
+    """Return a row pass and a column pass per Gaussian, `pairs` times, each pair blurring the previous result; the
+    last pass adds all up."""
     sum_of, levels, passes = GAUSSIANS[pairs], SKIN_GAUSSIANS[: pairs - 1], []
     begun = (SKIN_LIGHT, *levels)
     for number, (variance, light) in enumerate(zip(sum_of.increments.tolist(), begun, strict=True), 1):
@@ -169,7 +171,7 @@ def gaussians(scatter: Scatter, pairs: int) -> tuple[Pass, ...]:
 
 
 def burley(scatter: Scatter, seed: int) -> tuple[Pass, ...]:
-    """Return a single pass: a disc of taps."""
+    """Return one pass, in a tuple, that blurs skin's light by Burley's profile with a disc of taps."""
     distances = burley_distances()
     numbers = {
         "RADII": listed(burley_radii(scatter.samples)),
@@ -194,7 +196,8 @@ def _pair(
     sums: tuple[Resource, ...] = (),
     shares: Mapping[str, Any] = MappingProxyType({}),
 ) -> tuple[Pass, Pass]:
-    """A blur along rows and one along columns; the second adds up `sums` as well, by their `shares`."""
+    """Return two passes that blur `light` along rows and then along columns into `into`; with `sums`, the second also
+    adds up these resources by the macros `shares`."""
     told = {"KERNEL": listed(kernel), "GAUSSIANS": 0}
     rows = scatter.defines(light, ALONG_X=1, **told)
     columns = scatter.defines(SKIN_ACROSS, ALONG_X=0, **(told | dict(shares)))
@@ -211,5 +214,5 @@ def _blur_pass(name: str, shader: str, reads: tuple[Resource, ...], into: Resour
 
 
 def listed(numbers: np.ndarray) -> tuple[float, ...]:
-    """An array as GLSL is given one, row by row."""
+    """Return the numbers of an array as floats, row by row, to pass to GLSL."""
     return tuple(float(x) for x in numbers.ravel())

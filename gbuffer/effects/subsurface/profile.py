@@ -113,14 +113,15 @@ DEVIATIONS = 3.0
 
 
 def gaussian_kernel(variance: float, samples: int) -> np.ndarray:
-    """Weights and offsets as of `separable_kernel`: even steps over 3 standard deviations on either side."""
+    """Return equal weights of red, green and blue, and offsets in mm, (samples, 4), by ascending offset: even steps
+    over 3 standard deviations on either side. `variance` is in mm^2."""
     offsets = np.linspace(-DEVIATIONS, DEVIATIONS, samples) * variance**0.5
     weights = np.exp(-(offsets**2) / (2 * variance))
     return np.concatenate([np.repeat(weights[:, None] / weights.sum(), 3, axis=1), offsets[:, None]], axis=1)
 
 
 def burley_distances() -> np.ndarray:
-    """Return the distances d of R(r) = (e^(-r/d) + e^(-r/3d)) / (8 pi d r) for red, green and blue.
+    """Return the distances d, in mm, of R(r) = (e^(-r/d) + e^(-r/3d)) / (8 pi d r) for red, green and blue.
 
     With these distances light travels as far on average as in d'Eon's sum: the mean of r is 2.5 d for R, and
     sqrt(pi v / 2) for a Gaussian of variance v.
@@ -129,7 +130,7 @@ def burley_distances() -> np.ndarray:
 
 
 def burley_radius(u: np.ndarray, d: float) -> np.ndarray:
-    """The radius that a share u of the light stays within, 0 to below 1: the inverse of
+    """Return the radii within which shares u of the light stay, 0 to below 1, for a distance d: the inverse of
     CDF(r) = 1 - e^(-r/d) / 4 - 3 e^(-r/3d) / 4 (Golubev 2019)."""
     # With x = e^(-r/3d), x^3 + 3x = 4 (1 - u) = k, which has one real root.
     k = 4 * (1 - np.asarray(u))
@@ -138,5 +139,5 @@ def burley_radius(u: np.ndarray, d: float) -> np.ndarray:
 
 
 def burley_radii(samples: int) -> np.ndarray:
-    """Return the radii of a disc's taps, (samples,): middles of equal shares of red light, which goes farthest."""
+    """Return the radii of a disc's taps, (samples,), in mm: middles of equal shares of red, which goes farthest."""
     return burley_radius((np.arange(samples) + 0.5) / samples, float(burley_distances().max()))

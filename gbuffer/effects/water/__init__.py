@@ -17,21 +17,21 @@ from .water_waves import OCTAVES
 
 FRESNEL, REFRACTION = ("exact", "schlick"), ("two_depth", "alpha", "unguarded")
 SETTINGS = {
-    "waves": Number(1.0, 0.0, 4.0, "Times the slope of the scene's waves; 0 is still water."),
-    "octaves": Number(OCTAVES, 1, OCTAVES, "Octaves of waves; the longest stay."),
-    "chop": Number(0.2, 0.0, 1.0, "Metres times the slope by which points move up the slope; sharpens crests."),
-    "texels": Choice(("256", "128", "512"), "Texels on a side of the wave maps."),
-    "rings": Number(256, 16, 1024, "Rings of the grid."),
-    "spokes": Number(256, 16, 1024, "Vertices of a ring."),
+    "waves": Number(1.0, 0.0, 4.0, "Factor on the slope of the scene's waves; 0 is still water."),
+    "octaves": Number(OCTAVES, 1, OCTAVES, "Number of octaves of waves; the longest waves are kept."),
+    "chop": Number(0.2, 0.0, 1.0, "Metres that points move up a slope, per unit of slope; sharpens crests."),
+    "texels": Choice(("256", "128", "512"), "Texels per side of the wave maps."),
+    "rings": Number(256, 16, 1024, "Number of rings of the grid."),
+    "spokes": Number(256, 16, 1024, "Number of vertices per ring."),
     "fresnel": Choice(FRESNEL, "Fresnel's formula, or Schlick's approximation of it."),
     "refraction": Choice(
         REFRACTION,
         "Keeps objects above the water out of the refraction: a lookup that hits such an object stays in place "
         "(two_depth), the object has no weight (alpha), or nothing is done (unguarded).",
     ),
-    "caustics": Number(1.0, 0.0, 1.0, "Share of the caustics in the sun's light on the ground."),
+    "caustics": Number(1.0, 0.0, 1.0, "Strength of the caustics: their share of the sunlight on the ground."),
     "blur": Number(
-        1.0, 0.0, 4.0, "Factor of the tilt of invisibly short waves, which blurs the mirror image vertically."
+        1.0, 0.0, 4.0, "Factor on the tilt of invisibly short waves, which blurs the mirror image vertically."
     ),
     "power": Number(1000.0, 16.0, 4096.0, "Blinn-Phong power of the sun's highlight."),
     "seed": Number(0, 0, 2**31 - 1, "Seed of the waves."),
@@ -72,7 +72,7 @@ def _lack_text(scene: Scene) -> str | None:
 
 EFFECT = Effect(
     "water",
-    "water: waves that mirror, refract and scatter",
+    "water: waves that reflect, refract and scatter light",
     "Jo Kyeong-jun; Kryachko 2005; NVIDIA Island 11",
     WATER,
     _passes,

@@ -37,7 +37,7 @@ class Grid:
 
     @cached_property
     def triangles(self) -> np.ndarray:
-        """Vertex indices, (triangles, 3), int32: a fan, and two for each cell between rings."""
+        """Return vertex indices, (triangles, 3), int32: a fan around the centre, two per cell between rings."""
         here = np.arange(self.spokes)
         after = (here + 1) % self.spokes
         fan = np.stack([np.zeros_like(here), 1 + after, 1 + here], axis=1)
@@ -48,7 +48,8 @@ class Grid:
         return np.concatenate([fan, cells]).astype(np.int32)
 
     def curve(self, outer: float) -> float:
-        """The factor of i^4 with which the last ring has a radius of `outer` metres; 0 where it is larger without."""
+        """Return the factor of i^4 in the radius of ring i with which the last ring has a radius of `outer` metres; 0
+        if the last ring reaches `outer` without it."""
         return max(outer - FIRST_GAP * self.rings, 0.0) / self.rings**4
 
     def radii(self, outer: float) -> np.ndarray:

@@ -22,12 +22,12 @@ class MirrorSight:
     level: float
 
     def matrix(self) -> np.ndarray:
-        """World to view space, (4, 4)."""
+        """Return the matrix from world to view space, (4, 4)."""
         return self.view.matrix()
 
     def projection(self, aspect: float) -> np.ndarray:
-        """View to clip space, (4, 4), the near plane in the water (Lengyel, Oblique View Frustum Depth Projection and
-        Clipping, 2005)."""
+        """Return the matrix from view to clip space, (4, 4), with the near plane in the water's surface (Lengyel,
+        Oblique View Frustum Depth Projection and Clipping, 2005)."""
         matrix = self.view.projection(aspect)
         # The plane in view space, by the inverse transpose: positive above the water.
         c = np.linalg.inv(self.matrix()).T @ np.array([0.0, 1.0, 0.0, -self.level])
@@ -42,7 +42,8 @@ class MirrorSight:
 
 
 def mirrored_view(view: View, level: float) -> View:
-    """The camera below the water, its picture left and right exchanged."""
+    """Return the view mirrored at the water's level, with the camera below the water; left and right are exchanged in
+    its image."""
 
     def across(point: tuple[float, float, float]) -> tuple[float, float, float]:
         return point[0], 2 * level - point[1], point[2]

@@ -42,12 +42,12 @@ class Look:
     defines: dict[str, object] = field(default_factory=dict)
 
     def waves(self, canvas: Canvas) -> Waves:
-        """The waves of the moment."""
+        """Return the waves of the scene's water at its moment. Raises ValueError if the scene has no water."""
         return waves_of(self.water(canvas), self.maps.octaves, self.seed, self.strength)
 
     @staticmethod
     def water(canvas: Canvas) -> Water:
-        """The scene's. Raises ValueError where it has none."""
+        """Return the scene's water. Raises ValueError if it has none."""
         if canvas.frame.scene.water is None:
             raise ValueError("it has no water")
         return canvas.frame.scene.water
@@ -60,7 +60,7 @@ class Look:
 
 
 def tell(program: Program, **values: object) -> None:
-    """Uniforms by name; those the compiler dropped are left out."""
+    """Set a program's uniforms by name; skip names that the compiled program does not have."""
     for name, value in values.items():
         if name in program:
             program[name] = value
@@ -103,7 +103,7 @@ class WaveMaps:
 
 
 def _caustics(look: Look, canvas: Canvas) -> Run:
-    """Sunlight on each slice's depth, added up triangle by triangle; nothing without a sun."""
+    """Return a function that adds up sunlight on each slice's depth, triangle by triangle, if there is a sun."""
     target = canvas.target(look.maps.caustics)
     program = canvas.program("water_caustics.vert", "water_caustics.frag", **look.defines)
     lattice, corners = canvas.frame.array(program, []), 6 * (CELLS + 2 * MARGIN) ** 2
@@ -186,7 +186,7 @@ class Surface:
 
 
 def sun_drift(direction: tuple[float, float, float]) -> tuple[float, float, float]:
-    """Return how far refracted sunlight moves sideways in the world, per metre of depth under still water."""
+    """Return how far refracted sunlight moves, (x, 0, z), per metre of depth under still water, in the world."""
     # Snell: the part along the surface shrinks by the index.
     x, z = direction[0] / CONSTANTS["INDEX"], direction[2] / CONSTANTS["INDEX"]
     down = float(np.sqrt(1 - x * x - z * z))

@@ -44,7 +44,7 @@ class Waves:
 
     @property
     def wave_numbers(self) -> np.ndarray:
-        """k, (waves, 2), in radians a metre."""
+        """Wave vectors k, (waves, 2), in radians per metre."""
         return 2 * np.pi * self.numbers / self.patch
 
     @property
@@ -55,19 +55,20 @@ class Waves:
 
     @property
     def slopes(self) -> np.ndarray:
-        """The mean square slope of each level that leaves out one more octave of the shortest waves, the last of all;
-        (octaves + 1,)."""
+        """Mean square slopes, (octaves + 1,): first of all waves, then with one more octave of the shortest waves
+        left out each time; the last, without waves, is 0."""
         each = (self.heights**2 * np.sum(self.wave_numbers**2, axis=1) / 2).reshape(-1, WAVES).sum(axis=1)
         return np.append(np.cumsum(each)[::-1], 0.0)
 
     @property
     def table(self) -> np.ndarray:
-        """Input of the shader, (waves, 4), float32: n, a, phase from 0 to 1."""
+        """Input of the shader, (waves, 4), float32: wave number n (x, y), height a, and phase from 0 to 1."""
         return np.column_stack([self.numbers, self.heights, self.phases % 1.0]).astype(np.float32)
 
 
 def waves_of(water: Water, octaves: int, seed: int, strength: float) -> Waves:
-    """The waves of a sheet of water at its moment, their slope times `strength`."""
+    """Return the waves of a sheet of water at its moment: `octaves` octaves from the longest on, drawn at random by
+    `seed`, their slope times `strength`."""
     rng = np.random.default_rng(seed)
     octave = np.repeat(np.arange(OCTAVES), WAVES)
     size = FIRST * 2.0 ** (octave + rng.uniform(0, 1, len(octave)))

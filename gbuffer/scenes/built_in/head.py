@@ -8,7 +8,7 @@ from ..mesh import Mesh, box, joined, plane, rotation, smooth_normals, sphere, w
 from ..scene import Light, Material, Scene, ScenePart, View, placed
 from ..setting import Setting, coloured
 
-TITLE = "a bust of skin and one of stone, life-size, the sun behind an ear; point lights"
+TITLE = "life-size busts of skin and of stone, with the sun behind an ear; point lights"
 FRAMES = 1
 
 SKIN, STONE, FLOOR = range(3)
@@ -98,7 +98,8 @@ def _ear_mesh(side: float) -> Mesh:
 
 
 def _smooth(ball: Mesh, positions: np.ndarray, flips: bool = False) -> Mesh:
-    """A sphere's mesh with other positions, mirrored if it `flips`."""
+    """Return a sphere's mesh with other positions and smooth normals; `flips` reverses the winding, for positions
+    that are mirrored."""
     triangles = wound(ball)[:, ::-1] if flips else wound(ball)
     return Mesh(positions, smooth_normals(positions, triangles), triangles, ball.uv)
 

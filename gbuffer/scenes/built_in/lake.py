@@ -70,7 +70,7 @@ def _ground_mesh() -> Mesh:
 
 
 def _sky_band(index: int, slices: int = 48) -> Mesh:
-    """A ring of the dome, seen from inside."""
+    """Return a ring of the sky's dome, number `index` from the horizon up, with normals that point inwards."""
     # Bands are narrow near the horizon; the first reaches below it.
     low, high = (np.pi / 2 * ((index + step) / BANDS) ** 1.5 for step in (0, 1))
     low = low if index else -0.06
@@ -113,7 +113,8 @@ def _ground_point(x: float, z: float) -> np.ndarray:
 
 
 def _scattered(rng: np.random.Generator, count: int, least: float, most: float) -> np.ndarray:
-    """Places on the ground, (count, 3), between two distances from the middle, in radii of the lake."""
+    """Return random places on the ground, (count, 3), at distances of `least` to `most` from the middle, in radii of
+    the lake."""
     out, angle = SHORE * rng.uniform(least, most, count), rng.uniform(0, 2 * np.pi, count)
     x, z = out * np.cos(angle), out * np.sin(angle) / 1.15
     return np.stack([x, height(x, z), z], axis=1)

@@ -8,7 +8,7 @@ from ..mesh import plane, sphere
 from ..scene import Light, Material, Scene, ScenePart, View, placed
 from ..setting import Setting, coloured
 
-TITLE = "objects of one general and one special part each (Jo Kyeong-jun), 64 point lights and a sun"
+TITLE = "objects with one general and one special part each (Jo Kyeong-jun), 64 point lights and a sun"
 FRAMES = 1
 FIELD = (30.0, 30.0)
 

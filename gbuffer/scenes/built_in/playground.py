@@ -20,7 +20,7 @@ from ..rasterise import Camera, Rendered, rasterise
 from ..scene import Light, Material, Scene, ScenePart, View, placed
 from ..setting import Setting, coloured
 
-TITLE = "the article's playground, with four lamp arms that are like the original's"
+TITLE = "the article's playground, with four lamp arms like those of the original"
 CAMERA = Camera(width=640, height=480, fov=60.0, near=0.1, far=100.0)
 EYE = (0.0, 0.0, -5.0)
 TEAPOT_CELLS = 16
@@ -61,7 +61,7 @@ def in_view_space() -> list[Mesh]:
 
 @cache
 def playground() -> Rendered:
-    """The scene's normals as its camera sees them."""
+    """Return the scene as its camera sees it, without back faces: normals, positions and coverage of the pixels."""
     return rasterise(facing(joined(in_view_space())), CAMERA)
 
 

@@ -13,7 +13,7 @@ from ..scene import Light, Scene, ScenePart, View, placed
 from ..setting import Setting
 from .studio import panel, tiles
 
-TITLE = "panels over which roughness, metalness, base colour, occlusion and emission go through their whole range"
+TITLE = "panels that span the whole range of roughness, metalness, base colour, occlusion and emission"
 FRAMES = 1
 EXPOSURE = -1.0
 # Texels of a ramp, in 16 bits: its own steps are finer than those of any code.
@@ -26,7 +26,7 @@ REFLECTANCES = tuple(float(x) for x in np.linspace(0.02, 0.08, 8))
 
 
 def ramps(setting: Setting) -> Scene:  # noqa: ARG001 # nothing moves, and the lights are its own
-    """The chart."""
+    """Return the chart: panels of all materials and a row of spheres of rising reflectance. `setting` is unused."""
     materials = _materials()
     balls = [MetalRough(base=(0.05, 0.05, 0.05), roughness=0.25, reflectance=r) for r in REFLECTANCES]
     shape = panel(WIDTH, HEIGHT, *TURNS)
@@ -79,7 +79,7 @@ def _ramp(low: float, high: float) -> np.ndarray:
 
 
 def _map(colours: np.ndarray) -> Map:
-    """A picture of numbers in [0, 1], (SIZE, SIZE, 3)."""
+    """Return a 16-bit map, clamped at its edges, of numbers in [0, 1], (SIZE, SIZE, 3)."""
     texels = np.full((*colours.shape[:2], 4), ONE, np.uint16)
     texels[..., :3] = np.round(colours * ONE)
     return Map(texels, wrap=("clamp", "clamp"))

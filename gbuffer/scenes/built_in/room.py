@@ -31,7 +31,7 @@ MATERIALS = (
 
 
 def _wall(axis: int, side: float) -> Mesh:
-    """Return one face of the room, its normal pointing inward."""
+    """Return the face of the room at one end, -1 or 1, of an axis, 0 to 2; its normal points inward."""
     turned = {
         0: np.array([(0, 1.0, 0), (-side, 0, 0), (0, 0, 1.0)]),
         1: np.diag([1.0, -side, 1.0]),

@@ -14,7 +14,7 @@ from ..metal_rough import Map, MetalRough
 from ..scene import Light, Scene, ScenePart, View, placed
 from ..setting import Setting, coloured
 
-TITLE = "metal and dielectric spheres of roughness 0 to 1, slow panels, a mirror, normal-mapped tiles, soft boxes"
+TITLE = "metal and dielectric spheres of roughness 0 to 1, curved panels, a mirror, normal-mapped tiles, soft boxes"
 FRAMES = 1
 # In stops: its soft boxes are just not clipped.
 EXPOSURE = -1.5
@@ -60,7 +60,7 @@ def studio(setting: Setting) -> Scene:
 
 @cache
 def _surroundings() -> Environment:
-    """The environment `studio` as the spheres see it: behind the scene's floor and back wall."""
+    """Return the environment `studio` with the scene's floor and back wall in front, as the spheres see it."""
     radiance = ENVIRONMENTS["studio"].make().radiance.copy()
     ways = directions(len(radiance))
     before = radiance * solid_angles(len(radiance))[..., None]
@@ -110,12 +110,12 @@ def _room(first: int) -> tuple[ScenePart, ...]:
 
 
 def panel(width: float, height: float, across: float, up: float, cells: int = 64) -> Mesh:
-    """A patch of an ellipsoid that faces +z, around the origin.
+    """Return a patch of an ellipsoid that faces +z, around the origin.
 
     Args:
-        width, height: of it.
-        across, up: how far its normal turns from one side to the other, in degrees.
-        cells: of its grid along either side.
+        width, height: size of the patch.
+        across, up: the angles by which the normal turns from one side to the other, in degrees.
+        cells: number of grid cells along each side.
     """
     v, u = np.meshgrid(np.linspace(-0.5, 0.5, cells + 1), np.linspace(-0.5, 0.5, cells + 1), indexing="ij")
     a, b = u.ravel() * np.radians(across), v.ravel() * np.radians(up)

@@ -35,11 +35,11 @@ ALONG_V = (1.0, 1.0, 1.0, -1.0)
 
 
 def read_gltf(path: Path) -> MeshFile:
-    """The default scene of a glTF or GLB file.
+    """Return the default scene of a glTF or GLB file: its meshes, materials, lights and first camera.
 
     Raises:
-        SceneFileError: it is damaged, too large, needs an extension that is not read, names a file outside its folder,
-            or has no triangles.
+        SceneFileError: it is damaged, too large, needs an extension that is not read, names a file outside its
+            folder, or has no triangles.
     """
     gltf = Gltf(path)
     nodes = list(_placed_nodes(gltf))
@@ -91,7 +91,7 @@ def _children(gltf: Gltf, index: int) -> list[int]:
 
 
 def _checked_tree(gltf: Gltf) -> list[int]:
-    """Return the nodes that have no parent. Raises SceneFileError if the nodes do not form trees."""
+    """Return the indices of the nodes that have no parent. Raises SceneFileError if the nodes do not form trees."""
     count = len(gltf.list_of(gltf.json, "nodes", "the file"))
     parents: dict[int, int] = {}
     for index in range(count):
@@ -121,7 +121,7 @@ def _placed_nodes(gltf: Gltf) -> Iterator[tuple[Object, np.ndarray]]:
         for index in named:
             gltf.entry("nodes", index, "the scene")
             if index not in allowed:
-                raise gltf.error("the scene", f"names nodes[{index}] twice, or a child by itself")
+                raise gltf.error("the scene", f"lists nodes[{index}] twice, or lists a node that has a parent")
             allowed.discard(index)
         tops = named
     waiting = [(index, np.eye(4)) for index in reversed(tops)]
@@ -139,7 +139,8 @@ def _placed_nodes(gltf: Gltf) -> Iterator[tuple[Object, np.ndarray]]:
 
 
 def _local_matrix(gltf: Gltf, node: Object, place: str) -> np.ndarray:
-    """A node's own matrix, (4, 4), for column vectors; the file lists it column by column."""
+    """Return a node's own matrix, (4, 4), for column vectors; the file lists its numbers column by column. Raises
+    SceneFileError."""
     if "matrix" in node:
         matrix = np.array(gltf.numbers(node, "matrix", place, tuple(np.eye(4).ravel()))).reshape(4, 4).T
         if not np.array_equal(matrix[3], (0, 0, 0, 1)):
@@ -176,7 +177,7 @@ def _check_sizes(gltf: Gltf, nodes: list[tuple[Object, np.ndarray]]) -> None:
 
 
 def _size(gltf: Gltf, mesh: Object, place: str) -> tuple[int, int]:
-    """Vertices and, at most, triangles of a mesh."""
+    """Return a mesh's number of vertices and an upper bound of its number of triangles, from headers alone."""
     vertices = triangles = 0
     for primitive, where in _mesh_primitives(gltf, mesh, place):
         attributes = gltf.child(primitive, "attributes", where)
@@ -188,17 +189,18 @@ def _size(gltf: Gltf, mesh: Object, place: str) -> tuple[int, int]:
 
 
 def _mesh_primitives(gltf: Gltf, mesh: Object, place: str) -> list[tuple[Object, str]]:
-    """The primitives of a mesh, and where each is."""
+    """Return each primitive and its place for messages, "meshes[0].primitives[1]". Raises SceneFileError."""
     primitives = gltf.list_of(mesh, "primitives", place)
     if not all(isinstance(primitive, dict) for primitive in primitives):
-        raise gltf.error(f"{place}.primitives", "holds what is not an object")
+        raise gltf.error(f"{place}.primitives", "contains an entry that is not an object")
     return [(primitive, f"{place}.primitives[{number}]") for number, primitive in enumerate(primitives)]
 
 
 def _primitives(
     gltf: Gltf, mesh: Object, place: str, materials: tuple[MetalRough, ...], notes: list[str]
 ) -> Iterator[tuple[Mesh, int]]:
-    """The triangle meshes of a mesh, each with its material's index."""
+    """Yield a triangle mesh for each primitive of a mesh, with its material's index (-1 for the default). Points and
+    lines are left out and noted."""
     for primitive, where in _mesh_primitives(gltf, mesh, place):
         mode = gltf.whole(primitive, "mode", where, TRIANGLES)
         if mode not in (TRIANGLES, STRIP, FAN):
@@ -227,7 +229,7 @@ def _lacking_uv(material: MetalRough, *sets: np.ndarray | None) -> list[str]:
     """Return notes on the uv sets that a material's maps use and a mesh lacks."""
     lacking = {m.uv_set for m in material.maps if m is not None and sets[m.uv_set] is None}
     remarks = ("their textures are sampled at one point", "TEXCOORD_0 is used")
-    return [f"there are meshes without TEXCOORD_{uv_set}: {remarks[uv_set]}" for uv_set in sorted(lacking)]
+    return [f"some meshes have no TEXCOORD_{uv_set}: {remarks[uv_set]}" for uv_set in sorted(lacking)]
 
 
 def _stored(gltf: Gltf, primitive: Object, mode: int, where: str) -> Stored:
@@ -251,7 +253,8 @@ def _roundings(gltf: Gltf, index: object, where: str) -> tuple[Rounding, ...]:
 
 
 def _stored_numbers(gltf: Gltf, primitive: Object, mode: int, where: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """A primitive's triangles or points, and its attributes by name; POSITION is one of them."""
+    """Return a primitive's vertex indices, (triangles, 3) or (points, 1), and its attributes by name, always with
+    POSITION. Raises SceneFileError."""
     attributes = gltf.child(primitive, "attributes", where)
     position = gltf.entry("accessors", attributes.get("POSITION"), f"{where}.POSITION")
     extension = gltf.extension(primitive, DRACO, where)
@@ -265,7 +268,9 @@ def _stored_numbers(gltf: Gltf, primitive: Object, mode: int, where: str) -> tup
         elif name in attributes:
             arrays[name] = gltf.accessor(attributes[name], width, f"{where}.{name}")
         if len(arrays.get(name, arrays["POSITION"])) != len(arrays["POSITION"]):
-            raise gltf.error(f"{where}.{name}", f"are {len(arrays[name])} for {len(arrays['POSITION'])} positions")
+            raise gltf.error(
+                f"{where}.{name}", f"has {len(arrays[name])} elements for {len(arrays['POSITION'])} positions"
+            )
     count = len(arrays["POSITION"])
     if packed_triangles is not None:
         return checked_indices(gltf.path, packed_triangles, count, f"{where}.{DRACO}"), arrays
@@ -274,7 +279,8 @@ def _stored_numbers(gltf: Gltf, primitive: Object, mode: int, where: str) -> tup
 
 
 def _unpacked(gltf: Gltf, index: object, stored: np.ndarray, width: int, place: str) -> np.ndarray:
-    """A packed attribute as its accessor means it, (count, width)."""
+    """Return a Draco attribute's numbers, float64 of shape (count, width), normalised if its accessor says so. Raises
+    SceneFileError if `stored` has another shape."""
     accessor = gltf.entry("accessors", index, place)
     count = gltf.whole(accessor, "count", place)
     if stored.shape != (count, width):
@@ -283,8 +289,8 @@ def _unpacked(gltf: Gltf, index: object, stored: np.ndarray, width: int, place: 
 
 
 def _triangles(corners: np.ndarray, mode: int) -> np.ndarray:
-    """Triangles of a list, strip or fan of corners, (triangles, 3), all wound one way; of points and lines the points,
-    (points, 1)."""
+    """Return the triangles of a list, strip or fan of vertex indices, (triangles, 3), all wound one way; for points
+    and lines the indices as they are, (points, 1)."""
     if mode not in (TRIANGLES, STRIP, FAN):
         return corners[:, None]
     if mode == TRIANGLES:
@@ -303,13 +309,14 @@ def _colour(values: np.ndarray) -> tuple[float, float, float]:
 
 
 def _camera(gltf: Gltf, node: Object, model: np.ndarray, notes: list[str]) -> View | None:
-    """A node's perspective camera: it looks down its -z, y up."""
+    """Return a node's perspective camera, which looks down its -z, y up; None if the node has no camera, or an
+    orthographic camera, which is noted. Raises SceneFileError."""
     if "camera" not in node:
         return None
     camera = gltf.entry("cameras", node["camera"], "a node")
     place = f"cameras[{node['camera']}]"
     if camera.get("type") != "perspective":
-        notes.append(f"{place} is not perspective: not used")
+        notes.append(f"{place} is ignored: not a perspective camera")
         return None
     lens = gltf.child(camera, "perspective", place)
     fov, near = (gltf.number(lens, key, place, 0.0) for key in ("yfov", "znear"))

@@ -72,16 +72,16 @@ class Gltf:
                 checked_address(path, image["uri"], f"images[{index}]")
 
     def error(self, place: str, what: str, remedy: str = "export it again") -> SceneFileError:
-        """An error in one line."""
+        """Return an error, for the caller to raise, with the one-line message "PATH: PLACE WHAT; REMEDY"."""
         return SceneFileError(f"{self.path}: {place} {what}; {remedy}")
 
     def _json_chunk(self, data: bytes) -> bytes:
-        """The JSON of a GLB file; its binary chunk is kept."""
+        """Return the JSON chunk of a GLB file, and keep its binary chunk. Raises SceneFileError."""
         if len(data) < 20:
             raise self.error("its header", "is cut off")
         _, version, length = struct.unpack_from("<III", data)
         if version != 2 or not 20 <= length <= len(data):
-            raise self.error("its header", f"says version {version}, {length} bytes; the file has {len(data)}")
+            raise self.error("its header", f"states version {version} and {length} bytes; the file has {len(data)}")
         chunks: dict[int, bytes] = {}
         offset = 12
         while offset + 8 <= length:
@@ -99,38 +99,40 @@ class Gltf:
         asset = self.json.get("asset")
         version = asset.get("version") if isinstance(asset, dict) else None
         if not isinstance(version, str) or not version.startswith("2."):
-            raise self.error("asset.version", f"is {version!r}", "glTF 2.0 is read")
+            raise self.error("asset.version", f"is {version!r}", "only glTF 2.0 is supported")
         for name in self.list_of(self.json, "extensionsRequired", "the file"):
             if not isinstance(name, str) or not name.startswith(KNOWN):
-                raise self.error("extensionsRequired", f"names {name!r}, which is not read", "export without it")
+                raise self.error("extensionsRequired", f"lists {name!r}, which is not supported", "export without it")
 
     # The document, checked as it is asked for.
 
     def list_of(self, holder: Object, key: str, place: str) -> list[Any]:
-        """A list that may be missing."""
+        """Return the list under a key of an object, empty if missing. Raises SceneFileError if it is not a list."""
         entries = holder.get(key, [])
         if not isinstance(entries, list):
             raise self.error(f"{place}.{key}", "is not a list")
         return entries
 
     def entry(self, kind: str, index: object, place: str) -> Object:
-        """Return an object of one of the document's lists. Raises SceneFileError if the index is not valid."""
+        """Return object number `index` of the document's list `kind`, such as "meshes". Raises SceneFileError if the
+        index is not valid."""
         known = self.list_of(self.json, kind, "the file")
         if type(index) is not int or not 0 <= index < len(known):
-            raise self.error(place, f"names {kind}[{_shown_text(index)}], of which there are {len(known)}")
+            raise self.error(place, f"refers to {kind}[{_shown_text(index)}], but the length of {kind} is {len(known)}")
         if not isinstance(known[index], dict):
             raise self.error(f"{kind}[{index}]", "is not an object")
         return known[index]
 
     def child(self, holder: Object, key: str, place: str) -> Object:
-        """An object within another, empty where it is missing."""
+        """Return the object under a key of another object, empty if missing. Raises SceneFileError if it is not an
+        object."""
         child = holder.get(key, {})
         if not isinstance(child, dict):
             raise self.error(f"{place}.{key}", "is not an object")
         return child
 
     def extension(self, holder: Object, name: str, place: str) -> Object:
-        """An extension of an object, empty where it has none of that name."""
+        """Return the extension of this name of an object, empty if missing. Raises SceneFileError."""
         return self.child(self.child(holder, "extensions", place), name, f"{place}.extensions")
 
     def requires(self, name: str) -> bool:
@@ -138,7 +140,8 @@ class Gltf:
         return name in self.list_of(self.json, "extensionsRequired", "the file")
 
     def whole(self, holder: Object, key: str, place: str, default: int | None = None) -> int:
-        """A whole number from 0 up."""
+        """Return the integer under a key of an object, from 0 up, or the default if missing. Raises SceneFileError
+        for any other value, and if both are missing."""
         value = holder.get(key, default)
         if type(value) is not int or not 0 <= value < 2**40:
             raise self.error(f"{place}.{key}", f"is {_shown_text(value)}, not a whole number")
@@ -148,7 +151,8 @@ class Gltf:
         return self.numbers({key: [holder.get(key, default)]}, key, place, (default,))[0]
 
     def numbers(self, holder: Object, key: str, place: str, default: tuple[float, ...]) -> tuple[float, ...]:
-        """Return as many finite numbers as the default has. Raises SceneFileError if the file's are not valid."""
+        """Return the finite numbers under a key of an object, as many as the default has, or the default if missing.
+        Raises SceneFileError if the file's numbers are not valid."""
         values = holder.get(key, list(default))
         if not isinstance(values, list) or len(values) != len(default) or not all(map(_is_number, values)):
             raise self.error(f"{place}.{key}", f"is {_shown_text(values)}, not {len(default)} numbers below 1e15")
@@ -165,10 +169,10 @@ class Gltf:
         return self._accessor(index, width, place)
 
     def indices(self, index: object, place: str) -> np.ndarray:
-        """An index accessor's numbers, int64 of shape (count,)."""
+        """Return an index accessor's numbers, int64 of shape (count,). Raises SceneFileError."""
         accessor = self.entry("accessors", index, place)
         if COMPONENTS.get(_hashable_or_none(accessor.get("componentType"))) not in INDEX_TYPES:
-            raise self.error(place, "are not unsigned whole numbers")
+            raise self.error(place, "must be unsigned integers")
         return self._accessor(index, 1, place)[:, 0].astype(np.int64)
 
     def count(self, index: object, place: str) -> int:
@@ -180,9 +184,9 @@ class Gltf:
         kind = COMPONENTS.get(_hashable_or_none(accessor.get("componentType")))
         count = self.whole(accessor, "count", place)
         if kind is None or WIDTHS.get(_hashable_or_none(accessor.get("type"))) != width:
-            raise self.error(place, f"are of type {_shown_text(accessor.get('type'))}, which is not read there")
+            raise self.error(place, f"has the type {_shown_text(accessor.get('type'))}, which is not supported here")
         if count > MAX_COUNT:
-            raise self.error(place, f"are {count}; the most is {MAX_COUNT}", "export fewer objects")
+            raise self.error(place, f"has {count} elements; the maximum is {MAX_COUNT}", "export fewer objects")
         if "bufferView" in accessor:
             start = self.whole(accessor, "byteOffset", place, 0)
             elements = self._view_elements(accessor["bufferView"], start, kind, count, width, place)
@@ -193,7 +197,7 @@ class Gltf:
         return meant_numbers(elements, accessor.get("normalized") is True)
 
     def _sparse_elements(self, sparse: Object, dense: np.ndarray, place: str) -> np.ndarray:
-        """Some of an accessor's elements replaced."""
+        """Return a copy of an accessor's elements with those in `sparse` replaced. Raises SceneFileError."""
         count = self.whole(sparse, "count", f"{place} (sparse)")
         where, what = (self.child(sparse, key, place) for key in ("indices", "values"))
         kind = COMPONENTS.get(_hashable_or_none(where.get("componentType")))
@@ -203,7 +207,7 @@ class Gltf:
         index = self._view_elements(where.get("bufferView"), starts[0], kind, count, 1, place)[:, 0].astype(np.int64)
         values = self._view_elements(what.get("bufferView"), starts[1], dense.dtype.str, count, dense.shape[1], place)
         if np.any(index >= len(dense)):
-            raise self.error(f"{place} (sparse)", f"names element {index.max()} of {len(dense)}")
+            raise self.error(f"{place} (sparse)", f"has index {index.max()}; the accessor has {len(dense)} elements")
         dense = dense.copy()
         dense[index] = values
         return dense
@@ -247,7 +251,7 @@ class Gltf:
         return self.requires(MESHOPT) or ("uri" not in buffer and view.get("buffer") != 0)
 
     def _slice(self, view: Object, where: str) -> memoryview:
-        """The part of its buffer that a view names."""
+        """Return the part of a buffer that a view names, as stored. Raises SceneFileError if it is too short."""
         offset, length = (
             self.whole(view, key, where, default) for key, default in (("byteOffset", 0), ("byteLength", None))
         )
@@ -266,7 +270,7 @@ class Gltf:
             elif index == 0 and self._binary is not None:
                 data = self._binary
             else:
-                raise self.error(f"buffers[{index}]", "has no address and no binary chunk")
+                raise self.error(f"buffers[{index}]", "has no uri, and the file has no binary chunk")
             self._buffers[index] = data
         return self._buffers[index]
 
@@ -281,10 +285,10 @@ class Gltf:
         if any("targets" in p for p in primitives):
             notes.append("morph targets are not applied")
         if any("COLOR_0" in _dict(p.get("attributes")) for p in primitives):
-            notes.append("vertex colours are not read")
+            notes.append("vertex colours are ignored")
         named = {*self._names("extensionsUsed"), *self._names("extensionsRequired")}
         notes += [
-            f"{name} is not drawn" for name in sorted(named) if name.startswith("KHR_materials_") and name not in DRAWN
+            f"{name} is ignored" for name in sorted(named) if name.startswith("KHR_materials_") and name not in DRAWN
         ]
         return notes
 

@@ -59,7 +59,7 @@ def _light(gltf: Gltf, index: object, model: np.ndarray, corners: np.ndarray, no
     data, place = _data(gltf, index)
     kind = KINDS.get(data["type"]) if isinstance(data.get("type"), str) else None
     if kind is None:
-        notes.append(f"{place} is neither directional nor point nor spot: not used")
+        notes.append(f"{place} is ignored: not a directional, point or spot light")
         return None
     colour = np.array(gltf.numbers(data, "color", place, (1.0, 1.0, 1.0)))
     colour = np.maximum(colour * gltf.number(data, "intensity", place, 1.0) / np.pi, 0.0)
@@ -72,7 +72,7 @@ def _light(gltf: Gltf, index: object, model: np.ndarray, corners: np.ndarray, no
     reach = REACH * float(np.linalg.norm(corners - position, axis=1).max())
     radius = gltf.number(data, "range", place, reach) if kind != "sun" else 0.0
     if kind != "sun" and radius <= 0:
-        raise gltf.error(f"{place}.range", f"is {radius}, not above 0")
+        raise gltf.error(f"{place}.range", f"is {radius}, but must be above 0")
     inner, outer = _cones(gltf, gltf.child(data, "spot", place), place)
     return Light(kind, _triple(colour), _triple(position), radius, _triple(direction), inner, outer)
 
@@ -80,18 +80,23 @@ def _light(gltf: Gltf, index: object, model: np.ndarray, corners: np.ndarray, no
 def _data(gltf: Gltf, index: object) -> tuple[Object, str]:
     known = gltf.list_of(gltf.extension(gltf.json, PUNCTUAL, "the file"), "lights", PUNCTUAL)
     if type(index) is not int or not 0 <= index < len(known) or not isinstance(known[index], dict):
-        raise gltf.error(f"a node's {PUNCTUAL}", f"names a light that does not exist; there are {len(known)}")
+        raise gltf.error(
+            f"a node's {PUNCTUAL}", f"refers to a light that does not exist; the number of lights is {len(known)}"
+        )
     return known[index], f"{PUNCTUAL}.lights[{index}]"
 
 
 def _cones(gltf: Gltf, spot: Object, place: str) -> tuple[float, float]:
-    """Half angles of a spot light's inner and outer cone, in degrees."""
+    """Return the half angles of a spot light's inner and outer cone in degrees, 0 and 45 by default; the inner is at
+    least LEAST_RIM smaller. Raises SceneFileError."""
     inner, outer = (
         float(np.degrees(gltf.number(spot, key, place, default)))
         for key, default in (("innerConeAngle", 0.0), ("outerConeAngle", np.pi / 4))
     )
     if not 0 <= inner <= outer <= 90 + 1e-3 or outer < LEAST_RIM:
-        raise gltf.error(f"{place}.spot", f"has cones of {inner:.4g} and {outer:.4g} degrees, not 0 to 90 in order")
+        raise gltf.error(
+            f"{place}.spot", f"has cones of {inner:.4g} and {outer:.4g} degrees, not in ascending order from 0 to 90"
+        )
     return min(inner, outer - LEAST_RIM), outer
 
 

@@ -76,7 +76,8 @@ class Materials:
         return float(np.clip(self._gltf.number(holder, key, place, 1.0), 0.0, 1.0))
 
     def _coverage(self, data: Object, place: str, mode: object, factor: float, base: Map | None) -> tuple[float, float]:
-        """Alpha, and the alpha below which nothing is drawn."""
+        """Return a material's alpha, and the threshold below which its map's alpha hides the surface; 0 hides
+        nothing. Raises SceneFileError if the mode is unknown."""
         if mode == "OPAQUE":
             return 1.0, 0.0
         if mode == "MASK":
@@ -94,19 +95,21 @@ class Materials:
         return _triple(np.maximum(emission * strength, 0.0).tolist())
 
     def _reflectance(self, data: Object, place: str) -> float:
-        """Return ((n - 1) / (n + 1))^2 of the refractive index n; an index of 0 means full reflection."""
+        """Return ((n - 1) / (n + 1))^2 of the refractive index n in KHR_materials_ior; an index of 0 means full
+        reflection. DIELECTRIC without the extension. Raises SceneFileError for other indices below 1."""
         extension = self._gltf.extension(data, IOR, place)
         if not extension:
             return DIELECTRIC
         index = self._gltf.number(extension, "ior", place, 1.5)
         if index != 0 and index < 1:
-            raise self._gltf.error(f"{place}.ior", f"is {index}; refractive indices from 1 up are read")
+            raise self._gltf.error(f"{place}.ior", f"is {index}; a refractive index must be 0 or at least 1")
         return ((index - 1) / (index + 1)) ** 2
 
     # Pictures.
 
     def _map(self, holder: Object, key: str, place: str, kind: str) -> Map | None:
-        """Return a map of `kind`: "colour", "opaque" for a colour without alpha, or "numbers"; None if missing."""
+        """Return a map of `kind`: "colour", "opaque" for a colour without alpha, or "numbers"; None if missing, or if
+        it cannot be used, which is noted."""
         gltf, place = self._gltf, f"{place}.{key}"
         if key not in holder:
             return None
@@ -118,7 +121,7 @@ class Materials:
         if image is None:
             return None
         if uv_set > 1:
-            self.notes.append(f"{place} lies by TEXCOORD_{uv_set}: 0 and 1 are read, and it is left out")
+            self.notes.append(f"{place} is ignored: it uses TEXCOORD_{uv_set}, and only 0 and 1 are supported")
             return None
         pixels = self._texels(image, place, kind)
         is_srgb = kind != "numbers" and pixels.dtype == np.uint8
@@ -142,7 +145,7 @@ class Materials:
         for code in codes:
             if code not in WRAPS:
                 raise self._gltf.error(
-                    f"{place}: its sampler", f"wraps by {code}, not one of {sorted(map(str, WRAPS))}"
+                    f"{place}: its sampler", f"has the wrap mode {code}, not one of {sorted(map(str, WRAPS))}"
                 )
         return WRAPS[codes[0]], WRAPS[codes[1]]
 
@@ -161,7 +164,8 @@ class Materials:
         return np.array([(along_u * c, along_v * s, x), (-along_u * s, along_v * c, y)])
 
     def _texels(self, index: object, place: str, kind: str) -> np.ndarray:
-        """A picture's texels as `kind` wants them."""
+        """Return an image's texels, (height, width, 4), converted by `_as_kind`; each image is read only once. Raises
+        SceneFileError."""
         gltf = self._gltf
         image = gltf.entry("images", index, place)
         assert isinstance(index, int)
@@ -178,7 +182,7 @@ class Materials:
             self._texels_in_all += width * height
             if self._texels_in_all > MAX_TEXELS:
                 what = f"has {width} x {height} pixels; the maximum for all images together is {MAX_TEXELS} (2^28)"
-                raise self._gltf.error(place, what, "save them smaller")
+                raise self._gltf.error(place, what, "reduce their size")
             return texels(data)
         except PictureError as error:
             name = image.get("uri", image.get("name"))
@@ -190,12 +194,13 @@ class Materials:
         if "uri" in image:
             return resource(self._gltf.path, image["uri"], place)
         if "bufferView" not in image:
-            raise self._gltf.error(place, "has neither an address nor a buffer view")
+            raise self._gltf.error(place, "has neither a uri nor a bufferView")
         return bytes(self._gltf.view_bytes(image["bufferView"], place))
 
 
 def _as_kind(image: np.ndarray, kind: str) -> np.ndarray:
-    """Texels without their alpha if they are opaque; colours of 16 bits on the sRGB curve become linear."""
+    """Return an image's texels for a map of `kind`: "numbers" unchanged; of colours, 16 bits on the sRGB curve become
+    linear, and "opaque" sets alpha to the largest integer."""
     if kind == "numbers":
         return image
     most = np.iinfo(image.dtype).max

@@ -29,7 +29,7 @@ MODES = {"ATTRIBUTES": range(4, 257, 4), "TRIANGLES": (2, 4), "INDICES": (2, 4)}
 
 
 def _package(gltf: Gltf, name: str, place: str) -> Any:
-    """A package of the extra. Raises MissingPackageError where it is not installed."""
+    """Import and return an optional package. Raises MissingPackageError if it is not installed."""
     try:
         return import_module(name)
     except ImportError as error:
@@ -55,9 +55,11 @@ def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place
     sizes = MODES.get(mode, ()) if isinstance(mode, str) else ()
     name, filtered = FILTERS.get(sieve, (None, ())) if isinstance(sieve, str) else (None, ())
     if stride not in sizes or (sieve != "NONE" and (mode != "ATTRIBUTES" or stride not in filtered)):
-        raise gltf.error(place, f"packs elements of {stride} bytes by {mode!r} and {sieve!r}, which is not read")
+        raise gltf.error(
+            place, f"packs elements of {stride} bytes with mode {mode!r} and filter {sieve!r}, which is not supported"
+        )
     if count * stride > most:
-        raise gltf.error(place, f"unpacks to {count * stride} bytes; {most} are left", "export fewer objects")
+        raise gltf.error(place, f"unpacks to {count * stride} bytes; the limit leaves {most}", "export fewer objects")
     package = _package(gltf, "meshoptimizer", place)
     try:
         if mode == "ATTRIBUTES":
@@ -72,7 +74,8 @@ def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place
 
 
 def _octahedral_bits(packed: np.ndarray, count: int, stride: int) -> int | None:
-    """Return the bits of a map's numbers: the third number of an element represents 1 as 2^(bits - 1) - 1."""
+    """Return the bits of an octahedral map's numbers; None if the third number of no element is above 0. That number
+    represents 1 as 2^(bits - 1) - 1."""
     if not count:
         return None
     ones = np.frombuffer(packed.tobytes(), f"<i{stride // 4}").reshape(count, 4)[:, 2]
@@ -101,7 +104,7 @@ def draco_primitive(gltf: Gltf, primitive: Object, place: str) -> tuple[np.ndarr
     attributes = {}
     for name, number in gltf.child(extension, "attributes", f"{place}.{DRACO}").items():
         if type(number) is not int or number not in known:
-            raise gltf.error(f"{place}.{DRACO}", f"has no attribute {number!r}, which {name[:40]} names")
+            raise gltf.error(f"{place}.{DRACO}", f"has no attribute {number!r}, to which {name[:40]} refers")
         attributes[name] = known[number]
     return triangles, attributes
 
@@ -123,7 +126,7 @@ def _check_draco_size(gltf: Gltf, data: bytes, place: str) -> None:
     triangles, vertices = (other, first) if method == EDGEBREAKER else (first, other)
     if triangles > MAX_TRIANGLES or vertices > MAX_VERTICES:
         raise gltf.error(
-            f"{place}.{DRACO}", f"says {triangles} triangles of {vertices} vertices", "export fewer objects"
+            f"{place}.{DRACO}", f"states {triangles} triangles and {vertices} vertices", "export fewer objects"
         )
 
 

@@ -135,7 +135,7 @@ def of_one_mesh(path: Path, mesh: Mesh, notes: Iterable[str]) -> MeshFile:
 
 
 def mesh_of(path: Path, stored: Stored) -> tuple[Mesh, list[str]]:
-    """Return the mesh that a file holds, and notes on what had to be made up.
+    """Return the mesh that a file holds, and notes on what had to be made up, empty if nothing.
 
     Normals are scaled to unit length; smooth normals replace those that are missing or have no length. Triangles
     without an area are left out.
@@ -149,7 +149,7 @@ def mesh_of(path: Path, stored: Stored) -> tuple[Mesh, list[str]]:
     corners = positions[triangles]
     triangles = triangles[np.any(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) != 0, axis=1)]
     if not len(triangles):
-        raise SceneFileError(f"{path}: {place}: no triangle with an area; export it as triangles")
+        raise SceneFileError(f"{path}: {place}: no triangle has an area; export it as triangles")
     notes = [] if normals is not None else ["meshes without normals: smooth normals were generated"]
     given = np.zeros_like(positions) if normals is None else np.asarray(normals, np.float64)
     has_normals = normals is not None
@@ -167,7 +167,8 @@ def mesh_of(path: Path, stored: Stored) -> tuple[Mesh, list[str]]:
 
 
 def _completed_normals(normals: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, int]:
-    """Return unit normals, and the number of used normals that had to be made up."""
+    """Return unit normals, with smooth normals in place of normals without length, and the number of normals replaced
+    at vertices that triangles use."""
     length = np.linalg.norm(normals, axis=1)
     lost = length < NOTHING
     normals = normals / np.where(lost, 1.0, length)[:, None]
@@ -181,7 +182,8 @@ def _completed_normals(normals: np.ndarray, positions: np.ndarray, triangles: np
 
 
 def _tangents(path: Path, place: str, tangents) -> np.ndarray | None:
-    """Unit tangents with their signs; None where one has no length, so that they follow from the uv instead."""
+    """Return unit tangents with signs of 1 or -1, (vertices, 4); None if any tangent has no length, so that all
+    follow from the uv instead. Raises SceneFileError."""
     tangents = checked_numbers(path, np.asarray(tangents, np.float64), f"{place}: the tangent")
     length = np.linalg.norm(tangents[:, :3], axis=1, keepdims=True)
     if (length < NOTHING).any():
@@ -190,10 +192,10 @@ def _tangents(path: Path, place: str, tangents) -> np.ndarray | None:
 
 
 def checked_pieces(path: Path, pieces: Iterable[Piece], notes: list[str]) -> tuple[Piece, ...]:
-    """The pieces that can be seen; those whose place has no extent are noted.
+    """Return the pieces that can be visible; a piece with zero scale is left out and noted.
 
     Raises:
-        SceneFileError: none is left, or one is moved out of all range.
+        SceneFileError: no piece is left, or a piece is moved beyond 1e15.
     """
     kept = []
     for piece in pieces:

@@ -56,7 +56,7 @@ class _Obj:
 
 
 def read_obj(path: Path) -> MeshFile:
-    """The meshes of an OBJ file, one for each material, seen from both sides.
+    """Read an OBJ file: one mesh for each material, visible from both sides.
 
     Raises:
         SceneFileError: it is damaged, too large, has no faces, or names a file outside its folder.
@@ -109,12 +109,13 @@ def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
 
 
 def _take(obj: _Obj, words: list[str]) -> None:
-    """Process one line. Raises ValueError or IndexError if it is not valid."""
+    """Add the content of one line, given as its words, to `obj`. Raises ValueError or IndexError if the line is not
+    valid."""
     kind, rest = words[0], words[1:]
     if kind in VERTEX_DATA:
         size = VERTEX_DATA[kind]
         if len(rest) < size:
-            raise ValueError(f"{size} numbers are needed")
+            raise ValueError(f"expected {size} numbers")
         obj.data[kind].append(tuple(map(float, rest[:size])))
     elif kind == "f":
         _take_face(obj, [obj.known[text] if text in obj.known else _new_corner(obj, text) for text in rest])
@@ -138,8 +139,8 @@ def _take_face(obj: _Obj, corners: list[int]) -> None:
 
 
 def _new_corner(obj: _Obj, text: str) -> int:
-    """The place of a corner, "position/uv/normal", the later two optional; indices start at 1, negative ones count from
-    the end."""
+    """Add a corner, "position/uv/normal" of which the last two are optional, and return its index in `obj.vertices`.
+    Indices in the text start at 1; negative indices count from the end. Raises ValueError."""
     words = text.split("/")
     if len(words) > len(KINDS) or not words[0]:
         raise ValueError("a corner must be position/uv/normal")
@@ -163,7 +164,8 @@ def _checked_index(word: str, count: int) -> int:
 
 
 def _mesh(path: Path, place: str, tables: dict[str, np.ndarray], vertices: np.ndarray, corners: list[int]) -> Stored:
-    """A mesh whose vertices are the corners that differ; normals where any corner has one."""
+    """Return a mesh with one vertex for each distinct corner; it has normals if any corner has a normal. Raises
+    SceneFileError if the mesh is too large."""
     used, triangles = np.unique(np.array(corners, np.int64), return_inverse=True)
     checked_size(path, len(used), len(triangles) // 3, place)
     position, uv, normal = vertices[used].T
@@ -172,12 +174,12 @@ def _mesh(path: Path, place: str, tables: dict[str, np.ndarray], vertices: np.nd
 
 
 def _table(rows: list[tuple[float, ...]], width: int) -> np.ndarray:
-    """Rows of numbers, and a last one of zeros for the index -1."""
+    """Return rows of numbers as an array, (rows + 1, width), with a last row of zeros for the index -1."""
     return np.concatenate([np.array(rows).reshape(-1, width), np.zeros((1, width))])
 
 
 def _materials(path: Path, libraries: list[str], notes: list[str]) -> dict[str, Material]:
-    """Return the materials of the MTL files next to the OBJ file; a missing MTL file is noted."""
+    """Return the materials of the MTL files next to the OBJ file, by name; a missing MTL file is noted."""
     materials: dict[str, Material] = {}
     for name in dict.fromkeys(libraries):
         try:
@@ -211,7 +213,7 @@ def _read_mtl(path: Path, name: str, data: bytes, notes: list[str]) -> dict[str,
                         materials[current], **{NUMBERS[word]: min(max(_checked_number(value), low), high)}
                     )
                 case [word, *_] if word.lower().startswith(("map_", "bump", "norm", "disp", "decal", "refl")):
-                    notes.append("textures are not read: only colours")
+                    notes.append("textures are ignored; only colours are used")
         except ValueError as error:
             raise SceneFileError(f"{path}: {name}, line {number}: {error}; export it again") from error
     return materials
@@ -220,5 +222,5 @@ def _read_mtl(path: Path, name: str, data: bytes, notes: list[str]) -> dict[str,
 def _checked_number(text: str) -> float:
     number = float(text)
     if not number >= 0 or math.isinf(number):
-        raise ValueError(f"{text} is not a number from 0 up")
+        raise ValueError(f"{text} is not a number of at least 0")
     return number

@@ -74,7 +74,8 @@ def is_cloud(path: Path) -> bool:
 
 
 def read_cloud(path: Path) -> Stored:
-    """The points of a cloud, with their normals. Raises SceneFileError."""
+    """Return the points of a cloud with their normals; points without positions receive distinct made-up positions.
+    Raises SceneFileError, also if the points have no normals."""
     tables, types = _tables(path)
     normals, roundings = _normals(tables["vertex"], types["vertex"])
     if normals is None or not len(normals):
@@ -86,8 +87,8 @@ def read_cloud(path: Path) -> Stored:
 
 
 def _normals(vertex: Table, types: dict[str, str]) -> tuple[np.ndarray | None, tuple[Rounding, ...]]:
-    """Return decoded normals and their roundings: signed integers represent [-1, 1] around 0, unsigned integers from
-    end to end."""
+    """Return decoded normals (or None) and their roundings (empty for floats): signed integers represent [-1, 1]
+    around 0, unsigned integers from end to end."""
     normals, kinds = _columns(vertex, NORMAL), {types[name] for name in NORMAL if name in types}
     kind = np.dtype(kinds.pop() if len(kinds) == 1 else "f8")
     if normals is None or kind.kind == "f":
@@ -99,7 +100,8 @@ def _normals(vertex: Table, types: dict[str, str]) -> tuple[np.ndarray | None, t
 
 
 def _tables(path: Path) -> tuple[dict[str, Table], dict[str, dict[str, str]]]:
-    """Return the columns of each element, and their types according to the header."""
+    """Return a PLY file's columns and their types in the header, each by element and by property. Raises
+    SceneFileError."""
     data = file_bytes(path)
     order, elements, start = _header(path, data)
     tables: dict[str, Table] = {}
@@ -116,7 +118,8 @@ def _tables(path: Path) -> tuple[dict[str, Table], dict[str, dict[str, str]]]:
 
 
 def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
-    """Byte order, elements, and where their rows start."""
+    """Return the byte order ("<", ">" or "" for ASCII), the elements, and the offset of the first row. Raises
+    SceneFileError."""
     end = data.find(b"end_header", 0, MAX_HEADER)
     newline = data.find(b"\n", end)
     if not data.startswith(b"ply") or end < 0 or newline < 0:
@@ -141,7 +144,7 @@ def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
                     f"{path}: line {number}: {line[:60]!r} is not a line of a PLY header; export it again"
                 )
     if order is None:
-        raise SceneFileError(f"{path}: its header names no format: {', '.join(ORDERS)}")
+        raise SceneFileError(f"{path}: the header names no format; expected one of {', '.join(ORDERS)}")
     return order, elements, newline + 1
 
 
@@ -149,10 +152,10 @@ def _check_count(path: Path, element: Element, left: int, least: int) -> None:
     """Raise SceneFileError if a table is not valid, or is larger than the rest of the file or the maximum size."""
     names = [p.name for p in element.properties]
     if not names or len(set(names)) < len(names):
-        raise SceneFileError(f"{path}: element {element.name}: no properties, or two of the same name; export it again")
+        raise SceneFileError(f"{path}: element {element.name}: no properties, or a duplicate name; export it again")
     if element.count * least > left:
         raise SceneFileError(
-            f"{path}: element {element.name}: {element.count} rows are more than the file holds; it is cut off: "
+            f"{path}: element {element.name}: the file holds fewer than {element.count} rows; it is cut off: "
             "export it again"
         )
     vertices, triangles = (element.count * (element.name == name) for name in ("vertex", "face"))
@@ -164,7 +167,8 @@ def _damage_error(path: Path, element: Element, row: int) -> SceneFileError:
 
 
 def _binary(path: Path, data: bytes, offset: int, element: Element, order: str) -> tuple[Table, int]:
-    """A table of a binary file, and where the next one starts."""
+    """Return the table of an element in a binary file, read from `offset`, and the offset after it. Raises
+    SceneFileError."""
     least = sum(np.dtype(p.counted_by or p.type).itemsize for p in element.properties)
     _check_count(path, element, len(data) - offset, least)
     lists = [p for p in element.properties if p.counted_by]
@@ -184,7 +188,8 @@ def _binary(path: Path, data: bytes, offset: int, element: Element, order: str) 
 
 
 def _values(data: bytes, offset: int, p: Property, order: str) -> tuple[np.ndarray, int]:
-    """A property's values at a place, and where the next one is. Raises ValueError beyond the end."""
+    """Return the values of a property at an offset, one value or a list's values, and the offset after them. Raises
+    ValueError beyond the end of the data, and for more than MAX_CORNERS values."""
     count = 1
     if p.counted_by:
         count = int(np.frombuffer(data, order + p.counted_by, 1, offset)[0])
@@ -198,7 +203,7 @@ def _values(data: bytes, offset: int, p: Property, order: str) -> tuple[np.ndarr
 
 
 def _first_lengths(data: bytes, offset: int, element: Element, order: str) -> dict[str, int]:
-    """Return the lengths of the lists in the first row; empty if the row is damaged."""
+    """Return the number of values that each property has in the first row; empty if the row is damaged."""
     lengths: dict[str, int] = {}
     try:
         for p in element.properties:
@@ -210,7 +215,8 @@ def _first_lengths(data: bytes, offset: int, element: Element, order: str) -> di
 
 
 def _alike(data: bytes, offset: int, element: Element, order: str, lengths: dict[str, int]) -> tuple[Table, int] | None:
-    """The whole table at once, where every row's lists are as long as the first row's; else None."""
+    """Return an element's table, read at once, and the offset after it; None if the lists of any row differ in length
+    from `lengths`, or the data ends too soon."""
     fields = []
     for p in element.properties:
         if p.counted_by:
@@ -231,7 +237,8 @@ def _alike(data: bytes, offset: int, element: Element, order: str, lengths: dict
 
 
 def _ascii(path: Path, tokens: list[bytes], index: int, element: Element) -> tuple[Table, int]:
-    """A table of an ASCII file, and which token comes next."""
+    """Return the table of an element in an ASCII file, read from token number `index`, and the index after it. Raises
+    SceneFileError."""
     _check_count(path, element, len(tokens) - index, len(element.properties))
     width = len(element.properties)
     if not any(p.counted_by for p in element.properties):
@@ -261,7 +268,7 @@ def _ascii(path: Path, tokens: list[bytes], index: int, element: Element) -> tup
 
 
 def _columns(table: Table, names: tuple[str, ...]) -> np.ndarray | None:
-    """Columns side by side, None where one is missing or is a list."""
+    """Return columns side by side, float64 of shape (rows, columns); None if a column is missing or is a list."""
     columns = [table.get(name) for name in names]
     if not all(isinstance(column, np.ndarray) and column.ndim == 1 for column in columns):
         return None
@@ -276,7 +283,7 @@ def _mesh(path: Path, tables: dict[str, Table], types: dict[str, dict[str, str]]
     faces = next((face[name] for name in FACES if name in face), None)
     if positions is None or faces is None or not len(faces):
         raise SceneFileError(
-            f"{path}: vertices with x, y, z and faces with vertex_indices are read, or points with nx, ny, nz; export "
+            f"{path}: neither vertices with x, y, z and faces with vertex_indices, nor points with nx, ny, nz; export "
             "one of them"
         )
     uv = next((columns for names in UV if (columns := _columns(vertex, names)) is not None), None)
@@ -287,15 +294,16 @@ def _mesh(path: Path, tables: dict[str, Table], types: dict[str, dict[str, str]]
 
 
 def _fans(path: Path, faces: np.ndarray | list[np.ndarray]) -> np.ndarray:
-    """Triangles of faces of any number of corners, fans around the first, (triangles, 3)."""
+    """Return faces of any number of corners as triangles, fans around the first corner, int64 of shape
+    (triangles, 3). Raises SceneFileError."""
     if isinstance(faces, np.ndarray):
         if faces.ndim != 2:
-            raise SceneFileError(f"{path}: faces are lists of vertices; export it again")
+            raise SceneFileError(f"{path}: faces must be lists of vertices; export it again")
         faces = faces.astype(np.float64)
         fans = [np.stack([faces[:, 0], faces[:, k], faces[:, k + 1]], axis=1) for k in range(1, faces.shape[1] - 1)]
         triangles = np.stack(fans, axis=1).reshape(-1, 3) if fans else np.zeros((0, 3))
     else:
         triangles = np.array([(f[0], f[k], f[k + 1]) for f in faces for k in range(1, len(f) - 1)], np.float64)
     if not np.all(np.abs(triangles) < 2**32):
-        raise SceneFileError(f"{path}: a face names a vertex that is not a number; export it again")
+        raise SceneFileError(f"{path}: a face has a vertex index that is not a number; export it again")
     return triangles.astype(np.int64).reshape(-1, 3)

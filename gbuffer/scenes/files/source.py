@@ -52,13 +52,13 @@ def file_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
 
 
 def checked_address(path: Path, address: object, place: str) -> Path | None:
-    """The file that an address in the file `path` names, or None for a data: address; reads nothing.
+    """Return the resolved path that an address in the file `path` names, or None for a data: address; read nothing.
 
     Raises:
-        SceneFileError: it is not an address, is on the network, or leaves the file's folder, by a link if need be.
+        SceneFileError: the address is not text, is on the network, or leaves the file's folder, also by a link.
     """
     if not isinstance(address, str):
-        raise SceneFileError(f"{path}: {place}: an address is text")
+        raise SceneFileError(f"{path}: {place}: the address is not a string; export it again")
     if address.startswith("data:"):
         return None
     shown = address if len(address) <= 60 else f"{address[:57]}..."
@@ -66,7 +66,7 @@ def checked_address(path: Path, address: object, place: str) -> Path | None:
         raise SceneFileError(
             f"{path}: {place}: {shown!r} is not in the file's folder; nothing is downloaded: save it next to the file"
         )
-    outside = SceneFileError(f"{path}: {place}: {shown!r} leaves the file's folder; save it next to the file")
+    outside = SceneFileError(f"{path}: {place}: {shown!r} is outside the file's folder; save it next to the file")
     words = re.split(r"[/\\]", unquote(address))
     if ".." in words or not words[0] or "\0" in address:
         raise outside
@@ -98,7 +98,7 @@ def resource(path: Path, address: object, place: str) -> bytes:
             raise ValueError("not base64")
         return base64.b64decode(unquote(data), validate=True)
     except (ValueError, binascii.Error) as error:
-        raise SceneFileError(f"{path}: {place}: its data: address is damaged ({error}); export it again") from error
+        raise SceneFileError(f"{path}: {place}: the data: address is damaged ({error}); export it again") from error
 
 
 def checked_indices(path: Path, indices: np.ndarray, count: int, place: str) -> np.ndarray:
@@ -107,7 +107,7 @@ def checked_indices(path: Path, indices: np.ndarray, count: int, place: str) -> 
     if len(bad):
         worst = indices.ravel()[bad[0]] if indices.ndim == 1 else indices.reshape(-1)[bad[0]]
         raise SceneFileError(
-            f"{path}: {place}: index {bad[0]} names vertex {worst}, but there are {count}; export it again"
+            f"{path}: {place}: index {bad[0]} refers to vertex {worst}, but there are {count} vertices; export it again"
         )
     return indices
 
@@ -117,7 +117,7 @@ def checked_numbers(path: Path, numbers: np.ndarray, place: str) -> np.ndarray:
     bad = np.flatnonzero(~(np.abs(numbers) < TOO_LARGE).all(axis=1))
     if len(bad):
         raise SceneFileError(
-            f"{path}: {place} of vertex {bad[0]}: {numbers[bad[0]].tolist()}; numbers below {TOO_LARGE:g} are read"
+            f"{path}: {place} of vertex {bad[0]}: {numbers[bad[0]].tolist()}; numbers must be below {TOO_LARGE:g}"
         )
     return numbers
 

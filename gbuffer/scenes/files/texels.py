@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FORMATS = ("PNG", "JPEG", "WEBP")
 MAX_SIDE = 8192
-SMALLER = f"the maximum is {MAX_SIDE} pixels per side: save it smaller"
+SMALLER = f"the maximum is {MAX_SIDE} pixels per side: reduce its size"
 DAMAGED = "is cut off or damaged; save it again"
 PNG = b"\x89PNG\r\n\x1a\n"
 # Chunks of a PNG file that its texels are made of.
@@ -75,7 +75,8 @@ def _opened(data: bytes) -> Image:
 
 
 def _deep_texels(data: bytes) -> np.ndarray:
-    """A PNG file of 16 bits that Pillow can read; the library reads from files alone."""
+    """Return the texels of a 16-bit PNG file that Pillow can read, uint16 of shape (height, width, 4). Raises
+    PictureError. OpenImageIO reads only files, so a temporary file is written."""
     import OpenImageIO as oiio  # noqa: N813 # as its own documentation has it
 
     with tempfile.TemporaryDirectory() as folder:
@@ -109,7 +110,8 @@ def _bare(data: bytes) -> bytes:
 
 
 def _widened(image: np.ndarray) -> np.ndarray:
-    """Grey, grey and alpha, or colours as colours and alpha."""
+    """Return an image of 1 to 4 channels with colours and alpha, (height, width, 4): grey fills all three colours,
+    and a missing alpha is the largest integer."""
     count = image.shape[2]
     colours = image[..., :3] if count >= 3 else np.repeat(image[..., :1], 3, axis=2)
     alpha = image[..., -1:] if count in (2, 4) else np.full_like(image[..., :1], np.iinfo(image.dtype).max)

@@ -34,7 +34,7 @@ def lamp_arm() -> Mesh:
 
 
 def _shoulder() -> Iterator[Mesh]:
-    """The bracket, the ring that it ends at, and the tube behind it."""
+    """Yield the meshes of the bracket, the ring that it ends at, and the tube behind the ring."""
     neck = RING + _way(RING, FOOT) * (0.9 * RING_RADIUS + NECK_RADIUS)
     yield plate(FOOT, neck, FOOT_RADIUS, NECK_RADIUS, 0.4 * THICK)
     yield disc(RING_RADIUS, 0.8 * THICK, RING_SLICES, RING_HOLE, RING_BULGE).placed(np.eye(3), _at(RING))
@@ -44,7 +44,7 @@ def _shoulder() -> Iterator[Mesh]:
 
 
 def _elbow() -> Iterator[Mesh]:
-    """The fork's two prongs, its pin, the tongue between them, and the second tube."""
+    """Yield the meshes of the fork's two prongs, its pin, the tongue between them, and the second tube."""
     back, on = _way(ELBOW, RING), _way(ELBOW, HEAD)
     for side in (-1.0, 1.0):
         prong = plate(ELBOW + 1.2 * JOINT_RADIUS * back, ELBOW, JOINT_RADIUS, JOINT_RADIUS, 0.18 * THICK)
@@ -55,7 +55,7 @@ def _elbow() -> Iterator[Mesh]:
 
 
 def _cables() -> Iterator[Mesh]:
-    """Two on each tube, above and below the plane, bent away from it."""
+    """Yield the meshes of two cables along each tube, above and below the plane, bent away from the tube."""
     along = _way(RING, ELBOW)
     aside = np.array([-along[1], along[0]])
     start = RING + RING_RADIUS * (0.8 * aside - 0.5 * along)
@@ -89,7 +89,7 @@ def _head() -> Mesh:
 
 
 def surface(points: np.ndarray) -> Mesh:
-    """A grid of points (rows, columns, 3) with smooth normals."""
+    """Return the mesh of a grid of points, (rows, columns, 3), with smooth normals."""
     rows, columns = points.shape[0] - 1, points.shape[1] - 1
     positions, triangles = points.reshape(-1, 3), grid_triangles(rows, columns)
     return Mesh(positions, smooth_normals(positions, triangles), triangles, grid_uv(rows, columns))
@@ -109,7 +109,7 @@ def swept(path: np.ndarray, radii: tuple[float, ...], sides: int) -> Mesh:
 
 
 def turned(profile: list[tuple[float, float]], slices: int) -> Mesh:
-    """A surface of revolution around y through (radius, height)."""
+    """Return a surface of revolution around y; the profile lists points (radius, height)."""
     radius, height = np.array(profile, float).T[..., None]
     angle = -_around(slices)
     return surface(np.stack([radius * np.cos(angle), height + 0 * angle, radius * np.sin(angle)], axis=-1))
@@ -140,7 +140,7 @@ def plate(start: np.ndarray, end: np.ndarray, first: float, last: float, half: f
 
 
 def faceted(mesh: Mesh) -> Mesh:
-    """The mesh with a normal for each triangle; those without an area are left out."""
+    """Return the mesh with flat normals, three vertices for each triangle; triangles without an area are left out."""
     corners = mesh.positions[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(across, axis=1)
@@ -151,7 +151,7 @@ def faceted(mesh: Mesh) -> Mesh:
 
 
 def _around(count: int) -> np.ndarray:
-    """The angles of a closed ring, the last one the first to the bit."""
+    """Return `count` + 1 angles around a circle, in radians; the last is 0 again, so that a ring closes."""
     return np.arange(count + 1) % count * (2 * np.pi / count)
 
 
@@ -161,5 +161,5 @@ def _way(start: np.ndarray, end: np.ndarray) -> np.ndarray:
 
 
 def _at(place: np.ndarray, y: float = 0.0) -> np.ndarray:
-    """A place of the plane in space."""
+    """Return a point (x, z) of the plane as (x, y, z)."""
     return np.array([place[0], y, place[1]])

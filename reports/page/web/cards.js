@@ -123,7 +123,7 @@ class Cards {
     const names = Object.keys(this.codecs), count = `${names.length} of ${names.length} rows`;
     const tools = element("p", { class: "tools" }, element("label", { for: "cards-filter" }, "Filter"), element("input", { type: "search", id: "cards-filter", "data-filter": "", autocomplete: "off", spellcheck: "false" }), element("span", { role: "status", "data-count": "" }, count));
     const table = element("table", {}, element("caption", {}, element("span", {}, "Every codec")), element("thead", {}, element("tr", {}, ...heads)), element("tbody", {}, ...names.map(line)));
-    const note = this.usual ? `Angles on the set ${this.usual}, unless the row names another. Slots: issue slots to encode and decode once.` : "";
+    const note = this.usual ? `Angles on the set ${this.usual}, unless the row names a different set. Slots: issue slots to encode and decode once.` : "";
     return element("div", { class: "sheet", "data-sheet": "" }, tools, element("div", { class: "scroll", role: "region", "aria-label": "Every codec", tabindex: "0" }, table), element("p", { class: "tools" }, element("button", { type: "button", "data-more": "", value: LINES })), element("p", { class: "note" }, note));
   }
 
@@ -170,7 +170,7 @@ class Cards {
     const more = about?.sign ? " The sign takes one bit elsewhere." : "", table = about?.tables ? " It uses lookup tables." : "";
     fact("stored in", storage ? `${storage}: ${about.components} numbers, ${bitsText(this.codecs[name], " bits")}.${more}${table}` : rest.join(" "));
     const same = numbers ? Object.keys(this.codecs).filter((other) => other !== name && other.split(" ")[0] === encoding && this.codecs[other].numbers === numbers) : [];
-    if (same.length) fact("the same numbers", ...same.flatMap((other) => [nameButton(other, other), " "]), "stores the same numbers in the same bit count: the error is the same.");
+    if (same.length) fact("same numbers as", ...same.flatMap((other) => [nameButton(other, other), " "]), "in the same bit count, so the error is the same.");
     return element("div", {}, element("h3", { id: "card-h" }, element("b", { class: `side-${side}` }, `${side.toUpperCase()} `), name), element("dl", { class: "facts" }, ...facts));
   }
 
@@ -222,7 +222,7 @@ class Cards {
     if (!codec) return [];
     const view = subject.of === "image" ? "apart" : "error", canvas = element("canvas", { role: "img", "aria-label": `${name}, ${subject.title}` });
     pixelsOf(subject.original, subject.width, subject.height).then((exact) => Planes.of(subject, codec, exact)).then((planes) => planes.drawSmall(canvas, view, 8, view === "error", 2 * THUMB), () => canvas.remove());
-    const said = view === "error" ? `its error ${viewer.data.articles.gain} ×` : "its image's difference, full colour at 8 of 255";
+    const said = view === "error" ? `its error ${viewer.data.articles.gain}×` : "its image's difference, full colour at 8 of 255";
     return [element("figure", {}, canvas, element("figcaption", {}, `${name} on ${subject.title}: ${said}. `, element("button", { type: "button", class: "pick", onclick: () => viewer.open(subject, codec, view) }, "Look closer")))];
   }
 
@@ -241,7 +241,7 @@ class Cards {
     select.addEventListener("change", fill);
     fill();
     const button = element("button", { type: "button", "data-copy": "code", onclick: () => copy(text(), said) }, "Copy");
-    const proof = one.proven ? "It was run and compared with the catalogue: the comment at its top has the result." : "It was not run. The command in its top comment runs it and compares it with the catalogue.";
+    const proof = one.proven ? "The code was run and compared with the catalogue; the comment at its top has the result." : "The code was not run. The command in its top comment runs it and compares it with the catalogue.";
     const tables = one.tables ? [" It reads lookup tables, which ", element("code", {}, `${command} --to ${select.value} -o folder`), " writes next to it."] : [];
     return element("div", {}, title, element("p", { class: "tools" }, element("label", {}, "Language ", select), button, said), element("p", { class: "note" }, proof, ...tables), shown);
   }
@@ -303,7 +303,7 @@ class Cards {
     const places = lines.flatMap(({ context, row }) => figures.filter((figure) => table.value(figure, row) !== null).map((figure) => ({ figure, ...table.place(context, row, figure, this.codecs) }))).filter(({ of }) => of > 3);
     if (!places.length) return "Not ranked: too few codecs with the same bit count.";
     const by = (one) => (one.rank - 1) / (one.of - 1), best = places.reduce((x, y) => (by(y) < by(x) ? y : x)), worst = places.reduce((x, y) => (by(y) > by(x) ? y : x));
-    const said = (one) => `${placeText(one, one.bits)} by ${table.columns[one.figure].title}`;
+    const said = (one) => `${placeText(one, one.bits)} in ${table.columns[one.figure].title}`;
     return best === worst ? `Rank: ${said(best)}.` : `Best rank: ${said(best)}. Worst rank: ${said(worst)}.`;
   }
 
@@ -336,7 +336,7 @@ if (cardsRoot) {
     const fill = async () => {
       const made = await once(), names = CODECS.map((side) => state[side]).filter((name) => made.codecs[name]);
       const part = names.length ? (details.dataset.ofCards === "code" ? made.written(names[0], "h3") : made.pictures(names, "h3")) : null;
-      details.replaceChildren(details.firstElementChild, ...(details.open ? [part ?? element("p", { class: "note" }, "This page has nothing on A or B.")] : []));
+      details.replaceChildren(details.firstElementChild, ...(details.open ? [part ?? element("p", { class: "note" }, "This page has no data on A or B.")] : []));
     };
     details.addEventListener("toggle", fill);
     shows.push((now, before) => details.open && CODECS.some((side) => now[side] !== before[side]) && fill());

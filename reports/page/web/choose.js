@@ -2,7 +2,7 @@
 
 // The answer for a reader's own constraints: the rule of pick's answer.py over codes that choices.py judged.
 const LIMITS = { most: "most_instructions", readers: "readers", worth: "worth", enough: "enough", holes: "accept_holes", lengths: "accept_lengths", tables: "look_ups", uses: "mixing", gpu: "family" };
-const NO_SURVEY = "what mixing does to it was not measured", WORDS = ["uses", "gpu"];
+const NO_SURVEY = "the effect of mixing on it was not measured", WORDS = ["uses", "gpu"];
 
 // Python rounds halves to even.
 function even(value) {
@@ -113,11 +113,12 @@ function askedOf(question, state) {
 // What a code occupies; of one that has fewer codes than that, also what these are worth.
 const bitsText = ({ bits, codes }, unit = "") => (bits ? `${bits}${unit}${codes ? `, for codes of ${codes}` : ""}` : "");
 const degrees = (value) => (value === null ? "" : `${Number(value.toPrecision(3))}°`);
+const IMAGE = "worst image";
 const COMPARED = [
   ["mean error", (code) => degrees(code.mean), (code) => code.mean, "less"],
   ["largest error", (code) => degrees(code.largest), (code) => code.largest, "less"],
   ["slots to encode + decode", (code) => (code.priced ? `${code.encode} + ${code.decode}` : ""), (code) => code.once, "less"],
-  ["worst image", (code) => (code.image === null ? "" : `${code.image.toFixed(1)} dB`), (code) => code.image, "more"],
+  [IMAGE, (code) => (code.image === null ? "" : `${code.image.toFixed(1)} dB${code.pole ? `, ${code.pole}` : ""}`), (code) => code.image, "more"],
   ["bits", (code) => bitsText(code), (code) => code.bits, "less"],
   ["bits free", (code) => String(code.free ?? ""), (code) => code.free, "more"],
 ];
@@ -176,7 +177,7 @@ class Choose {
     const question = this.questionOf(state), asked = askedOf(question, state);
     const found = answerOf(question, asked, this.constants), isOwn = JSON.stringify(asked) !== JSON.stringify(question.asked);
     Object.assign(this, { question, found, asked });
-    this.root.querySelector("[data-pair]").replaceChildren(...this.pair(found, question, state));
+    this.root.querySelector("[data-pair]").replaceChildren(...this.pair(question, state));
     // The table stays under the pointer that chose a code in it.
     if (before && ["for", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
     this.fill(question, asked, isOwn);
@@ -243,7 +244,7 @@ class Choose {
   said({ best, fit, out, why, rungs, exact, gain, price, isSame }, asked, question) {
     const dear = out.filter((code) => code.once !== null && why.get(code).startsWith("more than ")).map((code) => code.once);
     const decodeFirst = asked.mixing && !asked.mixing.split(",").includes("upsample") ? ["Or decode each texel before you mix: upsample alone works with every encoding."] : [];
-    if (!best) return [...(dear.length ? [`The cheapest encoding that only the slot limit excludes takes ${Math.min(...dear)}.`] : this.without(question, asked)), ...decodeFirst];
+    if (!best) return [...(dear.length ? [`The cheapest encoding that only the slot limit excludes takes ${Math.min(...dear)} issue slots.`] : this.without(question, asked)), ...decodeFirst];
     const isEnough = (code) => code.largest !== null && 2 * code.largest <= asked.enough, limit = degrees(asked.enough);
     const moved = isEnough(best) ? [`A reflection moves by at most ${degrees(2 * best.largest)}, within your limit. Of the low-cost encodings within it, the one with the fewest bits is chosen.`] : fit.some(isEnough) || !asked.enough ? [] : [`No remaining encoding moves a reflection by ${limit} or less.`];
     const image = best.image === null ? [] : [`Worst image, without mixing: ${best.image.toFixed(1)} dB.`];
@@ -257,10 +258,10 @@ class Choose {
 
   table({ fit, price }, { readers, mixing }) {
     const most = Math.max(...fit.map((code) => price(code))), least = fit.length ? price(fit[0]) : 1;
-    const heads = [element("th", { scope: "col" }, "code"), ...COMPARED.map(([title]) => element("th", { scope: "col", class: "n" }, titleUnder(title, mixing))), element("th", { scope: "col" }, `cost with ${readers} decoding passes`)];
+    const heads = [element("th", { scope: "col" }, "encoding"), ...COMPARED.map(([title]) => element("th", { scope: "col", class: "n" }, titleUnder(title, mixing))), element("th", { scope: "col" }, `cost with ${readers} decoding passes`)];
     const rows = fit.map((code) => {
       const bar = element("span", { class: "bar", style: `--share: ${price(code) / most}` });
-      const ratio = element("td", { class: "priced" }, bar, code.priced ? `${Number((price(code) / least).toPrecision(2))} ×` : "");
+      const ratio = element("td", { class: "priced" }, bar, code.priced ? `${Number((price(code) / least).toPrecision(2))}×` : "");
       return element("tr", { "data-codec": code.codec }, element("th", { scope: "row" }, nameButton(code.codec, code.name)), ...COMPARED.map(([, text]) => element("td", { class: "n" }, text(code))), ratio);
     });
     const table = element("table", {}, element("caption", {}, element("span", {}, "Eligible encodings, ranked by error and cost")), element("thead", { class: "plain" }, element("tr", {}, ...heads)), element("tbody", {}, ...rows));
@@ -274,19 +275,25 @@ class Choose {
     return element("details", { class: "aside" }, element("summary", {}, `Excluded (${out.length})`), ...lines);
   }
 
-  // A and B in the figures of the question, the better one of each marked.
-  pair({ codes }, { where }, state) {
-    const [a, b] = CODECS.map((side) => codes.find(({ codec }) => codec === state[side]));
-    if (!a && !b) return [element("p", { class: "note" }, `Neither A nor B belongs to ${where}. Click an encoding below to make it A; Shift-click to make it B.`)];
-    const cell = ([, text, value, better], one, other) => {
-      const isBest = one && other && value(one) !== null && value(other) !== null && (better === "less" ? value(one) < value(other) : value(one) > value(other));
-      return element("td", { class: isBest ? "n best" : "n" }, one ? text(one) : "");
-    };
-    const heads = CODECS.map((side, at) => element("th", { scope: "col", class: `n side-${side}` }, `${side.toUpperCase()} ${[a, b][at]?.name ?? (state[side] ? `${state[side]}: see another question` : "none")}`));
-    const rows = COMPARED.map((column) => element("tr", {}, element("th", { scope: "row" }, titleUnder(column[0], this.asked.mixing)), cell(column, a, b), cell(column, b, a)));
-    const table = element("table", { class: "pair-figures" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...heads)), element("tbody", {}, ...rows));
-    return [element("div", { class: "scroll", role: "region", "aria-label": "A next to B", tabindex: "0" }, table)];
+  // A and B in the figures of the question.
+  pair(question, state) {
+    if (CODECS.some((side) => question.codes.some(({ codec }) => codec === state[side]))) return [pairTable(question, this.asked, this.constants, state)];
+    return [element("p", { class: "note" }, `Neither A nor B belongs to ${question.where}. Click an encoding below to make it A; Shift-click to make it B.`)];
   }
+}
+
+// A and B in the figures by which codes are chosen, the better one of each marked; images that tie are no better.
+function pairTable(question, asked, { step, errors, equal }, sides) {
+  const codes = question.codes.map((code) => codeAs(code, question, asked)), [a, b] = CODECS.map((side) => codes.find(({ codec }) => codec === sides[side]));
+  const isTie = a && b && a.image !== null && b.image !== null && Math.abs(a.image - b.image) < Math.max(step, errors * gapError(a, b, equal));
+  const cell = ([title, text, value, better], one, other) => {
+    const isTied = isTie && title === IMAGE, isBest = !isTied && one && other && value(one) !== null && value(other) !== null && (better === "less" ? value(one) < value(other) : value(one) > value(other));
+    return element("td", { class: isBest ? "n best" : "n" }, one ? `${text(one)}${isTied ? ", a tie" : ""}` : "");
+  };
+  const heads = CODECS.map((side, at) => element("th", { scope: "col", class: `n side-${side}` }, `${side.toUpperCase()} ${[a, b][at]?.name ?? (sides[side] ? `${sides[side]}: see another question` : "none")}`));
+  const rows = COMPARED.map((column) => element("tr", {}, element("th", { scope: "row" }, titleUnder(column[0], asked.mixing)), cell(column, a, b), cell(column, b, a)));
+  const table = element("table", { class: "pair-figures" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...heads)), element("tbody", {}, ...rows));
+  return element("div", { class: "scroll", role: "region", "aria-label": "A next to B", tabindex: "0" }, table);
 }
 
 const chooseRoot = document.querySelector("[data-choose]");

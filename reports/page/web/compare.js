@@ -1,7 +1,7 @@
 "use strict";
 
-// A and B in every figure of every table that has rows of both, the largest difference first.
-const BIT_DB = 20 * Math.log10(2), WIDEST = 4, FIGURES = 30;
+// A and B: the figures by which codes are chosen, then every figure of every table that has rows of both.
+const BIT_DB = 20 * Math.log10(2), WIDEST = 4;
 
 // How often B is twice A; of decibels, how often 6 dB more. Of nothing, or less, there is no twice: it counts as once.
 function doublings({ unit }, a, b) {
@@ -16,8 +16,8 @@ function saidApart({ unit }, a, b) {
   if (!Number.isFinite(b - a)) return Number.isFinite(a) ? "only A is finite" : "only B is finite";
   if (unit === "dB") return `${sign}${Math.abs(b - a).toFixed(1)} dB`;
   if (!(a > 0 && b > 0)) return `${sign}${Number(Math.abs(b - a).toPrecision(3))}`;
-  if (Math.abs(Math.log2(times)) < 0.15) return `${sign}${Number(Math.abs(100 * (times - 1)).toPrecision(2))} %`;
-  return times > 1 ? `${Number(times.toPrecision(2))} ×` : `1/${Number((1 / times).toPrecision(2))}`;
+  if (Math.abs(Math.log2(times)) < 0.15) return `${sign}${Number(Math.abs(100 * (times - 1)).toPrecision(2))}%`;
+  return times > 1 ? `${Number(times.toPrecision(2))}×` : `1/${Number((1 / times).toPrecision(2))}`;
 }
 
 // What a table says of both: for each figure, each condition under which both were measured.
@@ -36,17 +36,17 @@ function comparedIn(table, sides) {
       return [{ under: under(keys[at]), a, b, apart, said: isVerdict ? "" : saidApart(figure, ...values) }];
     });
     cases.sort((x, y) => Math.abs(y.apart) - Math.abs(x.apart));
-    return cases.length ? [{ about, figure, isVerdict, cases, most: Math.abs(cases[0].apart) }] : [];
+    return cases.length ? [{ figure, isVerdict, cases, most: Math.abs(cases[0].apart) }] : [];
   });
 }
 
 class Compare {
-  constructor(root, { codecs, tables }) {
-    Object.assign(this, { root, codecs, tables, turn: 0, isWhole: false });
+  constructor(root, { codecs, tables }, choices) {
+    Object.assign(this, { root, codecs, tables, choices, turn: 0 });
   }
 
-  async show({ a, b }) {
-    const turn = ++this.turn, found = [], sides = { a, b }, notes = [], lacks = { a: [], b: [] };
+  async show({ a, b, for: where }) {
+    const turn = ++this.turn, groups = [], sides = { a, b }, notes = [], lacks = { a: [], b: [] };
     if (!a || !b) return this.root.replaceChildren(element("p", { class: "note" }, "Choose A and B above, or click a codec to make it A; Shift-click to make it B."));
     for (const about of this.tables) {
       const table = await cardTable(about), of = CODECS.map((side) => table.rowsOf(sides[side], this.codecs));
@@ -55,50 +55,53 @@ class Compare {
         if (of[at]?.like) notes.push(`${side.toUpperCase()} was not measured in ${about.title}; the figures are for ${of[at].like}, which stores identical values.`);
         if (!of[at] && of[1 - at]) lacks[side].push(about.title);
       }
-      if (of.every(Boolean)) found.push(...comparedIn(table, of));
+      const figures = of.every(Boolean) ? comparedIn(table, of) : [];
+      if (figures.length) groups.push({ about, figures });
       await new Promise((done) => setTimeout(done));
     }
-    // What is equal comes last, whatever it is.
-    const rank = ({ isVerdict, figure, most }) => (most ? (figure.hidden ? 2 : Number(isVerdict)) : 3);
-    found.sort((one, other) => rank(one) - rank(other) || other.most - one.most);
-    Object.assign(this, { found, isWhole: false });
     for (const side of CODECS) if (lacks[side].length) notes.push(`${side.toUpperCase()}, ${sides[side]}, is not in: ${lacks[side].join("; ")}.`);
-    const differs = found.filter(({ most }) => most > 0), tables = new Set(found.map(({ about }) => about.key));
-    const several = (number, word) => `${number} ${word}${number === 1 ? "" : "s"}`;
-    const said = found.length ? `${several(found.length, "figure")} in ${several(tables.size, "table")} have rows of both; ${differs.length} of them differ.` : "No table of this run has rows of both A and B.";
-    const count = element("p", { class: "note" }, said);
+    const none = groups.length ? [] : [element("p", { class: "note" }, "No table of this run has rows of both A and B.")];
     const aside = notes.length ? [element("details", { class: "aside" }, element("summary", {}, `Notes on the comparison (${notes.length})`), ...notes.map((note) => element("p", {}, note)))] : [];
-    this.root.replaceChildren(count, ...aside, ...(found.length ? [this.list()] : []));
+    this.root.replaceChildren(...this.lead(sides, where), ...none, ...groups.map((group, at) => this.group(group, !at)), ...aside);
     return null;
   }
 
-  list() {
-    const { found, isWhole } = this, shown = isWhole ? found : found.slice(0, FIGURES);
-    const head = ["figure", "table", "A", "B", "B against A", "where they differ most"].map((title, at) => element("th", { scope: "col", class: at === 2 || at === 3 ? `n side-${"ab"[at - 2]}` : "" }, title));
-    const body = element("tbody", {}, ...shown.map((one) => this.line(one, one.cases[0], true)));
-    const table = element("table", {}, element("caption", {}, element("span", {}, "Each figure under the condition where A and B differ most")), element("thead", { class: "plain" }, element("tr", {}, ...head)), body);
-    const more = element("button", { type: "button", onclick: () => { this.isWhole = true; this.root.lastChild.replaceWith(this.list()); } }, `Show all ${found.length} figures`);
-    return element("div", {}, element("div", { class: "scroll", role: "region", "aria-label": "A and B compared", tabindex: "0" }, table), element("p", { class: "tools" }, ...(shown.length < found.length ? [more] : [])));
+  // Errors, image, cost and bits, each once, under the conditions of a question that has both.
+  lead({ a, b }, where) {
+    const { questions, constants } = this.choices ?? { questions: [] }, both = questions.filter(({ codes }) => [a, b].every((name) => codes.some(({ codec }) => codec === name)));
+    const question = both.find((one) => one.where === where) ?? both[0];
+    return question ? [pairTable(question, question.asked, constants, { a, b }), element("p", { class: "note" }, `Figures of the question ${question.where}.`)] : [];
   }
 
-  line(one, { under, a, b, apart, said }, isFirst) {
-    const { figure, about, isVerdict, cases } = one, winner = !figure.better || !apart ? "" : (apart > 0) === (figure.better === "more") ? "b" : "a";
+  group({ about, figures }, isOpen) {
+    const differ = figures.filter(({ most, figure }) => most && !figure.hidden), equal = figures.filter(({ most }) => !most), fine = figures.filter(({ most, figure }) => most && figure.hidden);
+    const head = ["figure", "A", "B", "B against A", "where they differ most"].map((title, at) => element("th", { scope: "col", class: at === 1 || at === 2 ? `n side-${"ab"[at - 1]}` : "" }, title));
+    const body = element("tbody", {}, ...[...differ, ...fine].map((one) => this.line(about, one, one.cases[0], true)));
+    const table = element("table", {}, element("thead", { class: "plain" }, element("tr", {}, ...head)), body);
+    const same = equal.length ? [element("p", { class: "note" }, `Equal: ${equal.map(({ figure }) => figure.title).join(", ")}.`)] : [];
+    const rows = element("a", { href: about.view === "codecs" ? `#${about.key}` : `#rows-${about.key}` }, "All rows");
+    const said = `${about.title}: ${differ.length + fine.length} of ${figures.length} figures differ`;
+    return element("details", { class: "aside", "data-group": about.title, ...(isOpen ? { open: "" } : {}) }, element("summary", {}, said), ...(body.rows.length ? [element("div", { class: "scroll", role: "region", "aria-label": `A and B compared: ${about.title}`, tabindex: "0" }, table)] : []), ...same, element("p", { class: "tools" }, rows));
+  }
+
+  line(about, one, { under, a, b, apart, said }, isFirst) {
+    const { figure, isVerdict, cases } = one, winner = !figure.better || !apart ? "" : (apart > 0) === (figure.better === "more") ? "b" : "a";
     const cell = (side, text) => element("td", { class: winner === side ? "n best" : "n" }, text);
-    const name = isFirst ? [element("th", { scope: "row", ...(figure.says ? { title: figure.says } : {}) }, figure.title), element("td", {}, element("a", { href: about.view === "codecs" ? `#${about.key}` : `#rows-${about.key}` }, about.title))] : [element("th", { scope: "row" }), element("td", {})];
-    const row = element("tr", {}, ...name, cell("a", a), cell("b", b), element("td", { class: "apart" }, ...(isVerdict ? [] : [bar(apart, winner), said])), element("td", { class: "long" }, under));
+    const name = element("th", { scope: "row", ...(isFirst && figure.says ? { title: figure.says } : {}) }, isFirst ? figure.title : "");
+    const row = element("tr", {}, name, cell("a", a), cell("b", b), element("td", { class: "apart" }, ...(isVerdict ? [] : [bar(apart, winner), said])), element("td", { class: "long" }, under));
     if (!isFirst || cases.length < 2) return row;
     const all = element("button", { type: "button", class: "pick", "aria-expanded": "false" }, `all ${cases.length}`);
-    all.addEventListener("click", () => this.unfold(row, all, one));
+    all.addEventListener("click", () => this.unfold(about, row, all, one));
     row.lastChild.append(" ", all);
     return row;
   }
 
   // The other conditions, below the first one.
-  unfold(row, button, one) {
+  unfold(about, row, button, one) {
     const isOpen = button.getAttribute("aria-expanded") === "true";
     button.setAttribute("aria-expanded", String(!isOpen));
     for (const other of one.rows ?? []) other.remove();
-    one.rows = isOpen ? [] : one.cases.slice(1).map((each) => this.line(one, each, false));
+    one.rows = isOpen ? [] : one.cases.slice(1).map((each) => this.line(about, one, each, false));
     row.after(...one.rows);
   }
 }
@@ -113,10 +116,10 @@ const compareRoot = document.querySelector("[data-compare]");
 if (compareRoot) {
   let built = null, shown = "";
   shows.push((now) => {
-    const key = now.view === compareRoot.closest(".view").dataset.view ? JSON.stringify([now.a, now.b]) : "";
+    const key = now.view === compareRoot.closest(".view").dataset.view ? JSON.stringify([now.a, now.b, now.for]) : "";
     if (!key || key === shown) return;
     shown = key;
-    built ||= dataOf("cards").then((made) => new Compare(compareRoot, made));
-    built.then((made) => made.show(now));
+    built ||= Promise.all([dataOf("cards"), document.querySelector("[data-choose]") && dataOf("choices")]).then((data) => new Compare(compareRoot, ...data));
+    built.then((compare) => compare.show(now));
   });
 }

@@ -159,7 +159,7 @@ function buildWhenOpened(details, build) {
     try {
       await build();
     } catch (error) {
-      details.append(element("p", { class: "missing" }, `It cannot be unpacked: ${error.message}`));
+      details.append(element("p", { class: "missing" }, `The content cannot be unpacked: ${error.message}`));
     }
   });
 }

@@ -6,7 +6,7 @@ const SIDES = ["left", "right"];
 const ORIGINAL = -1, LACKING = -2;
 const normalViews = ({ gain, power }) => ({
   angle: "angle",
-  error: `${gain} × |error|`,
+  error: `${gain}× |error|`,
   power: `1 − dot^${power}`,
   code: "stored code",
   decoded: "decoded normal",
@@ -131,7 +131,7 @@ class Planes {
       seen += apart > SEEN;
     }
     const share = Number(((100 * seen) / count).toPrecision(2));
-    return (this.off = { most, said: `largest difference ${most} of 255, above ${SEEN} in ${share} % of the pixels` });
+    return (this.off = { most, said: `largest difference ${most} of 255, above ${SEEN} in ${share}% of the pixels` });
   }
 
   // The colour of a pixel in a view; `scale` is what full colour stands for.
@@ -222,7 +222,7 @@ class NoPixels {
   }
 
   say() {
-    return "no picture";
+    return "no image";
   }
 }
 
@@ -323,7 +323,7 @@ class Viewer {
     this.fillLists(subject);
     this.place = { x: Math.floor(subject.width / 2), y: Math.floor(subject.height / 2) };
     this.zoom.by(0);
-    const note = subject.step > 1 ? `One pixel of ${subject.step} × ${subject.step} is shown.` : "Every pixel is shown.";
+    const note = subject.step > 1 ? `One pixel of each block of ${subject.step} × ${subject.step} is shown.` : "Every pixel is shown.";
     this.one("[data-step]").textContent = note;
     this.fillThumbs();
     this.take(state);
@@ -438,8 +438,8 @@ class Viewer {
     for (const [side, none] of [["left", 0], ["right", 100]]) this.one(`[data-name="${side}"]`).hidden = Number(at) === none;
     this.one(".stage").style.setProperty("--at", `${at}%`);
     this.one("#divider").value = at;
-    this.one("[data-divided]").textContent = `${Math.round(at)} %`;
-    this.one("#divider").setAttribute("aria-valuetext", `${Math.round(at)} %`);
+    this.one("[data-divided]").textContent = `${Math.round(at)}%`;
+    this.one("#divider").setAttribute("aria-valuetext", `${Math.round(at)}%`);
     this.zoom.write();
   }
 
@@ -537,7 +537,7 @@ class Viewer {
   choose(list, name) {
     const found = this.find(name), isOut = list.value === String(LACKING);
     list.querySelector(`[value="${LACKING}"]`)?.remove();
-    if (name && found < 0) list.prepend(new Option(`${name}: no picture`, LACKING));
+    if (name && found < 0) list.prepend(new Option(`${name}: no image`, LACKING));
     if (name) list.value = found < 0 ? LACKING : found;
     else if (isOut) list.value = ORIGINAL;
   }
@@ -624,7 +624,7 @@ class Pair {
     const buttons = views.flatMap(([view, said]) => planes.map((one, at) => this.button(subject, sides[at], one, view, most, said(one))));
     const missing = CODECS.filter((side) => state[side] && !sides.includes(side)).map((side) => `${side.toUpperCase()}, ${state[side]}`);
     const scene = subject ? subject.title.replace("the answer on ", "") : this.scene;
-    const note = missing.length ? `This page has no image on ${scene} of ${missing.join(" or of ")}.` : `On ${scene}; full colour at ${most} of 255.`;
+    const note = missing.length ? `This page has no image of ${scene} with ${missing.join(" or with ")}.` : `On ${scene}; full colour at ${most} of 255.`;
     this.note = element("p", { class: "note" }, `${note} `, element("span", { role: "status" }, this.said));
     this.place.replaceChildren(...buttons, this.note);
     this.stills = planes.map((one, at) => ({ name: state[sides[at]], canvas: buttons[at].querySelector("canvas") }));

@@ -168,7 +168,7 @@ function grouped(pairs) {
 }
 
 function nameButton(name, ...children) {
-  const button = element("button", { type: "button", class: "pick", "data-name": name, title: `A: ${name}; with shift B` }, ...children);
+  const button = element("button", { type: "button", class: "pick", "data-name": name, title: `Click to make ${name} A; Shift-click to make it B` }, ...children);
   pressed(button);
   return button;
 }

@@ -189,7 +189,7 @@ for (const heading of document.querySelectorAll("section[id] > h2")) {
 }
 
 // Light, dark, or as the system has it.
-const THEMES = { "": "as the system", light: "light", dark: "dark" };
+const THEMES = { "": "system", light: "light", dark: "dark" };
 
 function setTheme(name) {
   if (name) document.documentElement.dataset.theme = name;

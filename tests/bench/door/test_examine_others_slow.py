@@ -8,7 +8,7 @@ from manual import ROOT
 pytestmark = pytest.mark.usefixtures("gl", "slang")
 INPUTS = ROOT / "tests" / "inputs" / "own_codes"
 MEASURED = {
-    "velocity.slang": ("motion vectors", "normalbench vectors --encoding {}", "a motion of 0 comes back exactly"),
+    "velocity.slang": ("motion vectors", "normalbench vectors --encoding {}", "a motion of 0 decodes exactly"),
     "depth.wgsl": ("depth", "normalbench depth --depth {}", "its components range from 0 to 1"),
     "roughness.hlsl": ("roughness and the like", "normalbench curves --encoding {}", "it declares 16-bit numbers"),
     "light.frag": ("light", "normalbench lights --light-buffer {}", "before any storage"),
@@ -29,14 +29,14 @@ def test_doctor_names_the_quantity_and_the_command_that_measures_it(run, name):
     assert [row["finding"] for row in rows if row["kind"] == "verdict"] == ["No problems found."]
     assert {row["domain"] for row in rows} == {of}
     notes = [row["finding"] for row in rows if row["kind"] == "note"]
-    assert f"`{command.format(INPUTS / name)}` measures it" in notes
+    assert f"to measure it, run `{command.format(INPUTS / name)}`" in notes
     assert any(note in finding for finding in notes), notes
 
 
 PAIR = "float2 DecodeVelocity(float2 e) { return e; }"
 # A finding of status 1, or an error of status 2.
 WRONG = {
-    "float2 EncodeVelocity(float2 v) { return normalize(v); }" + PAIR: (1, "encode gives no number of (0, 0)"),
+    "float2 EncodeVelocity(float2 v) { return normalize(v); }" + PAIR: (1, "encode returns no number for (0, 0)"),
     "float2 EncodeVelocity(float2 v) { while (v.x < 9) v.x = min(v.x, 5); return v; }" + PAIR: (1, "do not end here"),
     "float2 EncodeVelocity(float2 v) { return 2 * v; }" + PAIR: (1, "do not undo each other"),
     "float2 EncodeVelocity(float2 v, float range) { return 2 * v; }"
@@ -63,4 +63,4 @@ def test_doctor_reports_errors(run, tmp_path, text):
 def test_options_for_normals_are_refused(run, tmp_path, words):
     words = [str(tmp_path / word) if word.endswith(".png") else word for word in words]
     status, _, err = run("doctor", str(INPUTS / "velocity.hlsl"), *words)
-    assert status == 2 and f"{words[0]} requires normals; this file is of motion vectors" in err
+    assert status == 2 and f"{words[0]} requires normals; this file encodes motion vectors" in err

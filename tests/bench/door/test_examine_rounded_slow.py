@@ -53,12 +53,12 @@ def test_rounded_codes_that_decode_to_nan_are_counted(run, tmp_path):
 
 def test_an_unused_sign_of_a_signed_storage_is_reported(run, tmp_path):
     (finding,) = findings(run, tmp_path, UNIT, "--storage", "rg8_snorm")
-    assert "this is octahedral, but 100% worse" in finding and "use half of the range" in finding, finding
+    assert "this is octahedral, but 100% worse" in finding and "use only half of the range" in finding, finding
     assert findings(run, tmp_path, UNIT, "--storage", "rg8") == []
 
 
 @pytest.mark.parametrize(("encode", "decode"), [(256, 255), (255, 256), (255, 255)])
 def test_mismatched_steps_of_an_angle_are_reported(run, tmp_path, encode, decode):
     lines = findings(run, tmp_path, ANGLES.replace("ENCODE", f"{encode}.0").replace("DECODE", f"{decode}.0"))
-    expected = f"the angle about z comes back {encode}/{decode} times as large"
+    expected = f"the angle about z decodes to {encode}/{decode} of its value"
     assert [line[: len(expected)] for line in lines] == ([expected] if encode != decode else []), lines

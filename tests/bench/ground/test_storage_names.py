@@ -70,9 +70,9 @@ def test_every_storage_has_a_name_by_its_bits(storage):
         ("unorm:0:8", "unorm:0:8: expected one to four components of 1 to 20 bits"),
         ("unorm:33:2", "unorm:33:2: expected one to four components of 1 to 20 bits"),
         ("unorm:20:20:20:20", "64 bits in total"),
-        ("unorm:8:8..6:6", "bit counts of a range grow equally or stay, as in unorm:4:4..16:16"),
-        ("unorm:8:8..10:12", "bit counts of a range grow equally"),
-        ("unorm:8:8..10", "bit counts of a range grow equally"),
+        ("unorm:8:8..6:6", "the bit counts must grow equally or not at all, as in unorm:4:4..16:16"),
+        ("unorm:8:8..10:12", "the bit counts must grow equally"),
+        ("unorm:8:8..10", "the bit counts must grow equally"),
         ("centred:9:7", "centred numbers need a GPU format, such as centred:8:8, not 9:7"),
         ("unorms:8:8", "unknown storage 'unorms:8:8'"),
         ("snorm:1:8", "snorm:1:8: a signed component needs at least 2 bits"),
@@ -88,7 +88,7 @@ def test_an_impossible_storage_is_a_one_line_error(said, message):
 
 
 def test_python_takes_one_codec_at_a_time():
-    with pytest.raises(UsageError, match="one codec at a time, not 3"):
+    with pytest.raises(UsageError, match="names 3 codecs; name exactly one"):
         codec_of("octahedral/unorm:4:4..6:6")
 
 

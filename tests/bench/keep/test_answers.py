@@ -40,7 +40,7 @@ def test_a_cached_answer_is_repeated_unchanged(asked, capsys):
     again = (asked(), *capsys.readouterr())
     assert first == (1, "the answer\n", "normalbench: a code is left out\n")
     assert again[:2] == first[:2] and len(asked.ran) == 1
-    assert again[2].startswith(f"{first[2]}normalbench: cached on 20")
+    assert again[2].startswith(f"{first[2]}normalbench: answer cached on 20")
     assert "; to measure again, use --anew\n" in again[2]
 
 

@@ -42,8 +42,8 @@ def test_rows_measured_under_other_conditions_are_reported():
         for rows in ([row, row | {"storage": "rg16"}], others)
     ]
     assert measured_otherwise(*runs) == [
-        "count was 1048576 and is 67108864 in 2 rows",
-        "rounded_by was device and is shader in 1 row",
+        "count was 1048576 and is now 67108864 in 2 rows",
+        "rounded_by was device and is now shader in 1 row",
     ]
     assert measured_otherwise(runs[0], runs[0]) == []
 
@@ -158,7 +158,7 @@ def test_the_first_line_states_the_changed_encoding_its_rows_and_the_change():
     """A row that states why it has no figures is not counted."""
     before, after = broken_fold()
     assert what_matters(before, after, compared(before, after)) == [
-        "mine: worse in 3 of 4 rows, slightly worse in 1; most in quality rg16: "
+        "mine: worse in 3 of 4 rows, slightly worse in 1; largest change in quality rg16: "
         "angle_mean_deg from 0.001000 to 0.03600 degrees, psnr_db from 101.1 to 56.70 dB"
     ]
     assert what_matters(before, before, []) == []
@@ -178,7 +178,7 @@ def test_changed_encodings_are_five_sentences_and_a_count():
     before, after = (quality_of(**{name: db - index for index, name in enumerate(names)}) for db in (60.0, 50.0))
     lines = what_matters(before, after, compared(before, after))
     assert len(lines) == 6 and lines[-1] == "and 2 more of 7"
-    assert lines[0].startswith("code0: worse in its only row; most in quality rg8: angle_max_deg ")
+    assert lines[0].startswith("code0: worse in its only row; largest change in quality rg8: angle_max_deg ")
 
 
 def test_runs_without_a_common_row_are_reported_first(run, monkeypatch):
@@ -218,7 +218,7 @@ def test_environment_settings_are_facts_of_a_run_and_named_if_they_differ(run, m
     monkeypatch.setattr(compare_command, "read_to_show", lambda folder, **_: runs[folder.name])
     status, _, err = run("compare", "one", "two")
     assert status == 0
-    assert f"figures may differ because settings changed: XLA_FLAGS was not set and is {flags}" in err, err
+    assert f"figures may differ because settings changed: XLA_FLAGS was not set and is now {flags}" in err, err
 
 
 def test_environment_settings_are_shown_in_a_row(run, monkeypatch):

@@ -86,7 +86,7 @@ def test_rows_with_other_counts_are_not_compared_and_this_is_reported(run, tmp_p
         histories.write_run(tmp_path / str(number), number, steps, request={"count": count})
     _, out, _ = run("history", str(tmp_path))
     counted = sum("count" in row for step in steps for row in step["rows"])
-    lines = [f"not compared, because their counts of normals differ: {counted} rows", "no figure got worse"]
+    lines = [f"{counted} rows not compared, because their counts of normals differ", "no figure got worse"]
     assert counted and out.splitlines()[1:] == lines
 
 
@@ -111,7 +111,7 @@ def test_only_a_lasting_change_of_times_is_named(run, tmp_path):
         histories.write_run(tmp_path / str(number), number, steps)
     (row,) = rows_of(run, tmp_path, "--tables", "sweep")
     assert (row["row"], row["column"], row["verdict"], row["commit"]) == ("hybrid", "ms_frame", "worse", name_of(16))
-    assert 25 < float(row["change"].removesuffix(" %")) < 35
+    assert 25 < float(row["change"].removesuffix("%")) < 35
 
 
 def test_times_of_two_machines_are_not_one_series(run, tmp_path):
@@ -145,7 +145,7 @@ def quality(psnr, **more):
 def history_of(run, folder, *several, **facts):
     for number, steps in enumerate(several):
         histories.write_run(folder / str(number), number, steps, **facts)
-    names = {name_of(at): at for at in range(len(several))} | {None: None}
+    names = {name_of(number): number for number in range(len(several))} | {None: None}
     return [(names[row["commit"]], row["column"], row["verdict"], names[row["mended"]]) for row in rows_of(run, folder)]
 
 
@@ -188,7 +188,7 @@ def test_other_changes_at_a_commit_are_reported(run, tmp_path):
     histories.write_run(tmp_path / "two", 1, quality(45.0), machine={"GL": "two"}, sources="t")
     status, _, err = run("history", str(tmp_path / "two"), str(tmp_path / "one"))
     assert status == 0
-    assert err == f"normalbench: at {name_of(1)[:8]} these changed too: normalbench, GL\n"
+    assert err == f"normalbench: also changed at {name_of(1)[:8]}: normalbench, GL\n"
 
 
 def git(folder: Path, *words: str, at: int = FIRST) -> None:

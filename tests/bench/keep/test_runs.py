@@ -108,11 +108,12 @@ LONG = "llvmpipe of a very long name that goes on and on, "
     [
         ({"sources": "b"}, "from other sources (a there, b here); name"),
         ({"machine": {"GL": "d"}}, "from another machine: GL (c there, d here); name"),
-        ({"machine": {}}, "from another machine: GL (c there, nothing here); name"),
+        ({"machine": {}}, "from another machine: GL (c there, not recorded here); name"),
         ({"sources": "b", "machine": {"GL": "d"}}, "from other sources (a there, b here) and from another machine: GL"),
         (
             {"machine": dict.fromkeys("ABCDE", "d") | {"GL": "c"}},
-            "machine: A (nothing there, d here), B (nothing there, d here), C (nothing there, d here), 2 more; name",
+            "machine: A (not recorded there, d here), B (not recorded there, d here), C (not recorded there, d here), "
+            "2 more; name",
         ),
         ({"machine": {"GL": LONG}}, "machine: GL (c there, llvmpipe of a very long name that goes o... here)"),
     ],

@@ -39,7 +39,7 @@ def content_of(folder: Path) -> dict[str, bytes]:
 
 def test_device_measured_with_other_sources_is_named_once(run, tmp_path, folder):
     path = made.write(tmp_path / "a.json", sources="another")
-    for message in ("SwiftShader, Chromium 156: measured on a page from other sources", ""):
+    for message in ("SwiftShader, Chromium 156: measured on a page of a different version", ""):
         status, _, err = run("import", str(path), "-o", str(folder))
         assert status == 0 and message in err and err.count("\n") == bool(message), err
 
@@ -72,7 +72,7 @@ def test_a_run_that_another_process_writes_or_that_was_changed_is_refused(run, t
         file.write((folder / "rows.jsonl").read_text())
     before = content_of(folder)
     status, _, err = run("import", str(path), "-o", str(folder))
-    assert status == 2 and "nothing is added to it" in err and content_of(folder) == before, err
+    assert status == 2 and "nothing was added to the run" in err and content_of(folder) == before, err
 
 
 def test_a_full_disk_leaves_the_run_as_it_was(run, tmp_path, folder, monkeypatch):
@@ -127,7 +127,7 @@ def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, fo
     before = content_of(folder)
     assert "the run has a newer file" in run(*command, str(first))[1] and content_of(folder) == before
     changed = made.write(tmp_path / "c.json", made="2026-11-24T15:00:00Z", vendor="another")
-    assert "with other figures; the run keeps its own" in run(*command, str(changed))[1]
+    assert "with different figures; the run keeps its own" in run(*command, str(changed))[1]
     assert content_of(folder) == before
 
 

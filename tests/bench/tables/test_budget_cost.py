@@ -51,10 +51,10 @@ def test_a_reader_fetches_the_targets_that_hold_what_it_reads(readers, unreal, s
 @pytest.mark.parametrize(
     ("readers", "said"),
     [
-        ("-1", "--readers -1.0: from 0.0 to 64.0"),
-        ("nan", "--readers -1.0: from 0.0 to 64.0"),
-        ("32,33", "--readers 65.0: from 0.0 to 64.0"),
-        ("normals", "--readers normals: unknown; known: a number, all, normal, base_color"),
+        ("-1", "--readers -1.0: out of range; use 0.0 to 64.0"),
+        ("nan", "--readers -1.0: out of range; use 0.0 to 64.0"),
+        ("32,33", "--readers 65.0: out of range; use 0.0 to 64.0"),
+        ("normals", "--readers normals: unknown; use a number, all, or attributes joined by +: normal, base_color"),
         ("normal+flags", "--readers normal+flags: unknown"),
         ("normal+", "--readers normal+: unknown"),
     ],
@@ -71,7 +71,7 @@ def test_invalid_readers_are_an_error(readers, said):
         (["--readers", "emissive"], "--readers emissive: not in --hold; in --hold: normal, base_color, roughness"),
         (["--family", "cypress"], "unknown"),
         (["--family", "navi22"], "navi22"),
-        (["--most-instructions", "-1"], "--most-instructions -1: from 0 to 1000000"),
+        (["--most-instructions", "-1"], "--most-instructions -1: out of range; use 0 to 1000000"),
     ],
 )
 @pytest.mark.usefixtures("gl")

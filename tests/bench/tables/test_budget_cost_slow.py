@@ -59,7 +59,8 @@ def test_the_answer_for_a_limit_has_a_dozen_lines(run, monkeypatch):
 @pytest.mark.usefixtures("gl", "radv")
 def test_slot_limit_is_kept_or_the_lowest_possible_limit_is_named(run):
     status, _, err = run(*FEW_KINDS, "--most-instructions", "1")
-    (least,) = map(int, re.findall(r"1 issue slots are too few: the cheapest .* takes (\d+) to pack and unpack", err))
+    pattern = r"1 issue slots are too few: the cheapest .* takes (\d+) slots to pack and unpack"
+    (least,) = map(int, re.findall(pattern, err))
     assert status != 0 and "Traceback" not in err, err
     status, out, err = run(*FEW_KINDS, "--most-instructions", str(least))
     (row,) = json.loads(out)

@@ -60,10 +60,11 @@ def test_the_answer_quotes_half_arithmetic(run):
 @pytest.mark.usefixtures("gl", "slang")
 def test_without_a_device_for_halves_the_answer_is_of_32_bits(run, monkeypatch):
     def missing():
-        raise MissingError("half arithmetic by glsl needs wgpu; pip install wgpu")
+        raise MissingError("half arithmetic with --backend glsl needs wgpu; pip install wgpu")
 
     monkeypatch.setattr("normalbench.bench.subjects.codecs.half.compute.half_device", missing)
-    message, file = "computed only in 32 bits: half arithmetic by glsl needs wgpu", str(FORMS / "half_literal.hlsl")
+    message = "computed only in 32 bits: half arithmetic with --backend glsl needs wgpu"
+    file = str(FORMS / "half_literal.hlsl")
     _, out, err = run("pick", "--storage", "rg8", "--against", file, *SMALL_ANSWER)
     (row,) = [row for row in json.loads(out) if row["against"]]
     assert row["encoding"] == "half_literal.hlsl" and message in err

@@ -91,16 +91,19 @@ def test_wide_arrays_are_images(run, tmp_path):
 BAD = {
     "no such file": (("--depths", "lost.exr"), "lost.exr: there is no such file"),
     "no name": (("--depths", ","), "--depths: no file named"),
-    "a mesh": (("--depths", "scene.glb"), "scene.glb: not an image of depths; .exr"),
+    "a mesh": (("--depths", "scene.glb"), "scene.glb: not an image of depths; supported: .exr"),
     "damaged": (("--depths", "cut.exr"), "cut.exr: "),
-    "several channels": (("--depths", "rgb.exr"), "rgb.exr: any of B, G, R may be depths; choose one with --channel B"),
+    "several channels": (
+        ("--depths", "rgb.exr"),
+        "rgb.exr: any of B, G, R may hold depths; choose one with --channel B",
+    ),
     "an unknown channel": (("--depths", "rgb.exr", "--channel", "Z"), "rgb.exr: no channel 'Z'; it has B, G, R"),
     "two of one name": (("--depths", "a.npy,there/a.npy"), "two files are called a.npy"),
     "an unknown code": (("--depths", "a.npy", "--depths-are", "zbuffer"), "'zbuffer'"),
     "a code with a sign": (("--depths", "a.npy", "--depths-are", "linear_sign"), "'linear_sign'"),
     "not that code": (
         ("--depths", "a.npy", "--depths-are", "window"),
-        "its numbers are 1 to 60, but those of window are 0",
+        "its values are 1 to 60, but window ranges from 0",
     ),
     "no unit": (("--depths", "a.npy", "--depth-unit", "0"), "--depth-unit 0: out of range; use 1e-09 to 1e+09"),
     "a unit of a code": (

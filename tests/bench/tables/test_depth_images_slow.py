@@ -98,7 +98,7 @@ def test_the_table_names_each_way_and_gates_and_python_take_images(run, tmp_path
     assert set(table["depths"]) == {"a.npy"} and (table["relative_max"] < 0.01).all()
     own = normalbench.depth(depths={"mine": SLOPE}, near=0.5, far=80, depth="linear", backend="jax")
     assert set(own["depths"]) == {"mine"} and own["error_max"].tolist() == table["error_max"].tolist()
-    with pytest.raises(UsageError, match=r"mine is of int64 and shape \(24, 32\); give floats or unsigned"):
+    with pytest.raises(UsageError, match=r"mine has type int64 and shape \(24, 32\); give floats or unsigned"):
         normalbench.depth(depths={"mine": SLOPE.astype(int)})
 
 

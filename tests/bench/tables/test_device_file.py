@@ -123,7 +123,7 @@ BAD = {
     ),
     "no renderer": (edited(lambda c: c.pop("renderer")), "renderer is missing"),
     "a renderer of a number": (edited(lambda c: c.update(renderer=3)), "renderer: 3 is not text"),
-    "a long renderer": (edited(lambda c: c.update(renderer="x" * 1025)), "is longer than 1024 letters"),
+    "a long renderer": (edited(lambda c: c.update(renderer="x" * 1025)), "is longer than 1024 characters"),
     "half a character": (edited(lambda c: c.update(vendor="\ud800")), "is not text"),
     "no time": (edited(lambda c: c.update(made="yesterday")), "made: yesterday is not a time such as"),
     "a time before all": (edited(lambda c: c.update(made="0001-01-01T00:00:00+10:00")), "is not a time such as"),
@@ -144,7 +144,7 @@ BAD = {
     "an angle beyond": (edited(of_row(max_deg=181)), "max_deg: 181 is more than 180"),
     "a codec twice": (
         edited(lambda c: c["codecs"].append(c["codecs"][0])),
-        "codecs has spheremap rgba8 nearest RGBA8 twice",
+        "codecs lists spheremap rgba8 nearest RGBA8 twice",
     ),
     "facts in a list": (edited(lambda c: c.update(facts=[])), "facts: [] is not an object"),
     "many facts": (
@@ -153,9 +153,9 @@ BAD = {
     ),
     "a fact in a list": (edited(lambda c: c["facts"].update(NaN=[1])), "facts, NaN: [1] is neither text nor a number"),
     "a fact of truth": (edited(lambda c: c["facts"].update(NaN=True)), "facts, NaN: True is neither text nor a number"),
-    "a long fact": (edited(lambda c: c["facts"].update(NaN="x" * 2000)), "is longer than 1024 letters"),
+    "a long fact": (edited(lambda c: c["facts"].update(NaN="x" * 2000)), "is longer than 1024 characters"),
     "a large fact": (edited(lambda c: c["facts"].update(NaN=10**400)), "facts.NaN is not a finite number"),
-    "a long name": (edited(lambda c: c["facts"].update({"n" * 200: 1})), "is longer than 128 letters"),
+    "a long name": (edited(lambda c: c["facts"].update({"n" * 200: 1})), "is longer than 128 characters"),
     "facts that read alike": (
         edited(lambda c: c.update(facts={"a b": 1, "a\nb": 2})),
         "has two names that look the same",

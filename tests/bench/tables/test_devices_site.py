@@ -55,7 +55,7 @@ def test_the_page_says_which_devices_agree_and_what_to_use_on_each(site):
     assert "Mali-G78, Chromium 156 differs in 8 of 35 codecs, most in xyz rgb10a2: 87.6% of its codes" in text
     assert "rg8, 2 bytes: take octahedral." in text and "ms per megapixel to encode" in text
     assert "stereographic, hemi_octahedral (only for normals with z >= 0)" in " ".join(text.split())
-    assert "This device has no times" in text
+    assert "No times were measured on it" in text
 
 
 def answered(tmp_path, **more) -> dict[str, str]:
@@ -108,17 +108,17 @@ def test_damaged_files_are_named_and_left_out(run, tmp_path):
     status, out, err = run("site", str(files), "-o", str(tmp_path / "site"))
     assert status == 1 and out.endswith("1 device\n")
     assert err.splitlines() == [
-        f"normalbench: {files}/bad.json: line 1, column 2: this is not JSON; it is left out",
-        f"normalbench: {files}/pipe.json: it is not a plain file; it is left out",
+        f"normalbench: {files}/bad.json: line 1, column 2: this is not JSON; file skipped",
+        f"normalbench: {files}/pipe.json: it is not a plain file; file skipped",
     ]
     (files / "good.json").unlink()
     shutil.rmtree(tmp_path / "site")
     status, out, err = run("site", str(files), "-o", str(tmp_path / "site"))
-    assert (status, out) == (2, "") and "no device file in it" in err.splitlines()[-1]
+    assert (status, out) == (2, "") and "contains no device file" in err.splitlines()[-1]
     assert not (tmp_path / "site").exists()
 
 
-@pytest.mark.parametrize("name, said", [("nowhere", "there is no such folder"), ("a.json", "is not a folder")])
+@pytest.mark.parametrize("name, said", [("nowhere", "no such folder"), ("a.json", "is not a folder")])
 def test_missing_folder_is_a_one_line_error(run, tmp_path, name, said):
     made.write(tmp_path / "a.json")
     status, out, err = run("site", str(tmp_path / name), "-o", str(tmp_path / "site"))
@@ -153,7 +153,7 @@ def test_a_page_that_no_longer_belongs_to_the_site_is_taken_away(tmp_path):
     [
         ("index.html", "mine", "index.html is not from an earlier site"),
         (MARKER, "{", "this is not JSON; delete it"),
-        (MARKER, '{"files": ["../outside.html"]}', "it lists files that no site has"),
+        (MARKER, '{"files": ["../outside.html"]}', "it lists files that are not part of a site"),
         (MARKER, '{"files": 3}', "delete it"),
         (MARKER, "[]", "delete it"),
     ],
@@ -174,7 +174,7 @@ def test_a_link_in_the_site_is_not_followed(tmp_path):
     (tmp_path / "other").mkdir()
     (tmp_path / "site").mkdir()
     (tmp_path / "site/devices").symlink_to(tmp_path / "other")
-    with pytest.raises(UsageError, match="a link where the site's files go"):
+    with pytest.raises(UsageError, match="a symbolic link where the site's files go"):
         write_site(tmp_path / "site", {"devices/index.html": "text"})
     assert not list((tmp_path / "other").iterdir())
 

@@ -174,7 +174,7 @@ def test_bad_input_is_a_one_line_error_that_says_what_would_be_right(run, what, 
 
 
 def test_a_row_below_its_limit_is_named_and_the_status_is_1(run, monkeypatch):
-    monkeypatch.setattr(frames, "frames_broken", lambda *_: "RMS 0.1 degrees, of 0.2 at least")
+    monkeypatch.setattr(frames, "frames_broken", lambda *_: "RMS 0.1 degrees is below the bound of 0.2 degrees")
     status, _, err = run(*QUICK, "--storage", "rgb10a2")
     assert status == 1 and err.count("\n") == 2 and "octahedral_angle/rgb10a2: RMS 0.1 degrees" in err
 

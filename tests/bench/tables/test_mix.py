@@ -225,16 +225,16 @@ def test_rows_have_the_columns_of_the_table(rows):
 @pytest.mark.parametrize(
     "words, said",
     [
-        (("--angle", "0"), "--angle 0: numbers from 0.01 to 60"),
-        (("--angle", "5,far"), "--angle 5,far: numbers from 0.01 to 60"),
-        (("--samples", "1"), "--samples 1: from 2 to 64"),
-        (("--count", "0"), "--count 0: from 1 to 65536"),
+        (("--angle", "0"), "--angle 0: expected numbers from 0.01 to 60"),
+        (("--angle", "5,far"), "--angle 5,far: expected numbers from 0.01 to 60"),
+        (("--samples", "1"), "--samples 1: out of range; use 2 to 64"),
+        (("--count", "0"), "--count 0: out of range; use 1 to 65536"),
         (("--power", "0"), "--power 0: out of range; use 1 to 65536"),
         (("--operation", "blur"), "unknown operation 'blur'; known: all, filter"),
-        (("--backend", "cuda"), "unknown back end 'cuda'"),
+        (("--backend", "cuda"), "unknown backend 'cuda'"),
         (("--normals", "cube"), "unknown normal set 'cube'"),
         (("--encoding", "xyz", "--storage", "rg8"), "xyz/rg8: 3 components, but RG8 has 2 channels"),
-        (("--plot", "mix.txt"), "mix.txt: a plot's name ends in .png, .svg, .pdf"),
+        (("--plot", "mix.txt"), "mix.txt: unsupported plot format; use one of .png, .svg, .pdf"),
     ],
 )
 def test_bad_input_is_a_one_line_error(run, words, said):

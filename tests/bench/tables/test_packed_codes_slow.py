@@ -92,7 +92,7 @@ def test_pick_ranks_an_integer_among_encodings_of_the_same_size(run):
     assert (row["place"], row["bits"], row["free_bits"], row["slots_once"]) == ("against", 24, 8, 25)
     (row,), err = rows(run, "pick", "--storage", "rg8,rgba8", "--encoding", f"{FILE},octahedral", *SMALL_ANSWER)
     assert row["asked"] == "rgba8"
-    assert "uint_only.hlsl packs into a 4-byte integer; texels of rg8 have another size" in err
+    assert "uint_only.hlsl packs into a 4-byte integer; texels of rg8 have a different size" in err
 
 
 def test_pick_leaves_out_an_integer_if_codes_are_filtered(run):

@@ -39,7 +39,7 @@ def test_the_chart_of_an_answer_shows_the_share_of_normals_below_each_angle():
     _, spread = charts(rows)
     assert spread.name == "spread-0"
     assert spread.title == (
-        "rg8, on sphere: with octahedral half of the normals are off by less than 0.31 degrees, 99% by less than 0.56"
+        "rg8, on sphere: octahedral has errors below 0.31 degrees for half of the normals, below 0.56 degrees for 99%"
     )
     lines = [[(row["x"], row["y"]) for row in spread.rows if row["codec"] == f"{name} rg8"] for name in counts]
     assert lines[0] == [(0.28125, 25.0), (0.3125, 75.0), (0.5625, 100.0), (2.25, 100.0)]
@@ -64,9 +64,9 @@ def test_no_qualifying_encoding_is_reported_with_status_1(run):
             ("--domain", "hemisphere"),
             "--domain hemisphere: ambiguous; use tangent, terrain or map for normals with z >= 0",
         ),
-        (("--power", "47,none"), "--power 47,none: numbers from 1 to 2048"),
-        (("--most-instructions", "-1"), "--most-instructions -1: from 0 to 1000000"),
-        (("--readers", "65"), "--readers 65: from 0 to 64"),
+        (("--power", "47,none"), "--power 47,none: expected numbers from 1 to 2048"),
+        (("--most-instructions", "-1"), "--most-instructions -1: out of range; use 0 to 1000000"),
+        (("--readers", "65"), "--readers 65: out of range; use 0 to 64"),
         (("--worth", "0"), "--worth 0: out of range; use more than 0, up to 100 dB"),
         (("--enough", "-1"), "--enough -1: out of range; use 0 to 360 degrees"),
         (("--bytes", "3"), "unknown number of bytes '3'; known: all, 2, 4, 8, 16"),

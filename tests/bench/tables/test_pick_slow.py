@@ -72,10 +72,10 @@ def test_an_answer_from_few_random_normals_gives_a_warning(capsys):
         assert pick.work.steps(options, pick.outputs())
         return capsys.readouterr().err
 
-    line = "with fewer than 4096 random normals (sphere), another --seed may give another answer"
+    line = "with fewer than 4096 random normals (sphere), a different --seed may give a different answer"
     assert f"--count 1: {line}" in warning(count=1)
-    assert "another --seed" not in warning(count=4096)
-    assert "another --seed" not in warning(count=1, normals="axes")
+    assert "a different --seed" not in warning(count=4096)
+    assert "a different --seed" not in warning(count=1, normals="axes")
 
 
 ONE_WAY = """// components: 2
@@ -292,7 +292,7 @@ def test_a_reflection_that_moves_far_has_no_distance():
     """A hole of 50 degrees moves the reflection by 100: no tangent gives its distance."""
     far = [row | {"angle_max_deg": 50.0, "angle_sup_deg": 50.0, "accept_holes": True} for row in MEASURED]
     group = answered(far)
-    assert "at most 100°: it shows another place." in sentences(group)[1], sentences(group)
+    assert "at most 100°: it shows a different place." in sentences(group)[1], sentences(group)
 
 
 # What a senior graphics engineer takes, by the words of the question; and a rung or a hint that he expects.
@@ -378,7 +378,7 @@ def test_each_way_to_round_is_a_question(run, tmp_path):
     assert decibels[0] - decibels[1] == pytest.approx(6, abs=1)
     groups_of = [group for group in groups(asked).values() if group[0]["rounding"] == "truncate"]
     (text,) = (" ".join(sentences(group)) for group in groups_of)
-    assert text.startswith("rg8 rounded by truncate, on sphere: take octahedral.")
+    assert text.startswith("rg8 with truncate rounding, on sphere: take octahedral.")
     assert "roughness --encoding octahedral --storage rg8 --rounding truncate" in text
     names = {path.name for path in tmp_path.iterdir()}
     assert {f"pick-room-power47-octahedral-rg8{way}-final.png" for way in ("", "-truncate")} < names

@@ -32,7 +32,7 @@ def test_the_limit_row_is_renamed_for_normals_that_are_not_uniform(run):
 def test_a_lost_row_keeps_its_place_and_has_no_limit():
     """A step that ends its workers leaves a row with its key and a reason, but no bits."""
     names = {"storage": "rg8", "rounding": "nearest", "normals": "sphere"}
-    lost = TABLE.empty() | names | {"encoding": "mine", "skipped": "4 workers were lost while they measured it"}
+    lost = TABLE.empty() | names | {"encoding": "mine", "skipped": "4 workers were lost while measuring this row"}
     whole = TABLE.empty() | names | {"encoding": "octahedral", "bits": 16, "angle_rms_deg": 0.37, "domain": "sphere"}
     assert in_order([whole, lost]) == [lost, whole]
     assert [row["encoding"] for row in with_limits(in_order([whole, lost]))] == ["mine", "octahedral", "limit"]

@@ -44,7 +44,7 @@ def test_a_run_and_its_page_know_no_table_by_its_name(copy):
     page = (copy / "page.html").read_text()
     assert all(f'<section id="{name}"' in page or f'id="{name}"' in page for name in (loss, price, advise))
     assert "JAX and GLSL agree within" in page and "octahedral" in page
-    assert "its rows keep no histograms" not in page and "it keeps no maps" not in page
+    assert "its rows have no histograms" not in page and "it has no maps" not in page
     # What pick adds: the questions that a reader may ask otherwise. What cost adds: disassemblies.
     assert 'id="data-choices"' in page and "data-choose" in page and "data-listings=" in page
     (copy / "gates.toml").write_text('[[gate]]\nencoding = "octahedral"\npsnr_db = "at least 30"\n')

@@ -67,7 +67,7 @@ def test_rows_of_another_sweep_are_neither_used_nor_deleted(run, tmp_path, monke
     kept = journal.read_text()
     (tmp_path / "mine.toml").write_text(layout.format("rg16f"))
     status, _, err = run(*command)
-    assert status == 2 and "has 1 steps of another sweep command" in err and journal.read_text() == kept
+    assert status == 2 and "has 1 steps of a different sweep command" in err and journal.read_text() == kept
     (tmp_path / "mine.toml").write_text(layout.format("rg8"))
     monkeypatch.setattr(sweep, "measure", measure)
     assert run(*command)[0] == 0 and not journal.exists()
@@ -85,12 +85,12 @@ def test_two_sweeps_do_not_share_an_output(run, tmp_path):
         (["--objects", "100,x"], "comma-separated"),
         (["--objects", "0"], "numbers from 1"),
         (["--objects", "9" * 5000], "numbers from 1"),
-        (["--samples", "0"], "--samples 0: from 1 to 64"),
-        (["--scale", "2"], "from 0.05 to 1"),
+        (["--samples", "0"], "--samples 0: out of range; use 1 to 64"),
+        (["--scale", "2"], "use 0.05 to 1"),
         (["--layout", ""], "no layout named"),
         (["--objects", ""], "numbers from 1"),
         (["--size", "0x0"], "WIDTHxHEIGHT"),
-        (["--plot", "plot.jpg"], "a plot's name ends in .png, .svg, .pdf"),
+        (["--plot", "plot.jpg"], "unsupported plot format; use one of .png, .svg, .pdf"),
         (["--plot", "."], "is a folder"),
         (["--pipeline", "none"], "unknown pipeline 'none'"),
         (["-o", "."], "is a folder"),

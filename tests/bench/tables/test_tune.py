@@ -95,8 +95,8 @@ def test_a_set_of_one_normal_is_refused(run, tmp_path):
         ("all:scale=1", "unknown encoding 'all'"),
         ("best_fit:table=missing.npy", "missing.npy: there is no such file"),
         ("best_fit:table=text.npy", "not a NumPy file"),
-        ("best_fit:table=small.npy", "is float32 of shape (1024, 1024, 1)"),
-        ("best_fit:table=zero.npy", "scales above 0 and up to 1"),
+        ("best_fit:table=small.npy", "needs a table of float32 of shape (1024, 1024, 1)"),
+        ("best_fit:table=zero.npy", "scales above 0 and at most 1"),
     ],
 )
 def test_bad_name_is_a_one_line_error(run, name, said, tmp_path, monkeypatch):

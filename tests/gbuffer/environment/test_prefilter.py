@@ -174,5 +174,5 @@ def test_stored_levels_are_not_computed_again():
 
 @pytest.mark.parametrize("shape", [(10, 20, 3), (8, 15, 3)])
 def test_image_of_the_wrong_shape_is_rejected(shape):
-    with pytest.raises(ValueError, match="width is twice the height, a multiple of 4"):
+    with pytest.raises(ValueError, match="width must be twice the height, and the height a multiple of 4"):
         prefiltered(Environment("odd", np.ones(shape, np.float32)))

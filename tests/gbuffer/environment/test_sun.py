@@ -44,7 +44,7 @@ def test_the_light_comes_from_the_middle_of_the_sun():
     assert np.linalg.norm(parted.sun[0]) == pytest.approx(1)
     assert np.degrees(np.arccos(-directions(HEIGHT)[30, 41] @ parted.sun[0])) < 1
     assert parted.radiance.max() == MOST and parted.radiance[29, 41].tolist() == [25, 20, 10]
-    assert parted.name == "sky" and parted.changes == ("cropped", "sun above 30 taken out as a light")
+    assert parted.name == "sky" and parted.changes == ("cropped", "sun above 30 moved to a separate light")
     assert parted.radiance.dtype == np.float32
 
 

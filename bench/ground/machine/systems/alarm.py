@@ -18,7 +18,8 @@ if sys.platform == "win32":
     _waiting: list[Timer] = []
 
     def call_later(seconds: float, call: Call) -> None:
-        """Have a function called once, with the frame that is interrupted; it takes the place of one that waits."""
+        """Have a function called once after some seconds, with the frame that is interrupted. A call that is still
+        waiting is cancelled."""
         call_none()
         signal.signal(_SIGNAL, lambda _, frame: call(frame))
         timer = Timer(seconds, _thread.interrupt_main, [_SIGNAL])
@@ -35,7 +36,8 @@ if sys.platform == "win32":
 else:
 
     def call_later(seconds: float, call: Call) -> None:
-        """Have a function called once, with the frame that is interrupted; it takes the place of one that waits."""
+        """Have a function called once after some seconds, with the frame that is interrupted. A call that is still
+        waiting is cancelled."""
         signal.signal(signal.SIGALRM, lambda _, frame: call(frame))
         signal.setitimer(signal.ITIMER_REAL, seconds)
 

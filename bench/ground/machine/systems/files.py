@@ -19,7 +19,8 @@ if sys.platform == "win32":
     _WAITS = (0.01, 0.05, 0.2, 0.5, 1.0)
 
     def moved_over(partial: Path, path: Path) -> None:
-        """Have a file take the place of another one, or of none. Raises OSError."""
+        """Move a file to a path, in place of any file there. Retries for a while if the file there is in use.
+        Raises OSError."""
         for wait in _WAITS:
             try:
                 partial.replace(path)
@@ -33,23 +34,23 @@ if sys.platform == "win32":
         return error.errno in (errno.EPIPE, errno.EINVAL)
 
     def user() -> str:
-        """Return text that identifies the user that this process acts for."""
+        """Return this user's name; empty if the system does not give one."""
         return os.environ.get("USERNAME", "")
 
     def is_own(_: os.stat_result) -> bool:
-        """Whether a file is this user's. Windows guards a user's folder by lists, not by numbers."""
+        """Whether a file is this user's: always True. Windows guards a user's folder by lists, not by numbers."""
         return True
 
     def is_closed(_: os.stat_result) -> bool:
-        """Whether a file or folder is this user's, and nobody else may write to it; see `is_own`."""
+        """Whether a file or folder is this user's, and nobody else may write to it: always True, see `is_own`."""
         return True
 
     def is_guarded(_: Path) -> bool:
-        """Whether nobody else can put another file at a path; see `is_own`."""
+        """Whether nobody else can put another file at a path: always True, see `is_own`."""
         return True
 
     def forbids_execution(_: Path) -> bool:
-        """Whether nothing is executed from the file system of a folder."""
+        """Whether the file system of a folder forbids execution: always False on Windows."""
         return False
 
     def cache_home() -> Path:
@@ -65,7 +66,7 @@ else:
     HOME, TEMPORARY = "HOME", ("TMPDIR",)
 
     def moved_over(partial: Path, path: Path) -> None:
-        """Have a file take the place of another one, or of none. Raises OSError."""
+        """Move a file to a path, in place of any file there. Raises OSError."""
         partial.replace(path)
 
     def is_closed_pipe(error: OSError) -> bool:
@@ -73,7 +74,7 @@ else:
         return error.errno == errno.EPIPE
 
     def user() -> str:
-        """Return text that identifies the user that this process acts for."""
+        """Return the effective user id of this process as text."""
         return str(os.geteuid())
 
     def is_own(status: os.stat_result) -> bool:
@@ -117,7 +118,7 @@ else:
         return members <= {person.pw_name}
 
     def forbids_execution(folder: Path) -> bool:
-        """Whether nothing is executed from the file system of a folder. Raises OSError."""
+        """Whether the file system of a folder forbids execution; False except on Linux. Raises OSError."""
         return sys.platform == "linux" and bool(os.statvfs(folder).f_flag & os.ST_NOEXEC)
 
     def cache_home() -> Path:
@@ -126,13 +127,13 @@ else:
 
 
 def c_function(name: str) -> Callable[..., Any] | None:
-    """A function of the C library that this process has loaded; None where it has none of this name."""
+    """Return a function of the C library that this process has loaded; None if the library has no such function."""
     library = "ucrtbase" if sys.platform == "win32" else None
     return getattr(ctypes.CDLL(library), name, None)
 
 
 def state_of(path: Path) -> list[int] | None:
-    """Return the size and the time of a file or folder; None if it is gone."""
+    """Return the size of a file or folder in bytes and its modification time in nanoseconds; None if it is gone."""
     try:
         status = path.stat()
     except OSError:

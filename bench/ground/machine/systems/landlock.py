@@ -88,8 +88,9 @@ def forget_variables() -> None:
 
 
 def command(words: list[str], reads: list[str], writes: list[str], executes: list[str]) -> list[str]:
-    """A command that walls itself in and becomes another one, whose first word is a path that `executes` has too. See
-    `restrict`; of the variables it keeps VARIABLES. Its status is 126 where it cannot be run."""
+    """Return the command that builds a wall around itself and then becomes the command `words`, whose first word
+    is a path that `executes` has too. See `restrict`. The command keeps only VARIABLES of the environment, and its
+    status is 126 if `words` cannot be run."""
     rules = [kind + path for kind, paths in (("r", reads), ("w", writes), ("x", executes)) for path in paths]
     return [sys.executable, "-I", "-S", __file__, *rules, "--", *words]
 

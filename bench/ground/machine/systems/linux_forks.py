@@ -61,7 +61,8 @@ def finished(module: str, words: list[str], seconds: float) -> subprocess.Comple
 
 
 def _ended(module: str, words: list[str], files: tuple[IO[bytes], IO[bytes]], seconds: float) -> int | None:
-    """The status of a process, as Popen has it; None where it was ended after some seconds."""
+    """Run `main(words)` of a module, with its output in two files. Return the process's status as Popen does; None
+    if the process was ended after `seconds`."""
     given = {"module": module, "words": words, "folder": str(Path.cwd()), "variables": children.environment()}
     with _asked(json.dumps(given).encode(), files) as answer:
         process = int.from_bytes(answer.recv(4), "little")
@@ -134,8 +135,8 @@ def _read_at_the_start() -> dict[str, str]:
 
 
 def _asked(request: bytes, files: tuple[IO[bytes], IO[bytes]]) -> socket.socket:
-    """Return the socket through which a process's number has come and its status will come. The process that forks may
-    have ended, so it is asked twice.
+    """Ask for a process, and return the socket through which its number has come and its status will come. The
+    process that forks may have ended, so it is asked twice.
 
     Raises:
         OSError: the process that forks does not keep running.
@@ -193,7 +194,7 @@ def _watch(module: Any, given: dict[str, Any], answer: int, files: list[int]) ->
 
 
 def _run(module: Any, given: dict[str, Any], answer: int, files: list[int]) -> NoReturn:
-    """The module's `main`, in a folder and with the variables of the request."""
+    """Run the module's `main` in the request's folder, with its variables, and end this process with the status."""
     status = 1
     try:
         # By this number it is ended, with what it starts: it is known before anything of the user's is run.

@@ -17,7 +17,7 @@ if sys.platform == "win32":
     _FAR = 0x7FFF_0000
 
     def lock(file: FileIO) -> None:
-        """Keep others from locking a file, until it is closed or this process ends.
+        """Keep others from locking a file, until it is closed or this process ends. Does not wait.
 
         Raises:
             OSError: another process has locked it, or the file system has no locks.
@@ -45,7 +45,7 @@ if sys.platform == "win32":
         return new
 
     def remove(path: Path, file: FileIO) -> None:
-        """Take away a file that is open and locked. None is while it is open: another process may have it by then."""
+        """Close a file that is open and locked, and delete it, unless another process has opened it by then."""
         file.close()
         with suppress(PermissionError):
             path.unlink(missing_ok=True)
@@ -54,7 +54,7 @@ else:
     import fcntl
 
     def lock(file: FileIO) -> None:
-        """Keep others from locking a file, until it is closed or this process ends.
+        """Keep others from locking a file, until it is closed or this process ends. Does not wait.
 
         Raises:
             OSError: another process has locked it, or the file system has no locks.
@@ -72,6 +72,6 @@ else:
         return new
 
     def remove(path: Path, file: FileIO) -> None:
-        """Take away a file that is open and locked. Raises OSError."""
+        """Delete a file that is open and locked, and close it. Raises OSError."""
         path.unlink(missing_ok=True)
         file.close()

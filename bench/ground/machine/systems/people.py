@@ -10,7 +10,7 @@ from collections.abc import Iterable
 # By Debian's name of what is missing.
 if sys.platform == "win32":
     SDK = "winget install KhronosGroup.VulkanSDK"
-    ELSEWHERE = "only on Linux, WSL2 included"
+    ELSEWHERE = "only on Linux, including WSL2"
     _WAYS = {
         "glslang-tools": SDK,
         "spirv-tools": SDK,
@@ -32,9 +32,10 @@ else:
 
 
 def how_to_install(packages: str, counts: bool = False) -> str:
-    """Return how to install Debian's packages here; the first package is the missing one, and it needs the others.
+    """Return text on how to install packages here, such as "Debian: apt-get install mesa".
 
     Args:
+        packages: names of Debian's packages, separated by spaces; the first is missing and needs the others.
         counts: whether the package is needed to count instructions, which only Linux can do.
     """
     way = ELSEWHERE if counts else _WAYS.get(packages.split()[0], ELSEWHERE)
@@ -42,7 +43,7 @@ def how_to_install(packages: str, counts: bool = False) -> str:
 
 
 def command_line(words: Iterable[str]) -> str:
-    """Return a command as people type it."""
+    """Return the words of a command as one line that a shell of this system reads back."""
     return subprocess.list2cmdline(words) if sys.platform == "win32" else shlex.join(words)
 
 

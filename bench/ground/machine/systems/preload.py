@@ -11,6 +11,6 @@ PRELOAD = "LD_PRELOAD"
 
 
 def preloaded(path: Path) -> dict[str, str]:
-    """The variables that have a process load a library before those that this process was given."""
+    """Return the variables, by name, that make a process load a library before those that this process was given."""
     others = filter(None, [os.environ.get(PRELOAD, "")])
     return {PRELOAD: os.pathsep.join([str(path), *others])}

@@ -37,11 +37,11 @@ if sys.platform == "win32":
         0xC0000005: "an access violation",
         0xC0000017: "a lack of memory",
         0xC000001D: "an illegal instruction",
-        0xC0000094: "a division of a whole number by 0",
+        0xC0000094: "an integer division by 0",
         0xC00000FD: "a stack overflow",
         0xC000013A: "an interruption",
         0xC0000374: "a corrupted heap",
-        0xC0000409: "a check of its own",
+        0xC0000409: "a failed check of its own",
     }
 
     def started(command: Sequence[str], **how: Any) -> subprocess.Popen[Any]:
@@ -60,7 +60,7 @@ if sys.platform == "win32":
         os._exit(1)
 
     def signal_name(status: int) -> str:
-        """Return the reason why the system ended a process; empty if the process ended by itself."""
+        """Return why the system ended a process, given its status; empty if the process ended by itself."""
         status &= 0xFFFFFFFF
         return _ENDINGS.get(status, f"0x{status:08X}" if status >= 0xC0000000 else "")
 
@@ -76,7 +76,7 @@ if sys.platform == "win32":
 
     @contextmanager
     def file_of_child() -> Iterator[FileOfChild]:
-        """A file for another process to write, which is gone afterwards."""
+        """Yield a file for another process to write, in a folder that is removed afterwards."""
         with TemporaryDirectory(prefix="normalbench-", ignore_cleanup_errors=True) as folder:
             path = Path(folder, "written")
             yield FileOfChild(str(path), (), lambda: path.read_bytes() if path.exists() else b"")
@@ -118,7 +118,7 @@ else:
             return
 
     def signal_name(status: int) -> str:
-        """The name of the signal that ended a process, such as SIGSEGV; empty where none did."""
+        """Return the name of the signal that ended a process, such as SIGSEGV; empty if no signal did."""
         return signal.Signals(-status).name if status < 0 else ""
 
     def limit(seconds: int, file: int, memory: int) -> None:
@@ -138,19 +138,20 @@ else:
         _limit({resource.RLIMIT_AS: most})
 
     def most_addresses() -> int | None:
-        """The bytes that this process may have addresses for; None where nothing limits them."""
+        """Return the bytes that this process may have addresses for; None if they are not limited."""
         most = resource.getrlimit(resource.RLIMIT_AS)[0]
         return None if most == resource.RLIM_INFINITY else most
 
     def _limit(limits: Mapping[int, int]) -> None:
-        """Set limits by their numbers; none becomes higher than it was."""
+        """Set resource limits in bytes or seconds, by their numbers in `resource`, but not above the hard limits."""
         for number, most in limits.items():
             hard = resource.getrlimit(number)[1]
             resource.setrlimit(number, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
 
     @contextmanager
     def file_of_child() -> Iterator[FileOfChild]:
-        """A file for another process to write. It has no name: nothing is left of it, however this process ends."""
+        """Yield a file for another process to write. It has no name, so nothing is left of it, however this
+        process ends."""
         with TemporaryFile() as file:
 
             def content() -> bytes:
@@ -175,7 +176,7 @@ else:
 
 
 def usable_cores() -> int:
-    """The cores this process may use."""
+    """Return the number of cores that this process may use."""
     if sys.platform == "linux":
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

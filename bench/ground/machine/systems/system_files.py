@@ -10,18 +10,18 @@ LOADED = Path("/proc/self/maps")
 
 
 def processor_lines() -> list[str]:
-    """Return the lines on each core, as `name : value`."""
+    """Return the lines of /proc/cpuinfo on each core, as `name : value`; empty if the file is missing."""
     return _lines(PROCESSOR)
 
 
 def processor_kind() -> list[str]:
-    """Return facts that tell a kind of processor from others that need other programs."""
+    """Return facts, as text, that tell this kind of processor from others that need other programs."""
     facts = {line for line in processor_lines() if line.startswith(("model name", "flags", "Features"))}
     return [platform.machine(), platform.processor(), *sorted(facts)]
 
 
 def loaded() -> set[str]:
-    """The paths of the files that are mapped into this process, libraries among them."""
+    """Return the paths of the files that are mapped into this process, such as libraries; empty except on Linux."""
     return {line[line.index("/") :] for line in _lines(LOADED) if "/" in line}
 
 

@@ -16,7 +16,7 @@ from ...output.errors import MissingError
 from .. import children
 from . import landlock
 
-NONE = "Landlock: none; C made of your files is not run here"
+NONE = "Landlock: none; C generated from your files is not run here"
 # Where systems keep libraries and what compilers include; what is not there is left out. Nix has all in one folder.
 LIBRARIES = ("/lib", "/lib32", "/lib64", "/libx32", "/usr/lib", "/usr/lib32", "/usr/lib64", "/usr/libx32")
 LIBRARIES += ("/usr/local/lib", "/nix/store", "/etc/ld.so.cache", "/dev/zero", "/dev/urandom")
@@ -41,7 +41,8 @@ class Wall:
         return Wall(*(tuple(dict.fromkeys((*own, *more))) for own, more in kinds))
 
     def around(self, words: Sequence[str]) -> list[str]:
-        """A command behind this wall; its first word becomes the path of a program. See `landlock.command`."""
+        """Return a command that runs `words` behind this wall; the first word becomes the path of a program. See
+        `landlock.command`."""
         program = shutil.which(words[0]) or words[0]
         return landlock.command([program, *words[1:]], [*self.reads], [*self.writes], [*self.executes])
 
@@ -63,8 +64,8 @@ def of_program(path: Path | str) -> Wall:
 
 
 def of_tool(path: Path | str) -> Wall:
-    """Return the Wall of a program: the files that `of_program` leaves it, its own folder, and lib and lib64 next to
-    that."""
+    """Return the wall of a program: the files that `of_program` leaves it and, unless the program's folder is
+    directly in /usr, that folder and lib and lib64 next to it."""
     folder = Path(path).resolve().parent
     own = (folder, *(folder.parent / name for name in ("lib", "lib64")))
     return of_program(path) | Wall(_spared(own) if folder.parent != Path("/usr") else ())
@@ -90,7 +91,7 @@ def of_python() -> Wall:
 
 
 def _spared(paths: Iterable[Path]) -> tuple[str, ...]:
-    """Paths without those that hold the home folder as a whole."""
+    """Return absolute paths that exist, resolved and each once, without folders that contain the home folder."""
     home = Path.home().resolve()
     resolved = dict.fromkeys(str(path.resolve()) for path in paths if path.is_absolute() and path.exists())
     return tuple(path for path in resolved if not home.is_relative_to(path))
@@ -101,7 +102,7 @@ def _said(tool: str, option: str) -> str:
 
 
 def _loader(path: Path | str) -> str:
-    """The loader of libraries that a 64-bit program names; empty where it names none."""
+    """Return the path of the library loader that a 64-bit ELF program names; empty for anything else."""
     with suppress(OSError, struct.error, ValueError), Path(path).open("rb") as file:
         head = file.read(64)
         (start,), (size, count) = struct.unpack_from("<Q", head, 32), struct.unpack_from("<HH", head, 54)

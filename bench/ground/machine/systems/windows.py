@@ -64,11 +64,11 @@ _own: list[int] = []
 
 
 def hold(process: int) -> None:
-    """Put a process, and all that it starts from here on, into a job that ends when this process does. One that has
-    ended is in none.
+    """Put a process, and all that it starts from now on, into a job that ends when this process does. A process
+    that has ended is left out.
 
     Raises:
-        OSError: Windows does not.
+        OSError: Windows refuses.
     """
     handle = _checked(_kernel.OpenProcess(SET_QUOTA | TERMINATE | SYNCHRONIZE, False, process))
     try:
@@ -81,18 +81,18 @@ def hold(process: int) -> None:
 
 
 def end(process: int) -> None:
-    """End the remaining processes of a job."""
+    """End the remaining processes of the job that `hold` made for a process, if it made one."""
     if job := _jobs.pop(process, None):
         _kernel.TerminateJobObject(wintypes.HANDLE(job), wintypes.UINT(ENDED))
         _kernel.CloseHandle(wintypes.HANDLE(job))
 
 
 def limit_this_process(memory: int, seconds: int = 0) -> None:
-    """Limit this process's memory, in bytes, and its processor time; 0 seconds limit nothing. It shows no window where
-    it crashes.
+    """Limit this process's memory, in bytes, and its processor time, in seconds; 0 seconds set no limit. A crash
+    shows no window from then on.
 
     Raises:
-        OSError: Windows does not.
+        OSError: Windows refuses.
     """
     limits = _Extended(_Basic(limit_flags=PROCESS_MEMORY | DIE_ON_UNHANDLED_EXCEPTION), process_memory_limit=memory)
     if seconds:
@@ -103,7 +103,7 @@ def limit_this_process(memory: int, seconds: int = 0) -> None:
 
 
 def _job_of(process: int, limits: _Extended) -> int:
-    """The handle of a new job with a process in it. Raises OSError."""
+    """Return the handle of a new job with these limits and a process in it. Raises OSError."""
     job = _checked(_kernel.CreateJobObjectW(None, None))
     size = ctypes.sizeof(limits)
     try:
@@ -135,5 +135,5 @@ def is_running(process: int) -> bool:
 
 
 def _waits(handle: int) -> bool:
-    """Whether a process has not ended."""
+    """Whether a process, given its handle, has not ended."""
     return _kernel.WaitForSingleObject(wintypes.HANDLE(handle), 0) == WAIT_TIMEOUT

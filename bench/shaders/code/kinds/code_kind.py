@@ -108,5 +108,5 @@ class CodeKind:
 
     @property
     def prefix(self) -> str:
-        """The default beginning of names."""
+        """The default beginning of the names of functions: `called`, or the kind's word."""
         return self.called or self.kind.word

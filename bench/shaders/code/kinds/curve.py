@@ -14,7 +14,8 @@ from .own import by_device, defines, is_in
 
 
 def _values(codec: CurveCodec) -> tuple[np.ndarray, np.ndarray]:
-    """Quantities from 0 to the range, both ends among them, evenly and as many in each octave, and the range."""
+    """Return quantities from 0 to the range, (COUNT, 1), half of them evenly spaced and half in equal numbers per
+    octave, both ends included; and the range, in rows of (COUNT, 3)."""
     even, small = np.linspace(0, 1, COUNT // 2), np.geomspace(2.0**-20, 1, COUNT // 2)
     x = np.concatenate([even, small])[:, None] * codec.range
     return x.astype(np.float32), np.broadcast_to(np.array([codec.range, 0, 0], np.float32), (COUNT, 3))

@@ -26,7 +26,8 @@ NORMAL, HAND, TANGENT = slice(0, 3), 3, slice(4, 7)
 
 @cache
 def _frames() -> tuple[np.ndarray, np.ndarray]:
-    """Normals with hands, and tangents: along axes and between them, then at random; every second one is mirrored."""
+    """Return normals with hands, (COUNT, 4), and tangents, (COUNT, 3): along axes and between them, then at random;
+    every second frame is mirrored."""
     along = [np.array(v, float) for v in product((-1, 0, 1), repeat=3) if any(v)]
     hard = np.repeat([(n, t) for n, t in product(along, along) if not n @ t], 2, axis=0)
     random = np.random.default_rng(0).normal(size=(COUNT, 2, 3))
@@ -67,7 +68,7 @@ def _by_device(codec: FrameCodec, n: np.ndarray, view: np.ndarray) -> tuple[np.n
 
 
 def _errors(given: np.ndarray, back: np.ndarray) -> np.ndarray:
-    """The larger of the angles that normals and tangents are off by; 180 degrees where the hand is another one."""
+    """Return the larger of the angles, in degrees, that normals and tangents are off by; 180 for a wrong hand."""
     axes = (angles_deg(given[:, part], back[:, part]) for part in (NORMAL, TANGENT))
     return np.maximum(np.maximum(*axes), 180.0 * (given[:, HAND] * back[:, HAND] < 0))
 
@@ -91,7 +92,7 @@ KIND = CodeKind(
     errors=_errors,
     unit="degrees",
     held=lambda codec: (
-        "unit normals and perpendicular tangents, and the hand, 1 or -1: the bitangent is hand (normal x tangent)"
+        "unit normals and perpendicular tangents, and the hand, 1 or -1: the bitangent is hand * (normal x tangent)"
         + ("; the hand is not stored" if codec.encoding.hand_in is None else "")
     ),
     bound=lambda codec: {"least": codec.least},

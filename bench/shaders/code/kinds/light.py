@@ -21,7 +21,8 @@ BRIGHTEST = 1024.0
 
 @cache
 def _lights(largest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Colours up to a largest one, dim ones as often as bright ones, with a fourth number; black and white first."""
+    """Return colours with a fourth number, (COUNT, 4), up to `largest`, dim ones as often as bright ones, with black
+    and white first; and zeros, (COUNT, 3)."""
     random = np.random.default_rng(0)
     light = largest * 2.0 ** random.uniform(-12, 0, (COUNT, 1)) * random.uniform(0, 1, (COUNT, 4))
     light[0], light[1] = 0.0, largest
@@ -73,7 +74,7 @@ def _errors(given: np.ndarray, back: np.ndarray) -> np.ndarray:
 
 
 def _is_ours(codec: LightCodec) -> bool:
-    """Over another range it has another name, and the same file."""
+    """Whether a codec's encoding is the catalogue's, by its file: over another range it has another name."""
     return codec.encoding.glsl in {encoding.glsl for encoding in LIGHT_ENCODINGS.values()}
 
 

@@ -46,7 +46,7 @@ def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def is_catalogues(encoding: Encoding) -> bool:
-    """Whether an encoding is the catalogue's, or a variant of one. A name alone may be anybody's."""
+    """Whether an encoding is the catalogue's, or a variant of one, by name and file. Users may choose any name."""
     known = ENCODINGS.get(encoding.name.partition(":")[0])
     return known is not None and known.glsl == encoding.glsl
 
@@ -59,7 +59,7 @@ def _numbers(codec: Codec) -> Numbers:
 
 
 def _by_device(codec: Codec, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Stored codes and decoded normals by OpenGL, of an encoder that is there in GLSL alone."""
+    """Return stored codes and decoded normals of an encoding that exists only in GLSL, by OpenGL."""
     pixels = (np.pad(array, ((0, 0), (0, 1))).reshape(SIDE, -1, 4) for array in (n, view))
     with CodecPasses(device(), codec) as passes:
         trip = passes.round_trip(*pixels)

@@ -16,7 +16,7 @@ from .....gbuffer.gl.device import device
 
 
 def is_in(kind: Kind) -> Callable[[Any], bool]:
-    """(codec) -> whether its encoding is the catalogue's."""
+    """Return a function from a codec to whether its encoding is the catalogue's of this kind."""
     return lambda codec: BY_KIND[kind].get(codec.encoding.name) is codec.encoding
 
 
@@ -56,5 +56,5 @@ def by_device(size: int, result: int, store: Callable[[Any, np.ndarray], np.ndar
 
 
 def _wide(rows: np.ndarray) -> np.ndarray:
-    """Rows of four numbers, float32, zeros behind the given ones."""
+    """Return rows padded with zeros to four numbers, float32 of shape (count, 4)."""
     return np.pad(rows.astype(np.float32), ((0, 0), (0, 4 - rows.shape[1])))

@@ -14,5 +14,5 @@ NEVER_RUN = ("msl",)
 def runner(language: str) -> Runner:
     """Return the runner of a language, a key of `emit.LANGUAGES`. Raises MissingError if the language has none."""
     if language in NEVER_RUN:
-        raise MissingError("only Metal itself runs Metal's language")
+        raise MissingError("MSL code runs only on Apple's Metal")
     return import_module(f"{__name__}.{language}").RUNNER

@@ -31,20 +31,21 @@ PROGRAM = "code"
 
 
 def compiler() -> Path:
-    """Return the C compiler. Raises MissingError."""
+    """Return the path of the C compiler. Raises MissingError if it is not installed."""
     return tools.path_of(tools.C)
 
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """The file as a program. Raises MissingError, ShaderError."""
+    """Compile a C file as a program, and yield a function that runs it on rows. Raises MissingError, ShaderError."""
     with built(path, interface, tools.C, [*EXACT, *macros(LIMITS)]) as run:
         yield run
 
 
 @contextmanager
 def built(path: Path, interface: Interface, tool: str, options: Sequence[str]) -> Iterator[Run]:
-    """The file as a program of a compiler and its options. Raises MissingError, ShaderError."""
+    """Compile a C file with a compiler and its options, and yield a function that runs it on rows. Raises
+    MissingError, ShaderError."""
     text = read_shader(path)
     with folder() as place:
         files = {
@@ -74,7 +75,7 @@ def _scalars(path: str, size: int) -> list[str]:
 
 
 def _listed(places: Sequence[str], prefix: str) -> str:
-    """Return the text of inputs as structures: n.xy is a structure of n.x and n.y."""
+    """Return the C text of inputs, with commas: n.xy is a structure of n.x and n.y."""
     return ", ".join(_given(place, prefix) for place in places)
 
 
@@ -86,12 +87,13 @@ def _given(place: str, prefix: str) -> str:
 
 
 def defined(values: Mapping[str, object], language: str = "c") -> Text:
-    """Return macros as a text, which holds names of a file's. Raises ShaderError."""
+    """Return lines that define macros, as a text for compilers of a language; it is checked, because values have
+    names from a file. Raises ShaderError."""
     return judged_text("".join(f"#define {name} {value}\n" for name, value in values.items()), language)
 
 
 def macros(values: Mapping[str, object]) -> list[str]:
-    """Return options that define numbers for a compiler of C."""
+    """Return the options that define macros for a C compiler: -DNAME=VALUE."""
     return [f"-D{name}={value}" for name, value in values.items()]
 
 
@@ -123,7 +125,7 @@ def _failure_behind_wall(tool: str, path: str) -> str:
             program = compiled(tool, ["tried.c"], place, files, place / "tried.c", wall)
             run_apart(program, [str(program)], programs_wall(program))
         except (ShaderError, OSError, subprocess.TimeoutExpired) as error:
-            return f"C made of your files is not run here: behind Landlock {error}"
+            return f"C generated from your files is not run here: with Landlock, {error}"
     return ""
 
 
@@ -153,7 +155,7 @@ def called(program: Path, path: Path, interface: Interface) -> Run:
         except PermissionError as error:
             where = place.parent
             raise MissingError(
-                f"C cannot be run: {where} runs no programs; set TMPDIR to a folder that does"
+                f"C cannot be run: programs cannot be executed in {where}; set TMPDIR to a folder that allows it"
             ) from error
         rows, words = (np.fromfile(place / name, kind) for name, kind in (("made.bin", "<f4"), ("words.bin", "<u4")))
         return ran_of(rows.reshape(MADE * count, 4), words.reshape(count, 4), interface)
@@ -162,7 +164,7 @@ def called(program: Path, path: Path, interface: Interface) -> Run:
 
 
 def how() -> str:
-    """The compiler. Raises MissingError."""
+    """Return the C compiler's version and the options that keep it exact, as text. Raises MissingError."""
     return f"{tools.first_line(tools.C)}, {' '.join(EXACT)}"
 
 

@@ -18,7 +18,8 @@ COMPATIBLE = "ARB_ES3_1_compatibility"
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """The file on the GL device. Raises MissingError, ShaderError, NoDeviceError."""
+    """Compile a GLSL ES file for the GL device, and yield a function that runs it on rows. Raises MissingError,
+    ShaderError, NoDeviceError."""
     how()
     source = EmittedSource(WRAPPER, path, interface)
     with opengl.prepared(opengl.compiled(source.text, source.explain), interface) as run:
@@ -26,7 +27,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
 
 def how() -> str:
-    """The GL device and its version. Raises MissingError, NoDeviceError."""
+    """Return the GL device's name and version. Raises NoDeviceError, or MissingError if it lacks GLSL ES 3.1."""
     if f"GL_{COMPATIBLE}" not in device().context.extensions:
         raise MissingError(f"{opengl.device_name()} does not support GLSL ES 3.1: it lacks {COMPATIBLE}")
     return opengl.device_name()

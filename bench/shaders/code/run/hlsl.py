@@ -24,7 +24,8 @@ OPTIONS = ("-S", "comp", "-e", "main", "-V", "--target-env", "vulkan1.1", "--aut
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """The file on the GL device. Raises MissingError, ShaderError, NoDeviceError."""
+    """Compile an HLSL file for the GL device, and yield a function that runs it on rows. Raises MissingError,
+    ShaderError, NoDeviceError."""
     source = EmittedSource(WRAPPER, path, interface, MADE)
     with folder() as place:
         text = glsl_of(place, judged_text(source.text, "hlsl", source), source.explain)
@@ -39,18 +40,18 @@ def glsl_of(place: Path, text: Text, explain: Callable[[str], str] = str) -> str
 
 
 def glsl_of_module(place: Path) -> str:
-    """Return GLSL of desktop OpenGL of the module of SPIR-V in a folder. Raises MissingError, ShaderError."""
+    """Return GLSL for desktop OpenGL of the SPIR-V module MODULE in a folder. Raises MissingError, ShaderError."""
     return compile_with(tools.SPIRV_CROSS, ["--version", "430", "--no-es", "--no-420pack-extension", MODULE], place, {})
 
 
 def translators() -> str:
-    """The two translators. Raises MissingError."""
+    """Return the names of the two translators, with the version of glslang, as text. Raises MissingError."""
     glslang, cross = spirv.title(spirv.compiler()), tools.path_of(tools.SPIRV_CROSS).stem
     return f"{glslang.replace('glslang', tools.GLSLANG)}, {cross}"
 
 
 def how() -> str:
-    """The compilers and the device; SPIRV-Cross does not tell its version. Raises MissingError, NoDeviceError."""
+    """Return the names of the translators and the GL device, as text. Raises MissingError, NoDeviceError."""
     return f"{translators()}, {opengl.device_name()}"
 
 

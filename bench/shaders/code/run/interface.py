@@ -61,7 +61,7 @@ class Interface:
 
     @property
     def defines(self) -> dict[str, object]:
-        """The macros by which the shaders here call the six functions."""
+        """The macros by which the shaders here call the six functions, by name: RUN_ENCODE, RUN_SIZE and others."""
         return self.defines_with(", ".join)
 
     def defines_with(
@@ -88,7 +88,7 @@ class Interface:
         return {f"RUN_{name}": value for name, value in {**named, **facts, **given, **rows, **structure}.items()}
 
     def _decoded_rows(self) -> list[list[tuple[str, int]]]:
-        """Return the parts of a decoded value and the size of each, for each of its two rows."""
+        """Return for each of the two rows of a decoded value the (path, size) of the parts in it."""
         if not self.structure:
             return [[("decoded", self.result)], []]
         rows: dict[str, list[tuple[str, int]]] = {"n": [], "view": []}
@@ -156,7 +156,7 @@ class Runner:
 
 
 def blocks(count: int) -> Iterator[slice]:
-    """Slices of BLOCK that cover `count` rows; one empty slice for none."""
+    """Return slices of at most BLOCK rows that cover `count` rows; one empty slice for 0 rows."""
     return (slice(start, min(start + BLOCK, count)) for start in range(0, max(count, 1), BLOCK))
 
 
@@ -172,7 +172,8 @@ def rows_of(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> np.ndarray:
 
 
 def ran_of(output: np.ndarray, words: np.ndarray, interface: Interface) -> Ran:
-    """Return a shader's output, six rows of four numbers for each normal and four words, without the unused parts."""
+    """Return the results of the six functions from a shader's output: six rows of four numbers and four words for
+    each value. Unused parts are left out."""
     rows, size = output.reshape(-1, MADE, 4), interface.size
     words = np.ascontiguousarray(words.reshape(-1, 4)[:, : interface.words])
     code, unpacked, first, target, back, second = np.ascontiguousarray(rows.transpose(1, 0, 2))

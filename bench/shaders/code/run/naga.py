@@ -19,7 +19,8 @@ from ....ground.machine.webgpu import adapters
 
 
 def main(words: Sequence[str]) -> None:
-    """Have naga read a file of WGSL, under the limits of a process for users' code."""
+    """Have naga read the WGSL file that the first word names, under the limits of a process for users' code. A
+    refused file is not an error."""
     children.limit_this_process()
     import wgpu
 

@@ -18,14 +18,14 @@ GROUP = 64  # invocations, as the shaders here have them
 
 
 def device_name() -> str:
-    """The GL device and its version. Raises NoDeviceError."""
+    """Return the GL device's name and its OpenGL version, as text. Raises NoDeviceError."""
     gl = device()
     return f"{gl.renderer.split(' (')[0]} (OpenGL {gl.version.split()[0]})"
 
 
 @contextmanager
 def prepared(compute: Any, interface: Interface) -> Iterator[Run]:
-    """Yield a `Run` of a compiled shader with its tables, which are released afterwards.
+    """Yield a function that runs a compiled shader with its tables on rows; both are released afterwards.
 
     A sampler has the name of its table, or a translator's name that contains it.
     """
@@ -67,7 +67,7 @@ def dispatched(gl: Device, compute: Any, given: np.ndarray) -> tuple[np.ndarray,
 
 
 def compiled(text: str, explain: Any) -> Any:
-    """Compile a GLSL compute shader. `explain` rewrites the driver's message for the user's file.
+    """Return a compiled GLSL compute shader. `explain` rewrites the driver's message for the user's file.
 
     Raises:
         ShaderError: it does not compile.

@@ -16,7 +16,8 @@ from .sources import EmittedSource, compile_with, folder
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """The file on the GL device. Raises MissingError, ShaderError, NoDeviceError."""
+    """Compile a Slang file for the GL device, and yield a function that runs it on rows. Raises MissingError,
+    ShaderError, NoDeviceError."""
     source = EmittedSource(WRAPPER, path, interface, MADE)
     with folder() as place:
         files = {"code.slang": judged_text(source.text, "slang", source)}
@@ -30,7 +31,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
 
 def how() -> str:
-    """The compilers and the device. Raises MissingError, NoDeviceError."""
+    """Return the names of the compilers and the GL device, as text. Raises MissingError, NoDeviceError."""
     return f"slangc {tools.first_line(tools.SLANG)}, {translators()}, {opengl.device_name()}"
 
 

@@ -41,7 +41,7 @@ class EmittedSource(Source):
 
 @contextmanager
 def folder() -> Iterator[Path]:
-    """An empty folder, gone afterwards."""
+    """Yield the path of an empty folder, which is deleted afterwards."""
     with tempfile.TemporaryDirectory(prefix="normalbench-") as path:
         yield Path(path)
 
@@ -56,9 +56,9 @@ def run_apart(path: Path, command: Sequence[str], wall: Wall | None = None) -> N
     try:
         done = children.finished(wall.around(command) if wall else command, SECONDS)
     except subprocess.TimeoutExpired as error:
-        raise ShaderError(f"{path}: it did not end within {SECONDS} s") from error
+        raise ShaderError(f"{path}: did not end within {SECONDS} s") from error
     if done.returncode:
-        raise ShaderError(f"{path}: it {children.how_it_ended(done)}")
+        raise ShaderError(f"{path}: {children.how_it_ended(done)}")
 
 
 def compile_with(
@@ -69,7 +69,7 @@ def compile_with(
     explain: Callable[[str], str] = str,
     wall: Wall | None = None,
 ) -> str:
-    """Return the output of a compiler, which runs in a separate process for a limited time.
+    """Return the standard output of a compiler, which runs in a separate process for a limited time.
 
     Args:
         words: its options and the names of files in the folder.
@@ -98,6 +98,6 @@ def first_complaint(log: str) -> str:
     error is put in front if the log has it on a line of its own: ` --> FILE:LINE:COLUMN`."""
     lines = [line.strip() for line in log.splitlines() if re.search(r"\w", line)]
     errors = [line for line in lines if re.search(r"\berror\b", line, re.I)]
-    complaint = (errors or lines or ["it failed without a message"])[0].removeprefix("ERROR: ")
+    complaint = (errors or lines or ["failed without a message"])[0].removeprefix("ERROR: ")
     place = re.search(r"--> (\S+:\d+):\d+", log)
     return f"{place[1]}: {complaint}"[:400] if place and errors else complaint[:400]

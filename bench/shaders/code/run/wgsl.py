@@ -52,7 +52,7 @@ def device_name() -> str:
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """The file on the Vulkan device. Raises MissingError, ShaderError."""
+    """Compile a file for the Vulkan device, and yield a function that runs it. Raises MissingError, ShaderError."""
     gpu = device()
     text = judged_text(_text(path, interface), "wgsl")
     if not interface.is_ours:
@@ -148,7 +148,7 @@ def _try_apart(path: Path, text: Text) -> None:
             raise ShaderError(f"{path}: naga did not end within {SECONDS} s") from error
     if done.returncode:
         how = signal_name(done.returncode) or children.how_it_ended(done)
-        raise ShaderError(f"{path.name}: naga crashed on it ({how}); other backends may accept it")
+        raise ShaderError(f"{path.name}: naga crashed ({how}); other backends may accept the file")
 
 
 def _text(path: Path, interface: Interface) -> str:
@@ -162,7 +162,8 @@ def _text(path: Path, interface: Interface) -> str:
 
 
 def _complaint(output: str) -> str:
-    """naga's complaint and its line in one line; the file's own lines come first, so that its numbers hold."""
+    """Return naga's complaint and its line, as one line of at most 400 characters. The file's own lines come first,
+    so that the line's number is right."""
     words = " ".join(output.split())
     for mark in ("Shader '' parsing error:", "Caused by:"):
         words = words.partition(mark)[2].strip() or words
@@ -170,7 +171,7 @@ def _complaint(output: str) -> str:
 
 
 def how() -> str:
-    """wgpu, whose compiler is naga, and the device. Raises MissingError."""
+    """Return the version of wgpu, whose compiler is naga, and the device, as text. Raises MissingError."""
     from importlib.metadata import version
 
     return f"wgpu {version('wgpu')} (naga), {device_name()}" if device() else ""

@@ -34,7 +34,10 @@ def parts_of(words: Sequence[Word], channel: int, storage: Storage) -> Iterator[
 
 
 def packed_texts(parts: Sequence[tuple[WordPart, str]], size: int) -> list[str]:
-    """Return the texts that form a channel's integer, from the names of its words' integers."""
+    """Return the GLSL terms that, joined with |, form a channel's integer, one for each part, from its word's name.
+
+    Args:
+        size: the number of bits of the channel."""
     return [_put_text(part, name, size, len(parts) > 1) for part, name in parts]
 
 
@@ -46,7 +49,7 @@ def _put_text(part: WordPart, name: str, size: int, is_one_of_many: bool) -> str
 
 
 def taken_text(parts: Sequence[tuple[WordPart, str]], bits: int) -> str:
-    """Return the text of a word's integer, from the texts of the channels that hold its parts."""
+    """Return the GLSL expression of a word's integer, from the text of the channel that holds each part."""
     return " | ".join(_take_text(part, name, bits, len(parts) > 1) for part, name in parts)
 
 

@@ -69,12 +69,14 @@ class GBufferCode:
         return self.layout.name + LANGUAGES[self.language].ending
 
     def text(self, head: Iterable[str]) -> str:
-        """The file, under a comment of these paragraphs."""
+        """Return the text of the file: the functions under a comment of these paragraphs, in an include guard if the
+        language has one."""
         guard = self.layout.name if self.prefix == PREFIX else self.prefix
         return commented(self.body, self.language, guard, head)
 
     def files(self, head: Iterable[str]) -> dict[str, bytes]:
-        """Return all files of the layout, by name."""
+        """Return the contents of all files of the layout, by file name: its functions under a comment of these
+        paragraphs, and its lookup tables."""
         beside = table_files(self.tables, self.language, identifier(self.layout.name), self.prefix)
         return {self.name: self.text(head).encode(), **beside}
 
@@ -107,7 +109,8 @@ def gbuffer_code(layout: Layout, language: str, prefix: str = "") -> GBufferCode
 
 
 def _program(texts: Texts, prefix: str) -> Program:
-    """The two functions of a layout as a tree. Raises ShaderError, TranslationError."""
+    """Return the two functions of a layout, with all that they call, as a syntax tree. Raises ShaderError,
+    TranslationError."""
     layout = texts.contents.layout
     defines, files = read_of(layout)
     source, functions = Source(ROOT, defines, files), functions_text(texts)
@@ -132,7 +135,7 @@ def read_of(layout: Layout) -> tuple[dict[str, object], dict[str, Any]]:
 
 
 def _shorten(program: Program, prefix: str) -> None:
-    """Call functions of curves and of depth by short names: PREFIX_to_square_root, PREFIX_encode_depth."""
+    """Rename functions of curves and of depth, and their calls: PREFIX_to_square_root, PREFIX_encode_depth."""
     names = {}
     for function in program.functions:
         match = re.fullmatch(rf"{prefix}_(\w+?)_({'|'.join((*SHORT, *OF_DEPTH))})", function.name)

@@ -18,12 +18,12 @@ class Leaf:
 
 
 def surface_leaves(texts: Texts) -> list[Leaf]:
-    """The numbers of a surface."""
+    """Return the numbers of a surface, in the order of its structure: path, and whether it is a whole number."""
     return _leaves((field.name, field.kind) for field in texts.contents.fields)
 
 
 def target_leaves(texts: Texts) -> list[Leaf]:
-    """The numbers of the targets."""
+    """Return the numbers of the targets, in the order of their structure; unused channels are included."""
     return _leaves((target.name, target.kind) for target in texts.targets)
 
 

@@ -48,7 +48,7 @@ def head(code: GBufferCode, command: str, verified: str) -> list[str]:
 
 
 def table(contents: Contents) -> list[str]:
-    """The layout's words in columns."""
+    """Return lines with the layout's words in columns, under a line of titles."""
     rows = [TITLES, *(_row(contents, word) for word in contents.words)]
     widths = [max(len(row[column]) for row in rows) for column in range(len(TITLES))]
     lines = ("  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)) for row in rows)

@@ -23,13 +23,15 @@ BESIDE = 1
 
 
 def pack_operation(layout: Layout) -> Operation:
-    """A surface to the channels that hold something of it. Raises ShaderError where no code is written for a layout."""
+    """Return the operation that packs a surface into the channels that hold something of it. Raises ShaderError if no
+    code can be written for the layout, or its cost depends on the pixel's position."""
     texts = _texts(layout)
     return _operation(texts, ("Surface", surface_leaves(texts)), ("Targets", _held(texts)), "pack_gbuffer")
 
 
 def unpack_operation(layout: Layout) -> Operation:
-    """The channels that hold something to a surface. Raises ShaderError where no code is written for a layout."""
+    """Return the operation that unpacks a surface from the channels that hold something of it. Raises ShaderError
+    like `pack_operation`."""
     texts = _texts(layout)
     return _operation(texts, ("Targets", _held(texts)), ("Surface", surface_leaves(texts)), "unpack_gbuffer")
 
@@ -46,7 +48,11 @@ def _texts(layout: Layout) -> Texts:
 def _operation(
     texts: Texts, given: tuple[str, Sequence[Leaf]], returned: tuple[str, Sequence[Leaf]], function: str
 ) -> Operation:
-    """A function of a layout, by the structures that it takes and makes and by the numbers of these."""
+    """Return the operation of one of a layout's functions.
+
+    Args:
+        given, returned: the type of its argument and of its result, with the numbers that are loaded and stored.
+        function: its name."""
     defines, files = read_of(texts.contents.layout)
     own = {
         # Macros are of one line.

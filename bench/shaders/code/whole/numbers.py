@@ -77,7 +77,8 @@ class Number:
         return bool(self.word.bits) or storage_kind(self._storage) in (UNORM, SMALL)
 
     def carried_text(self, x: str, sign: str) -> str:
-        """A share of [0, 1] under a sign, as texels hold it: kept off 0, so that rounding leaves the sign."""
+        """Return the GLSL expression of a share `x` of [0, 1] with the sign of `sign`, as texels hold it: kept off 0,
+        so that rounding leaves the sign."""
         bits = self.word.bits or self._storage.bits[self.word.first]
         least = glsl_value(least_carried(self._storage, bits))
         number = f"sign_not_zero({sign}) * clamp({x}, {least}, 1.0)"
@@ -85,7 +86,7 @@ class Number:
 
     @property
     def _is_packed_as_said(self) -> bool:
-        """Whether the layout's packing is for it."""
+        """Whether the layout's packing applies to this number: a number of the normal that takes many values."""
         return self._is_normal and levels_of(self.layout.encoding)["xyz".index(self.word.component[-1])] == 0
 
     @property
@@ -106,7 +107,7 @@ class Number:
         return "{x} * 2.0 - 1.0" if self._is_signed or self._is_unit else "{x}"
 
     def bits_text(self, x: str) -> str:
-        """The unsigned integer of a number."""
+        """Return the GLSL expression of the unsigned integer that is stored for the number `x`, given as text."""
         scale = self._scale
         if self.is_whole:
             return f"{x} & {scale}u"
@@ -124,7 +125,7 @@ class Number:
         return f"uint({whole if self.word.bits <= SURE_BITS else f'min({whole}, {scale}.0)'})"
 
     def bits_value(self, integer: str) -> str:
-        """The number of an unsigned integer, a name."""
+        """Return the GLSL expression of the number that an unsigned integer, given by its name, stands for."""
         if self.is_whole:
             return integer
         if self.is_depth:
@@ -138,12 +139,14 @@ class Number:
         return self._unit_out.format(x=f"float({integer}) / {self._scale}.0")
 
     def channel_text(self, x: str, is_float: bool = False) -> str:
-        """Return the text written to a channel of its own: the format converts the number, or it is rounded before."""
+        """Return the GLSL expression that is written to a channel of its own for the number `x`: the format converts
+        the number, or it is rounded before."""
         way = ways_of(self.layout)[self.word.target]
         return self._rounded_text(self._plain_text(x, is_float), way - 1) if way else self._plain_text(x, is_float)
 
     def _rounded_text(self, x: str, way: int) -> str:
-        """A number as the format keeps it, rounded in a way as `storage.glsl` counts them."""
+        """Return the GLSL expression of the number `x` rounded to a value of the format, in a way as `storage.glsl`
+        counts them; `x` itself for 32-bit floats."""
         kind, bits = storage_kind(self._storage), self._storage.bits[self.word.first]
         if kind in (HALF, SMALL):
             form = "5, 10, true" if kind == HALF else f"5, {bits - 5}, false"
@@ -162,7 +165,7 @@ class Number:
         return f"{x} * 0.5 + 0.5" if is_halved else x
 
     def channel_value(self, x: str, is_float: bool = False) -> str:
-        """Return the text of the number that is read from a channel of its own."""
+        """Return the GLSL expression of the number that is read from a channel of its own, `x`."""
         kind = storage_kind(self._storage)
         if self.is_depth and self.layout.depth_encoding.signed and kind < HALF:
             return f"from_fixed_code(uint({x} * {self._scale}.0 + 0.5), {self._scale}.0, true)"

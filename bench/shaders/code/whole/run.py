@@ -74,7 +74,8 @@ def _wrapped(name: str, code: GBufferCode) -> str:
 
 
 def _settings_text(code: GBufferCode) -> tuple[str, int]:
-    """The arguments behind the first one of both functions, and how many numbers a row has with them."""
+    """Return the text of the arguments of both functions after the first, each after a comma, and how many numbers a
+    row has with them; empty text without settings."""
     number, vector = ARGUMENTS.get(code.language, ("", ""))
     text, offset = "", _made(code)
     for name in code.settings:

@@ -98,7 +98,7 @@ class Contents:
 
 
 def _components(quantity: str, numbers: str) -> tuple[str, ...]:
-    """The components of a quantity of several numbers; itself where it is one."""
+    """Return the components of a quantity, such as motion.x and motion.y; if it is one number, the quantity."""
     return tuple(f"{quantity.partition('.')[0]}.{number}" for number in numbers) or (quantity,)
 
 
@@ -115,7 +115,7 @@ def _unwritten(layout: Layout) -> str:
     for name, (_, numbers) in NUMBERS.items():
         there = [component in components for component in _components(name, numbers)]
         if any(there) and not all(there):
-            return f"a part of {name} without the rest"
+            return f"some components of {name} without the others"
     return _unwritten_other(layout)
 
 

@@ -74,7 +74,7 @@ def _bits(contents: Contents, field: Field) -> int:
 
 
 def _normals(contents: Contents, random: np.random.Generator, view: np.ndarray) -> np.ndarray:
-    """Unit normals, those along axes and next to them first."""
+    """Return unit normals of the encoding's domain, (count, 3), those along axes and next to them first."""
     normals = random.normal(size=view.shape)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     hard = directions()[: len(view) // 2]

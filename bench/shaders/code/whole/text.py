@@ -71,7 +71,8 @@ class Texts:
             yield from self._packed_target(index, target, names)
 
     def _coded(self, field: Field, names: dict[str, str]) -> Iterator[str]:
-        """Lines that put a field on its curve; each component's text is added to `names`."""
+        """Yield lines of GLSL that put a field on its curve or into its code, if it has one; the text of each
+        component is added to `names`."""
         parts = [f"s.{field.name}"]
         if field.kind.startswith("vec"):
             parts = [f"s.{field.name}.{axis}" for axis in AXES[: len(field.components)]]
@@ -88,7 +89,7 @@ class Texts:
                 yield f"float {_local(component)} = {encoding.name}_encode_curve({part}, {limit});"
 
     def _depth_number(self, word: Word, names: dict[str, str]) -> Iterator[str]:
-        """Yield lines that compute the number of a depth, with the sign that is stored in it."""
+        """Yield GLSL lines that compute a depth's number, with the sign stored in it; it is added to `names`."""
         depth, names["depth"] = "s.depth", "depth_number"
         if self._layout.has_signed_depth:
             depth = "signed_depth"
@@ -96,12 +97,12 @@ class Texts:
         yield f"float depth_number = DEPTH_ENCODE(depth_or_far({depth}, far), near, {self._far(word)});"
 
     def _far(self, word: Word) -> str:
-        """The far plane: floats may hold a depth in the scene's own units."""
+        """Return the text of the far plane: "1.0" if floats hold depths in the scene's own units, else "far"."""
         return "1.0" if self._layout.depth_encoding.own_units and Number(self._layout, word).is_open else "far"
 
     @property
     def _sign(self) -> str:
-        """The number of the normal's code that is a sign: normal.z."""
+        """The component of the normal's code that is stored as a sign, such as normal.z."""
         return self._layout.carried or f"normal.{AXES[self._layout.encoding.components]}"
 
     def _carried(self, word: Word, names: dict[str, str]) -> str:
@@ -134,7 +135,7 @@ class Texts:
         yield f"{target.kind} {target.name} = {_listed(target.kind, channels)};"
 
     def _channel(self, words: list[Word], index: int, channel: int, names: dict[str, str]) -> tuple[list[str], str]:
-        """Return the lines before a target, and the text of a channel's value."""
+        """Return the lines of GLSL before a target's, and the text of a channel's value, 0 if it is empty."""
         name = f"channel_{index}_{AXES[channel]}"
         own = next((word for word in words if not word.bits and word.first == channel), None)
         if own:
@@ -165,7 +166,8 @@ class Texts:
             yield from self._field_lines(field, names)
 
     def _signed_lines(self, word: Word, names: dict[Word, str], signs: dict[str, str]) -> Iterator[str]:
-        """Yield lines that compute a number with a sign, or a depth; the sign's text is added to `signs`."""
+        """Yield lines of GLSL that compute a number with a sign. The text of this number, or of a depth, is replaced
+        in `names`, and the sign's text is added to `signs`."""
         name, number = f"signed_{_local(word.component)}", names[word]
         if word.component == "depth":
             decoded = f"DEPTH_DECODE({number}, near, {self._far(word)})"
@@ -180,7 +182,7 @@ class Texts:
             yield f"float {name} = {number};"
 
     def _taken_words(self, index: int, names: dict[Word, str]) -> Iterator[str]:
-        """Lines that take integers out of a target; each word's number is added to `names`."""
+        """Yield GLSL lines that take integers out of a target; each word's number is added to `names`."""
         storage = self._layout.targets[index].storage
         words = [word for word in self.contents.words if word.target == index]
         held = {}
@@ -222,7 +224,7 @@ class Texts:
         yield f"{field.kind} {field.name} = {self._joined(field, parts)};"
 
     def _decoded(self, field: Field, text: str) -> str:
-        """A number as its curve takes it back."""
+        """Return the GLSL text of a number with its curve undone; unchanged without a curve, or for a code."""
         if field.kept is None or code_is_whole(field.kept):
             return text
         return f"{field.kept.encoding.name}_decode_curve({text}, {glsl_value(field.kept.range)})"
@@ -239,7 +241,7 @@ class Texts:
     # Names.
 
     def _words_of(self, field: Field) -> list[Word]:
-        """The words of a field: of a code of light one more than the field has numbers."""
+        """Return the words of a field's components; a code of light has one word more than the field has numbers."""
         by_component = {word.component: word for word in self.contents.words}
         return [by_component[component] for component in _components_of(field)]
 
@@ -256,7 +258,7 @@ class Texts:
 
 
 def _components_of(field: Field) -> tuple[str, ...]:
-    """Return the components that hold the codes of a field."""
+    """Return the components that hold the codes of a field: its own, and for a code of light a fourth, NAME.a."""
     is_light = field.kept is not None and isinstance(field.kept.encoding, LightEncoding)
     return (*field.components, f"{field.name}.a") if is_light else field.components
 

@@ -57,7 +57,7 @@ class Agreement:
 
     @property
     def holds(self) -> bool:
-        """Whether it is the renderer's but for ties."""
+        """Whether the file agrees with the renderer, except for ties in rounding."""
         return self.differing <= MOST_SHARE * self.count and self.steps <= 1 and not self.unpacked
 
     @property
@@ -66,14 +66,14 @@ class Agreement:
         packed = f"the targets of all {self.count} surfaces match the renderer's, bit for bit"
         if self.differing:
             steps = f"{self.steps} step{'s' * (self.steps != 1)}"
-            packed = f"the targets of {self.differing} of {self.count} surfaces differ, by {steps} at most"
+            packed = f"the targets of {self.differing} of {self.count} surfaces differ, by at most {steps}"
         near = f" within {self.decoded:.1g}" if self.decoded else ""
-        back = f"{self.unpacked} numbers come back different" if self.unpacked else f"surfaces come back equal{near}"
+        back = f"{self.unpacked} numbers differ when unpacked" if self.unpacked else f"surfaces come back equal{near}"
         return f"{packed}; {back}"
 
 
 def agreement(code: GBufferCode, count: int = COUNT, seed: int = 0) -> Agreement:
-    """Compare a file's functions with the renderer's, on random surfaces.
+    """Run a file's functions on random surfaces, and return the differences between its results and the renderer's.
 
     Raises:
         MissingError: the tool that runs the language is not installed.
@@ -127,7 +127,8 @@ class Expected:
         return columns
 
     def _numbers(self) -> np.ndarray:
-        """The normal and the numbers that the renderer is given: whole ones as floats."""
+        """Return the normal and the numbers that the renderer is given, uint32 of shape (count, numbers): floats by
+        their bits, whole numbers as floats, and 0 for components that the layout lacks."""
         numbers = np.zeros((len(self._given), NORMAL + len(COMPONENTS)), np.float32)
         numbers[:, :NORMAL] = self._given[:, :NORMAL].view(np.float32)
         kinds = {name: field.kind for field in self.contents.fields for name in field.components}
@@ -200,7 +201,7 @@ def stored_texels(layout: Layout, texels: np.ndarray) -> np.ndarray:
 
 
 def _put(layout: Layout, word: Word, value: np.ndarray, is_float: bool, stored: np.ndarray) -> None:
-    """Store a whole number, or a float by its bits, at the place of a word."""
+    """Store a whole number, or a float by its bits, at the place of a word in `stored`."""
     storage = layout.targets[word.target].storage
     if not word.bits:
         texel = value.view(np.float32) if is_float else _unit(value, storage, word.first)
@@ -249,7 +250,7 @@ def _float_steps(number: np.ndarray, bits: int) -> np.ndarray:
 
 
 def _steps(layout: Layout, word: Word, stored: np.ndarray) -> np.ndarray:
-    """The integers that a word's number is kept as, int64 of shape (count,): how many steps two are apart."""
+    """Return the integers that store a word's number, int64 of shape (count,): differences count steps."""
     storage, texels = layout.targets[word.target].storage, stored[:, word.target]
     if not word.bits:
         number = np.ascontiguousarray(texels[:, word.first]).view(np.float32)

@@ -32,7 +32,7 @@ MEMORY = 4 << 30
 
 
 def main() -> int:
-    """Compile every job that standard input holds."""
+    """Compile every job in the JSON on standard input, print the answers as lines of JSON, and return 0."""
     limit_memory(MEMORY)
     given = json.load(sys.stdin)
     out = own_output()
@@ -69,7 +69,8 @@ def _compile_all(jobs: Sequence[dict[str, str]], architecture: str, say: Callabl
 
 
 def _listed(compiled: dict[str, Kernel], architecture: str, lister: Path) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield each kernel with its listing; kernels are listed one by one if they cannot be listed together."""
+    """Yield each kernel's key and its answer, as a dictionary: `kernels` with figures and listing, or `failed` with
+    the reason. Kernels are listed one by one if they cannot be listed together."""
     if not compiled:
         return
     try:
@@ -86,7 +87,8 @@ def _listed(compiled: dict[str, Kernel], architecture: str, lister: Path) -> Ite
 
 
 def statistics(kernel: Kernel, assembly: str) -> dict[str, int]:
-    """Return a kernel's figures, under the names from which the columns of `cost` are made."""
+    """Return a kernel's known figures by the names that the columns of `cost` are made from; counts of spills are
+    left out unless they are 0."""
     count = len(sass.instructions(assembly))
     figures = {"Instructions": count, "Registers": kernel.registers, "Code size": count * sass.SIZE}
     figures |= {"Stall cycles": sass.stall_cycles(assembly)}

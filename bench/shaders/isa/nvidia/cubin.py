@@ -27,7 +27,7 @@ class Kernel:
 
 
 def kernel_of(cubin: bytes) -> Kernel:
-    """The kernel of a file that holds one. Raises DriverError."""
+    """Return the kernel in an ELF file. Raises DriverError unless the file is sound and has exactly one function."""
     try:
         sections = list(_sections(cubin))
         code = [data for name, data in sections if name.startswith(TEXT)]
@@ -40,9 +40,9 @@ def kernel_of(cubin: bytes) -> Kernel:
 
 
 def _sections(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """(name, contents) of each section."""
+    """Yield (name, contents) of each section of a 64-bit ELF file. Raises ValueError for another kind of file."""
     if data[:5] != b"\x7fELF\x02":
-        raise ValueError("no ELF file of 64 bits")
+        raise ValueError("not a 64-bit ELF file")
     (start,) = struct.unpack_from("<Q", data, 0x28)
     size, count, names = struct.unpack_from("<HHH", data, 0x3A)
     headers = [SECTION.unpack_from(data, start + i * size) for i in range(count)]
@@ -53,7 +53,7 @@ def _sections(data: bytes) -> Iterator[tuple[bytes, bytes]]:
 
 
 def _attributes(data: bytes) -> Iterator[tuple[int, int]]:
-    """(number, figure) of each attribute of two words."""
+    """Yield (number, figure) of each attribute whose value is two words; the figure is the second word."""
     offset = 0
     while offset < len(data):
         kind, number, size = struct.unpack_from("<BBH", data, offset)

@@ -91,7 +91,7 @@ class CudaWriter(Writer):
 
 
 def kind_text(kind: str) -> str:
-    """A type of GLSL as glsl.cuh has it."""
+    """Return a type of GLSL as glsl.cuh has it: `Array<float, 4>` for `float[4]`, and any other type unchanged."""
     scalar, bracket, count = kind.partition("[")
     return f"Array<{scalar}, {count.rstrip(']')}>" if bracket else kind
 

@@ -18,7 +18,15 @@ _JUMP = re.compile(r"\b(?:BRA|BSSY|JMP|CALL|WARPSYNC|BREAK)\b[^;]*?(0x[0-9a-f]+)
 
 
 def listings(codes: Sequence[bytes], architecture: str, program: Path) -> list[str]:
-    """The listing of each kernel, its places counted from its own start. Raises DriverError."""
+    """Return nvdisasm's listing of each kernel, as a text whose places are counted from the kernel's start.
+
+    Args:
+        codes: the machine code of each kernel.
+        architecture: such as sm_86.
+        program: the path of nvdisasm.
+
+    Raises:
+        DriverError: nvdisasm fails, or does not list everything."""
     with tempfile.NamedTemporaryFile(suffix=".bin") as file:
         file.write(b"".join(codes))
         file.flush()
@@ -36,7 +44,8 @@ def listings(codes: Sequence[bytes], architecture: str, program: Path) -> list[s
 
 
 def _parted(lines: Sequence[str], sizes: Sequence[int]) -> list[str]:
-    """The lines of each kernel; sizes in bytes."""
+    """Return nvdisasm's lines split into one text for each kernel, by the kernels' sizes in bytes. Raises DriverError
+    if the lines do not match the sizes."""
     starts = [sum(sizes[:i]) for i in range(len(sizes) + 1)]
     parts: list[list[str]] = [[] for _ in sizes]
     index, is_inside = 0, False
@@ -51,7 +60,7 @@ def _parted(lines: Sequence[str], sizes: Sequence[int]) -> list[str]:
     if any(
         sum(bool(_PLACE.match(line)) for line in some) * SIZE != size for some, size in zip(parts, sizes, strict=True)
     ):
-        raise DriverError("nvdisasm did not list all that it was given")
+        raise DriverError("nvdisasm did not list all instructions")
     return ["\n".join(some) + "\n" for some in parts]
 
 

@@ -38,7 +38,7 @@ class Nvrtc:
         self._asked("nvrtcGetSupportedArchs", numbers)
         known = [f"sm_{number}" for number in numbers]
         if architecture not in known:
-            raise DriverError(f"NVRTC {self.version} does not compile for {architecture}; it knows {', '.join(known)}")
+            raise DriverError(f"NVRTC {self.version} does not compile for {architecture}; known: {', '.join(known)}")
 
     def cubin(self, text: str, architecture: str) -> bytes:
         """Compile a program for an architecture, and return it as an ELF file. Raises DriverError."""
@@ -48,15 +48,15 @@ class Nvrtc:
             options = [option.encode() for option in (f"--gpu-architecture={architecture}", *OPTIONS)]
             given = (ctypes.c_char_p * len(options))(*options)
             if self._library.nvrtcCompileProgram(program, len(options), given):
-                raise DriverError(f"NVRTC does not compile it: {self._log(program)}")
+                raise DriverError(f"NVRTC cannot compile the kernel: {self._log(program)}")
             return self._output_bytes("CUBIN", program)
         finally:
             self._library.nvrtcDestroyProgram(ctypes.byref(program))
 
     def _log(self, program: ctypes.c_void_p) -> str:
-        """The first error that the compiler names, else its first line."""
+        """Return the first line of the compiler's log with an error, else its first line; at most 200 characters."""
         lines = self._output_bytes("ProgramLog", program).decode(errors="replace").strip("\0\n").splitlines()
-        return next((line for line in lines if "error" in line), lines[0] if lines else "it does not say why")[:200]
+        return next((line for line in lines if "error" in line), lines[0] if lines else "no message")[:200]
 
     def _output_bytes(self, what: str, program: ctypes.c_void_p) -> bytes:
         size = ctypes.c_size_t()
@@ -67,4 +67,4 @@ class Nvrtc:
 
     def _asked(self, name: str, *given: object) -> None:
         if status := getattr(self._library, name)(*given):
-            raise DriverError(f"{name} of NVRTC failed with status {status}")
+            raise DriverError(f"NVRTC: {name} failed with status {status}")

@@ -80,7 +80,7 @@ def instructions(assembly: str) -> list[Instruction]:
 
 
 def names(assembly: str) -> list[str]:
-    """The name of each instruction, in order."""
+    """Return the name of each instruction of a listing, in order, without the padding."""
     return [instruction.name for instruction in instructions(assembly)]
 
 
@@ -99,7 +99,7 @@ def issue_slots(_: Mapping[str, int], __: str) -> None:
 
 
 def packed(_: str) -> None:
-    """Nothing: the same instructions compute one number of 16 bits and two."""
+    """Return None: packed instructions are not counted, because the same ones compute one 16-bit number or two."""
     return
 
 
@@ -110,7 +110,7 @@ def rates(family: str) -> Mapping[str, int]:
 
 
 def kinds_in_order(assembly: str, _: str) -> list[str]:
-    """The kind of each instruction of a listing whose instructions are all known, in order."""
+    """Return the kind of each instruction of a listing, in order. All its instructions must be known."""
     return [_KIND[name] for name in names(assembly)]
 
 
@@ -121,7 +121,8 @@ def loops(assembly: str) -> list[range]:
 
 
 def jumps(assembly: str) -> tuple[int, int]:
-    """Return (branches, loops): conditional jumps ahead, and jumps back, without a kernel's last jump, to itself."""
+    """Return (branches, loops): the number of conditional jumps ahead, and of jumps back. A jump to itself, such as a
+    kernel's last one, is in neither."""
     ahead = back = 0
     for _, is_conditional, distance in _jumps(assembly):
         back += distance < 0
@@ -138,8 +139,8 @@ def _jumps(assembly: str) -> Iterator[tuple[Instruction, bool, int]]:
 
 
 def stall_cycles(assembly: str) -> int | None:
-    """The cycles that the compiler has a warp wait after each instruction, added up along the code; None where the
-    listing has no second words."""
+    """Return the sum of the cycles that the compiler makes a warp wait after each instruction of a listing; None if
+    an instruction has no second word there."""
     listed = instructions(assembly)
     return (
         sum(instruction.control >> _STALL & 15 for instruction in listed)

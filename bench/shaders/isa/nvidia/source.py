@@ -24,7 +24,7 @@ MACROS = ("GROUP", "BESIDE_PLANE", "GIVEN", "BESIDE", "MADE")
 
 
 def cuda_of(operation: Operation) -> str:
-    """The kernel's whole text. Raises ShaderError as `functions_of`."""
+    """Return the whole text of an operation's kernel in CUDA. Raises ShaderError as `functions_of` does."""
     head = "".join(f"#define {name} {kind_text(str(operation.defines[name]))}\n" for name in MACROS)
     try:
         parts = (judged(head, "cuda"), own(LANGUAGE), judged(bare(functions_of(operation)), "cuda"), own(KERNEL))

@@ -26,13 +26,13 @@ SECONDS = 10
 
 
 def library() -> Path | None:
-    """NVRTC's shared library."""
+    """Return the path of NVRTC's shared library; None if it is not found."""
     folders = (folder / part for folder in _folders() for part in ("lib", "lib64", "targets/x86_64-linux/lib"))
     return next((path for folder in folders for path in _libraries(folder)), None)
 
 
 def disassembler() -> Path | None:
-    """The program nvdisasm."""
+    """Return the path of the program nvdisasm; None if it is not found."""
     programs = (shutil.which("nvdisasm", path=str(folder / "bin")) for folder in _folders())
     named = next(filter(None, programs), None) or shutil.which("nvdisasm")
     return Path(named) if named else None
@@ -58,7 +58,7 @@ def missing() -> str:
 
 
 def found() -> tuple[Path, Path]:
-    """NVRTC's library and nvdisasm. Raises MissingDriverError."""
+    """Return the paths of NVRTC's library and of nvdisasm. Raises MissingDriverError if either is not found."""
     compiler, lister = library(), disassembler()
     if not compiler or not lister:
         raise MissingDriverError(missing())
@@ -75,7 +75,10 @@ def identity() -> str:
 
 
 def title(number: str) -> str:
-    """Return both tools' names and versions; `number` is NVRTC's own version. Raises MissingDriverError."""
+    """Return one text with both tools' names and versions. Raises MissingDriverError.
+
+    Args:
+        number: NVRTC's own version, which is used if its library is not from a package of pip's."""
     compiler, lister = found()
     compiler_title = f"NVRTC {_package_version(compiler) or number} (CUDA's compiler, not the graphics driver's)"
     return f"{compiler_title}, nvdisasm {_version(lister)}"
@@ -83,7 +86,7 @@ def title(number: str) -> str:
 
 @cache
 def _package_version(path: Path) -> str:
-    """The version of the package of pip's that a file is of; empty where it is of none."""
+    """Return the version of the pip package of NVRTC that a file belongs to; empty if it belongs to none."""
     for package in distributions():
         name = package.metadata["Name"] or ""
         if name.startswith("nvidia-cuda-nvrtc") and any(package.locate_file(f) == path for f in package.files or ()):
@@ -98,6 +101,6 @@ def _version(lister: Path) -> str:
             [lister, "--version"], capture_output=True, encoding="utf-8", errors="replace", timeout=SECONDS
         )
     except (OSError, subprocess.TimeoutExpired):
-        return "of no version"
+        return "(unknown version)"
     match = re.search(r"\bV(\d+(?:\.\d+)+)", done.stdout)
-    return match[1] if match else "of no version"
+    return match[1] if match else "(unknown version)"

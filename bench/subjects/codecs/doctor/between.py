@@ -68,17 +68,18 @@ TURNS = (
 
 
 def _other_fold(codes: np.ndarray) -> np.ndarray:
-    """Outside of the diamond with the sizes of the two numbers swapped."""
+    """Return codes with the magnitudes of the two numbers swapped outside of the diamond; signs are kept."""
     swapped = np.copysign(np.abs(codes[:, ::-1]), codes)
     return np.where((np.abs(codes).sum(axis=1) > 1)[:, None], swapped, codes)
 
 
-FOLDS = (NOTHING, Step("the other function's fold, with .yx for .xy,", _other_fold))
+FOLDS = (NOTHING, Step("the other fold, with .yx instead of .xy,", _other_fold))
 
 
 @cache
 def _orders(size: int) -> tuple[Step, ...]:
-    """Return every way to swap and negate the numbers of a code, with the shortest description first."""
+    """Return a Step for every way to swap and negate the numbers of a code, with the shortest description first: the
+    step that changes nothing."""
     orders = []
     for order in itertools.permutations(range(size)):
         for signs in itertools.product((1, -1), repeat=size):
@@ -118,7 +119,7 @@ def _one_after_another(parts: Sequence[Step]) -> Step:
 
 
 def decoded_after(probe: Probe, codes: np.ndarray, changes: Sequence[Step]) -> np.ndarray:
-    """Decode codes after each step; return directions of shape (steps, count, 3)."""
+    """Decode codes after each step by itself; return directions of shape (steps, count, 3)."""
     given = np.concatenate([step.change(codes) for step in changes])
     return probe.decode(given).reshape(len(changes), len(codes), 3)
 
@@ -139,7 +140,7 @@ def step_between(trip: Trip, probe: Probe) -> tuple[Step, Domain] | None:
 
 
 def _unlikely(step: Step, codes: np.ndarray) -> tuple[int, bool, float]:
-    """Return how many changes a step has, whether its codes exceed [-1, 1], and how little of that range they use."""
+    """Return a sort key, smallest for the likeliest step: few changes, codes within [-1, 1], a wide range."""
     changed = step.change(codes)
     return step.said.count(THEN), bool(np.abs(changed).max() > 1 + BEYOND), -round(float(np.ptp(changed)), 1)
 
@@ -153,7 +154,7 @@ def axes_of(trip: Trip) -> str:
 
 
 def turns() -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
-    """Yield every order of the axes with every sign, except for the one that changes nothing."""
+    """Yield (order, signs) for every order of the axes with every sign, except for the pair that changes nothing."""
     for order in itertools.permutations(range(3)):
         for signs in itertools.product((1, -1), repeat=3):
             if (order, signs) != ((0, 1, 2), (1, 1, 1)):
@@ -161,8 +162,8 @@ def turns() -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
 
 
 def axes_said(order: Sequence[int], signs: Sequence[int]) -> str:
-    """Axes in another order, or with another sign, in words."""
+    """Return in words how axes are swapped or reversed: `x and y swapped and z reversed`; empty if none is."""
     moved = [AXES[axis] for axis in range(3) if order[axis] != axis]
     reversed_ = [AXES[axis] for axis in range(3) if signs[axis] < 0]
-    parts = [f"{' and '.join(moved)} swapped" if len(moved) == 2 else "x, y and z in another order"] if moved else []
+    parts = [f"{' and '.join(moved)} swapped" if len(moved) == 2 else "x, y and z permuted"] if moved else []
     return " and ".join([*parts, *([f"{' and '.join(reversed_)} reversed"] if reversed_ else [])])

@@ -30,11 +30,12 @@ SHIFTED, MOST = 1.2, 24.0
 HALF, NEARLY = 0.5, 0.1
 
 CUT_OFF = "codes are truncated instead of rounded: rounding would {}"
-SHIFT = "codes are shifted: without it the error would be {:.0f}% of this; are they truncated, or scaled by a step?"
+SHIFT = "codes are shifted, and without the shift errors would be {:.0f}% as large: is a scale or a rounding wrong?"
 
 
 def cut_off(held: Trip, probe: Probe) -> Iterator[str]:
-    """Yield a line if codes are truncated or otherwise shifted; nothing if decode returns the middle of each cell.
+    """Yield one line if codes are truncated or otherwise shifted; nothing if decode returns the middle of each cell,
+    or if too few patches can be compared.
 
     Args:
         held: directions that the encoding is made for, and the directions that they decode to.
@@ -55,7 +56,12 @@ def cut_off(held: Trip, probe: Probe) -> Iterator[str]:
 
 
 def _patches(centres: np.ndarray, probe: Probe, radius: float) -> Iterator[np.ndarray]:
-    """Yield the shifts of the decoded directions in each patch, in its plane: (count, 2)."""
+    """Yield for each patch, of random directions around a centre, directions less decoded directions in the tangent
+    plane: (count, 2). Shifts of `radius` or more are left out, because they cross a seam.
+
+    Args:
+        centres: a direction per patch, (patches, 3).
+        radius: half the width of a patch, in radians."""
     inside = np.random.default_rng(3).uniform(-radius, radius, size=(len(centres), INSIDE, 2))
     planes = _planes(centres)
     n = unit((centres[:, None] + np.einsum("pik,pkj->pij", inside, planes)).reshape(-1, 3)).astype(np.float32)
@@ -66,13 +72,13 @@ def _patches(centres: np.ndarray, probe: Probe, radius: float) -> Iterator[np.nd
 
 
 def _planes(n: np.ndarray) -> np.ndarray:
-    """Two directions across each of some directions: (count, 2, 3)."""
+    """Return two tangents at right angles for each direction: (count, 2, 3)."""
     tangent = unit(np.cross(n, np.eye(3)[np.argmin(np.abs(n), axis=1)]))
     return np.stack([tangent, np.cross(n, tangent)], axis=1)
 
 
 def _squared_shift(shifts: np.ndarray) -> float:
-    """The squared length of a patch's shift, counted in the covariance of its shifts."""
+    """Return the squared length of a patch's mean shift, in units of the covariance of its shifts (Mahalanobis)."""
     shift = shifts.mean(axis=0)
     return float(shift @ np.linalg.pinv(np.cov(shifts.T)) @ shift)
 

@@ -54,7 +54,7 @@ def bad(probe: Probe, domain: Domain) -> np.ndarray:
 
 
 def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
-    """Diagnose the likely mistakes.
+    """Return the Diagnosis of two functions: domain, likely mistakes as lines, and where they are not finite.
 
     Args:
         probe: the two functions.
@@ -76,14 +76,14 @@ def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
         # Its author may rely on these directions as well. A mistake that makes them is named in place of what follows
         # from it.
         wrong = [line for line in folds.mistakes(probe) if line not in diagnosis.wrong] + diagnosis.wrong
-        return replace(diagnosis, wrong=[hole, *wrong] if wrong else [f"{hole}; all other directions come back"])
+        return replace(diagnosis, wrong=[hole, *wrong] if wrong else [f"{hole}; all other directions round-trip"])
     if diagnosis.wrong or diagnosis.domain != SPHERE:
         return replace(diagnosis, broken=hole)
     return Diagnosis(whole[0], [], hole=trip.hole)
 
 
 def _finite_diagnosis(trip: Trip, probe: Probe, gl: Device, meant: Domain | None) -> Diagnosis:
-    """Diagnose the likely mistakes for directions that are finite.
+    """Return the Diagnosis of a trip whose codes and decoded directions are all finite.
 
     Args:
         meant: the domain that the user says it is made for; None to find out.
@@ -108,7 +108,7 @@ def _nearly_back(trip: Trip, domain: Domain) -> Domain | None:
 
 
 def _near_diagnosis(trip: Trip, probe: Probe, domain: Domain, mistakes: list[str]) -> Diagnosis:
-    """Return the diagnosis of a domain that nearly round-trips, with the mistakes found."""
+    """Return the Diagnosis of a domain that nearly round-trips: mistakes, then lines on lengths and ranges."""
     return Diagnosis(domain, [*mistakes, *exact.lengths(domain.held(trip)), *exact.ranges(trip, domain, probe)])
 
 
@@ -158,7 +158,7 @@ def _half_faults(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
         return
     if mistakes := folds.mistakes(probe):
         which = f"{sides.share}directions with {half.lost_text}"
-        yield from (f"{mistake}: {which} are lost, {gone.worst}" for mistake in mistakes)
+        yield from (f"{mistake}: {which} are lost; {gone.worst}" for mistake in mistakes)
     elif line := lost(sides, half):
         why = "; ".join([*unread(probe, trip.codes), line])
         yield f"{why}; {gone.worst}"
@@ -170,11 +170,11 @@ def _elsewhere_text(half: Domain, gone: Trip) -> str:
     """Return in words how directions decode in a half that both functions know."""
     if axes := axes_of(gone):
         return f"directions with {half.lost_text} come back with {axes}: {gone.worst}"
-    return f"of directions with {half.lost_text} {exact.lost(gone)}: {gone.worst}"
+    return f"directions with {half.lost_text}: {exact.lost(gone)}; {gone.worst}"
 
 
 def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
-    """Diagnose functions that are not a pair, or not a pair on the domain that a user gives."""
+    """Return the Diagnosis of functions that are not a pair, or not a pair on the domain that a user gives."""
     nearby = given if given.name else guessed(trip, NEARLY_DEG)
     if given.name and (mistakes := list(nearly.mistakes(given.held(trip), probe))):
         return _near_diagnosis(trip, probe, given, mistakes)
@@ -201,7 +201,7 @@ def _is_back_unclipped(trip: Trip, probe: Probe) -> bool:
 
 
 def _scale_text(trip: Trip, held: Trip, probe: Probe) -> str:
-    """The scale between the two that makes a pair, if of a half alone; empty where none does."""
+    """Return in words the scale between the two functions that makes a pair, if only on one half; else empty."""
     begin = nearly.start(held, probe)
     decoded = probe.decode(begin.of(trip.codes).astype(np.float32))
     domain = guessed(replace(trip, decoded=decoded), NEARLY_DEG)
@@ -215,7 +215,8 @@ def _apart_text(held: Trip, likely: Domain) -> str:
 
 
 def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
-    """Why nothing comes back, in a line: the plainest reason that fits."""
+    """Return one line on why directions do not round-trip: swapped or reversed axes, everywhere or in one half;
+    otherwise the mean error, with what would make a pair or the worst direction."""
     if axes := axes_of(trip):
         return f"every direction comes back with {axes}{_or_numbers(trip, probe)}: {trip.worst}"
     for half in HALVES:
@@ -226,7 +227,8 @@ def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> st
 
 
 def _or_numbers(trip: Trip, probe: Probe) -> str:
-    """Return in words the change of the code's numbers that has the same effect as other axes; empty if none has."""
+    """Return in words, after a comma, the change of the code's numbers that makes a pair as other axes would; empty
+    if no change does."""
     between = step_between(trip, probe)
     return f", as with {between[0].said} between the two" if between else ""
 
@@ -255,7 +257,7 @@ def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
 
 
 def _likely_domain(trip: Trip) -> Domain:
-    """The half that comes back far better than the rest, where nothing comes back well; the sphere if none does."""
+    """Return the first half whose mean error is far below that of the other directions; else the sphere."""
     angles = trip.angles()
     for half in HALVES:
         inside = half.holds(trip)

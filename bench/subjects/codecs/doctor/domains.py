@@ -31,17 +31,17 @@ class Domain:
     side: int = 1
 
     def holds(self, trip: Trip) -> np.ndarray:
-        """Return which directions of a trip are in the domain."""
+        """Return which directions of a trip are in the domain, bool of shape (count,)."""
         if self.name == HEMISPHERE:
             return trip.n[:, self.axis] * self.side >= 0
         return np.sum(trip.n * trip.view, axis=1) < 0 if self.name == "view" else np.full(len(trip.n), True)
 
     def held(self, trip: Trip) -> Trip:
-        """The part of a trip whose directions it has."""
+        """Return the part of a trip whose directions are in the domain."""
         return trip.of(self.holds(trip))
 
     def lost(self, trip: Trip) -> Trip:
-        """The part of a trip that a hemisphere lacks, without its rim."""
+        """Return the part of a trip in the other half of a hemisphere, without its rim."""
         return trip.of(trip.n[:, self.axis] * self.side < -RIM)
 
     @property
@@ -56,7 +56,7 @@ class Domain:
 
     @property
     def made_for(self) -> str:
-        """The domain's description in notes; empty for the sphere."""
+        """The domain's description in notes, such as `normals with z >= 0`; empty for the sphere."""
         return f"normals with {self.text}" if self.name == HEMISPHERE else MADE_FOR.get(self.name, "")
 
     @property
@@ -65,7 +65,8 @@ class Domain:
         return (self.axis, self.side) != (2, 1)
 
     def measured(self, encoding: Encoding) -> Encoding:
-        """An encoding of this domain as tables measure it: a hemisphere's axis is their z."""
+        """Return an encoding with this domain; if the domain is a hemisphere of another axis, rotated so that the
+        axis is z, with the unrotated encoding as `own`."""
         unturned = replace(encoding, domain=self.name or SPHERE.name)
         # Where z becomes its y, components move one place back: by the turn whose pole is x.
         turn = {0: "y", 1: "x", 2: "z"}[self.axis]
@@ -94,7 +95,7 @@ def guessed(trip: Trip, within: float) -> Domain:
 
 
 def finite(trip: Trip) -> list[Domain]:
-    """The domains where every direction that is tried is finite; empty where none is."""
+    """Return the domains in which encode and decode are finite for every direction tested; empty if no domain is."""
     return [domain for domain in IN_TURN if trip.is_finite[domain.holds(trip)].all()]
 
 

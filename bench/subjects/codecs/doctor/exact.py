@@ -52,7 +52,8 @@ def is_unit(codes: np.ndarray, share: float = NEARLY_FULL) -> bool:
 
 
 def values(codes: np.ndarray, number: int) -> np.ndarray:
-    """The values of a number that has few, such as the face of a cube, ascending; empty where it has more."""
+    """Return the values of number `number` of the codes if few are distinct, such as the face of a cube, ascending;
+    otherwise an empty array."""
     levels = np.unique(np.round(codes[:, number], 4))
     return levels if len(levels) <= FEW_VALUES else levels[:0]
 
@@ -61,7 +62,7 @@ def lost(trip: Trip, within: float = SAME_DEG) -> str:
     """Return in words how many directions are off by more than an angle in degrees, and the largest error."""
     angles = trip.angles()
     count = int((angles > within).sum())
-    return f"{count} of {len(angles)} come back more than {within:g} degree off, up to {angles.max():.3g}"
+    return f"{count} of {len(angles)} are off by more than {within:g} degree, up to {angles.max():.3g} degrees"
 
 
 def unusual(trip: Trip) -> float:
@@ -70,7 +71,8 @@ def unusual(trip: Trip) -> float:
 
 
 def seam(trip: Trip, probe: Probe) -> Iterator[str]:
-    """Directions that come back elsewhere though nearly all come back."""
+    """Yield one line if more than a few directions are lost: at a single pole, only where components are 0 or equal,
+    or at a seam. Nothing is yielded otherwise."""
     off = trip.angles() > unusual(trip)
     at_a_pole = np.abs(trip.n).max(axis=1) > np.cos(np.radians(2 * POLE_DEG))
     if off.mean() <= FEW:
@@ -83,11 +85,11 @@ def seam(trip: Trip, probe: Probe) -> Iterator[str]:
         yield f"{_where(gone, is_fold)}: {off.sum()} of the directions tested; {trip.worst}"
     else:
         tried = f"{off.sum()} of {len(off)} tested directions"
-        yield f"a seam: {tried} come back more than {SAME_DEG:g} degree off; {trip.worst}"
+        yield f"a seam: {tried} are off by more than {SAME_DEG:g} degree; {trip.worst}"
 
 
 def _is_only_there(gone: Trip, probe: Probe) -> bool:
-    """Whether directions immediately next to these round-trip."""
+    """Whether all random directions immediately next to the lost directions round-trip."""
     random = np.random.default_rng(2).normal(size=(TRIES, *gone.n.shape)) * BESIDE
     beside = (gone.n + random).reshape(-1, 3).astype(np.float32)
     back = probe.decode(np.clip(probe.encode(beside), -1, 1))
@@ -95,10 +97,11 @@ def _is_only_there(gone: Trip, probe: Probe) -> bool:
 
 
 def _where(gone: Trip, is_fold: bool) -> str:
-    """Return in words what the lost directions have in common; in an octahedral fold, a number to be folded is 0."""
+    """Return in words what the lost directions have in common: in an octahedral fold, or if each has a component of
+    0, that sign() returns 0; otherwise that components are equal or 0."""
     if is_fold or (gone.n == 0).any(axis=1).all():
         return "sign() returns 0 for 0: only directions with a component of 0 are lost, not their neighbours"
-    return "only directions with equal components or one of 0 are lost, not their neighbours: a comparison or sign()"
+    return "only directions with equal components or a 0 are lost, not their neighbours: check comparisons and sign()"
 
 
 def poles(trip: Trip) -> Iterator[str]:
@@ -116,7 +119,7 @@ def poles(trip: Trip) -> Iterator[str]:
             sign = "+" if side > 0 else "-"
             worst = int(np.argmax(lost))
             near_deg, off_deg = beside[near][worst], around.angles()[worst]
-            loss = f"directions {near_deg:.2g} degrees from it come back {off_deg:.2g} degrees off"
+            loss = f"directions {near_deg:.2g} degrees from the pole are off by {off_deg:.2g} degrees"
             yield f"large errors around the pole {sign}{AXES[axis]}: {loss}; {around.example(worst)}"
 
 
@@ -124,13 +127,13 @@ def lengths(trip: Trip) -> Iterator[str]:
     norms = np.linalg.norm(trip.decoded.astype(np.float64), axis=1)
     if np.abs(norms - 1).max() > LENGTH:
         worst = int(np.argmax(np.abs(norms - 1)))
-        message = f"decode gives lengths from {norms.min():.3g} to {norms.max():.3g}; normalize() is missing"
+        message = f"decoded lengths range from {norms.min():.3g} to {norms.max():.3g}; normalize() is missing"
         yield f"{message}: {trip.example(worst)}"
 
 
 def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
-    """Yield a line on each number that uses too little of a storage's range for all directions, or that exceeds the
-    range for directions that the encoding is made for."""
+    """Yield a line on each number that is constant, that uses too little of a storage's range for all directions, or
+    that exceeds the range for directions that the encoding is made for; nothing for packed codes."""
     if probe.is_packed:
         return
     held = domain.held(trip)
@@ -149,7 +152,7 @@ def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
             yield f"{reach}: {CLIPPED} {probe.range}"
         elif (used := (high[number] - low[number]) / 2) < USED and not len(values(trip.codes, number)):
             between = f"{probe.own(low[number]):.3g} to {probe.own(high[number]):.3g}"
-            yield f"component {number + 1} of the code is {between}: {100 * (1 - used):.0f}{UNUSED}"
+            yield f"component {number + 1} of the code ranges from {between}: {100 * (1 - used):.0f}{UNUSED}"
 
 
 def bits_used(codes: np.ndarray) -> int:
@@ -167,7 +170,8 @@ def bits_used(codes: np.ndarray) -> int:
 
 
 def spared(trip: Trip, probe: Probe) -> Iterator[str]:
-    """Numbers of few values that do not reach both ends of their range, which loses nothing unless bits are short."""
+    """Yield a line on each number of few values that does not reach both ends of its range, or on a packed code that
+    does not use all 32 bits. Such codes lose nothing unless bits are short."""
     if probe.is_packed:
         used = bits_used(trip.codes)
         yield from [f"only {used} of the code's 32 bits are used"] if used < 32 else ()
@@ -176,4 +180,4 @@ def spared(trip: Trip, probe: Probe) -> Iterator[str]:
         levels = values(trip.codes, number)
         if len(levels) > 1 and (levels[-1] - levels[0]) / 2 < USED:
             some = f"{len(levels)} values from {probe.own(levels[0]):.3g} to {probe.own(levels[-1]):.3g}"
-            yield f"component {number + 1} of the code has {some}; the rest of {probe.range} is unused"
+            yield f"component {number + 1} of the code takes {some}; the rest of {probe.range} is unused"

@@ -34,21 +34,23 @@ def _signs(p: np.ndarray) -> np.ndarray:
 
 
 def _sum(v: np.ndarray, bare: Numbers) -> np.ndarray:
-    """|v.x| + |v.y| + ..., some of them without their bars: (count, 1)."""
+    """Return |v.x| + |v.y| + ..., without the absolute value for the components in `bare`: (count, 1)."""
     return np.where(np.isin(np.arange(v.shape[1]), bare), v, np.abs(v)).sum(axis=1, keepdims=True)
 
 
 def _fold(p: np.ndarray, bare: Numbers = ()) -> np.ndarray:
-    """(1 - |p.yx|) sign(p), some of the two without their bars."""
+    """Return (1 - |p.yx|) sign(p), (count, 2), without the absolute value for the components of p.yx in `bare`."""
     swapped = p[:, ::-1]
     return (1 - np.where(np.isin(np.arange(2), bare), swapped, np.abs(swapped))) * _signs(p)
 
 
 def _encoder(fold: Fold = _fold, bare: Numbers = (), in_place: bool = False) -> Side:
-    """An encoder.
+    """Return an octahedral encode from (count, 3) to (count, 2), right or with a mistake.
 
     Args:
-        in_place: whether m itself is divided, so that a negative sum changes the sign of the z that asks for the fold.
+        fold: the function for the half with negative z.
+        bare: the components without an absolute value in the sum.
+        in_place: whether m itself is divided, so that a negative sum changes the sign of the z that decides the fold.
     """
 
     def encode(m: np.ndarray) -> np.ndarray:
@@ -69,7 +71,8 @@ def _decoder(unfold: Fold = _fold, bare: Numbers = (), everywhere: bool = False)
 
 
 def _by_size(bare: Numbers) -> Side:
-    """n.xy -= sign(n.xy) max(-n.z, 0), which is another unfold where n.z lacks bars."""
+    """Return a decode that unfolds by n.xy -= sign(n.xy) max(-n.z, 0), where the sum in n.z has no absolute value for
+    the components in `bare`."""
 
     def decode(c: np.ndarray) -> np.ndarray:
         z = 1 - _sum(c, bare)
@@ -79,7 +82,7 @@ def _by_size(bare: Numbers) -> Side:
 
 
 def _beyond(c: np.ndarray) -> np.ndarray:
-    """Return how far a point is outside of the diamond."""
+    """Return |x| + |y| - 1 of each point, (count, 1): positive outside of the diamond."""
     return _sum(c, ()) - 1
 
 
@@ -91,30 +94,33 @@ ENCODERS: Mapping[str, Sequence[Side]] = MappingProxyType(
     {
         "": [_encoder()],
         "its fold is missing": [_encoder(lambda p: p)],
-        "its fold has .xy where .yx belongs": [_encoder(lambda p: (1 - np.abs(p)) * _signs(p))],
+        "its fold uses .xy instead of .yx": [_encoder(lambda p: (1 - np.abs(p)) * _signs(p))],
         "abs() is missing in its fold": [_encoder(fold) for fold in BARE_FOLDS],
         "abs() is missing in |x| + |y| + |z|": [
             _encoder(_fold, bare, in_place) for bare in SOME_OF_THREE for in_place in (False, True)
         ],
-        "its fold has no sign": [_encoder(lambda p: 1 - np.abs(p[:, ::-1]))],
+        "the sign is missing in its fold": [_encoder(lambda p: 1 - np.abs(p[:, ::-1]))],
     }
 )
 DECODERS: Mapping[str, Sequence[Side]] = MappingProxyType(
     {
         "": [_decoder()],
         "its unfold is missing": [_decoder(lambda c: c)],
-        "its unfold has .xy where .yx belongs": [_decoder(lambda c: (1 - np.abs(c)) * _signs(c))],
+        "its unfold uses .xy instead of .yx": [_decoder(lambda c: (1 - np.abs(c)) * _signs(c))],
         "abs() is missing in its unfold": [_decoder(fold) for fold in BARE_FOLDS],
         "abs() is missing in 1 - |x| - |y|": [
             *(_decoder(_fold, bare) for bare in SOME_OF_TWO),
             *(_by_size(bare) for bare in SOME_OF_TWO),
         ],
-        "its unfold has no sign": [_decoder(lambda c: 1 - np.abs(c[:, ::-1])), _decoder(lambda c: c - _beyond(c))],
-        "its unfold has the wrong sign": [
+        "the sign is missing in its unfold": [
+            _decoder(lambda c: 1 - np.abs(c[:, ::-1])),
+            _decoder(lambda c: c - _beyond(c)),
+        ],
+        "the sign is wrong in its unfold": [
             _decoder(lambda c: c + _signs(c) * _beyond(c)),
             _decoder(lambda c: -_fold(c)),
         ],
-        "its unfold is also done where z > 0": [_decoder(everywhere=True)],
+        "its unfold is also applied if z > 0": [_decoder(everywhere=True)],
     }
 )
 
@@ -127,7 +133,7 @@ class Axes:
     is_turned: bool = False
 
     def code(self, p: np.ndarray) -> np.ndarray:
-        """The code of a point of the octahedron's square."""
+        """Return the code of a point of the octahedron's square."""
         return self._turned_points(p) / 2 if self.is_turned else p
 
     def point(self, c: np.ndarray) -> np.ndarray:
@@ -141,7 +147,8 @@ class Axes:
 
 @cache
 def frames() -> tuple[Axes, ...]:
-    """Return every order of the axes with every sign, also turned by 45 degrees about the pole, or in the codes."""
+    """Return the Axes of every order and sign of the axes: as they are, turned by 45 degrees about the pole, and
+    turned in the codes."""
     half = np.sqrt(0.5)
     about = np.array([[half, half, 0], [half, -half, 0], [0, 0, 1]])
     plain = [
@@ -161,7 +168,7 @@ class Found:
     decoder: Mapping[str, set[int]]
 
     def mistakes(self) -> Iterator[str]:
-        """The mistake of one side, where the other is right in the same axes."""
+        """Yield the mistake of one side if the other is right in the same axes; nothing if both are right."""
         right = self.encoder.get("", set()), self.decoder.get("", set())
         if right[0] & right[1]:
             return
@@ -171,14 +178,15 @@ class Found:
 
 
 def mistakes(probe: Probe) -> list[str]:
-    """The mistake of an octahedral map, also of one whose codes are in [0, 1] but for the mistake; none of others."""
+    """Return the mistakes of an octahedral map, with codes in [-1, 1] or [0, 1], as lines; else empty."""
     if probe.size != 2:
         return []
     return list(found(probe).mistakes()) or list(found(of_unit(probe)).mistakes())
 
 
 def found(probe: Probe) -> Found:
-    """Return which octahedral maps the two functions of a code of two numbers match."""
+    """Return the octahedral maps, right or with a known mistake, that the two functions match, and in which axes.
+    Codes must have two numbers."""
     n, codes = directions()[-COUNT:], np.random.default_rng(1).uniform(-1, 1, size=(COUNT, 2)).astype(np.float32)
     given, back = probe.encode(n), unit(probe.decode(codes))
     # In every axes at once: (axes, count, 3), and the points that codes stand for.
@@ -210,7 +218,8 @@ def _matching_axes(models: Mapping[str, Sequence[Side]], alike: Callable[[Side],
 
 
 def _alike(modelled: np.ndarray, own: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """Return in which axes results, (axes, count, size), match a user's for nearly all rows that count."""
+    """Return in which axes results, (axes, count, size), match a user's results for nearly all rows that count: bool
+    of shape (axes,)."""
     with np.errstate(invalid="ignore"):
         near = (np.abs(modelled - own) < NEAR * np.maximum(1, np.abs(own))).all(axis=2)
     # A sum that is 0 is finite in neither.

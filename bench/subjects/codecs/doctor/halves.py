@@ -35,7 +35,7 @@ CELLS, RIM_OF_CELLS = 16, 0.15
 
 
 def square(size: int) -> np.ndarray:
-    """Codes spread over all that a storage holds, corners and edges included: (count, size)."""
+    """Return codes on a regular grid over all that a storage holds, corners and edges included: (count, size)."""
     axis = np.linspace(-1, 1, ACROSS.get(size, 3))
     return np.array(list(itertools.product(axis, repeat=size)), np.float32)
 
@@ -63,7 +63,8 @@ class Sides:
 
 
 def _cells(n: np.ndarray, half: Domain) -> np.ndarray:
-    """Return the cells of the sphere that directions are in, as whole numbers, negative in the half itself."""
+    """Return the cell of the sphere that each direction is in, as a whole number; negative in the half itself, and
+    for a direction that is not finite."""
     height = -half.side * n[:, half.axis]
     x, y = (n[:, (half.axis + step) % 3] for step in (1, 2))
     sector = np.floor((np.arctan2(y, x) / (2 * np.pi) + 0.5) * SECTORS).clip(max=SECTORS - 1)
@@ -76,15 +77,15 @@ def lost(sides: Sides, half: Domain) -> str:
     axes = axes_of(sides.gone)
     which = f"{sides.share}directions with {half.lost_text}{f', which come back with {axes}' if axes else ''}"
     if sides.encoder_knows and not sides.decoder_reaches:
-        return f"decode loses {which}: encode gives them codes of their own, but no code decodes to most of them"
+        return f"decode loses {which}: encode gives them codes of their own, but no code decodes to most of these"
     if sides.decoder_reaches and not sides.encoder_knows:
-        reason = "it gives them the codes of other directions, although decode reaches them from unused codes"
+        reason = "it gives them the codes of other directions, although unused codes decode to them"
         return f"encode loses {which}: {reason}"
     return ""
 
 
 def unread(probe: Probe, codes: np.ndarray) -> Iterator[str]:
-    """Numbers that the encoder fills and the decoder does not read."""
+    """Yield a line on each number that encode fills and decode does not read."""
     before = probe.decode(np.clip(codes, -1, 1))
     for number in range(probe.size):
         if np.ptp(np.clip(codes[:, number], -1, 1)) < SAME_CODE:
@@ -92,11 +93,12 @@ def unread(probe: Probe, codes: np.ndarray) -> Iterator[str]:
         changed = np.clip(codes, -1, 1).copy()
         changed[:, number] = np.random.default_rng(number).permutation(changed[:, number])
         if np.array_equal(probe.decode(changed), before):
-            yield f"decode does not read component {number + 1} of the code, which encode fills"
+            yield f"decode does not read component {number + 1} of the code, although encode writes it"
 
 
 def unused(trip: Trip, probe: Probe) -> Iterator[str]:
-    """The share of the square that no direction is given, of codes of two numbers that come back."""
+    """Yield a line with the share of the square that codes use, if it is small; nothing unless codes have two numbers
+    and are not packed."""
     cells = np.unique(np.floor((np.clip(trip.codes, -1, 1) * 0.5 + 0.5) * CELLS).clip(max=CELLS - 1), axis=0)
     # Cells at the rim count whole. Where most are used nothing is wasted, and encode is not asked for more.
     if probe.size != 2 or probe.is_packed or len(cells) / CELLS**2 > LEAST_USED + RIM_OF_CELLS:

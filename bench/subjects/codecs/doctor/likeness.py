@@ -35,13 +35,14 @@ class Likeness:
     decoder: tuple[str, ...]
 
     def shared(self, domain: str = "") -> str:
-        """Return the encoding that both match, of a domain if one is given; empty if they share no encoding."""
+        """Return the name of the first encoding that both functions match, only of this domain if one is given; empty
+        if they share no encoding."""
         both = [name for name in self.encoder if name in self.decoder]
         return next((name for name in both if domain in ("", ENCODINGS[name].domain)), "")
 
 
 def likeness(gl: Device, probe: Probe, domain: Domain) -> Likeness:
-    """Return the encodings of the catalogue that a user's functions match on a domain."""
+    """Return the names of the catalogue's encodings that a user's encode and decode each match on a domain."""
     n = domain.held(trip_of(probe, directions())).n[-COUNT:]
     matrices = np.stack([axes.matrix for axes in frames()[:AXES]])
     # Of shape (axes, count, 3): each direction in each axes.
@@ -54,7 +55,8 @@ def likeness(gl: Device, probe: Probe, domain: Domain) -> Likeness:
 
 
 def names_alone(gl: Device, probe: Probe, is_encoder: bool) -> tuple[str, ...]:
-    """The encodings of the catalogue that one function alone is of: of all directions, else of those with z >= 0."""
+    """Return the names of the catalogue's encodings that one function alone matches, on all directions, otherwise on
+    those with z >= 0; empty if none match."""
     for domain in (SPHERE, HALVES[0]):
         resemblance = likeness(gl, probe, domain)
         if names := resemblance.encoder if is_encoder else resemblance.decoder:
@@ -79,7 +81,7 @@ def _held_mask(encoding: Encoding, turned: np.ndarray) -> np.ndarray:
 
 
 def _is_encoder(own: np.ndarray, codes: np.ndarray, turned: np.ndarray, encoding: Encoding) -> bool:
-    """Whether a user's codes are an encoding's in some axes, but for a matrix and a shift of their numbers."""
+    """Whether a user's codes equal an encoding's in some axes, up to a matrix and a shift of the numbers."""
     return any(
         _is_linear_fit(own[held], its[held]) for its, held in zip(codes, _held_mask(encoding, turned), strict=True)
     )
@@ -97,7 +99,7 @@ def _is_linear_fit(own: np.ndarray, codes: np.ndarray) -> bool:
 
 
 def _decoders(probe: Probe, codes: Mapping[str, np.ndarray], turned: np.ndarray) -> tuple[str, ...]:
-    """The encodings whose codes a user's decoder takes, but for a range, a turn and axes."""
+    """Return the names of the encodings whose codes a user's decoder takes, up to a range, a turn and axes."""
     changes = _code_steps(probe.size)
     names = []
     for name, its in codes.items():

@@ -70,7 +70,7 @@ class Lattice:
         return 2 ** (self.bits - (not self.is_unit)) - (not self.is_one_more)
 
     def is_of(self, storage: Storage, size: int) -> bool:
-        """Whether the first channels of a storage have these steps, as many as a code has numbers."""
+        """Whether a storage's first `size` channels are UNORM or SNORM with the steps of this lattice."""
         scales = {storage.scale(channel) for channel in range(min(size, storage.channels))}
         return storage.kind == ("unorm" if self.is_unit else "snorm") and scales == {self.steps}
 
@@ -85,7 +85,8 @@ class Lattice:
 
 
 def lattice_of(codes: np.ndarray) -> Lattice | None:
-    """Return the coarsest lattice that contains all codes; None if no lattice does."""
+    """Return the coarsest lattice that nearly all numbers of the codes are on; None if no lattice fits, or if the
+    codes have too few values to tell."""
     for bits in BITS:
         for lattice in (Lattice(bits, True), Lattice(bits, False), Lattice(bits, True, True)):
             whole = lattice.whole(codes.astype(np.float64))
@@ -107,7 +108,7 @@ class Start:
         return self.about * (1 - self.scale)
 
     def of(self, codes: np.ndarray) -> np.ndarray:
-        """Codes, scaled and shifted as the search begins."""
+        """Return codes times `scale` plus `shift`."""
         return codes * self.scale + self.shift
 
 
@@ -125,7 +126,8 @@ def start(trip: Trip, probe: Probe) -> Start:
 
 
 def wanted(trip: Trip, probe: Probe, begin: Start) -> np.ndarray:
-    """The codes that the decoder wants, of shape (count, size); NaN where Newton's method leads to none."""
+    """Return the codes that decode to the trip's directions, found from `begin` by Newton's method: (count, size);
+    NaN where the method fails."""
     codes = begin.of(trip.codes.astype(np.float64))
     for _ in range(ROUNDS):
         codes = codes + _towards(trip.n, codes, probe)
@@ -133,7 +135,8 @@ def wanted(trip: Trip, probe: Probe, begin: Start) -> np.ndarray:
 
 
 def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
-    """Return the Newton step of each code, by the decoder's slope."""
+    """Return the Newton step of each code toward direction n, by the slope of decode: (count, size); NaN where the
+    slope is not finite."""
     size = codes.shape[1]
     # Of what float32 makes of a code, so that a difference is one of codes that are.
     rounded_codes = codes.astype(np.float32)
@@ -152,7 +155,8 @@ def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
 
 
 def _fit(index: int, given: np.ndarray, wanted_codes: np.ndarray, begin: Start) -> Fit:
-    """Fit a line through most of the wanted numbers, by repeated least squares on the nearest of them."""
+    """Return the line through most of the wanted numbers, by repeated least squares on the nearest of them; scale 1
+    and shift 0 if too few are left."""
     x, y = given[:, index], wanted_codes[:, index]
     scale, shift = begin.scale, begin.shift
     kept = np.isfinite(y) & (np.abs(y - begin.of(x)) < 0.5)
@@ -214,7 +218,8 @@ def _half_step(shift: float) -> int:
 
 
 def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Probe) -> str:
-    """Scales in words: one of all numbers, or each by itself with its shift, those left out that are right."""
+    """Return scales in words: one for all numbers, or each number's own with its shift, without the numbers whose
+    scale is right."""
     if max(np.ptp(scale), np.ptp(shift)) <= ALIKE * np.abs(scale - 1).max():
         mean_scale = float(scale.mean())
         fixed_point = _fixed_point_text(mean_scale, float(shift.mean()), probe)
@@ -227,8 +232,8 @@ def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Pr
 
 
 def _fixed_point_text(scale: float, shift: float, probe: Probe) -> str:
-    """Return in words the point that stays fixed when codes are scaled, unless it is 0: 0.5, or a shift in the user's
-    own range."""
+    """Return in words, after a comma, the point that stays fixed when codes are scaled, if it is 0.5; otherwise the
+    shift in the user's own range. Empty if the point is 0."""
     own = (1 - scale + shift) / 2 if probe.is_unit else shift
     stays = own / (1 - scale)
     # Codes in [0, 1] that have become [-1, 1] by the user's own doing are scaled about -1.
@@ -240,19 +245,21 @@ def _fixed_point_text(scale: float, shift: float, probe: Probe) -> str:
 
 
 def _of_steps(shift: float) -> str:
-    """A shift as one step of some bits, where it is one: 1/255."""
+    """Return a shift as one step of some bits, such as `1/255`, if one fits; otherwise as a decimal number."""
     steps = next((2**bits - 1 for bits in BITS if abs(shift * (2**bits - 1) - 1) < NEAR_A_HALF), 0)
     return f"1/{steps}" if steps else f"{shift:.3g}"
 
 
 def _shift_said(scale: float, shift: float) -> str:
-    """Describe a shift in words; empty if nothing is shifted, or nothing in [0, 1]."""
+    """Return a shift as ` plus 0.1` or ` minus 0.1`, with the leading space; empty if numbers are not shifted, either
+    in [-1, 1] or in [0, 1]."""
     is_told = min(abs(shift), abs(shift - (scale - 1))) > ALIKE * abs(scale - 1)
     return f" {'plus' if shift > 0 else 'minus'} {abs(shift):.3g}" if is_told else ""
 
 
 def _fraction(scale: float) -> str:
-    """Return a scale as a fraction of the integers that stand for 1, such as 254/255, if one fits."""
+    """Return a scale as a fraction of the integers that stand for 1, such as `254/255`, if one fits; otherwise as a
+    decimal number."""
     fractions = {}
     for steps in (count for bits in BITS for count in (2**bits - 1, 2**bits, 2 ** (bits - 1) - 1)):
         fractions |= {f"{steps - 1}/{steps}": 1 - 1 / steps, f"{steps}/{steps - 1}": steps / (steps - 1)}
@@ -262,12 +269,16 @@ def _fraction(scale: float) -> str:
 
 
 def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]:
-    """Yield the mistake in codes that the encoder rounds by itself."""
+    """Yield at most one line on codes that the encoder rounds by itself: rounded to another number of steps, rounded
+    down, truncated, or half a step too large.
+
+    Args:
+        x, y: the encoder's codes, and the codes that the decoder needs."""
     off = (y - x) / lattice.step
     off = off[np.isfinite(off).all(axis=1) & (np.abs(off) < 4).all(axis=1)]
     kept = x[np.isfinite(y).all(axis=1) & (np.abs((y - x) / lattice.step) < 4).all(axis=1)]
     up, away = np.median(off, axis=0), np.median(off * np.sign(kept), axis=0)
-    bits = f"codes are {{}} to {lattice.bits} bits, not to nearest: {{}} half a step, by which every code is off"
+    bits = f"codes are {{}} to {lattice.bits} bits, and all are off by half a step: {{}} half a step before rounding"
     if scaled := list(_lattice_scale(kept, off, lattice)):
         yield from scaled
     elif (np.abs(up - 0.5) < HALF_STEP).all():
@@ -279,7 +290,7 @@ def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]
 
 
 def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator[str]:
-    """Yield the mistake in codes that are rounded to steps of another size than they are divided by: 254 for 255."""
+    """Yield a line if codes are rounded to one step more or fewer than they are divided by, such as 254 for 255."""
     slopes = [_slope(x[:, i], off[:, i]) for i in range(x.shape[1])]
     # One step too many or too few from end to end.
     steps = np.array(slopes) * (2.0 if lattice.is_unit else 1.0)
@@ -305,7 +316,7 @@ def scaled_angles(held: Trip) -> Iterator[str]:
         if steps and left < LEFT:
             takes = (steps, steps - 1) if slope > 0 else (steps - 1, steps)
             yield (
-                f"the angle about {name} comes back {takes[0]}/{takes[1]} times as large: encode uses {takes[0]} "
+                f"the angle about {name} decodes to {takes[0]}/{takes[1]} of its value: encode uses {takes[0]} "
                 f"steps per turn, decode {takes[1]}"
             )
             return

@@ -44,12 +44,12 @@ class Probe:
         return "[0, 1]" if self.is_unit else "[-1, 1]"
 
     def own(self, number: float) -> float:
-        """A number of a code as the user's own code has it."""
+        """Return a number of a code in the user's own range."""
         return number * 0.5 + 0.5 if self.is_unit else number
 
 
 def of_unit(probe: Probe) -> Probe:
-    """Two functions of codes in [0, 1] as functions of codes in [-1, 1]."""
+    """Return a Probe with codes in [-1, 1], made from functions with codes in [0, 1]."""
     return Probe(lambda n: probe.encode(n) * 2 - 1, lambda codes: probe.decode(codes * 0.5 + 0.5), probe.size)
 
 
@@ -77,7 +77,7 @@ class Trip:
     decoded: np.ndarray
 
     def of(self, which: np.ndarray) -> Trip:
-        """The trip of some of its directions, a mask or indices."""
+        """Return the trip of some of the directions, given as a mask or as indices."""
         return Trip(self.n[which], self.view[which], self.codes[which], self.decoded[which])
 
     @property
@@ -109,12 +109,12 @@ class Trip:
 
 
 def trip_of(probe: Probe, n: np.ndarray) -> Trip:
-    """The round trip of directions."""
+    """Return the round trip of directions, (count, 3), all from one view-space position."""
     codes = probe.encode(n)
     view = np.broadcast_to(np.array(VIEW, np.float32), n.shape)
     return Trip(n, view, codes, probe.decode(np.clip(codes, -1, 1)))
 
 
 def vector(values: np.ndarray) -> str:
-    """Numbers in brackets, three digits each."""
+    """Return numbers as text in parentheses, with three significant digits each."""
     return "(" + ", ".join(f"{value + 0.0:.3g}" for value in values) + ")"

@@ -32,16 +32,17 @@ def half_device() -> Any:
 
         half_adapters = [adapter for adapter in adapters() if FEATURE in adapter.features]
     except ImportError as error:
-        raise MissingError(f"half arithmetic by glsl needs wgpu ({error}); pip install wgpu") from error
+        raise MissingError(f"half arithmetic with --backend glsl needs wgpu ({error}); pip install wgpu") from error
     if not half_adapters:
         advice = f"install one ({how_to_install('mesa-vulkan-drivers')})"
-        raise MissingError(f"half arithmetic by glsl needs a {API} driver with 16-bit floats; {advice}")
+        raise MissingError(f"half arithmetic with --backend glsl needs a {API} driver with 16-bit floats; {advice}")
     device.preconfigure_default_device("normalbench", adapter=half_adapters[0], required_features={FEATURE})
     return device.get_default_device()
 
 
 def name() -> str:
-    """Return the device's name in rows, and whether it rounds every step. Raises MissingError as `half_device` does."""
+    """Return one text for rows: the device's name, its API, and whether it rounds every step. Raises MissingError as
+    `half_device` does."""
     steps = "some steps keep more digits" if keeps_digits() else "every step rounded"
     return f"{half_device().adapter.info['device']}, {API}, {steps}"
 

@@ -34,8 +34,8 @@ class HalfOperation(Operation):
 
 
 def half_operation(encoding: Encoding, operation: str) -> Operation:
-    """An encoding's "encode" or "decode". Raises ShaderError as `encoding_defines`, or where it is rounded
-    precisely."""
+    """Return an encoding's "encode" or "decode" as an operation in 16-bit types. Raises ShaderError as
+    `encoding_defines` does, or if the encoding rounds precisely."""
     if encoding.is_precise:
         raise ShaderError(f"{encoding.name}: precise rounding is not counted in half arithmetic")
     size = encoding.components + encoding.sign_bits

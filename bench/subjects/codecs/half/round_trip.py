@@ -33,7 +33,10 @@ class HalfPasses:
         self._encode, self._decode = (HalfSource(SHADER, defines | {"ENCODES": side}, names) for side in (1, 0))
 
     def round_trip(self, n: np.ndarray, views: np.ndarray) -> np.ndarray:
-        """Normals and view-space positions, float32 of shape (count, 4), encoded, stored and decoded: (count, 3).
+        """Return normals after encode, storage and decode in half arithmetic: float32 of shape (count, 3).
+
+        Args:
+            n, views: normals and view-space positions, float32 of shape (count, 4).
 
         Raises as `compute.computed` does.
         """

@@ -44,7 +44,8 @@ class HalfSource(Source):
 
 
 def in_halves(text: str) -> str:
-    """A line of GLSL with the types and the numbers of 16 bits."""
+    """Return a line of GLSL with 16-bit types, numbers and bit conversions in place of 32-bit float ones; integers
+    are unchanged, and numbers above 65504 become 65504."""
     text = NUMBER.sub(lambda match: f"{min(float(match[1]), LARGEST)!r}hf", text)
     text = TYPES.sub(lambda match: "float16_t" if match[1] == "float" else f"f16{match[1]}", text)
     return BITS.sub(lambda match: f"half_{match[1]}", text)

@@ -92,7 +92,8 @@ def _has(kind: Kind, word: str) -> bool:
 
 
 def _kind_of_word(word: str) -> Kind:
-    """The kind of one name. Raises UsageError where several kinds have it."""
+    """Return the kind of one name or file; normals for an unknown name. Raises UsageError if several kinds have the
+    name and normals do not, or if the name is a misspelling of a name of another kind."""
     if names_an_encoder(word):
         return _kind_of_file(UserFile(str(file_of(word))))
     kinds = [kind for kind in NAMED.values() if _has(kind, word)]
@@ -152,14 +153,16 @@ def codecs_of_kind(
 
 
 def _in_bytes(code: DepthEncoding, rounding: str) -> Iterator[DepthCodec]:
-    """A user's code over bytes, of each depth that it may be given."""
+    """Return a codec of a user's encoding over bytes for each depth that it may be given: linear, window and reversed
+    window."""
     form = STORAGES["rg8" if code.bytes == 2 else "rgba8"]
     storage = DepthStorage(code.name, f"{code.bytes} bytes of {code.title}", form, "bytes", 8 * code.bytes, code)
     return (DepthCodec(DEPTH_ENCODINGS[name], storage, rounding) for name in ("linear", "window", "reversed_window"))
 
 
 def _with_range(kind: Kind, word: str) -> tuple[Any, float | None]:
-    """The encoding of a name with a range, and the range where the encoding does not have it itself."""
+    """Return the encoding of a name with a range, such as `rgbm:8`, and the range; None in its place for light, whose
+    encoding already has it. Raises UsageError for kinds without ranges."""
     name, text = name_and_range(word)
     if kind is LIGHT:
         return ranged_light_buffer(word).encoding, None

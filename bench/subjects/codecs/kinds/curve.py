@@ -11,7 +11,7 @@ from .own import COUNT, Own, OwnKind, Values, number, of_range, one_number_error
 
 
 def _quantities(_: Own) -> Values:
-    """Quantities from 0 to a range of 1."""
+    """Return evenly spaced quantities from 0 to 1, for a range of 1."""
     return Values(rows(np.linspace(0, 1, COUNT)), of_range(COUNT))
 
 

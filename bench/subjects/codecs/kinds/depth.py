@@ -27,7 +27,8 @@ def _is_over_bytes(own: Own) -> bool:
 
 
 def _depths(own: Own) -> Values:
-    """Depths between the planes, as many in each power of ten; of a code over bytes numbers from 0 to 1."""
+    """Return depths between the planes, as many in each power of ten; for an encoding over bytes, numbers spread
+    evenly from 0 to 1."""
     if _is_over_bytes(own):
         even = (np.arange(COUNT) + np.random.default_rng(SEED).random(COUNT)) / COUNT
         return Values(rows(even), rows(np.zeros(COUNT), EVEN))
@@ -36,13 +37,14 @@ def _depths(own: Own) -> Values:
 
 
 def _depth_errors(values: Values, trial: Tried) -> np.ndarray:
-    """Errors as shares of the depth; of a code over bytes, whose steps are even, of the range."""
+    """Return errors relative to the depth; for an encoding over bytes, with even steps, to the range."""
     return one_number_errors(values, trial) / np.where(values.more[:, 1] == EVEN, 1.0, values.given[:, 0])
 
 
 def _depth_facts(own: Own, gl: Device) -> dict[str, Any]:
-    """`planes`, between which functions that are given none undo each other, and `is_open`, whether codes lead beyond
-    1, as depths in the scene's own units do."""
+    """Return findings by name: `planes`, the nearest and farthest depth that round-trip if the functions take no
+    planes, otherwise the usual planes; `is_open`, whether codes exceed 1, as depths in the scene's own units do; and
+    `notes`. An encoding over bytes has only `wrong` and `notes`."""
     if _is_over_bytes(own):
         return {"wrong": list(_faults_of_bytes(own, gl)), "notes": [OF_BYTES]}
     planes = (NEAR, FAR)
@@ -93,12 +95,12 @@ def _is_lost(back: np.ndarray, x: np.ndarray, digits: int) -> bool:
 OF_BYTES = "it packs bytes: `normalbench depth` measures it with linear, window and reversed window depth"
 # Of a code over bytes, how many of its least steps a number may be off once its bytes are rounded.
 MOST_STEPS = 2.0
-LOST = "depths that differ by 1/{} share a code: its most significant {} missing"
+LOST = "depths that differ by 1/{} share a code: the code's most significant {} missing"
 NO_BYTE = (
-    "stored in bytes it is off by up to {:.0f} steps of 1/{}: component {} of the code alone by {:.0f}, because it is "
-    "not a multiple of 1/255; use powers of 255 instead of 256"
+    "stored in bytes, depths are off by up to {:.0f} steps of 1/{}: component {} of the code alone by {:.0f}, because "
+    "it is not a multiple of 1/255; use powers of 255 instead of 256"
 )
-OPEN = "its codes go beyond 1: only float storages hold them"
+OPEN = "its codes exceed 1: only float storages hold them"
 OWN_PLANES = "it round-trips for depths from {0:.3g} to {1:.3g}; set the measured range with --near and --far"
 
 

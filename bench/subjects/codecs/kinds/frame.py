@@ -27,12 +27,13 @@ def _frame_text(given: np.ndarray, more: np.ndarray) -> str:
 
 # How far a frame that undoes itself comes back off, in degrees: decoders of quaternions have sines of small numbers.
 FRAME_NEARLY_DEG = 1.0
-NO_HAND = "its decoder returns no handedness: it is lost for mirrored tangent frames"
-HANDS = "{0:.3g}% of the tangent frames come back with the other handedness"
+NO_HAND = "its decoder returns no handedness, which is lost for mirrored tangent frames"
+HANDS = "{0:.3g}% of the tangent frames decode with the opposite handedness"
 
 
 def _frames(own: Own) -> Values:
-    """Rotations at random, half of them mirrored."""
+    """Return random rotations, half of them mirrored: as quaternions and handedness, or as normals with handedness
+    and tangents."""
     random = np.random.default_rng(SEED)
     q = random.normal(size=(COUNT, 4))
     q *= np.sign(q[:, 3:]) / np.linalg.norm(q, axis=1, keepdims=True)
@@ -44,7 +45,7 @@ def _frames(own: Own) -> Values:
 
 
 def _largest_first(q: np.ndarray) -> np.ndarray:
-    """Quaternions with the sign by which the largest number is positive, as `quaternion_of` has them."""
+    """Return quaternions with the sign that makes the number of largest magnitude positive, as in `quaternion_of`."""
     largest = np.take_along_axis(q, np.abs(q).argmax(axis=1)[:, None], axis=1)
     return q * np.sign(largest)
 
@@ -60,7 +61,7 @@ def _axes(given: np.ndarray, more: np.ndarray, of_rotation: bool) -> tuple[np.nd
 
 
 def _frame_errors(values: Values, trial: Tried) -> np.ndarray:
-    """The larger of the angles that normals and tangents are off by."""
+    """Return the larger of the angles by which normal and tangent are off, in degrees."""
     of_rotation = len(trial.back) < len(RESULTS)
     (n, t), (n_back, t_back) = (
         _axes(first, other, of_rotation) for first, other in ((values.given, values.more), trial.back[:2])
@@ -70,7 +71,8 @@ def _frame_errors(values: Values, trial: Tried) -> np.ndarray:
 
 
 def _frame_facts(own: Own, gl: Device) -> dict[str, Any]:
-    """`is_unit`, `levels`, how many values each number has, and a line of hands that are lost."""
+    """Return findings by name: `is_unit`; `levels`, the number of values of each component, 0 for many; and those of
+    `_of_hands`."""
     values = _frames(own)
     trial = own.tried(gl, values.given, values.more)
     codes = trial.codes[:, : own.made.components]
@@ -91,7 +93,8 @@ def _level_count(numbers: np.ndarray) -> int:
 
 
 def _of_hands(own: Own, values: Values, trial: Tried) -> dict[str, Any]:
-    """Return a note if a decoder returns no handedness, or a likely mistake if it reverses some; else nothing."""
+    """Return findings by name: `notes` and a false `has_hand` if decode returns no handedness, `wrong` if it reverses
+    some; otherwise an empty dict."""
     gives = [part for part in ("hand", "bitangent") if own.size(part)[1]]
     if not gives and own.size("tangent")[1] < 4:
         return {"notes": [NO_HAND], "has_hand": False}

@@ -21,13 +21,13 @@ DIMMEST, BRIGHTEST, LIGHT_NEARLY = 2.0**-10, 65504.0, 0.03
 OF_8_BITS = 0.5 / 255
 # How far two lights that are added as codes come back off, in shares of their sum.
 ADDED = 1e-3
-NO_FOURTH = "its fourth component does not come back: only the three colour channels are measured"
+NO_FOURTH = "its fourth component does not round-trip: only the three colour channels are measured"
 FORMATS = ("rgba8", "rgba16f")
 NOT_BLACK = "a cleared texel ({0:g} in all channels) decodes to a light of {1:.3g}, not 0"
 
 
 def _lights(own: Own) -> Values:
-    """Colours up to the limit, dim ones as often as bright ones, with a fourth number."""
+    """Return random colours with a fourth number, up to the limit, evenly over eight factors of two."""
     random = np.random.default_rng(SEED)
     largest = own.found.get("limit", 1.0)
     bright = largest * 2.0 ** random.uniform(-8, 0, (COUNT, 1)) * random.uniform(0, 1, (COUNT, 4))
@@ -45,8 +45,9 @@ def _light_apart(given: np.ndarray, back: np.ndarray) -> np.ndarray:
 
 
 def _light_facts(own: Own, gl: Device) -> dict[str, Any]:
-    """`limit`, the most white light that comes back from a format of fixed point, and `open_limit`, from floats;
-    `is_open`, whether a code of light 1 is for floats alone, `blend`, how its texels are added, and `has_alpha`."""
+    """Return findings by name: `limit`, the brightest white light that comes back from a fixed-point format;
+    `open_limit`, the same from floats; `is_open`, whether a code of light 1 requires floats; and those of
+    `_added`."""
     white = np.geomspace(DIMMEST, BRIGHTEST, COUNT)
     values = Values(np.repeat(rows(white)[:, :1], 4, axis=1), rows(np.zeros(COUNT)))
     trial = own.tried(gl, values.given, values.more)
@@ -61,7 +62,8 @@ def _light_facts(own: Own, gl: Device) -> dict[str, Any]:
 
 
 def _added(own: Own, gl: Device, held: Values) -> dict[str, Any]:
-    """Find how texels of lights add: by the sum or product of their codes, or as lights; and the fourth number."""
+    """Return findings by name: `blend`, how texels of lights add: "add" or "multiply" of codes, or "read" as lights;
+    `has_alpha`, whether the fourth number round-trips; `notes`; and `wrong` if a cleared target is not black."""
     trial = own.tried(gl, held.given, held.more)
     both = held.given + held.given[::-1]
     blend = "read"

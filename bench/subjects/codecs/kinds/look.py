@@ -33,15 +33,16 @@ from .table import OWN
 
 # How many pairs of a file are tried, and how many letters of a compiler's message are shown.
 MOST_PAIRS, LONGEST = 12, 1000
-NOT_A_PAIR = "encode and decode do not undo each other: {} comes back {:.3g} {} off, the largest error of {} values"
+NOT_A_PAIR = "encode and decode do not undo each other: {} is off by {:.3g} {}, the largest error of {} values"
 BEYOND = "component {} of the code leaves [{}, 1], the range of fixed-point storages: {:.4g} for {}"
 UNDONE = "largest error of {} values before any storage: {:.3g} {}"
 REACH = "its components range from {}"
-NOT_EXACT = "{} does not come back exactly, before any storage: {:.3g} {} off"
+NOT_EXACT = "{} is not exact, but off by {:.3g} {} before any storage"
 
 
 def look(kind: OwnKind, file: UserFile) -> dict[str, Any]:
-    """Return the findings on a file; see above."""
+    """Return the findings on a file, with the keys listed in this module's docstring: those of its only pair, or of
+    the only pair that round-trips; otherwise `error` and `pairs`."""
     try:
         return _look_at_one(kind, file)
     except SeveralEncodersError as error:
@@ -59,7 +60,8 @@ def _undoes_itself(kind: OwnKind, file: UserFile) -> bool:
 
 
 def _look_at_one(kind: OwnKind, file: UserFile) -> dict[str, Any]:
-    """Return the findings on a file that has, or names, a single pair. Raises SeveralEncodersError."""
+    """Return the findings on a file that has, or names, a single pair; `missing`, `error` or `broken` in place of the
+    rest. Raises SeveralEncodersError."""
     try:
         gl, translation = device(), translated(file, kind=kind.kind)
         own = Own(file, translation, {})
@@ -101,14 +103,14 @@ def _judged(kind: OwnKind, own: Own, gl: Device) -> dict[str, Any]:
     errors = kind.errors(values, trial)
     for what, finite in (("encode", np.isfinite(trial.codes).all(axis=1)), ("decode", np.isfinite(errors))):
         if not finite.all():
-            return {"broken": f"{what} gives no number of {_said(kind, values, int(np.argmin(finite)))}"}
+            return {"broken": f"{what} returns no number for {_said(kind, values, int(np.argmin(finite)))}"}
     worst = int(np.argmax(errors))
     far = NOT_A_PAIR.format(_said(kind, values, worst), errors[worst], kind.unit, len(errors))
     wrong = [*([far] if errors[worst] > kind.nearly else []), *_beyond(kind, own, values, trial)]
     wrong += own.found.get("wrong", [])
     inexact = _inexact(kind, own, gl)
     notes = [*own.found.get("notes", []), *inexact.values()]
-    exact = [f"{name} comes back exactly" for name in kind.exactly(own) if name not in inexact]
+    exact = [f"{name} decodes exactly" for name in kind.exactly(own) if name not in inexact]
     least = [UNDONE.format(len(errors), errors[worst], kind.unit)] if errors[worst] <= kind.nearly else []
     measured = [*least, *exact, REACH.format(", ".join(_reach(trial, own.made.components)))]
     return {"error_max": float(errors[worst]), "wrong": wrong, "notes": notes, "measured": measured}
@@ -144,7 +146,10 @@ def _inexact(kind: OwnKind, own: Own, gl: Device) -> dict[str, str]:
 
 
 def main(words: Sequence[str]) -> None:
-    """Run the command; see above."""
+    """Write the findings on a file to stdout, as a line of JSON.
+
+    Args:
+        words: the name of a kind, and the file."""
     children.limit_this_process()
     # Whatever users' code prints goes to stderr.
     answer = os.dup(1)

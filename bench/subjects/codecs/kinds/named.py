@@ -32,7 +32,7 @@ CALLED = re.compile(r"\b([A-Za-z_]\w*)\s*\(")
 TIME_LIMIT = 60.0
 LOOK = "normalbench.bench.subjects.codecs.kinds.look"
 IN_32_BITS = "it declares 16-bit numbers, but is computed in 32 bits"
-UNIT = "its codes are in [0, 1]; every storage holds them unchanged, including signed and float ones"
+UNIT = "its codes are in [0, 1]; every storage holds them unchanged, signed and float included"
 
 T = TypeVar("T", bound=AnyEncoding)
 

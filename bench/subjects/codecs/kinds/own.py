@@ -65,12 +65,12 @@ class Own:
         return encoded, decoded
 
     def tried(self, gl: Device, given: np.ndarray, more: np.ndarray, codes: np.ndarray | None = None) -> Tried:
-        """Values through its functions: see `own_passes.tried`."""
+        """Encode and decode values with the functions, or only decode `codes`: see `own_passes.tried`."""
         results = min(len(self.shape.results), len(RESULTS))
         return tried(gl, self.made.glsl(False), self.made.prefix, results, given, more, codes)
 
     def described(self) -> dict[str, Any]:
-        """Return the values that encodings of every kind have."""
+        """Return by name the arguments that encodings of every kind have; `encode` and `decode` raise NoTwinError."""
         lacking = lacking_twin(f"{self.made.name} {NO_TWIN}")
         return {
             "name": self.made.name,
@@ -125,13 +125,13 @@ class OwnKind:
 
 
 def rows(*columns: np.ndarray | float) -> np.ndarray:
-    """Columns as an array of four, zeros behind them; float32 of shape (count, 4)."""
+    """Return at most four columns as float32 of shape (count, 4), with zeros in the remaining columns."""
     wide = np.broadcast_arrays(*columns, *[0.0] * (4 - len(columns)))
     return np.stack(wide, axis=-1).astype(np.float32)
 
 
 def of_range(count: int) -> np.ndarray:
-    """The setting of functions that are given a range: 1."""
+    """Return the setting of functions that take a range: 1, as rows of shape (count, 4)."""
     return rows(np.ones(count))
 
 
@@ -146,12 +146,12 @@ def number(given: np.ndarray, _: np.ndarray) -> str:
 
 
 def one_number_errors(values: Values, trial: Tried) -> np.ndarray:
-    """Return the errors of one number."""
+    """Return the absolute error of the first number of each value."""
     return np.abs(trial.back[0][:, 0].astype(np.float64) - values.given[:, 0])
 
 
 def longest(ascending: np.ndarray, is_in: np.ndarray) -> tuple[float, float] | None:
-    """The ends of the longest run of values that are in; None where none is."""
+    """Return the first and the last value of the longest run for which `is_in` is true; None if it is never true."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], is_in, [False]]).astype(int)))
     runs = edges.reshape(-1, 2)
     if not len(runs):

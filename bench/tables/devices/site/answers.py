@@ -50,13 +50,15 @@ class Known:
         return str(PickOptions().family[0])
 
     def of(self, row: Row) -> Row:
-        """Return the known facts about a device's codec; empty for a reader's own codec."""
+        """Return the issue slots and length errors of a device's codec as columns; empty for a reader's own codec."""
         codec = _codec(row)
         return self._price_rows.get(codec.name, {}) if codec else {}
 
 
 def _codec(row: Row) -> Codec | None:
-    """Return a row's codec with rounding to nearest, because rounding affects neither its cost nor its length."""
+    """Return a row's codec; None unless its encoding and storage are in the catalogue.
+
+    Its rounding is to nearest, because rounding affects neither cost nor length."""
     encoding, storage = ENCODINGS.get(row["encoding"]), STORAGES.get(row["storage"])
     return Codec(encoding, storage) if encoding and storage else None
 
@@ -79,7 +81,7 @@ def _bytes_per_texel(storage: str) -> int:
 
 
 def _pick_row(row: Row, known: Known) -> Row:
-    """A device's row as `pick` takes them."""
+    """Return a device's row with the columns by which `pick` ranks encodings."""
     encoding, codec = ENCODINGS.get(row["encoding"]), _codec(row)
     columns: Row = {"encoding": row["encoding"], "storage": row["storage"], "asked": row["storage"]}
     columns |= {"normals": "", "scene": "", "against": False, "beside": False, "invalid": 0, "lost_percent": 0.0}
@@ -127,6 +129,6 @@ def _sentences(storage: str, best: Row | None, group: Sequence[Row]) -> Iterator
 def _price_sentence(row: Row) -> str:
     slots = f"{row['slots']:g} issue slots with {row['readers']} decoding passes" if row["slots"] is not None else ""
     if row["ms"] is None:
-        return f"This device has no times; the encoding takes {slots}." if slots else "The cost is not known."
+        return f"No times were measured on it; the encoding takes {slots}." if slots else "The cost is not known."
     times = f"It takes {row['encode_ms']:.3g} ms per megapixel to encode and {row['decode_ms']:.3g} ms to decode"
     return f"{times}, and {slots}." if slots else f"{times}."

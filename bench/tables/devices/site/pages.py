@@ -43,10 +43,10 @@ INDEXED = {
     "agree": "Codecs with all codes equal to the run's codes.",
     "differ": "Codecs with a code that differs from the run's code.",
     "further": "Codecs with a code more than one step from the run's code.",
-    "least_same_percent": "The lowest share of codes that equal the run's codes, among all codecs. Unit: %.",
-    "differs_most": "The codec with that share.",
+    "least_same_percent": "The lowest share of codes that equal the run's codes. Unit: %.",
+    "differs_most": "The codec with the lowest share of equal codes.",
     "fastest": "The codec that takes the least time to encode and decode.",
-    "fastest_ms": "Milliseconds per megapixel of that codec.",
+    "fastest_ms": "The lowest time to encode and decode, in milliseconds per megapixel.",
     "devices": "How many devices measured the codec.",
     "differs_on": "The devices that store a different code.",
     "fastest_on": "The device that encodes and decodes the codec in the least time.",
@@ -64,13 +64,13 @@ class Entry:
 
     @property
     def words(self) -> str:
-        """The words by which the index finds the device, besides its cells."""
+        """The words, separated by spaces, by which the index finds the device, in addition to its cells."""
         known = (str(row[name]) for row in self.rows for name in ("encoding", "storage", "target"))
         return " ".join(dict.fromkeys([*known, self.device.file.renderer, self.device.file.vendor]))
 
 
 def pages(devices: Sequence[Device], site: Site = ALONE) -> dict[str, str]:
-    """Return the page of devices by its path in the site's folder."""
+    """Return a dict with the HTML of the devices page by its path in the site's folder."""
     rows = [codec_rows(device) for device in devices]
     keys = (f"device-{name}" for name in plain_names((device.called for device in devices), "one"))
     known = Known(rows)
@@ -88,14 +88,14 @@ def _device_section(entry: Entry) -> DeviceSection:
     codecs = [_row_without(row, OF_DEVICE) for row in entry.rows]
     facts = [{"name": row["name"], "value": row["value"]} for row in fact_rows(device)]
     tables = [_shown_table(f"Every codec on {device.called}", codecs)]
-    tables += [_shown_table(f"Facts of {device.called}", facts)] if facts else []
+    tables += [_shown_table(f"Facts about {device.called}", facts)] if facts else []
     answered = [Answer((*sheet.said, *sheet.aside), _front_table(sheet, device.called)) for sheet in entry.answers]
     sentence = f"{device.called} {difference(entry.rows)}."
     return DeviceSection(device.called, entry.key, sentence, known, answered, tables)
 
 
 def _front_table(sheet: Sheet, device: str) -> PageTable:
-    """The codes of an answer; none where no encoding qualifies."""
+    """Return the table of an answer's Pareto-optimal encodings; an empty table if no encoding qualifies."""
     title = f"{device}, {sheet.title}"
     return table(title, sheet.rows, lambda _: "") if sheet.rows else PageTable(title, [], [], "")
 
@@ -105,7 +105,7 @@ def _row_without(row: Row, names: Sequence[str]) -> Row:
 
 
 def _shown_table(title: str, rows: Sequence[Row]) -> PageTable:
-    """Rows as a page shows them, with the definitions of their columns."""
+    """Return rows as a table for a page, in the order of the table's columns and with their definitions."""
 
     def says(name: str) -> str:
         column = TABLE.column(name)
@@ -162,10 +162,10 @@ def _codec_row(rows: Sequence[Row]) -> Row:
 
 
 def _taken_list(entries: Sequence[Entry]) -> Searched:
-    """The code to take on each device, with a column for each storage."""
+    """Return the searchable list of the recommended encoding on each device, with a column for each storage."""
     titles = dict.fromkeys(_column_name(sheet) for entry in entries for sheet in entry.answers)
     rows = [{"device": e.device.called} | {**dict.fromkeys(titles), **_codecs_taken_on(e)} for e in entries]
-    intro = "The answer of pick for each storage, from the errors measured on the device."
+    intro = "The encoding that pick recommends for each storage, from errors measured on the device."
     words, links = [entry.words for entry in entries], [f"#{entry.key}" for entry in entries]
     shown = words_table("Recommended encoding, by device and storage", rows)
     return Searched("take", "Recommendations", intro, shown, words, links)

@@ -136,7 +136,7 @@ function hdrRow(bytes, at, row, width) {
     row.set(bytes.subarray(at, at + 4 * width));
     return at + 4 * width;
   }
-  if (((bytes[at + 2] << 8) | bytes[at + 3]) !== width) throw new Error("a row has a different width");
+  if (((bytes[at + 2] << 8) | bytes[at + 3]) !== width) throw new Error("a row has the wrong width");
   at += 4;
   for (let channel = 0; channel < 4; channel++) {
     for (let x = 0; x < width; ) {

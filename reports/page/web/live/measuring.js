@@ -22,7 +22,7 @@ const FORMAT_COLUMNS = [
   ["renders", "Whether the device can render to the format."],
   ["rounds", "How it rounds a number between two steps of the first channel."],
   ["filters", "Whether a lookup between two texels interpolates, and with how many bits of position."],
-  ["resolves", "Result of resolving four samples with two codes, in steps from their mean."],
+  ["resolves", "Result of resolving four samples with two different codes, in steps from their mean."],
 ];
 
 class CancelledError extends Error {}
@@ -44,7 +44,7 @@ class Measuring {
     this.timed = element("input", { type: "checkbox", id: "measure-times", checked: "" });
     this.progress = element("progress", { max: this.codecs.length, value: 0, hidden: "", "aria-label": "Codecs measured" });
     this.said = element("p", { role: "status", class: "note", "data-measured": "" });
-    const times = element("label", { for: "measure-times" }, this.timed, " with times");
+    const times = element("label", { for: "measure-times" }, this.timed, " with timings");
     this.results = element("div", { "data-results": "" });
     this.factList = element("div", { "data-facts": "" });
     this.keeping = element("div", { "data-keep": "" });

@@ -147,10 +147,10 @@ class See extends Renderer {
     out.power.textContent = digits(2 ** this.value("power"), 4);
     out.bits.textContent = this.levels ? this.value("bits") : "as stored";
     out.full.textContent = out.most.textContent = `${FULL_DEGREES[this.value("full")]}°`;
-    out.gain.textContent = `${this.value("gain")} %`;
+    out.gain.textContent = `${this.value("gain")}%`;
     out.roughness.textContent = this.value("roughness").toFixed(2);
     out.away.textContent = this.value("away").toFixed(2);
-    out.divider.textContent = `${this.value("divider")} %`;
+    out.divider.textContent = `${this.value("divider")}%`;
     for (const name of ["side", "above", "around", "over"]) out[name].textContent = degrees(name);
     for (const one of this.presets) one.setAttribute("aria-pressed", String(one.dataset.preset === this.control.subject.value));
     this.stage.style.setProperty("--at", `${this.value("divider")}%`);

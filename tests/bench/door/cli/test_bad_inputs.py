@@ -67,7 +67,7 @@ ANSWERS = {
         "test_render": ["test_bad_input_is_a_one_line_error_and_nothing_is_written"],
     },
     "a user's shader that does not compile: its file and line, other cases go on": {
-        "test_user_encodings": ["test_what_is_wrong_with_one_spares_the_others"],
+        "test_user_encodings": ["test_invalid_file_does_not_affect_the_others"],
         "test_cli": ["test_a_users_broken_shader_loses_its_own_rows_and_is_an_error_alone"],
     },
     "a user's shader that does not end: a process of its own, a time limit, loops counted": {

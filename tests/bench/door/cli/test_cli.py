@@ -151,7 +151,7 @@ def test_a_users_broken_encoding_is_a_one_line_error_that_names_its_file(run, mo
     original = ENCODINGS["xy"]
     for changed, parts in (
         ({"encode": raises}, ["xy.py", "ValueError", "what is this?"]),
-        ({"components": 3}, ["xy.py", "encode gives 2 numbers"]),
+        ({"components": 3}, ["xy.py", "encode returns 2 numbers"]),
     ):
         measured_instead(monkeypatch, replace(original, **changed))
         status, _, err = run("quality", "--encoding", "xy", "--normals", "axes")

@@ -84,7 +84,7 @@ def test_a_folder_that_is_deleted_meanwhile_is_noticed_at_the_next_row(tmp_path)
         kept.add({"a": 1})
         path.unlink()
         path.parent.rmdir()
-        with pytest.raises(UsageError, match="it was deleted meanwhile"):
+        with pytest.raises(UsageError, match="the file was deleted meanwhile"):
             kept.add({"a": 2})
 
 

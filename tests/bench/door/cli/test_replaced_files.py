@@ -114,7 +114,7 @@ def test_a_file_of_another_kind_is_not_replaced(run, folder, case):
     before = (folder / words[-1]).read_bytes()
     status, out, err = run(*words)
     assert (status, out, err.count("\n")) == (2, "", 1), (status, out[:100], err)
-    assert err.endswith(f"{words[-1]}: not a {what} of normalbench; name another file, or delete this one\n"), err
+    assert err.endswith(f"{words[-1]}: not a {what} written by normalbench; name another file, or delete this one\n")
     assert (folder / words[-1]).read_bytes() == before
 
 

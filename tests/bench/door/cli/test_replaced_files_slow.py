@@ -12,7 +12,7 @@ def test_code_does_not_replace_a_users_shader_in_its_folder(run, folder):
     path.parent.mkdir()
     path.write_text("// Mine.\n")
     status, _, err = run("code", "octahedral", "--storage", "rgb10a2", "--to", "hlsl", "-o", "out")
-    assert status == 2 and "octahedral_rgb10a2.hlsl: not a file of normalbench" in err, err
+    assert status == 2 and "octahedral_rgb10a2.hlsl: not a file written by normalbench" in err, err
     assert path.read_text() == "// Mine.\n"
 
 

@@ -36,7 +36,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         (*ROW, "--encoding", "octahedral", "spheremap"),
         "separate names by commas: --encoding octahedral,spheremap",
     ),
-    "names after each other of a list": (("columns", "quality", "render"), "give one, or names separated by commas"),
+    "names after each other of a list": (("columns", "quality", "render"), "give one name, or several separated by"),
     "a name without its option": (
         ("quality", "octahedral"),
         "unexpected argument octahedral; did you mean --enc",
@@ -54,15 +54,15 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a file twice": ((*ONE, "-o", "a.csv", "-o", "b.csv"), "-o is given twice, a.csv and b.csv"),
     "a format twice": ((*ONE, "--format", "csv", "--format", "json"), "--format is given twice, csv and json"),
     "both of a pair": ((*ONE, "--unpack", "--no-unpack"), "--unpack and --no-unpack contradict each other"),
-    "a size twice": (("render", "--size", "64x48", "--size", "96x72"), "--size 64x48,96x72: WIDTHxHEIGHT"),
+    "a size twice": (("render", "--size", "64x48", "--size", "96x72"), "--size 64x48,96x72: expected WIDTHxHEIGHT"),
     "an aim twice": (("pick", "--aim", "angle", "--aim", "cost"), "one aim at a time, not angle,cost"),
     "a half": ((*ROW[:-1], "1.5"), "1.5 is not a whole number, such as 1000, 1e6, 4M or 2^22"),
     "a word for a count": ((*ROW[:-1], "many"), "many is not a whole number"),
-    "a count of nothing": ((*ROW[:-1], "0"), "--count 0: from 1 to"),
-    "a count beyond all": ((*ROW[:-1], "1e13"), "--count 10000000000000: from 1 to"),
-    "a negative seed": ((*ONE, "--seed", "-1"), "--seed -1: from 0 to"),
-    "a folder that is not there": ((*ONE, "-o", "no/x.csv"), "cannot write no/x.csv: there is no folder no"),
-    "a page in no folder": ((*ONE, "--report", "no/x.html"), "cannot write no/x.html: there is no folder no"),
+    "a count of nothing": ((*ROW[:-1], "0"), "--count 0: out of range; use 1 to"),
+    "a count beyond all": ((*ROW[:-1], "1e13"), "--count 10000000000000: out of range; use 1 to"),
+    "a negative seed": ((*ONE, "--seed", "-1"), "--seed -1: out of range; use 0 to"),
+    "a folder that is not there": ((*ONE, "-o", "no/x.csv"), "cannot write no/x.csv: folder no does not exist"),
+    "a page in no folder": ((*ONE, "--report", "no/x.html"), "cannot write no/x.html: folder no does not exist"),
     "a page as PDF": ((*ONE, "--report", "page.pdf"), "page.pdf: the page is HTML; name it page.html"),
     "a text as a page": (
         ("report", "there", "--markdown", "-o", "x.html"),
@@ -87,7 +87,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         (*ROW, "--encoding", "mine.hlsl:Encode"),
         "mine.hlsl:Encode: name both functions, such as",
     ),
-    "functions of GLSL": ((*ROW, "--encoding", "short.glsl:s:t"), "no function is named s; there are: s_encode"),
+    "functions of GLSL": ((*ROW, "--encoding", "short.glsl:s:t"), "unknown function s; known: s_encode"),
     "a file without its ending": (
         (*ROW, "--encoding", "hlsl"),
         "unknown encoding 'hlsl'; did you mean the file hlsl.glsl?",
@@ -95,7 +95,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "a file without its ending, of doctor": (("doctor", "hlsl"), "did you mean the file hlsl.glsl?"),
     "doctor for the catalogue": (
         ("doctor", "octahedral"),
-        "octahedral is in the catalogue; doctor examines a file of yours. `normalbench quality --encoding octahedral`",
+        "octahedral is in the catalogue; doctor examines your files. Measure it with `normalbench quality --encoding ",
     ),
     # doctor asks whether a file is of another kind, in a process for each: once will do.
     "HLSL in a GLSL file": (
@@ -130,30 +130,30 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
     "an archive": (("quality", "--normals", "frame.npz"), "frame.npz: an archive of arrays; save one array as .npy"),
     "a folder of captures": (("quality", "--normals", "there"), "there: it is a folder; name files in it"),
     "two channels": (("quality", "--normals", "two.npy"), "two.npy: it has 0, 1; a normal has three channels; save z"),
-    "signed bytes": (("quality", "--normals", "signed.npy"), "uint8 and uint16 are read; save array / 127 as float32"),
+    "signed bytes": (("quality", "--normals", "signed.npy"), "uint8, uint16; save array / 127 as float32"),
     "a scene that is not": (("render", "--scene", "glos"), "did you mean gloss?"),
     "a mesh of another kind": (("render", "--scene", "scene.fbx"), "or a file ending in"),
     "a layout that is not": (("render", "--layout", "unity"), "unknown layout 'unity'"),
-    "a power of nothing": (("render", "--power", "0"), "--power 0: numbers from 1 to 2048"),
+    "a power of nothing": (("render", "--power", "0"), "--power 0: expected numbers from 1 to 2048"),
     "an exposure in words": (
         ("render", "--exposure", "bright"),
         "--exposure bright: not a number; use stops such as -1.5",
     ),
-    "a size in words": (("render", "--size", "hd"), "--size hd: WIDTHxHEIGHT, such as 640x480"),
+    "a size in words": (("render", "--size", "hd"), "--size hd: expected WIDTHxHEIGHT, such as 640x480"),
     "an angle of view": (("quality", "--normals", "f.npy", "--fov", "500"), "use 1 to 175"),
     "a matrix of twelve": (
         ("quality", "--normals", "f.npy", "--space", "world", "--view-matrix", "1,0,0,0,0,1,0,0,0,0,1,0"),
-        "12 numbers; 9 or 16, row by row",
+        "12 numbers; expected 9 or 16, row by row",
     ),
     "a space that is not": (("quality", "--normals", "f.npy", "--space", "wrld"), "did you mean world?"),
     "options of captures without one": ((*ONE, "--fov", "60"), "options for captures are given, but --normals sphere"),
     "a GPU for its family": (("pick", "--family", "rtx3080"), "rtx3080 is a GPU, not a family; use its family, sm_86"),
     "a GPU among families": (("cost", "--isa", "--family", "skl,RX480"), "use its family, polaris10"),
     "a number in words": (("roofline", "--overdraw", "two"), "'--overdraw': expected a number, such as 0.5"),
-    "a number of a hundred digits": (("quality", "--count", "1e99"), "--count 100000... (100 digits): from 1 to"),
+    "a number of a hundred digits": (("quality", "--count", "1e99"), "--count 100000... (100 digits): out of range"),
     "a storage with one wrong letter": (("quality", "--storage", "rg9"), "did you mean rg8?"),
     "a family that is not": (("pick", "--family", "navi99"), "unknown family 'navi99'"),
-    "a backend that is not": ((*ONE[:6], "cuda"), "unknown back end 'cuda'"),
+    "a backend that is not": ((*ONE[:6], "cuda"), "unknown backend 'cuda'"),
     "an option of another table": (
         ("run", "--tables", "depth", "--encoding", "xy"),
         "measure one of them with --tables",
@@ -181,7 +181,7 @@ SLIPS: dict[str, tuple[tuple[str, ...], str]] = {
         ("quality", "--normals", "f.npy", "--space", "world", "--view-matrix", "bytes.txt"),
         "--view-matrix bytes.txt: neither numbers nor a text file of numbers: it is not text in UTF-8",
     ),
-    "Parquet, which is not written": ((*ONE, "-o", "x.parquet"), "use x.csv, or .json"),
+    "Parquet, which is not written": ((*ONE, "-o", "x.parquet"), "use x.csv or .json"),
     "a plot of another kind": (("sweep", "--plot", "x.gif"), "x.gif"),
 }
 
@@ -244,7 +244,7 @@ def test_measured_files_are_not_overwritten(run, tmp_path, option, name):
 def test_an_empty_plot_states_the_reason():
     """The reason is that of the row, or that there are too few figures."""
     table = TABLES["budget"]
-    few = f"too few figures for a chart in 1 row; ask for more: {table.example}"
+    few = f"too few figures for a chart in 1 row; for example, run: {table.example}"
     assert _why_nothing(table, [{"layout": "mine", "skipped": None}]) == few
     assert _why_nothing(table, [{"layout": "mine", "skipped": "it has no normals"}]) == "it has no normals"
 

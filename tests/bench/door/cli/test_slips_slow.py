@@ -28,7 +28,7 @@ def test_doctor_reports_which_tables_can_be_measured(run, monkeypatch):
     status, out, _ = run("doctor", "--format", "json")
     rows = {row["name"]: row["value"] for row in json.loads(out)}
     assert status == 0 and rows["quality, mix, depth, frames, vectors by JAX"] == "yes"
-    missing = rows["glTF files that Draco or meshoptimizer packed"]
+    missing = rows["glTF files compressed with Draco or meshoptimizer"]
     assert missing == "no: no DracoPy and no meshoptimizer; pip install normalbench[compressed]"
 
 

@@ -23,7 +23,7 @@ def test_a_gate_passes_if_its_threshold_holds_and_fails_otherwise(run, tmp_path)
     path.write_text(PASSES + 'angle_max_deg = "at most 0.95"\n')
     status, out, err = run("check", str(path))
     assert status == 1 and "1 of 2 thresholds failed" in err
-    assert "pass" in out.splitlines()[1] and "FAIL" in out.splitlines()[2] and "comes back as" in out
+    assert "pass" in out.splitlines()[1] and "FAIL" in out.splitlines()[2] and "decodes to" in out
     rows = json.loads(run("check", str(path), "--format", "json")[1])
     off = f"{rows[1]['figure']:.6g} degrees off"
     assert rows[0]["worst_normal"] is None and rows[1]["worst_normal"].endswith(off), rows
@@ -232,4 +232,4 @@ def test_listings_that_differ_only_in_registers_are_the_same():
     lines = [listings.lines_of("\n".join([nvidia[0].format(pc), nvidia[1], "/*0200*/ NOP;"])) for pc in (16, 48)]
     assert lines == [["FMUL R3, R2, R4"]] * 2
     long = list(listings.differences([], [f"v_op{number}" for number in range(100)]))
-    assert len(long) == listings.MOST_LINES + 1 and long[-1] == "... and 60 lines more"
+    assert len(long) == listings.MOST_LINES + 1 and long[-1] == "... and 60 more lines"

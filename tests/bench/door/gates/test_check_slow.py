@@ -113,7 +113,7 @@ def test_an_image_may_be_a_gate(run, tmp_path):
     path.write_text(path.read_text().replace("at least 20", "at least 99") + 'flip = "at most 0.5"\n')
     status, out, _ = run("check", str(path), "--format", "json")
     psnr, flip = json.loads(out)
-    assert status == 1 and "comes back as" in psnr["worst_normal"] and flip["holds"] == "pass" and flip["figure"] > 0
+    assert status == 1 and "decodes to" in psnr["worst_normal"] and flip["holds"] == "pass" and flip["figure"] > 0
 
 
 TABLES_GATED = {
@@ -185,12 +185,12 @@ def test_costs_by_another_compiler_are_not_compared_and_both_are_kept(run, tmp_p
     gates, kept = golden_gate(tmp_path, PLAIN), tmp_path / "kept" / "costs.json"
     status, _, err = run("check", gates)
     assert status == 1 and err.count("\n") == 3, err
-    assert "costs.json has no row isa mine decode fragment navi21; normalbench check --write-baseline" in err
+    assert "costs.json has no row isa mine decode fragment navi21; run normalbench check --write-baseline" in err
     run("check", gates, "--write-baseline")
     entries = json.loads(kept.read_text())
     mesa = entries[0]["key"]["driver"]
     kept.write_text(kept.read_text().replace(mesa, "Mesa 0.0.1"))
     status, _, err = run("check", gates)
-    assert status == 1 and f"by {mesa}; it has one by Mesa 0.0.1" in err
+    assert status == 1 and f"for {mesa}, only for Mesa 0.0.1" in err
     run("check", gates, "--write-baseline")
     assert len(json.loads(kept.read_text())) == 2 * len(entries) and run("check", gates)[0] == 0

@@ -108,9 +108,9 @@ def test_a_marker_is_checked_before_the_test(inside):
     result.stdout.fnmatch_lines(
         [
             "xy rgba8 nearest sphere jax: psnr_db is *, not at least 50",
-            "  worst normal: (*) comes back as (*), * degrees off",
+            "  worst normal: (*) decodes to (*), * degrees off",
             "unknown option 'encodin'; known: encoding, storage, rounding, arithmetic, normals, *",
-            "the marker normalbench takes options and limits by name, not 'xy'",
+            "the marker normalbench takes options and thresholds by name, not 'xy'",
             'no threshold given; add for example psnr_db = "at least 47.5"',
             "unknown table 'costs'; did you mean cost? known: pick, budget, quality, render, *",
             "quality: no column 'psnr'; figures: bits, *",
@@ -123,7 +123,7 @@ def test_a_marker_is_checked_before_the_test(inside):
 
 MISUSE = {
     'quality(encoding="octahedron")': "unknown encoding 'octahedron'; did you mean octahedral? known: all, xyz",
-    "quality(count=0)": "--count 0: from 1 to",
+    "quality(count=0)": "--count 0: out of range; use 1 to",
     'quality(count="many")': "count is 'many'; it must be a whole number",
     f"quality(**{SMALL}).assert_that()": 'no threshold given; add for example psnr_db="at least 47.5"',
     f"quality(**{SMALL}).assert_that(psnr_db=49.5)": 'psnr_db: 49.5 is not a threshold; write "at least 47.5"',
@@ -198,7 +198,7 @@ def test_an_image_may_have_thresholds(inside):
     result.stdout.fnmatch_lines(
         ["E*hybrid fp32 octahedral rgba8 nearest rgba32f 2 studio *: psnr_db is *, not at least 90"]
     )
-    result.stdout.fnmatch_lines(["E*worst normal: (*) comes back as (*), 0.* degrees off"])
+    result.stdout.fnmatch_lines(["E*worst normal: (*) decodes to (*), 0.* degrees off"])
 
 
 BOTH = """

@@ -64,9 +64,9 @@ def test_arrays_are_packed_and_unpacked_as_the_renderer_does(name, tmp_path):
 @pytest.mark.parametrize(
     "call, said",
     [
-        (lambda: nb.pack("granite", {"normal": [0, 0, 1]}), "surface lacks ao, base_color, metallic"),
-        (lambda: nb.pack("granite", {**SURFACE, "depth": 1.0}), "surface cannot have depth; expected: normal"),
-        (lambda: nb.pack("granite", SURFACE, near=0.1), "settings cannot have near; expected: none"),
+        (lambda: nb.pack("granite", {"normal": [0, 0, 1]}), "surface: missing ao, base_color, metallic"),
+        (lambda: nb.pack("granite", {**SURFACE, "depth": 1.0}), "surface: unexpected depth; expected: normal"),
+        (lambda: nb.pack("granite", SURFACE, near=0.1), "settings: unexpected near; expected: none"),
         (lambda: nb.unpack("granite", [np.zeros(4)]), "has 3 targets, not 1"),
         (lambda: nb.pack("granit", SURFACE), "did you mean granite?"),
     ],

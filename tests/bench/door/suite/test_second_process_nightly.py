@@ -19,7 +19,7 @@ def test_charts_that_cannot_be_written_are_a_one_line_error(run, tmp_path, cores
     (folder / "charts").touch()
     status, _, err = run(*SMALL, "-o", str(folder))
     lines = err.splitlines()
-    assert status == 2 and len(lines) == 2 and "goes on" in lines[0] and "charts" in lines[1], err
+    assert status == 2 and len(lines) == 2 and "resuming" in lines[0] and "charts" in lines[1], err
 
 
 def test_programs_are_not_kept_if_jax_is_told_not_to(tmp_path):

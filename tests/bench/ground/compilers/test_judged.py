@@ -67,7 +67,7 @@ def test_a_refused_word_is_also_refused_if_macros_join_it():
     with pytest.raises(RefusedError, match="line 2: import is not supported"):
         judged(text, "slang", lambda _: "float x ; import y ;")
     assert judged(text, "slang", lambda _: "float x ; importer y ;").content == text
-    with pytest.raises(RefusedError, match="line 2: a macro that joins words"):
+    with pytest.raises(RefusedError, match="line 2: a ## macro that joins words"):
         judged(text, "slang")
 
 

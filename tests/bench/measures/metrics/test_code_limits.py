@@ -76,7 +76,7 @@ def test_an_arc_cosine_in_float32_is_caught(monkeypatch):
     broken(monkeypatch, lambda a, b: jnp.degrees(jnp.arccos(jnp.minimum(dot(a, b), 1.0))))
     for name in ("rg8", "rgb10a2", "rg16", "rg16f"):
         below = row_of(Codec(ENCODINGS["octahedral"], STORAGES[name]), sphere(COUNT))["below_limit"]
-        assert re.match(r"\d+ angles below .* degrees", below), name
+        assert re.match(r"\d+ angles are below .* degrees", below), name
 
 
 def test_radians_are_caught_with_exit_status_1(monkeypatch, run):
@@ -85,7 +85,7 @@ def test_radians_are_caught_with_exit_status_1(monkeypatch, run):
     words = ["--encoding", "octahedral", "--storage", "rg8", "--normals", "sphere", "--backend", "jax"]
     status, out, err = run("quality", *words, "--count", "10000", "--format", "json")
     assert status == 1 and '"below_limit": "RMS 0.006' in out
-    assert err.count("\n") == 1 and "below the bound of 0.31773; 65536 codes cannot be that accurate" in err
+    assert err.count("\n") == 1 and "below the bound of 0.31773 degrees; 65536 codes cannot be that accurate" in err
 
 
 def test_a_set_that_coincides_with_a_lattice_of_codes_is_accepted():

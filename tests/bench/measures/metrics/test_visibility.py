@@ -102,5 +102,5 @@ def test_without_embree_one_line_says_what_to_install(monkeypatch):
 
 def test_another_effect_has_no_occlusion_error(gl):
     other = ChosenEffect(Effect("fog", "fog", "a test", Resource("fog", "r32f"), lambda **_: ()), ())
-    with pytest.raises(EffectError, match=r"^effect fog is not a method of ambient occlusion$"):
+    with pytest.raises(EffectError, match=r"^effect fog is not an ambient occlusion method$"):
         method_error(gl, other, scene_of("room"), (16, 12))

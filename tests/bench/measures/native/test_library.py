@@ -86,7 +86,7 @@ ODD = {
     "makes no library": ('for word; do :; done; while [ "$1" != -o ]; do shift; done; echo x > "$2"', "library.so"),
     "makes another library": (
         'echo "int other;" > o.c; exec {real} -shared -fPIC o.c -o "${{@: -2:1}}"',
-        "answer is not in",
+        "the compiled library lacks answer",
     ),
     "does not end": ("sleep 60", "did not end within"),
 }

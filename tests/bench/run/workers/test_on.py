@@ -12,9 +12,9 @@ SMALL = ("quality", "--encoding", "xyz,octahedral", "--storage", "rgba8", "--nor
 @pytest.mark.parametrize(
     ("word", "says"),
     [
-        ("local:0", "--on local:0: from 1 to 256 worker processes, such as local:4"),
-        ("local:1000", "--on local:1000: from 1 to 256 worker processes, such as local:4"),
-        ("local:few", "--on local:few: from 1 to 256 worker processes, such as local:4"),
+        ("local:0", "--on local:0: use 1 to 256 worker processes, such as local:4"),
+        ("local:1000", "--on local:1000: use 1 to 256 worker processes, such as local:4"),
+        ("local:few", "--on local:few: use 1 to 256 worker processes, such as local:4"),
         ("here", "--on here: use local:N, such as local:4, or tcp://HOST:PORT"),
         ("tcp://host", "--on tcp://host: use local:N"),
         ("tcp://host:99999", "--on tcp://host:99999: use local:N"),

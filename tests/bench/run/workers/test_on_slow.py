@@ -60,7 +60,7 @@ def test_steps_that_no_worker_can_measure_are_measured_locally(gl, run, monkeypa
     own = os.environ | NO_GL
     monkeypatch.setattr(piped, "environment", lambda: own)
     status, _, err = run(*SMALL, "-o", str(tmp_path / "two.json"), "--on", "local:1")
-    assert status == 0 and "quality: 2 steps are measured by this process: no worker has this GL device" in err
+    assert status == 0 and "quality: 2 steps are measured by this process: no worker has the same GL device" in err
     assert json.loads((tmp_path / "one.json").read_text()) == json.loads((tmp_path / "two.json").read_text())
 
 
@@ -182,4 +182,4 @@ def test_workers_that_keep_ending_end_the_command(run, monkeypatch):
     """The error ends with the last message from a worker."""
     monkeypatch.setattr(piped, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
     status, out, err = run(*SMALL, "--on", "local:2")
-    assert (status, out) == (2, "") and err.endswith("--on local:2: the workers keep ending: broken\n"), err
+    assert (status, out) == (2, "") and err.endswith("--on local:2: the workers keep exiting: broken\n"), err

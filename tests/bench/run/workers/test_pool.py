@@ -110,7 +110,7 @@ def test_workers_that_end_before_they_are_ready_cost_no_step(ending, workers, mo
     monkeypatch.setattr(Process, "ending", ending)
     carrier = workers(measures)
     if ending == 12:
-        with pytest.raises(UsageError, match="--on local:4: the workers keep ending: broken"):
+        with pytest.raises(UsageError, match="--on local:4: the workers keep exiting: broken"):
             measured(carrier, asked("quality", JAX))
         return
     _, pairs = measured(carrier, asked("quality", JAX))
@@ -136,7 +136,7 @@ def test_a_step_that_ends_worker_after_worker_loses_its_own_rows(workers, capsys
     _, pairs = measured(carrier, asked("quality", JAX))
     rows = {step.name: rows for step, rows in pairs}
     (lost,) = rows[str(bad)]
-    assert lost["skipped"] == f"{MOST_LOST + 1} workers were lost while they measured it"
+    assert lost["skipped"] == f"{MOST_LOST + 1} workers were lost while measuring this row"
     assert lost["encoding"] == "e5" and lost["backend"] == "jax" and lost["mse"] is None
     assert sum("of" in row for step_rows in rows.values() for row in step_rows) == len(JAX) - 1
     assert f"{bad}: {MOST_LOST + 1} workers were lost" in capsys.readouterr().err
@@ -190,7 +190,7 @@ def test_worker_refuses_steps_that_it_would_measure_differently(monkeypatch):
         own = dict(marks()) | {other: f"{other} of another machine"}
         monkeypatch.setattr(tasks, "marks", lambda own=own: own)
         answers = [tasks.measure(*task.arguments()).refused for task in (by_glsl, by_jax)]
-        assert {answer.removeprefix("no worker has this ") for answer in answers} == refused, answers
+        assert {answer.removeprefix("no worker has the same ") for answer in answers} == refused, answers
 
 
 def test_refused_and_timed_steps_are_measured_locally(workers, monkeypatch, capsys):
@@ -203,10 +203,10 @@ def test_refused_and_timed_steps_are_measured_locally(workers, monkeypatch, caps
 
     monkeypatch.setattr(pool.HERE, "measure", measure)
     keys = [{"repeats": n % 2, "pipeline": f"p{n}"} for n in range(10)]
-    carrier = workers(lambda order, needs, names: Answer(refused="no worker has this GL device"))  # noqa: ARG005
+    carrier = workers(lambda order, needs, names: Answer(refused="no worker has the same GL device"))  # noqa: ARG005
     _, pairs = measured(carrier, asked("sweep", keys))
     assert len(pairs) == 10 and here == [str(key) for key in (*keys[1::2], *keys[::2])]
-    assert "sweep: 5 steps are measured by this process: no worker has this GL device" in capsys.readouterr().err
+    assert "sweep: 5 steps are measured by this process: no worker has the same GL device" in capsys.readouterr().err
 
 
 def test_steps_are_measured_locally_if_no_worker_is_available(monkeypatch, capsys):
@@ -226,7 +226,7 @@ def test_steps_are_measured_locally_if_no_worker_is_available(monkeypatch, capsy
     _, pairs = measured(Nobody(), asked("quality", JAX))
     assert len(pairs) == len(JAX)
     assert (
-        f"quality: {len(JAX)} steps are measured by this process: no worker has all of this: {C_COMPILER}, {BASE}"
+        f"quality: {len(JAX)} steps are measured by this process: no worker has all of these: {C_COMPILER}, {BASE}"
         in capsys.readouterr().err
     )
 

@@ -124,13 +124,13 @@ def test_a_header_of_c_can_be_included_twice_without_a_warning(tmp_path):
         (["octahedral/rgb8_12_12+xyz"], "chain"),
         (["octahedral:arithmetic=half"], "half arithmetic"),
         (["xyz", "--storage", "rg8"], "3 components"),
-        (["spherical_lut", "--storage", "rg8"], "needs files of lookup tables; name a folder"),
+        (["spherical_lut", "--storage", "rg8"], "comes with lookup table files; name a folder"),
         (["xyz,octahedral", "--prefix", "same", "-o", "made"], "would collide"),
-        (["xyz", "--prefix", "1x"], "a letter first"),
+        (["xyz", "--prefix", "1x"], "beginning with a letter"),
         (["xyz", "--prefix", "a b"], "single underscores"),
         (["xyz", "--prefix", "a__b"], "single underscores"),
         (["xyz", "--prefix", "gl_x"], "single underscores"),
-        (["xyz", "--prefix", "x" * 61], "at most 60 characters"),
+        (["xyz", "--prefix", "x" * 61], "at most 60 letters"),
     ],
 )
 def test_unsupported_request_is_a_one_line_error_with_status_2(run, arguments, said, tmp_path, monkeypatch):

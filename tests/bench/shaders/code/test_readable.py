@@ -88,7 +88,7 @@ def test_a_texture_is_declared_with_its_binding_and_what_it_holds(language):
     code = code_of(codec, language)
     assert DECLARED[language] in code.body
     assert "1024 x 1024 texels, R8_UNORM, one mip level, from best_fit_rgba8_scale.dds." in code.body
-    assert "It is read texel by texel: no sampler, no filter." in code.body
+    assert "Read texel by texel, without a sampler or a filter." in code.body
     assert "best_fit_rgba8_scale.dds" in code.files([])
 
 

@@ -140,7 +140,7 @@ def test_the_command_writes_files_and_checks_them(run, tmp_path, monkeypatch):
     (row,) = json.loads(out)
     assert status == 0 and row["verdict"] == "verified"
     status, _, err = run("code", "unreal4")
-    assert status != 0 and "unreal4 is a layout: normalbench code unreal4 --of layout" in err
+    assert status != 0 and "unreal4 is a layout; use: normalbench code unreal4 --of layout" in err
     # Two in one folder may be used together.
     assert run("code", "mine.toml,bevy", "--of", "layout", "--to", "c", "-o", "two")[0] == 0
     assert "mine_pack" in Path("two/mine.h").read_text() and "bevy_pack" in Path("two/bevy.h").read_text()

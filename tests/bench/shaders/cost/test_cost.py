@@ -84,7 +84,7 @@ def test_fused_multiply_adds_are_slow_on_polaris_alone():
 
 
 def test_doubles_have_no_kind():
-    with pytest.raises(ValueError, match="v_add_f64 computes doubles"):
+    with pytest.raises(ValueError, match="v_add_f64 computes in 64-bit floats"):
         kind("v_add_f64")
 
 

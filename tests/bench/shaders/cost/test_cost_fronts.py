@@ -50,7 +50,7 @@ def test_a_codec_costs_its_encoding_its_storage_and_its_sign(name, total):
         ("xy", "rgba8", "rgba8 8:8", "the cost of rgba8 8:8 is not known"),
         ("xy", "rgba8", "xy", "its cost is not known"),
         ("xy_sign", "rgba8", "rgba8 signed depth 8:8:8", "the cost of rgba8 signed depth 8:8:8 is not known"),
-        ("xyz", "rg8", "nothing", "does not fit in rg8: 3 components, but RG8 has 2 channels"),
+        ("xyz", "rg8", "nothing", "it does not fit in rg8: 3 components, but RG8 has 2 channels"),
         ("xy", "rg8", "nothing", "the cost of rg8 8:8 is not known"),
     ],
 )
@@ -63,7 +63,7 @@ def test_unknown_part_of_a_cost_does_not_count_as_zero(name, storage, lost, reas
 
 
 def test_a_loop_has_no_sum_and_a_branch_is_marked():
-    with pytest.raises(LeftOutError, match="xy encode contains a loop, which counts once"):
+    with pytest.raises(LeftOutError, match="xy encode contains a loop, which is counted only once"):
         cost_of("xy", [*ROWS, row("xy", "encode", 1, loops=1, branches=1)])
     codec = Codec(ENCODINGS["xy"], STORAGES["rgba8"])
     marked = Costs([*ROWS, row("xy", "encode", 1, loops=0, branches=1)]).of(codec, WHERE, "encode", "instructions")

@@ -99,14 +99,12 @@ def test_remaining_loops_and_branches_are_reported(tmp_path):
     rows = costs_of("many(n.xy)", loop, tmp_path, ("polaris10", "navi31"))
     for row in rows:
         assert row["loops"] == 1 and row["instructions"] < 40 and row["spirv_instructions"] is None, row
-    assert cost.static_notes(rows) == [
-        "static count: mine encode contains a loop; its body counts once, however often it runs"
-    ]
+    assert cost.static_notes(rows) == ["static count: mine encode: each loop body counts once, however often it runs"]
     dear = "; ".join("e = sin(e + e.yx) / e" for _ in range(12))
     sides = f"vec2 sides(vec2 e) {{ if (e.x > 0.3) {{ {dear}; }} return e; }}\n"
     rows = costs_of("sides(n.xy)", sides, tmp_path, ("polaris10", "navi31"))
     assert [(row["branches"], row["loops"]) for row in rows] == [(1, 0)] * 4
-    assert cost.static_notes(rows) == ["static count: mine encode contains a branch; both sides count"]
+    assert cost.static_notes(rows) == ["static count: mine encode: both sides of each branch count"]
 
 
 @pytest.mark.usefixtures("radv", "own_cache")

@@ -82,7 +82,7 @@ def with_a_broken_cc(monkeypatch, folder):
 @pytest.mark.usefixtures("intel", "own_cache")
 @pytest.mark.parametrize(
     "take, status, said",
-    [(without_cc, 3, "apt-get install gcc"), (with_a_broken_cc, 0, "stdio.h: no such file; the headers of libc")],
+    [(without_cc, 3, "apt-get install gcc"), (with_a_broken_cc, 0, "stdio.h: no such file; libc's headers")],
 )
 def test_a_machine_without_a_c_compiler_loses_intels_rows_alone(run, monkeypatch, tmp_path, take, status, said):
     take(monkeypatch, tmp_path)

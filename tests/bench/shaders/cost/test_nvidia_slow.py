@@ -69,7 +69,9 @@ def called(shared):
     for index, operation in enumerate(operations):
         text += f"namespace own_{index} {{\n{source.functions_of(operation)}}}\n"
     text += "}\n"
-    sizes = [{"at": at, "given": o.given, "beside": o.beside, "made": o.made} for at, o in enumerate(operations)]
+    sizes = [
+        {"at": number, "given": o.given, "beside": o.beside, "made": o.made} for number, o in enumerate(operations)
+    ]
     text += "".join(CALL.format(**size) for size in sizes)
     command = ["c++", "-std=c++17", "-O1", "-w", "-ffp-contract=off", "-shared", "-fPIC", "-o", "all.so", "all.cpp"]
     with shared("cuda") as folder:
@@ -165,7 +167,7 @@ def test_unknown_nvrtc_architecture_is_skipped_with_a_reason(run, monkeypatch):
     status, out, _ = run(*INSTRUCTIONS, "--family", "sm_120")
     row = json.loads(out)[0]
     assert status == 0 and row["family"] == "sm_120"
-    assert re.match(r"NVRTC [\d.]+ does not compile for sm_999; it knows sm_", row["skipped"])
+    assert re.match(r"NVRTC [\d.]+ does not compile for sm_999; known: sm_", row["skipped"])
 
 
 # To encode octahedral: one fewer on Blackwell than before, as on a Radeon.

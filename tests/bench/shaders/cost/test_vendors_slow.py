@@ -50,7 +50,7 @@ def test_cached_rows_are_the_same_and_another_gpu_or_build_recompiles(request, r
 # A vendor's child processes are read by the same code; how each ends is seen of one, and all of a Radeon's.
 FAILING = [
     (INTEL, "sys.exit('no GPU')", "status 1: no GPU"),
-    (NVIDIA, "time.sleep(60)", "did not answer within"),
+    (NVIDIA, "time.sleep(60)", "did not respond within"),
     (INTEL, "os.abort()", "SIGABRT"),
 ]
 

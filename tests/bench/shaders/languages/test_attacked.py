@@ -159,7 +159,7 @@ def test_error_names_an_input_that_a_side_does_not_have(tmp_path):
     path.write_text(
         "float4 PackDir(float3 n, float r) { return float4(n, r); }\nfloat3 UnpackDir(float4 t) { return t.xyz; }\n"
     )
-    with pytest.raises(UsageError, match="it is given e, not n"):
+    with pytest.raises(UsageError, match="n is not available here; use e"):
         translated(f"{path}:PackDir(n=n)->xyz:UnpackDir(t=n)")
 
 
@@ -210,4 +210,4 @@ def test_the_packer_of_the_file_comes_before_the_helper_that_it_includes(tmp_pat
         translated(tmp_path / "mine.hlsl")
     translation = translated(tmp_path / "both.hlsl")
     assert translation.named == "PackDir:UnpackDir"
-    assert "EncodeIntoBuffer:DecodeFromBuffer is measured if it is named" in translation.notes
+    assert "EncodeIntoBuffer:DecodeFromBuffer is measured only if named" in translation.notes

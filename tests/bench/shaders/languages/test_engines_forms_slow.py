@@ -111,4 +111,4 @@ def test_packed_pair_next_to_another_is_reported(run):
     storage = ("--storage", "rg8", "--backend", "glsl", "--count", "4096", "--format", "json")
     _, out, err = run("quality", "--encoding", str(FORMS / "uint.hlsl"), "--normals", "sphere", *storage)
     assert json.loads(out)[0]["storage"] == "rg8"
-    assert "PackDir32:UnpackDir32, which packs into a uint, is measured if it is named" in err
+    assert "PackDir32:UnpackDir32, which packs into a uint, is measured only if named" in err

@@ -108,7 +108,7 @@ def test_the_pair_of_a_file_is_found(text, named):
             f"float2 octEncodeImpl(float3 n) {OF} void PackNormal(in float3 n, out float2 e) {OF} "
             f"float3 UnpackNormal(float2 e) {OF}",
             None,
-            "PackNormal returns nothing; write a function that returns what it writes to its parameter$",
+            "PackNormal returns nothing; write a function that returns the value of the output parameter$",
         ),
         (
             f"float2 PackNormal(float3 n) {OF} void UnpackNormal(float2 e, out float3 n) {OF} "
@@ -116,7 +116,7 @@ def test_the_pair_of_a_file_is_found(text, named):
             None,
             "UnpackNormal returns nothing; write a function",
         ),
-        (f"uint PackNormal(float3 n) {OF} {BACK}", None, "PackNormal returns a uint, but a code must be two"),
+        (f"uint PackNormal(float3 n) {OF} {BACK}", None, "PackNormal returns a uint, but a code must have two"),
         (
             "".join(f"float2 Encode{x}(float3 n) {OF} float3 Decode{x}(float2 e) {OF}" for x in "AB"),
             None,
@@ -125,7 +125,7 @@ def test_the_pair_of_a_file_is_found(text, named):
         (
             f"float2 EncodeA(float3 n) {OF} {BACK}",
             ("EncodeA", "DecodeB"),
-            "no function is named DecodeB; there are: EncodeA, DecodeNormal",
+            "unknown function DecodeB; known: EncodeA, DecodeNormal",
         ),
         (f"float3 EncodeA(float3 n) {OF} {BACK}", ("EncodeA", "DecodeNormal"), "EncodeA must take a float3"),
     ],

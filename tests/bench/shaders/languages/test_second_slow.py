@@ -43,7 +43,7 @@ def hlsl_of(folder, name, body):
     return path
 
 
-UNDEFINED = "it divides an integer by 0 for some normal; its language does not define that"
+UNDEFINED = "it divides an integer by 0 for some normals, which its language does not define"
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
@@ -67,7 +67,7 @@ def test_hlsl_that_glslang_misreads_is_measured_as_hlsl_defines_it(name, tmp_pat
     """A note names the function, the normal and both codes; Slang's code equals that of the formula written out."""
     misread, plain = (hlsl_of(tmp_path, f"f{index}", body) for index, body in enumerate(MISREAD[name]))
     (note,) = first_look(misread)["notes"]
-    assert note.startswith("MineEncode of [") and " by Slang and [" in note and "by glslang; the first" in note
+    assert note.startswith("MineEncode of [") and " with Slang and [" in note and "with glslang; the first" in note
     assert "notes" not in first_look(plain)
     assert np.allclose(codes(misread), codes(plain), atol=2e-6)
     assert not np.allclose(codes(misread, "glslang"), codes(plain), atol=0.1)
@@ -83,7 +83,7 @@ def test_a_translation_that_naga_contradicts_is_refused(tmp_path, monkeypatch):
     own = WgslParser._modulus
     monkeypatch.setattr(WgslParser, "_modulus", lambda self, _, x, y: own(self, "floor", x, y))
     line = first_look(path)["error"]
-    assert "two compilers disagree: mine_encode of [" in line and " by this program and [" in line and "by naga" in line
+    assert "two compilers disagree: mine_encode of [" in line and "this program and [" in line and "with naga" in line
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
@@ -110,7 +110,7 @@ def test_missing_second_compiler_is_noted(tmp_path, monkeypatch):
         kept.folder().rename(tmp_path / "gone")
         patched.setattr(second_look, "_by_glslang", lambda *_: None)
         (note,) = first_look(path)["notes"]
-    assert note == "no second compiler has checked its translation: the OpenGL driver has no GL_ARB_gl_spirv"
+    assert note == "no second compiler has checked its translation: the OpenGL driver does not support GL_ARB_gl_spirv"
     assert "notes" not in first_look(path)
 
 
@@ -184,4 +184,4 @@ def test_divisions_of_whole_numbers_are_noted(name, tmp_path):
 def test_driver_dependent_results_are_refused(body, tmp_path):
     """Slang's GLSL and SPIR-V differ although the same driver runs both."""
     error = first_look(hlsl_of(tmp_path, "mine", body))["error"]
-    assert "two compilers disagree: MineEncode of [" in error and "by its SPIR-V" in error
+    assert "two compilers disagree: MineEncode of [" in error and "with its SPIR-V" in error

@@ -94,7 +94,7 @@ def test_macro_is_not_accepted_as_an_included_file(tmp_path):
 
 
 def test_an_include_in_disguise_is_refused(tmp_path):
-    with pytest.raises(UsageError, match="in one line"):
+    with pytest.raises(UsageError, match="on one line"):
         Source(written(tmp_path, '#/**/include "a" "b"'))
 
 

@@ -62,7 +62,7 @@ def test_define_applies_only_to_users_files():
         ({"prelude": "\0.hlsl"}, "not a valid value"),
         ({"include": "gone"}, "--include gone: no such folder; name the folder that holds the included files"),
         ({"include": "Packages=gone"}, "--include gone: no such folder"),
-        ({"prelude": "/etc/hostname"}, "must end like a shader's"),
+        ({"prelude": "/etc/hostname"}, "must end in a shader's extension"),
     ],
 )
 def test_invalid_setting_is_an_error(mine, settings, why):

@@ -27,8 +27,8 @@ def test_macros_and_preludes_are_read_first(tmp_path, mine):
     by_macro = translated(word_with(str(mine), define="SCALE=1.0"))
     by_prelude = translated(word_with(str(mine), prelude=str(tmp_path / "pre.hlsl")))
     assert [by_macro.name, by_prelude.name] == ["mine.hlsl:SCALE=1.0", "mine.hlsl"]
-    assert "it is read with -D SCALE=1.0" in by_macro.notes
-    assert f"it is read with {tmp_path / 'pre.hlsl'}" in by_prelude.notes
+    assert "read with -D SCALE=1.0" in by_macro.notes
+    assert f"read with {tmp_path / 'pre.hlsl'}" in by_prelude.notes
     with pytest.raises(UsageError, match=r"--define:1:.*oops.*-D or --prelude"):
         translated(word_with(str(mine), define="SCALE=oops"))
 

@@ -34,5 +34,5 @@ def test_reading_takes_as_long_as_the_text(tmp_path, text):
 def test_includes_are_nested_no_deeper_than_can_be_read(tmp_path):
     for number in range(2000):
         written(tmp_path, f'#include "{number + 1}.hlsli"', f"{number}.hlsli")
-    with pytest.raises(UsageError, match="nested too deep"):
+    with pytest.raises(UsageError, match="nested too deeply"):
         Source(tmp_path / "0.hlsli")

@@ -117,7 +117,7 @@ ENDLESS = "float s = n.x; while (s < 2.0) s *= 0.5; return n.xy * s;"
 READS = "Texture2D<float4> T; SamplerState S;\n" + changed("return T.SampleLevel(S, n.xy, 0).xy;")
 
 
-KILLED = "too much for it|did not end|killed|kills the compiler"
+KILLED = "cannot handle this input|did not end|killed|crashes the compiler"
 # What is wrong, and what its line says.
 WRONG = {
     "undeclared": (changed("\n return n.xy * strange;"), r":5:16: (strange: unknown variable|undefined.*'strange')"),

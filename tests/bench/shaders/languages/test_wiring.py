@@ -41,8 +41,8 @@ def test_commas_and_spaces_are_read_as_well():
         ),
         (MATERIAL.replace("->o1.xy", "->o2.xy"), "PackSurface does not return o2.xy; it returns o0, o1"),
         (MATERIAL.replace("->o1.xy", ""), "PackSurface(s.normalWS=n; s.roughness=0.25) returns a code of 8 numbers"),
-        (MATERIAL.replace("->normalWS", "->roughness"), "returns no normal; name it"),
-        (MATERIAL.replace("UnpackSurface", "Gone"), "no function is named Gone; there are: "),
+        (MATERIAL.replace("->normalWS", "->roughness"), "does not return a normal; name the output"),
+        (MATERIAL.replace("UnpackSurface", "Gone"), "unknown function Gone; known: "),
         (MATERIAL.replace("=0.25", "=gone"), "is not in the form Pack(s.normal=n; s.roughness=0.5)->o1.xyz"),
     ],
 )

@@ -125,7 +125,7 @@ def test_missing_step_is_the_only_finding(tmp_path):
 
 def test_signed_codes_truncated_toward_0_are_named(tmp_path):
     (first, *_) = findings(tmp_path, with_code("trunc(c * 127.0) / 127.0"))
-    assert "codes are truncated to 8 bits, not to nearest" in first
+    assert "codes are truncated to 8 bits, and all are off by half a step" in first
 
 
 def test_shift_other_than_half_a_step_is_reported_as_a_number(tmp_path):

@@ -34,7 +34,7 @@ def test_fold_that_does_not_match_the_unfold_is_named(tmp_path):
     own = text.replace("abs(p.yx)", "abs(p)").replace("abs(e.yx)", "abs(e)")
     assert own != text and findings(tmp_path, own) == []
     (first, *_) = findings(tmp_path, text.replace("abs(p.yx)", "abs(p)"))
-    assert "its fold has .xy where .yx belongs" in first
+    assert "its fold uses .xy instead of .yx" in first
 
 
 ROUNDED = ("floor(({}) * STEPS.0 + 0.5) / STEPS.0", "round(({}) * STEPS.0) / STEPS.0")

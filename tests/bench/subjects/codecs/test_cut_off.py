@@ -117,7 +117,7 @@ def test_truncated_signed_codes_are_named(bits):
 def test_xyz_truncated_toward_0_is_reported_as_shifted():
     """Renormalisation removes most of the shift."""
     (line,) = said("xyz", (8, 8, 8), *of_signed(np.trunc))
-    assert line.startswith("codes are shifted: ") and 70 < int(re.findall(r"(\d+)%", line)[0]) < 85, line
+    assert line.startswith("codes are shifted, ") and 70 < int(re.findall(r"(\d+)%", line)[0]) < 85, line
     assert said("xyz", (8, 8, 8), *of_signed(lambda x: np.floor(x + 0.5))) == []
 
 
@@ -134,4 +134,4 @@ def test_truncation_of_one_of_two_numbers_is_named():
 
 def test_scale_of_one_step_is_not_taken_for_truncation():
     (line,) = said("octahedral", (8, 8), lambda x, most: np.floor(x * (most - 1) + 0.5), lambda i, most: i / most)
-    assert line.startswith("codes are shifted: "), line
+    assert line.startswith("codes are shifted, "), line

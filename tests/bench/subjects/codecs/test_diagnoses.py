@@ -172,7 +172,7 @@ def three(text: str) -> str:
 WRONG = {
     "a share of it": (
         octahedral("p * 0.7", "e /= 0.7;"),
-        "component 1 of the code is -0.7 to 0.7: 30% of its range is unused",
+        "component 1 of the code ranges from -0.7 to 0.7: 30% of its range is unused",
     ),
     "more than it": (octahedral("p * 1.4", "e /= 1.4;"), "component 1 of the code is 1.4 for (1, 0, 0)"),
     "a mirrored half": (
@@ -181,7 +181,7 @@ WRONG = {
     ),
     "a fold without .yx": (
         octahedral().replace("abs(p.yx)", "abs(p)"),
-        "encode is octahedral, but its fold has .xy where .yx belongs: directions with z < 0 are lost",
+        "encode is octahedral, but its fold uses .xy instead of .yx: directions with z < 0 are lost",
     ),
     "a scale on one side": (
         HALF.replace("p.x - p.y);", "0.98 * (p.x - p.y));", 1),
@@ -202,14 +202,14 @@ WRONG = {
         "for directions with z >= 0 without any storage; encode gives 0.5 times the code that decode expects",
     ),
     "no pair": (octahedral().split("vec3 mine_decode")[0] + BY_ANGLES.replace("BEFORE", ""), "are not a pair: 88.9"),
-    "no unit length": (octahedral(result="n"), "decode gives lengths from 0.577 to 1; normalize() is missing"),
+    "no unit length": (octahedral(result="n"), "decoded lengths range from 0.577 to 1; normalize() is missing"),
     "NaN": (
         ANGLES.replace("n.z)", "n.z + 1e-9 * acos(n.z * 1.001))") + BY_ANGLES.replace("BEFORE", ""),
         "not finite",
     ),
     "a seam": (
         ANGLES + BY_ANGLES.replace("BEFORE", "if (e.x > 0.97) e.x = -0.9;"),
-        " of 4338 tested directions come back more than 1 degree off",
+        " of 4338 tested directions are off by more than 1 degree",
     ),
     "a number of nothing": (three(octahedral()), "component 3 of the code is unused: it is always 0"),
     "an angle of half a turn": (
@@ -281,7 +281,7 @@ def test_correct_encoder_has_no_findings(gl, tmp_path, what):
     """A GPU may return NaN for a direction that the encoder does not define; that finding is allowed."""
     text, domain = RIGHT[what]
     look = looked_at(tmp_path, text)
-    wrong = [line for line in look["wrong"] if gl.is_software or "all other directions come back" not in line]
+    wrong = [line for line in look["wrong"] if gl.is_software or "all other directions round-trip" not in line]
     assert (look["domain"], wrong) == (domain, []) and "half" not in look
 
 
@@ -322,7 +322,7 @@ def test_a_number_of_few_values_need_not_fill_its_range(run, tmp_path, steps, re
     assert looked_at(tmp_path, path.read_text())["wrong"] == []
     status, out, _ = run("doctor", str(path), "--format", "json")
     notes = [row["finding"] for row in json.loads(out) if row["kind"] == "note"]
-    note = f"component 3 of the code has 6 values from 0 to {reach}; the rest of [0, 1] is unused"
+    note = f"component 3 of the code takes 6 values from 0 to {reach}; the rest of [0, 1] is unused"
     assert status == 0 and notes[1] == note
 
 
@@ -335,7 +335,7 @@ def test_an_encoder_that_rounds_for_another_storage_is_not_wrong(run, tmp_path):
     verdict, note = json.loads(out)
     assert status == 0 and (verdict["kind"], note["kind"]) == ("verdict", "note")
     assert note["finding"].startswith("in rgba8 this is octahedral, but 46% worse: ")
-    assert note["finding"].endswith("; encode itself rounds to 1/127; try --storage rg8_snorm")
+    assert note["finding"].endswith("; encode itself rounds to steps of 1/127; try --storage rg8_snorm")
     status, out, _ = run("doctor", str(path), "--storage", "rg8_snorm", "--format", "json")
     assert status == 0 and len(json.loads(out)) == 1
 
@@ -345,7 +345,7 @@ def test_findings_also_appear_in_a_table_command(run, tmp_path):
     path = tmp_path / "mine.glsl"
     path.write_text(octahedral("p * 0.7", "e /= 0.7;"))
     status, _, err = run("quality", "--encoding", str(path), "--storage", "rg8", "--backend", "glsl", "--count", "64")
-    assert status == 0 and f"{path}: component 1 of the code is -0.7 to 0.7: 30% of its range is unused" in err
+    assert status == 0 and f"{path}: component 1 of the code ranges from -0.7 to 0.7: 30% of its range is unused" in err
 
 
 @pytest.mark.parametrize(

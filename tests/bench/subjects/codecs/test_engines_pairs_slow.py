@@ -27,7 +27,7 @@ SAID = {
     ),
     "no_unfold.hlsl": ("decode is octahedral, but its unfold is missing: directions with z < 0 are lost", ""),
     "sign_unread.hlsl": (
-        "decode does not read component 3 of the code, which encode fills; decode loses directions with z < 0",
+        "decode does not read component 3 of the code, although encode writes it; decode loses directions with z < 0",
         "encode gives them codes of their own",
     ),
     "other_range.hlsl": ("encode and decode are not a pair", "c * 0.5 + 0.5 between the two makes them a pair"),
@@ -57,10 +57,10 @@ def test_octahedral_in_three_bytes_is_measured_as_it_stands(run):
 
 
 ALONE = {
-    "decoder.hlsl": "UnpackDir has no encoder; .*; UnpackDir is the decode of xy",
-    "enc.hlsl": "PackDir has no decoder; .*; PackDir is the encode of xy",
-    "octahedral.glsl": "dir_decode has no encoder; .*; dir_decode is the decode of octahedral",
-    "other.hlsl": "DecodeDir has no encoder; .*; DecodeDir is the decode of no encoding of the catalogue",
+    "decoder.hlsl": "UnpackDir has no encoder; .*; UnpackDir matches the decoder of xy",
+    "enc.hlsl": "PackDir has no decoder; .*; PackDir matches the encoder of xy",
+    "octahedral.glsl": "dir_decode has no encoder; .*; dir_decode matches the decoder of octahedral",
+    "other.hlsl": "DecodeDir has no encoder; .*; DecodeDir matches the decoder of no encoding in the catalogue",
 }
 
 

@@ -59,7 +59,7 @@ LOST = {
     "no unfold": (NO_UNFOLD, "decode is octahedral, but its unfold is missing: directions with z < 0 are lost"),
     "a sign that is not read": (
         SIGN_UNREAD,
-        "decode does not read component 3 of the code, which encode fills",
+        "decode does not read component 3 of the code, although encode writes it",
     ),
     "a mirror": (
         MIRRORED,
@@ -212,7 +212,7 @@ def test_hole_in_a_code_is_a_finding_unless_the_domain_excludes_it(run, tmp_path
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")
     first = json.loads(out)[0]
     assert status == 1 and first["domain"] == "sphere"
-    assert first["finding"] == "encode of (0, 0, -1) is (nan, nan), not finite; all other directions come back"
+    assert first["finding"] == "encode of (0, 0, -1) is (nan, nan), not finite; all other directions round-trip"
     for domain in ("hemisphere", "view"):
         status, out, _ = run("doctor", "dir.glsl", "--domain", domain, "--format", "json")
         assert status == 0 and {row["domain"] for row in json.loads(out)} == {domain}, out
@@ -232,7 +232,7 @@ def test_directions_that_are_lost_are_counted(run, tmp_path):
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")
     (finding, *_) = [row["finding"] for row in json.loads(out)]
     match = re.fullmatch(
-        r"of directions with z < 0 (\d+) of (\d+) come back more than 1 degree off, up to ([\d.]+): .*", finding
+        r"directions with z < 0: (\d+) of (\d+) are off by more than 1 degree, up to ([\d.]+) degrees; .*", finding
     )
     assert status == 1 and match, finding
     count, among, largest = map(float, match.groups())

@@ -24,7 +24,7 @@ def test_a_file_elsewhere_is_not_opened(tmp_path, monkeypatch):
     path.write_text(f'#include "{note}"\n' + GOOD.replace("NAME", "mine"))
     read = shader.read_shader
     monkeypatch.setattr(shader, "read_shader", lambda file: opened.append(file) or read(file))
-    with pytest.raises(UsageError, match=r"note\.txt, which is outside its folder; move it there"):
+    with pytest.raises(UsageError, match=r"note\.txt is outside the folder of the shader; move it there"):
         read_encoding(path)
     assert path in opened and note not in opened
 
@@ -54,5 +54,5 @@ def test_a_file_elsewhere_is_not_included(run, tmp_path, text, ending):
     status, _, err = run("quality", "--encoding", str(path), "--storage", "rg8", "--count", "1000")
     assert (status, err) == (
         2,
-        f"normalbench: {path}: it includes {note}, which is outside its folder; move it there\n",
+        f"normalbench: {path}: the included file {note} is outside the folder of the shader; move it there\n",
     )

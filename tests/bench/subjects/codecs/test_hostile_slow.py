@@ -158,7 +158,7 @@ def but_the_domain(said: str) -> list[str]:
 def test_a_twin_that_contradicts_its_shader_is_named(tmp_path):
     twin = TWIN.replace("BODY", "return Vec2(n.y, n.x)").replace("TOP", "")
     rows, messages = measured(tmp_path, written(tmp_path, "turned", twin=twin))
-    assert len(rows) == 2 and re.search(r"turned\.py: encode differs from the GLSL for \d+% of directions", messages)
+    assert len(rows) == 2 and re.search(r"turned\.py: encode differs from the GLSL for \d+% of inputs", messages)
     assert len(but_the_domain(messages)) == 1
 
 

@@ -18,7 +18,7 @@ def test_two_functions_are_measured_like_any_other(run, tmp_path):
     status, out, err = run("quality", "--encoding", f"{path},octahedral", "--backend", "glsl", *QUICK)
     rows = {row["encoding"]: row for row in json.loads(out)}
     assert status == 0 and err.endswith(
-        "mine.glsl: assumed to be made only for normals with z >= 0: other normals do not come back\n"
+        "mine.glsl: assumed to be made only for normals with z >= 0: other normals do not round-trip\n"
     )
     assert err.count("\n") == 1
     assert 0.8 < rows["mine"]["effective_bits"] - rows["octahedral"]["effective_bits"] < 1.2, rows
@@ -32,7 +32,7 @@ def test_jax_row_reports_a_missing_twin_and_agrees_with_an_existing_one(run, tmp
     jax_row, gl_row = json.loads(out)
     reason = "mine has no Python twin; add mine.py next to it for rows computed by JAX"
     assert status == 0 and jax_row["skipped"] == reason
-    assert f"normalbench: measured by OpenGL alone: {reason}\n" in err and "without figures" not in err
+    assert f"normalbench: measured only by OpenGL: {reason}\n" in err and "without figures" not in err
     _, out, _ = run("quality", "--encoding", path, *QUICK[:-1], "markdown")
     assert "| mine " in out and "jax" not in out.partition("- by OpenGL")[0], "a row by GLSL alone"
     assert f"by OpenGL alone: mine/rgba8 on hemisphere ({jax_row['skipped']})" in out

@@ -70,7 +70,7 @@ BAD = {
     "negative": (with_value(-0.25), "G is -0.25 at column 7, row 5"),
     "square": (np.ones((16, 16, 3), np.float32), "16 x 16 pixels; an equirectangular environment must be"),
     "a cube's cross": (np.ones((24, 32, 3), np.float32), "32 x 24 pixels; an equirectangular"),
-    "small": (light(7), "14 x 7 pixels; at least 16 x 8 are needed"),
+    "small": (light(7), "14 x 7 pixels; at least 16 x 8 are required"),
 }
 
 
@@ -94,7 +94,7 @@ def test_too_wide_a_file_is_refused_by_its_header(tmp_path):
     """The file has no pixels, so nothing but the header can be read."""
     path = tmp_path / "wide.hdr"
     path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4100 +X 8200\n" + bytes(8200 * 4))
-    assert "8200 x 4100 pixels; at most 8192 x 4096 are supported: scale it down" in refused(path)
+    assert "8200 x 4100 pixels; at most 8192 x 4096 are supported: shrink it" in refused(path)
 
 
 @here
@@ -107,7 +107,7 @@ def test_grey_and_normals_are_refused_by_their_channels(tmp_path):
 
 def test_an_unknown_name_lists_those_there_are():
     with pytest.raises(
-        UsageError, match=r"did you mean studio\? known: studio, sky, strips, lamp; or a file that ends in .hdr, .exr"
+        UsageError, match=r"did you mean studio\? known: studio, sky, strips, lamp; or a file ending in .hdr, .exr"
     ):
         environment_named("studoi")
 

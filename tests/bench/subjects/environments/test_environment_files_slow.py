@@ -54,9 +54,9 @@ def test_other_files_are_one_line_errors(tmp_path):
     for name, message in (
         ("sky.png", "it stores no light brighter than white; save the environment as .hdr or .exr"),
         ("none.jpg", "it stores no light brighter than white"),
-        ("photo.hdr", "not in HDR format, by its first bytes; save it again"),
+        ("photo.hdr", "its first bytes are not those of HDR files; save it again"),
         ("cut.hdr", "it is cut off or damaged; save it again"),
-        ("scene.glb", ".hdr and .exr files are read"),
+        ("scene.glb", ".hdr and .exr files are supported"),
         ("folder", "it is a folder; name a file"),
         ("folder.exr", "it is a folder; name a file"),
         ("pipe.exr", "it is not a plain file"),

@@ -30,7 +30,7 @@ def test_exr_of_wrong_size_or_sampling_is_a_one_line_error(tmp_path):
     changes = {
         r"67108864 pixels of 3 channels; at most 33554432 pixels": (window, [0, 0, 2**13 - 1, 2**13 - 1]),
         r"far more pixels than the file can hold; at most 33554432 pixels": (window, [0, 0, 2**15 - 1, 2**15 - 1]),
-        r"subsampled; save it in full": (channel[4:], [2, 0, 2, 1]),
+        r"subsampled; save all channels at full resolution": (channel[4:], [2, 0, 2, 1]),
     }
     for message, (old, new) in changes.items():
         path.write_bytes(data.replace(old, np.array(new, "<i4").tobytes()))

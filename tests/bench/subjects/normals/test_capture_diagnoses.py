@@ -83,26 +83,26 @@ WRONG = {
     ),
     "a transposed matrix": Wrong(
         WORLD_FILE,
-        f"if the matrix is transposed (it may be for row vectors, or transform view space to world space): read it "
-        f"with --space world --view-matrix {typed(M)}",
+        f"if the matrix is transposed (it may be for row vectors, or transform view space to world space): use "
+        f"--space world --view-matrix {typed(M)}",
         Reading(space="world", view_matrix=typed(M.T)),
         WORLD,
     ),
     "a left-handed matrix": Wrong(
         WORLD_FILE,
-        f"left-handed view space, z into the screen: read it with --space world --view-matrix {typed(M)}",
+        f"left-handed view space, z into the screen: use --space world --view-matrix {typed(M)}",
         Reading(space="world", view_matrix=typed(np.diag([1, 1, -1]) @ M)),
         WORLD,
     ),
     "a left-handed and transposed matrix": Wrong(
         WORLD_FILE,
-        f"transposed and left-handed: read it with --space world --view-matrix {typed(M)}",
+        f"transposed and left-handed: use --space world --view-matrix {typed(M)}",
         Reading(space="world", view_matrix=typed((np.diag([1, 1, -1]) @ M).T)),
         WORLD,
     ),
     "a scaled matrix": Wrong(
         WORLD_FILE,
-        "the rows of --view-matrix are 2.5 long: the scale is ignored",
+        "the rows of --view-matrix have length 2.5: the scale is ignored",
         Reading(space="world", view_matrix=typed(2.5 * M)),
         WORLD,
     ),
@@ -114,35 +114,35 @@ WRONG = {
     ),
     "world space read as view space": Wrong(
         WORLD_FILE,
-        "is it in world space? use --space world --view-matrix to transform it to view space; if the engine encodes "
+        "if they are in world space, use --space world --view-matrix to transform them; if the engine encodes "
         "world-space normals, use --space world --code-space world",
         Reading(),
         WORLD,
     ),
     "view space read as world space": Wrong(
-        lambda path: floats(path, N), "in view space already: read it with --space view", WORLD, Reading()
+        lambda path: floats(path, N), "in view space already: use --space view", WORLD, Reading()
     ),
     "left-handed view space": Wrong(
         lambda path: floats(path, N * [1, 1, -1]),
-        "z points the other way: read it with --space view-left-handed",
+        "z points the other way: use --space view-left-handed",
         Reading(),
         Reading(space="view-left-handed"),
     ),
     "y down, z into the screen": Wrong(
         lambda path: floats(path, N * [1, -1, -1]),
-        "y points down and z into the screen: read it with --space world --view-matrix 1,0,0,0,-1,0,0,0,-1",
+        "y points down and z into the screen: use --space world --view-matrix 1,0,0,0,-1,0,0,0,-1",
         Reading(fov=CAMERA.fov),
         Reading(fov=CAMERA.fov, space="world", view_matrix="1,0,0,0,-1,0,0,0,-1"),
     ),
     "y down": Wrong(
         lambda path: floats(path, N * [1, -1, 1]),
-        "y points down, or rows run from the bottom up: read it with --space world --view-matrix 1,0,0,0,-1,0,0,0,1",
+        "y points down, or rows run from the bottom up: use --space world --view-matrix 1,0,0,0,-1,0,0,0,1",
         Reading(fov=CAMERA.fov),
         Reading(fov=CAMERA.fov, space="world", view_matrix="1,0,0,0,-1,0,0,0,1"),
     ),
     "red and blue swapped": Wrong(
         lambda path: floats(path, N[..., ::-1]),
-        "red and blue are swapped: read it with --channels 2,1,0",
+        "red and blue are swapped: use --channels 2,1,0",
         Reading(),
         Reading(channels="2,1,0"),
     ),
@@ -251,7 +251,7 @@ def test_rows_from_the_bottom_up_are_told_from_another_angle_of_view(tmp_path):
 def test_8_bit_frame_has_a_note_on_the_encodings_it_favours(tmp_path):
     """8-bit normals are on the steps of RGBA8, which loses nothing more; 16 bits and floats favour no storage."""
     (line,) = said_of(of_8_bits(tmp_path / "frame", N), Reading())
-    assert line.startswith("8 bits per channel, about 0.2 degrees off themselves")
+    assert line.startswith("8 bits per channel, with errors of about 0.2 degrees")
     assert said_of(png(tmp_path / "frame", N), Reading()) == []
 
 
@@ -267,7 +267,7 @@ def test_a_grey_background_of_packed_normals_is_background(tmp_path):
 def test_note_on_normalised_captures_names_the_right_curve(tmp_path):
     path = of_8_bits(tmp_path / "frame", N, to_srgb)
     (line,) = besides_bits(said_of(path, Reading(normalise=True)))
-    assert line.endswith("normalised; --curve srgb would read them at unit length")
+    assert line.endswith("normalised; with --curve srgb they would be unit length")
 
 
 @pytest.mark.parametrize("option", ["curve", "space"])

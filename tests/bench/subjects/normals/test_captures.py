@@ -135,7 +135,7 @@ def test_world_space_is_turned_to_view_space(tmp_path):
     assert np.array_equal(back, n.reshape(-1, 3))
     assert captures.capture(tmp_path / "left.npy", Reading(space="view-left-handed"))[1] == []
     (note,) = captures.capture(tmp_path / "left.npy", Reading())[1]
-    assert "if z points the other way: read it with --space view-left-handed" in note
+    assert "if z points the other way: use --space view-left-handed" in note
 
 
 def test_normals_are_given_to_encoders_in_the_space_that_the_engine_encodes(tmp_path):
@@ -193,7 +193,7 @@ def test_codes_that_need_the_view_ray_need_it_in_their_own_space(run, tmp_path):
         ("world", None, "needs --view-matrix"),
         ("screen", None, "unknown space 'screen'; known: view, view-left-handed, world"),
         ("view", "1,0,0,0,1,0,0,0,1", "--view-matrix cannot be used with --space view"),
-        ("world", "1,0,0,0,1,0", "6 numbers; 9 or 16"),
+        ("world", "1,0,0,0,1,0", "6 numbers; expected 9 or 16"),
         ("world", "1,0,0,0,2,0,0,0,1", "not a rotation"),
         ("world", "0,0,0,0,0,0,0,0,0", "not a rotation"),
         ("world", "nan,0,0,0,1,0,0,0,1", "neither numbers nor a text file"),
@@ -233,7 +233,7 @@ def test_masks_by_file_and_by_channel(tmp_path, monkeypatch):
         assert np.array_equal(given(frame)[1], surface.ravel()), mask
         assert (frame.background, frame.not_finite) == (48 * 64 - 20 * 55, 0), mask
     np.save(tmp_path / "small.npy", surface[:5])
-    for mask, message in ((str(tmp_path / "small.npy"), "5 x 64, the normals are 48 x 64"), ("B", "no channel 'B'")):
+    for mask, message in ((str(tmp_path / "small.npy"), "5 x 64, normals are 48 x 64"), ("B", "no channel 'B'")):
         with pytest.raises(UsageError, match=message):
             capture(tmp_path / "frame.exr", Reading(mask=mask))
 

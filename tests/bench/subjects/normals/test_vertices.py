@@ -103,7 +103,7 @@ def test_normals_of_no_length_and_nan_are_left_out_and_counted(tmp_path, run):
         *("quality", "--encoding", "octahedral", "--normals", f"{path}#vertices", "--backend", "jax"),
         *("--format", "json"),
     )
-    assert status == 0 and "1 vertex normals of zero length and 2 that are NaN or infinite are left out" in err
+    assert status == 0 and "1 vertex normals of zero length and 2 NaN or infinite vertex normals are left out" in err
     (row,) = json.loads(out)
     assert (row["count"], row["background"], row["not_finite"]) == (2, 1, 2)
     assert (row["normals"], row["code_space"]) == ("a.glb#vertices", "object")
@@ -162,8 +162,8 @@ BAD = {
     "no normals": ("bare.glb#vertices", "bare.glb: no vertex normals in it; export it with normals"),
     "no mesh": ("empty.glb#vertices", "empty.glb: no vertex normals in it; export it with normals"),
     "zeros alone": ("zeros.glb#vertices", "zeros.glb: none of its 3 vertex normals has a direction"),
-    "no triangle": ("none.ply#vertices", "none.ply: vertices with x, y, z and faces with vertex_indices are read"),
-    "an index too large": ("beyond.ply#vertices", "beyond.ply: the mesh: index 2 names vertex 9, but there are 3"),
+    "no triangle": ("none.ply#vertices", "none.ply: neither vertices with x, y, z and faces with vertex_indices"),
+    "an index too large": ("beyond.ply#vertices", "beyond.ply: the mesh: index 2 refers to vertex 9, but there are 3"),
     "options of captures": (
         "ball.glb#vertices --fov 60",
         "options for captures are given, but --normals ball.glb#vertices names no capture",

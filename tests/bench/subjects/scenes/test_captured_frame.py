@@ -49,14 +49,14 @@ def pixels_of(path: Path) -> PixelSurfaces:
     [
         ({"roughnes": 0.5}, ("unknown key 'roughnes'", "did you mean roughness?")),
         ({"depth": {"file": "depth.npy", "are": "window"}}, ("depth: unknown key 'are'", "depths_are")),
-        ({"normal": "left out"}, ("no normal", '"normal": {"file": "FILE", "channels"')),
-        ({"roughness": None, "near": None}, ("no near, roughness", '"near": NUMBER')),
+        ({"normal": "left out"}, ("missing normal", '"normal": {"file": "FILE", "channels"')),
+        ({"roughness": None, "near": None}, ("missing near, roughness", '"near": NUMBER')),
         ({"smoothness": 0.5}, ("roughness and smoothness are the same quantity",)),
         ({"base_color": {"file": "gone.npy"}}, ("no file gone.npy", "relative to the folder of frame.json")),
-        ({"base_color": {"file": "../away.npy"}}, ("base_color", "leaves the file's folder")),
+        ({"base_color": {"file": "../away.npy"}}, ("base_color", "is outside the file's folder")),
         ({"base_color": 0.5}, ("base_color is 0.5", '"channels"')),
         ({"roughness": {"channel": "R"}}, ("roughness: no file",)),
-        ({"roughness": {"file": "small.npy"}}, ("roughness", "small.npy", "12 x 8", "24 x 16", "one size")),
+        ({"roughness": {"file": "small.npy"}}, ("roughness", "small.npy", "12 x 8", "24 x 16", "the same size")),
         ({"normal": {"file": "small.npy"}}, ("normal", "small.npy")),
         ({"roughness": {"file": "holes.npy"}}, ("384 of 384 pixels are NaN", "row 0, column 0", "mask")),
         ({"roughness": {"file": "base_color.npy"}}, ("no channel is named; it has 0, 1, 2", 'name one with "channel"')),
@@ -65,17 +65,17 @@ def pixels_of(path: Path) -> PixelSurfaces:
             {"base_color": {"file": "base_color.npy", "channels": "R,G,B"}},
             ("no channels R,G,B", 'name three with "channels"'),
         ),
-        ({"roughness": {"file": "depth.npy"}}, ("roughness: its numbers are 2 to 8", "0 to 1", '"scale"')),
-        ({"metallic": -1}, ("metallic: its numbers are -1 to -1",)),
-        ({"emissive": [0, 0, -1]}, ("emissive: its numbers are -1 to 0", "light")),
+        ({"roughness": {"file": "depth.npy"}}, ("roughness: its values are 2 to 8", "0 to 1", '"scale"')),
+        ({"metallic": -1}, ("metallic: its values are -1 to -1",)),
+        ({"emissive": [0, 0, -1]}, ("emissive: its values are -1 to 0", "light")),
         ({"base_color": {"file": "base_color.npy", "curve": "srbg"}}, ("unknown curve 'srbg'", "srgb")),
         ({"depth": {"file": "depth.npy", "depths_are": "window"}}, ("depth", "2 to 8", '"depths_are" view')),
-        ({"depth": {"file": "depth.npy", "depth_unit": 100}}, ("no depth is within near and far", "200 to 800")),
+        ({"depth": {"file": "depth.npy", "depth_unit": 100}}, ("no depth is between near and far", "200 to 800")),
         ({"depth": {"file": "depth.npy", "depth_unit": "m"}}, ("depth_unit is 'm'", "a number")),
-        ({"normal": {"file": "normal.npy", "space": "world"}}, ('"space" world needs "view_matrix"',)),
+        ({"normal": {"file": "normal.npy", "space": "world"}}, ('"space" world requires "view_matrix"',)),
         ({"normal": {"file": "normal.npy", "unpack": "yes"}}, ("unpack is 'yes'", "true or false")),
         ({"normal": {"file": "normal.npy", "unpack": True}}, ("normal", 'use "unpack": false')),
-        ({"view_matrix": [1, 2, 3]}, ("view_matrix", "3 numbers; 9 or 16")),
+        ({"view_matrix": [1, 2, 3]}, ("view_matrix", "3 numbers; expected 9 or 16")),
         ({"fov": 0}, ("fov is 0", "1 to 175")),
         ({"near": 10, "far": 1}, ("near is 10 and far is 1", "reversed_window")),
         ({"far": "infinite"}, ("far is 'infinite'", "a number")),
@@ -142,7 +142,7 @@ def test_large_frames_are_drawn_by_some_of_their_pixels(tmp_path, monkeypatch):
     captured = read(path)
     assert (
         captured.sides == (12, 8)
-        and "one row and one column in 2 are drawn, 12 x 8 pixels, without averaging" in captured.notes
+        and "drawn: one row and one column in 2 (12 x 8 pixels), without averaging" in captured.notes
     )
     (part,) = captured.scene.parts
     rough = captured.scene.materials[0].rough_metal_map

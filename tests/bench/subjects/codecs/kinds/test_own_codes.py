@@ -92,13 +92,13 @@ BROKEN = {
         r"the loops of encode for .* do not end here"
     ),
     "float2 EncodeVelocity(float2 v) { return normalize(v) * sqrt(length(v)); }" + PAIR: (
-        r"encode gives no number of \(0, 0\)"
+        r"encode returns no number for \(0, 0\)"
     ),
     "float3 EncodeVelocity(float3 v) { return v; } float3 DecodeVelocity(float3 v) { return v; }": (
-        "do not have the types of a pair for motion vectors"
+        "have the wrong types for motion vectors"
     ),
     "uint EncodeVelocity(float2 v) { return 0; } float2 DecodeVelocity(uint v) { return 0; }": (
-        "returns a uint, but a code of motion vectors must be numbers"
+        "returns a uint, but a code of motion vectors must be one or more floats"
     ),
     "Texture2D t; float2 EncodeVelocity(float2 v) { return t.Load(0).xy; }" + PAIR: (
         "read a texture or a constant buffer"
@@ -137,7 +137,7 @@ def test_rows_by_jax_need_a_twin(run):
     words = ("--storage", "rg16", "--speed", "1", "--count", "64")
     status, out, err = run("vectors", "--encoding", str(INPUTS / "velocity.wgsl"), *words)
     assert status == 0 and "jax" not in out
-    assert "measured by OpenGL alone: velocity.wgsl has no Python twin" in err
+    assert "measured only by OpenGL: velocity.wgsl has no Python twin" in err
     status, _, err = run("vectors", "--encoding", str(INPUTS / "velocity.wgsl"), *words, "--backend", "jax")
     assert status == 2 and "velocity.wgsl has no Python twin" in err
 
@@ -171,7 +171,7 @@ def test_depth_code_without_planes_is_measured_in_its_own_range(run, tmp_path):
     assert status == 0, err
     # Within a hundredth of its planes.
     assert re.search(r"own.hlsl: it round-trips for depths from (1.9[89]|2) to 25[0-2]", err), err
-    assert "units.hlsl: its codes go beyond 1: only float storages hold them" in err
+    assert "units.hlsl: its codes exceed 1: only float storages hold them" in err
     storages = {name: {row["storage"] for row in json.loads(out) if row["depth"] == name} for name in OWN_DEPTHS}
     assert storages == OWN_DEPTHS
     # 24 bits of a range of 248: half a step is 7.4e-6, along a ray of at most 1.57; and float32 adds 250 2^-23 a step.
@@ -205,7 +205,7 @@ def test_curve_that_leaves_its_range_or_moves_its_ends_is_reported(tmp_path):
     look = own_code(CURVE, file).found
     (wrong,) = look["wrong"]
     assert wrong == "component 1 of the code leaves [0, 1], the range of fixed-point storages: 1.5 for 1"
-    assert [line.split(",")[0] for line in look["notes"]] == ["1 does not come back exactly"]
+    assert [line.split(",")[0] for line in look["notes"]] == ["1 is not exact"]
 
 
 LIGHTS = ("lights", "--sum", "1,4", "--counts", "8", "--format", "json")
@@ -304,7 +304,7 @@ def test_flipped_handedness_is_reported(tmp_path):
     file = tmp_path / "own.hlsl"
     text = (INPUTS / "frame.hlsl").read_text()
     file.write_text(text.replace("e.w >= 0.0 ? 1.0 : -1.0", "e.w >= 0.0 ? -1.0 : 1.0"))
-    assert own_code(FRAME, file).found["wrong"] == ["100% of the tangent frames come back with the other handedness"]
+    assert own_code(FRAME, file).found["wrong"] == ["100% of the tangent frames decode with the opposite handedness"]
 
 
 def test_swapped_axes_are_reported(tmp_path):
@@ -315,7 +315,7 @@ def test_swapped_axes_are_reported(tmp_path):
     assert own_code(FRAME, file).found["wrong"] == []
     file.write_text(text.replace("Quaternion(normal, tangent)", "Quaternion(tangent, normal)"))
     (wrong,) = own_code(FRAME, file).found["wrong"]
-    assert "encode and decode do not undo each other" in wrong and "degrees off" in wrong
+    assert "encode and decode do not undo each other" in wrong and " degrees, " in wrong
 
 
 @pytest.mark.parametrize(

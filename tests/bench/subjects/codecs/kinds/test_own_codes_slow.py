@@ -25,7 +25,7 @@ def test_decoder_of_another_encoder_is_measured_and_reported(run, tmp_path):
     file.write_text(PAIR.replace("return e", "return 2 * e") + "float2 EncodeVelocity(float2 v) { return v; }")
     status, out, err = run(*VECTORS, "--encoding", str(file), "--storage", "rg16")
     assert status == 0 and len(json.loads(out)) == 2
-    assert "encode and decode do not undo each other: (1, 0) comes back 1 screens off" in err
+    assert "encode and decode do not undo each other: (1, 0) is off by 1 screens" in err
 
 
 def test_format_follows_the_file_name(run, tmp_path):
