@@ -1,6 +1,7 @@
-"""The catalogues of encodings. Adding one is its pair of files in its kind's folder, and one line here.
+"""The catalogues of encodings. To add an encoding, add its pair of files to its kind's folder, and one line here.
 
-The catalogues are read-only. A tuned encoding and a user's encoding are values like these, and in no catalogue.
+The catalogues are read-only. Tuned encodings and users' encodings are values of the same types, but are in no
+catalogue.
 """
 
 from __future__ import annotations
@@ -125,5 +126,5 @@ LIGHT_BUFFERS: Mapping[str, LightCodec] = MappingProxyType(
 
 
 def is_in_catalogue(encoding: Encoding) -> bool:
-    """Whether an encoding is itself an entry of ENCODINGS: not a variant of an entry, and not a user's encoding."""
+    """Whether an encoding is itself an entry of ENCODINGS, rather than a variant of an entry or a user's encoding."""
     return ENCODINGS.get(encoding.name) is encoding

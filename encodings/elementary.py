@@ -1,12 +1,13 @@
 """Trigonometry and logarithms that both languages compute the same way.
 
-GLSL guarantees almost no accuracy of `atan` and `sin` (Vulkan's precision table: 4096 units in the last place, and an
-absolute 2^-11) and little of `log2` (an absolute 2^-21), so a table made with them would measure the driver's
-polynomial, not the encoding. These are near minimax polynomials with float32 coefficients; angles are in half turns:
-an angle of 1 is pi.
+GLSL guarantees almost no accuracy for `atan` and `sin` (Vulkan's precision table: 4096 units in the last place, and
+an absolute error of 2^-11) and little for `log2` (an absolute error of 2^-21). Tables made with these functions would
+measure the driver's polynomials, not the encodings. The functions here are near-minimax polynomials with float32
+coefficients. Angles are in half turns: an angle of 1 is pi.
 The GLSL twin of this file is `elementary.glsl`, which takes the coefficients from here.
 
-float64, which GLSL does not have, represents the exact map: there these functions are as accurate as float64 allows.
+float64, which GLSL does not have, represents the exact map: in float64 these functions are as accurate as the type
+allows.
 """
 
 from __future__ import annotations
@@ -60,13 +61,13 @@ def _horner(coefficients, s):
 
 
 def atan_pi(t):
-    """Return atan(t) / pi for t in [-1, 1]: float32 within a unit in the last place of 1/4, float64 by JAX."""
+    """Return atan(t) / pi for t in [-1, 1]: float32 to a unit in the last place of 1/4; JAX computes float64."""
     t = jnp.asarray(t)
     return t * _horner(ATAN_PI, t * t) if t.dtype == jnp.float32 else jnp.arctan(t) / math.pi
 
 
 def quadrant_pi(y, x):
-    """Return atan2(y, x) / pi, in [0, 1/2], for arrays y and x that are not negative; 0 at the origin."""
+    """Return atan2(y, x) / pi, in [0, 1/2], for non-negative arrays y and x; 0 at the origin."""
     if x.dtype != jnp.float32:
         return select((x == 0.0) & (y == 0.0), 0.0, jnp.arctan2(y, x) / math.pi)
     a = atan_pi(minimum(x, y) / maximum(maximum(x, y), TINY))
@@ -74,7 +75,7 @@ def quadrant_pi(y, x):
 
 
 def atan2_pi(y, x):
-    """atan2(y, x) / pi in [-1, 1], within 2 units in the last place of 1; 0 at the origin."""
+    """Return atan2(y, x) / pi in [-1, 1], within 2 units in the last place of 1; 0 at the origin."""
     y = jnp.asarray(y)
     # A number in Python has the type of what it goes with.
     x = jnp.asarray(x, y.dtype)
@@ -87,7 +88,7 @@ def atan2_pi(y, x):
 
 
 def sincos_pi(a):
-    """(sin(pi a), cos(pi a)) for a in [-1, 1], within 2 units in the last place of 1."""
+    """Return (sin(pi a), cos(pi a)) for a in [-1, 1], within 2 units in the last place of 1."""
     a = jnp.asarray(a)
     is_short = a.dtype == jnp.float32
     quadrant = jnp.floor(2.0 * a + 0.5)
@@ -102,7 +103,7 @@ def sincos_pi(a):
 
 
 def log2_of(x):
-    """Return log2(x) for positive normal x. In float32 it is within 2 units in the last place of the result or,
+    """Return log2(x) for positive normal x. The float32 result is within 2 units in the last place of the result or,
     near 1, of x - 1. JAX computes float64, which represents the exact map."""
     x = jnp.asarray(x)
     if x.dtype != jnp.float32:
@@ -115,7 +116,7 @@ def log2_of(x):
 
 
 def exp2_of(x):
-    """Return 2^x for x in [-126, 127]: float32 within 2 units in the last place, float64 by JAX."""
+    """Return 2^x for x in [-126, 127]. Float32 is within 2 units in the last place; JAX computes float64."""
     if x.dtype != jnp.float32:
         return jnp.exp2(x)
     octave = jnp.floor(x + 0.5)

@@ -1,6 +1,6 @@
-"""The kinds of encodings: of normals, depth, tangent frames, light and motion, and curves of material values.
+"""The kinds of encodings: for normals, depth, tangent frames, light, motion and material values (curves).
 
-Pure data: code that reads users' files imports it without importing JAX.
+Pure data, so that code that reads users' files need not import JAX.
 """
 
 from __future__ import annotations
@@ -19,21 +19,22 @@ WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z0-9]+")
 
 
 def words_in(name: str) -> set[str]:
-    """Return the words of a name, written in camel case or with separators, in lower case."""
+    """Return the set of words in a name that is written in camel case or with separators, in lower case."""
     return {word.lower() for word in WORD.findall(name)}
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of encoding, by the quantity that it encodes.
+    """A kind of encoding, defined by the quantity that it encodes.
 
     Attributes:
         name: human-readable name of the quantity.
-        folder: folder of the pairs of files.
+        folder: folder that contains the pairs of files.
         plural: the quantity in the plural.
-        command: command that measures a user's file of this kind, with {} for the file.
-        spoken: parts of the names of functions of this kind, in lower case.
-        begins: beginnings of words in such names that may occur inside other words: Through has rough.
+        command: command that measures a user's file of this kind, with {} in place of the file.
+        spoken: parts of function names that indicate this kind, in lower case.
+        begins: beginnings of words that indicate this kind only there, because they also occur inside other words:
+            Through contains rough.
     """
 
     name: str
@@ -45,7 +46,7 @@ class Kind:
 
     @property
     def word(self) -> str:
-        """The last word of its name: frame for tangent frames."""
+        """The last word of the kind's name: "frame" for a tangent frame."""
         return self.name.rpartition(" ")[2]
 
     def is_in(self, name: str) -> bool:
@@ -96,7 +97,7 @@ BY_NAME: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in KIND
 
 
 def kind_spoken_of(name: str) -> Kind | None:
-    """Return the first of KINDS, never normals, that a function's name indicates; None if it indicates no kind."""
+    """Return the first of KINDS that a function's name indicates; None if it indicates none. Never NORMAL."""
     return next((kind for kind in KINDS if kind.is_in(name)), None)
 
 

@@ -1,8 +1,8 @@
 """Tangent frames, and the quaternions of their rotations.
 
-A quaternion x, y, z, w turns the axes into the frame: x into the tangent, y into normal x tangent, z into the
-normal. Of the two signs of a quaternion, the one with the positive largest component is used. The GLSL twin of this
-file is `rotation.glsl`.
+A quaternion x, y, z, w rotates the axes onto the frame: x onto the tangent, y onto normal x tangent, z onto the
+normal. A quaternion and its negative are the same rotation; the one whose largest component is positive is used. The
+GLSL twin of this file is `rotation.glsl`.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from .vec import TINY, Vec3, Vec4, cross, direction_or_forward, dot, inversesqrt
 
 
 class Frame(NamedTuple):
-    """Unit vectors at right angles, and the side of the third: the bitangent is hand (normal x tangent).
+    """A unit normal and a unit tangent at right angles, and the handedness: the bitangent is hand (normal x tangent).
 
     Attributes:
         normal, tangent: Vec3.
-        hand: 1, or -1 of a mirrored frame.
+        hand: 1, or -1 for a mirrored frame.
     """
 
     normal: Vec3
@@ -26,7 +26,7 @@ class Frame(NamedTuple):
 
 
 def frame_of(normal: Vec3, tangent: Vec3, hand) -> Frame:
-    """Return a frame from any numbers: +z and +x replace invalid directions, a hand that is not below 0 becomes 1.
+    """Return a frame from any numbers. An invalid normal becomes +z, an invalid tangent +x; the hand becomes 1 or -1.
 
     Every input of a frame encoder passes through this function once, so that no texel becomes NaN.
     """
@@ -37,7 +37,7 @@ def frame_of(normal: Vec3, tangent: Vec3, hand) -> Frame:
 
 
 def quaternion_of(frame: Frame) -> Vec4:
-    """The unit quaternion of a frame's rotation, its largest component positive."""
+    """Return the unit quaternion of a frame's rotation, with its largest component positive."""
     n, t = frame.normal, frame.tangent
     b = cross(n, t)
     # 4 q_i q for each component i; the one with the largest 4 q_i q_i, which is 1 or more, has no digits to lose
@@ -51,7 +51,7 @@ def quaternion_of(frame: Frame) -> Vec4:
 
 
 def rotated_frame(q: Vec4, hand) -> Frame:
-    """Return the frame that a unit quaternion rotates to: its unit normal and tangent, with `hand` as given."""
+    """Return the frame whose normal and tangent are z and x rotated by a unit quaternion; `hand` is unchanged."""
     t = Vec3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + q.z * q.w), 2.0 * (q.x * q.z - q.y * q.w))
     n = Vec3(2.0 * (q.x * q.z + q.y * q.w), 2.0 * (q.y * q.z - q.x * q.w), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))
     return Frame(n, t, hand)

@@ -1,8 +1,8 @@
-"""Vectors with named components, and the few functions both languages need, named as GLSL names them.
+"""Vectors with named components, and the few functions that both languages need, named as in GLSL.
 
-`Vec2`, `Vec3` and `Vec4` hold one array per component (separate planes), all of one shape. They are named tuples, so
-JAX sees them as pytrees without being imported here: importing an encoding must stay instant for `normalbench list`.
-The GLSL twin of this file is `vec.glsl`.
+`Vec2`, `Vec3` and `Vec4` hold one array per component (separate planes), all of the same shape. They are named
+tuples, so JAX sees them as pytrees without being imported here: importing an encoding must remain instant for
+`normalbench list`. The GLSL twin of this file is `vec.glsl`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ CONSTANTS = {"TINY": TINY, "BRIGHTEST": BRIGHTEST, "FLOAT_BIAS": FLOAT_BIAS}
 
 
 class _Operators:
-    """Component-wise arithmetic between vectors of one size, and between a vector and a scalar or array."""
+    """Component-wise arithmetic between vectors of the same size, and between a vector and a scalar or array."""
 
     __slots__ = ()
     __array_ufunc__ = None  # a NumPy array on the left must ask __rmul__ here, not take the tuple for an array
@@ -79,7 +79,7 @@ class _Operators:
 
 
 class Vec2(_Operators, namedtuple("Vec2", "x y")):  # type: ignore[misc]
-    """Two arrays of one shape, `x` and `y`."""
+    """Two arrays of the same shape, `x` and `y`."""
 
     __slots__ = ()
     x: Any
@@ -91,7 +91,7 @@ class Vec2(_Operators, namedtuple("Vec2", "x y")):  # type: ignore[misc]
 
 
 class Vec3(_Operators, namedtuple("Vec3", "x y z")):  # type: ignore[misc]
-    """Three arrays of one shape, `x`, `y` and `z`."""
+    """Three arrays of the same shape, `x`, `y` and `z`."""
 
     __slots__ = ()
     x: Any
@@ -104,7 +104,7 @@ class Vec3(_Operators, namedtuple("Vec3", "x y z")):  # type: ignore[misc]
 
 
 class Vec4(_Operators, namedtuple("Vec4", "x y z w")):  # type: ignore[misc]
-    """Four arrays of one shape, `x`, `y`, `z` and `w`."""
+    """Four arrays of the same shape, `x`, `y`, `z` and `w`."""
 
     __slots__ = ()
     x: Any
@@ -142,37 +142,37 @@ def log2(x):
 
 
 def floor(x):
-    """The largest whole number that is not above `x`."""
+    """Return the largest whole number that is not greater than `x`."""
     return jnp.floor(x)
 
 
 def ceil(x):
-    """The smallest whole number that is not below `x`."""
+    """Return the smallest whole number that is not less than `x`."""
     return jnp.ceil(x)
 
 
 def floor_log2(x):
-    """The floor of the logarithm to base 2, exactly, of a positive float32; -127 for 0 and below 2^-126."""
+    """Return the exact floor of the base-2 logarithm of a positive float32; -127 for 0 and numbers below 2^-126."""
     return (x.view(jnp.uint32) >> 23).astype(jnp.float32) - FLOAT_BIAS
 
 
 def power_of_two(x):
-    """2 to a whole power of -126 to 127 (float32), exactly."""
+    """Return 2^x as an exact float32, for a whole number x from -126 to 127."""
     return ((x.astype(jnp.int32) + FLOAT_BIAS) << 23).view(jnp.float32)
 
 
 def maximum(a, b):
-    """The larger of the two, and `b` where `a` is NaN, as the GL device's own `max` has it."""
+    """Return the larger of `a` and `b`, or `b` where `a` is NaN, as `max` does on the OpenGL device."""
     return jnp.where(a > b, a, b)
 
 
 def minimum(a, b):
-    """The smaller of the two, and `b` where `a` is NaN."""
+    """Return the smaller of `a` and `b`, or `b` where `a` is NaN."""
     return jnp.where(a < b, a, b)
 
 
 def select(condition, a: S, b: S) -> S:
-    """GLSL's `condition ? a : b`, for arrays and vectors."""
+    """Return GLSL's `condition ? a : b`, for arrays and vectors."""
     if isinstance(a, Vec2 | Vec3 | Vec4):
         chosen = type(a)(*(jnp.where(condition, p, q) for p, q in zip(a, b, strict=True)))  # type: ignore[arg-type]
     else:
@@ -181,30 +181,30 @@ def select(condition, a: S, b: S) -> S:
 
 
 def dot(a: V, b: V) -> Any:
-    """The sum of the products of components: one array."""
+    """Return the dot product of two vectors, as one array."""
     products = a * b
     return sum(products[1:], start=products[0])
 
 
 def cross(a: Vec3, b: Vec3) -> Vec3:
-    """The vector product, right-handed: cross(x, y) = z."""
+    """Return the right-handed cross product: cross(x, y) = z."""
     return Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 
 
 def normalize(v: V) -> V:
-    """`v` at length 1; it must not be zero."""
+    """Return `v` at length 1; `v` must not be zero."""
     return v * inversesqrt(dot(v, v))
 
 
 def unit(v: V) -> V:
-    """`v` at length 1, and the first axis where `v` is zero."""
+    """Return `v` at length 1, or the first axis where `v` is zero."""
     length2 = dot(v, v)
     first_axis = type(v)(*(1.0, 0.0, 0.0)[: len(v)])
     return select(length2 > TINY, v * inversesqrt(length2), first_axis)
 
 
 def sign_not_zero(v: Any) -> Any:
-    """1 or -1, and 1 for either zero, so that a fold has no seam of zeros. For arrays and vectors."""
+    """Return the sign of an array or vector, 1 or -1; both zeros give 1, so that a fold has no seam of zeros."""
     if isinstance(v, Vec2 | Vec3):
         return type(v)(*(sign_not_zero(c) for c in v))
     return jnp.where(v < 0.0, jnp.full_like(v, -1.0), jnp.ones_like(v))
@@ -232,17 +232,17 @@ def direction_or_forward(v: Vec3) -> Vec3:
 
 
 def sign_bit(x):
-    """Whether a float32 has its sign bit set: of negative numbers and of -0."""
+    """Whether the sign bit of a float32 is set, as in negative numbers and -0."""
     return jnp.signbit(x)
 
 
 def with_sign_of(x, signed):
-    """`x`, which is not negative, under the sign bit of `signed`."""
+    """Return `x`, which must not be negative, with the sign bit of `signed`."""
     return select(sign_bit(signed), -x, x)
 
 
 def depth_or_far(depth, far):
-    """Return a signed depth with a magnitude of at most `far`; NaN and infinity become `far`, the sign bit is kept.
+    """Return a signed depth, limited to a magnitude of `far`; NaN and infinity become `far`. The sign bit is kept.
 
     Every input of a depth encoder passes through this function once, so that no texel becomes NaN.
     """
@@ -251,10 +251,10 @@ def depth_or_far(depth, far):
 
 
 def from_array(array) -> Vec3:
-    """Return the planes of unit vectors of shape (..., 3), as float32; an invalid direction becomes (0, 0, 1).
+    """Return unit vectors, an array of shape (..., 3), as float32 planes; an invalid direction becomes (0, 0, 1).
 
     Raises:
-        ValueError: the array has another shape.
+        ValueError: the array has the wrong shape.
     """
     array = jnp.asarray(array, jnp.float32)
     if array.ndim == 0 or array.shape[-1] != 3:
@@ -263,7 +263,7 @@ def from_array(array) -> Vec3:
 
 
 def to_array(v: Vec3) -> Array:
-    """An array of shape (..., 3) from three planes."""
+    """Return an array of shape (..., 3) from three planes."""
     return jnp.stack(list(v), axis=-1)
 
 

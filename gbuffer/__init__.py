@@ -1,1 +1,1 @@
-"""The renderer: GL device, scenes, pipelines, effects, and the passes that put normals through real render targets."""
+"""The renderer: OpenGL device, scenes, pipelines, effects, and passes that put normals in real render targets."""

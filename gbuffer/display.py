@@ -42,7 +42,7 @@ class Display:
     """Settings of the image sent to a display.
 
     Attributes:
-        exposure: in stops: light is multiplied by 2^exposure.
+        exposure: exposure in stops; light is multiplied by 2^exposure.
         tone_mapping: one of TONE_MAPPINGS.
     """
 
@@ -55,11 +55,11 @@ class Display:
         return TONE_MAPPINGS[self.tone_mapping](exposed)
 
     def image(self, linear: np.ndarray) -> np.ndarray:
-        """Return linear light exposed, tone mapped, clipped to [0, 1] and on the sRGB curve; not in 8 bits."""
+        """Return linear light exposed, tone mapped, clipped to [0, 1] and sRGB-encoded; not quantised to 8 bits."""
         return displayed(self.light(linear))
 
     def clipped(self, linear: np.ndarray) -> float:
-        """Return the share of pixels, (count, 3), with a channel above 1 after tone mapping; 0 without pixels."""
+        """Return the fraction of pixels, (count, 3), with a channel above 1 after tone mapping; 0 without pixels."""
         return float(np.mean(self.light(linear).max(axis=-1) > 1.0)) if len(linear) else 0.0
 
 
@@ -67,15 +67,16 @@ CLIPPED_ALONE = Display()
 
 
 def displayed(linear: np.ndarray) -> np.ndarray:
-    """Linear light as a display is sent it: clipped to [0, 1], by the sRGB curve (IEC 61966-2-1), not yet in 8 bits."""
+    """Return linear light as sent to a display: clipped to [0, 1] and sRGB-encoded (IEC 61966-2-1), not yet 8-bit."""
     x = np.clip(np.asarray(linear, np.float64), 0.0, 1.0)
     curved = (1 + SRGB_OFFSET) * np.maximum(x, SRGB_KNEE) ** (1 / SRGB_POWER) - SRGB_OFFSET
     return np.where(x <= SRGB_KNEE, SRGB_SLOPE * x, curved)
 
 
 def measured_exposure(linear: np.ndarray) -> float:
-    """Return the highest exposure in stops, a multiple of STEP, that clips at most CLIPPED of the pixels, (count, 3),
-    with finite light above 0; it is limited to MAX_EXPOSURE either way, and 0 if no pixel has such light."""
+    """Return the highest exposure in stops that clips at most a fraction CLIPPED of the pixels, (count, 3). Only
+    pixels with finite light above 0 count. The exposure is a multiple of STEP, from -MAX_EXPOSURE to MAX_EXPOSURE;
+    it is 0 if no pixel has such light."""
     highest = np.asarray(linear, np.float64).max(axis=-1)
     highest = highest[np.isfinite(highest) & (highest > 0)]
     if not len(highest):

@@ -33,7 +33,7 @@ WALL, QUERY = "wall clock after each pass", "GL timer query"
 
 @dataclass(frozen=True)
 class Timing:
-    """Milliseconds of repeated frames: the median, the distance between the quartiles, and each sample."""
+    """Times of repeated frames in milliseconds: the median, the interquartile range, and each sample."""
 
     median: float
     spread: float
@@ -42,14 +42,14 @@ class Timing:
 
 @dataclass(frozen=True)
 class Clock:
-    """A clock: its name, and a function that runs another one and returns its milliseconds."""
+    """A clock: its name, and a function that runs a given function and returns the elapsed milliseconds."""
 
     name: str
     measure: Callable[[Callable[[], object]], float]
 
 
 def clock_of(device: Device) -> Clock:
-    """Return a clock by a device's timer queries, or a wall clock for a software rasteriser.
+    """Return a clock that uses a device's timer queries, or a wall clock for a software rasteriser.
 
     Timer queries of a software rasteriser are not reliable.
     """
@@ -70,14 +70,14 @@ def clock_of(device: Device) -> Clock:
 
 
 class Covered(NamedTuple):
-    """The pixels of surfaces: which they are, row 0 at the bottom, their view positions and normals, (pixels, 3)."""
+    """The pixels that surfaces cover: a mask, row 0 at the bottom; and view positions and normals, (pixels, 3)."""
 
     pixels: np.ndarray
     position: np.ndarray
     normals: np.ndarray
 
     def with_normals(self, surfaces: Sequence[np.ndarray], normals: np.ndarray) -> list[np.ndarray]:
-        """Return the surfaces with other normals, (pixels, 3), in the covered pixels; the inputs are not changed."""
+        """Return the surfaces with `normals`, (pixels, 3), in the covered pixels; the inputs are not changed."""
         first, *others = surfaces
         texels = first[::-1].copy()
         texels[self.pixels, :3] = normals
@@ -85,7 +85,7 @@ class Covered(NamedTuple):
 
 
 class Rendering:
-    """A pipeline over a scene, its passes compiled; make it with `rendering`."""
+    """A pipeline whose passes are compiled for a scene. Create it with `rendering`."""
 
     def __init__(self, frame: Frame, passes: dict[str, Run]):
         self.frame, self.passes = frame, passes
@@ -97,8 +97,8 @@ class Rendering:
         """Draw one frame, all passes in order.
 
         Args:
-            scene: the scene at another moment, if one is given.
-            keeps: replaces the normals in the G-buffer; only for layout fp32 at one sample per pixel.
+            scene: the scene at a different moment; None for no change.
+            keeps: function that replaces the normals in the G-buffer; only for layout fp32, one sample per pixel.
         """
         if scene:
             self.frame.show(scene)
@@ -117,8 +117,8 @@ class Rendering:
         texture.write(texels.tobytes())
 
     def _covered(self, texels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return which texels of layout fp32's first target, row 0 at the bottom, are of a surface, (height, width),
-        and their view positions, (pixels, 3)."""
+        """Return which texels of layout fp32's first target, row 0 at the bottom, surfaces cover, (height, width),
+        and the view positions of these texels, (pixels, 3)."""
         height, width, _ = texels.shape
         rays, depth = self.frame.scene.view.rays((width, height)), texels[..., 3]
         # (x + 1/2) 2 / width - 1 at the middle of pixel x
@@ -129,8 +129,8 @@ class Rendering:
         return covered, position[covered]
 
     def surfaces(self) -> list[np.ndarray]:
-        """Run the passes up to the geometry pass and return their output: the textures of the G-buffer, then those of
-        the light that surfaces emit; float32, (height, width, channels) each, row 0 on top.
+        """Run the passes up to the geometry pass and return their output: the textures of the G-buffer, then the
+        textures of emitted light; float32, (height, width, channels) each, row 0 on top.
 
         Only at one sample per pixel, with a layout and a light buffer in 32-bit floats.
         """
@@ -148,10 +148,10 @@ class Rendering:
         return Covered(covered, position, texels[covered, :3])
 
     def lit(self, surfaces: Sequence[np.ndarray], upto: str = "") -> np.ndarray:
-        """Return the image that the passes after the geometry pass make from other surfaces, as from `surfaces`.
+        """Return the image that the passes after the geometry pass make from surfaces, as returned by `surfaces`.
 
         Args:
-            upto: the first pass to leave out, with all later passes; empty for none.
+            upto: the first pass to skip, with all later passes; empty to skip no pass.
         """
         for texture, texels in zip(self._textures_of_surfaces(), surfaces, strict=True):
             texture.write(np.ascontiguousarray(texels[::-1], np.float32).tobytes())
@@ -168,12 +168,12 @@ class Rendering:
         return [*self.frame.textures(GBUFFER), *self.frame.textures(LIGHT)]
 
     def image(self) -> np.ndarray:
-        """The final image of the frame last drawn: linear light, float32 of shape (height, width, 3), row 0 on top."""
+        """Return the final image of the last frame drawn: linear light, float32 (height, width, 3), row 0 on top."""
         return self.read(FINAL if self.frame.plan.samples == 1 else RESOLVED, RESOLVE)[0][..., :3]
 
     def gbuffer(self) -> list[np.ndarray]:
-        """Return the content of the last frame's G-buffer, in the order of `unpack.UNPACKED`; row 0 on top, 0 where
-        nothing is covered. Only at one sample per pixel."""
+        """Return the contents of the last frame's G-buffer, in the order of `unpack.UNPACKED`; row 0 on top, 0 in
+        pixels that no surface covers. Only at one sample per pixel."""
         return [self.read(resource, UNPACK)[0] for resource in UNPACKED]
 
     def read(self, resource: Resource, by: Pass | None = None) -> list[np.ndarray]:
@@ -185,8 +185,8 @@ class Rendering:
         return [read_pixels(texture)[::-1] for texture in self.frame.textures(resource)]
 
     def timings(self, repeats: int) -> tuple[dict[str, Timing], str]:
-        """Return the times of each pass, by its name, and of the whole as "frame", over repeated frames after at
-        least one; and the name of the clock."""
+        """Return the times of each pass, by name, and of the whole frame, as "frame", over `repeats` frames after at
+        least one other frame; and the clock's name."""
         clock = clock_of(self._device)
         if not self._is_warm:
             self.draw()
@@ -202,7 +202,7 @@ class Rendering:
         return timings, clock.name
 
     def triangles(self) -> dict[str, int]:
-        """Return the device's count of the triangles that each pass sends to the rasteriser, by the pass's name."""
+        """Return the number of triangles that each pass sends to the rasteriser, by pass name; the device counts."""
         counted = {}
         self.frame.advance()
         for name, run in self.passes.items():
@@ -218,7 +218,7 @@ def rendering(device: Device, pipeline: Pipeline, scene: Scene, plan: Plan) -> I
     """Yield a pipeline that is ready to draw, and release its resources on the device at the end.
 
     Raises:
-        LayoutError: the layout does not keep what the pipeline needs, or has more targets than the device.
+        LayoutError: the layout lacks what the pipeline needs, or has more targets than the device supports.
         FormatError: the device cannot render to a format.
         ShaderError: an encoding does not compile.
     """
@@ -228,7 +228,7 @@ def rendering(device: Device, pipeline: Pipeline, scene: Scene, plan: Plan) -> I
 
 
 def check(device: Device, pipeline: Pipeline, plan: Plan, is_metal_rough: bool = False) -> None:
-    """Raise LayoutError if a plan does not suit a pipeline, the scene's materials or the device; one line."""
+    """Raise LayoutError, with a one-line message, if a plan does not suit a pipeline, the materials or the device."""
     layout, light = plan.layout, plan.light_buffer
     if is_metal_rough:
         check_metal_rough(pipeline)
@@ -255,7 +255,7 @@ def check(device: Device, pipeline: Pipeline, plan: Plan, is_metal_rough: bool =
 
 
 def check_metal_rough(pipeline: Pipeline) -> None:
-    """Raise LayoutError if a pipeline does not support metallic-roughness materials; one line."""
+    """Raise LayoutError, with a one-line message, if a pipeline does not support metallic-roughness materials."""
     if pipeline.told.get("LIGHT_HOLDS") == TERMS:
         raise LayoutError(
             f"{pipeline.name} cannot be used with metallic-roughness materials: its light buffer stores no light "
@@ -265,8 +265,8 @@ def check_metal_rough(pipeline: Pipeline) -> None:
 
 
 def bytes_per_pixel(pipeline: Pipeline, plan: Plan) -> float:
-    """Return the bytes that a pipeline keeps per pixel of the image, at all its samples: everything that its passes
-    write except the image itself and resources with their own size in pixels; one copy of each, but all copies of
-    what the next frame reads."""
+    """Return the bytes per image pixel, over all samples, that a pipeline keeps: all resources that its passes write,
+    except the image itself and resources with their own size in pixels. Each resource counts once, but with all its
+    copies if the next frame reads it."""
     kept = (resource for resource in pipeline.resources.values() if resource != FINAL)
     return float(sum(resource.bytes_per_pixel(pipeline.planned(plan)) for resource in kept))

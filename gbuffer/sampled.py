@@ -1,6 +1,6 @@
-"""Pixels sampled from a frame, lit by many sets of normals in one pass.
+"""Lighting of pixels sampled from a frame, for many sets of normals in one pass.
 
-The passes of deferred shading run over a picture in which each column is one pixel of the frame, and each row a set
+The passes of deferred shading run over an image in which each column is one pixel of the frame, and each row a set
 of normals. Passes that filter, trace or mix pixels cannot be sampled.
 """
 
@@ -36,7 +36,7 @@ GAP = 16
 
 
 class SampledScene:
-    """Sampled pixels of a scene, open with the stack.
+    """Sampled pixels of a scene; their resources are released with the stack.
 
     Args:
         device: the device that renders.
@@ -68,12 +68,12 @@ class SampledScene:
         self._surfaces: Sequence[np.ndarray] = ()
 
     def lit(self, scene: Scene, surfaces: Sequence[np.ndarray], normals: np.ndarray) -> np.ndarray:
-        """Return the light that sets of normals reflect: linear, float32 of shape (sets, count, 3).
+        """Return the light that surfaces with each set of normals reflect: linear, float32 of shape (sets, count, 3).
 
         Args:
             scene: the scene, at one moment.
-            surfaces: surfaces of its pixels, as returned by `Rendering.surfaces` with layout fp32, (count, channels)
-                each.
+            surfaces: surfaces of the scene's pixels, as returned by `Rendering.surfaces` with layout fp32, (count,
+                channels) each.
             normals: view-space normals, (sets, count, 3), at most as many sets as there are rows.
         """
         if self._made.frame.scene is not scene:
@@ -96,7 +96,7 @@ class SampledScene:
 
 
 def _pipeline(positions: np.ndarray) -> Pipeline:
-    """Return a pipeline of deferred shading for pixels at these positions; their surfaces are given, not drawn."""
+    """Return a deferred-shading pipeline for pixels at these positions, whose surfaces are given instead of drawn."""
     given = Pass(
         GEOMETRY, (), (GBUFFER, DEPTH, LIGHT, PLACES), _build_given, tells={"LIGHT_HOLDS": COLOURS, "FILTERS": 0}
     )
@@ -127,7 +127,7 @@ def _build_given(canvas: Canvas) -> Run:
 
 
 class LightsOnColumns:
-    """Draws each light on the columns whose pixels it reaches, and the sun on all columns."""
+    """A pass that draws each light on the columns whose pixels it reaches, and the sun on all columns."""
 
     def __init__(self, canvas: Canvas, positions: np.ndarray):
         self._canvas, self._blend = canvas, BLEND_OF[canvas.plan.light_buffer.blend]

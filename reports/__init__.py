@@ -1,1 +1,1 @@
-"""Tables and pictures. Takes data frames and images and knows no other room."""
+"""Tables and pictures. This package takes data frames and images and depends on no other top-level package."""

@@ -30,17 +30,17 @@ class Column:
     """A column of a table.
 
     Attributes:
-        name: its name in rows; `*` stands for a name that is only known when it is measured.
+        name: its name in rows; `*` stands for a part that is known only when it is measured.
         says: its definition, in one sentence, for the page, the manual and `normalbench columns`.
         role: its purpose.
-        unit: unit of its values; empty for none.
+        unit: unit of its values; empty if they have none.
         better: "more" or "less"; empty if neither is better.
-        drops: order in which a narrow terminal leaves columns out, from 1; of equal numbers the first column goes
-            first. 0 for a column that stays, while others go.
-        option: the option without which it is not measured.
-        shown: whether tables for people have it.
-        is_histogram: whether its values are bins, `from:count` and spaces between; CSV leaves it out.
-        before: for a column that distinguishes rows, its value in all rows of versions that did not have it.
+        drops: order in which a narrow terminal leaves columns out, from 1; among equal numbers the first column goes
+            first. 0 for a column that is never left out.
+        option: the option without which the column is not measured.
+        shown: whether displayed tables include the column.
+        is_histogram: whether its values are bins, `from:count`, separated by spaces; CSV leaves the column out.
+        before: for a column that distinguishes rows, its value in all rows from versions that did not have it.
     """
 
     name: str
@@ -56,7 +56,7 @@ class Column:
 
     @property
     def definition(self) -> str:
-        """The column's definition, followed by its unit if it has a unit."""
+        """The column's definition, followed by its unit, if any."""
         return f"{self.says} Unit: {self.unit}." if self.unit else self.says
 
     def is_called(self, name: str) -> bool:
@@ -65,8 +65,7 @@ class Column:
 
 
 def column_called(name: str, columns: Iterable[Column]) -> Column | None:
-    """Return the column with the longest name of all that match a name in a row or a summary; None if no column
-    matches."""
+    """Return the column with the longest name that matches a name in a row or a summary; None if none matches."""
     matches = [column for column in columns if column.is_called(name)]
     # `ms_frame` is itself and not one of `ms_*`.
     return max(matches, key=lambda column: len(column.name), default=None)
@@ -78,7 +77,7 @@ def undefined(name: str) -> Column:
 
 
 class View(StrEnum):
-    """The page's views for the reader; one is shown at a time, in this order."""
+    """The views of the page; the reader sees one at a time, and they are listed in this order."""
 
     CHOOSE = "choose"  # what to take
     COMPARE = "compare"  # two codecs' pictures
@@ -91,19 +90,18 @@ class View(StrEnum):
 
 @dataclass(frozen=True)
 class Section:
-    """A table's part of the page.
+    """The section of the page about a table.
 
     Attributes:
-        title: its heading.
+        title: heading of the section.
         short: its name in the navigation.
         intro: the question that it answers.
-        method: how it is measured, in sentences.
+        method: how the table is measured, in sentences.
         parts: a column; rows with different values in it are shown as separate tables.
-        extras: what the page's template shows next to the tables.
+        extras: contents that the page's template shows next to the tables.
         view: the view that shows it.
         leads: whether it is the page's answer.
-        of_texels: whether its figures depend on the bytes of whole texels, and not only on the numbers that are
-            stored.
+        of_texels: whether its figures depend on the bytes of whole texels, and not only on the stored numbers.
     """
 
     title: str
@@ -119,16 +117,16 @@ class Section:
 
 @dataclass(frozen=True)
 class Sheet:
-    """Rows for people to read, all with the same columns.
+    """Rows to display, all with the same columns.
 
     Attributes:
-        title: its title; empty if the rows need none.
+        title: title of the rows; empty if they need none.
         rows: the rows.
-        drops: the columns that a narrow terminal leaves out, in this order.
+        drops: columns that a narrow terminal leaves out, in this order.
         notes: lines below the rows, on a terminal and in Markdown.
         said: paragraphs above the rows; the first is the answer.
         aside: paragraphs after `said` that are not part of the answer; a page folds them.
-        keys: the values that the title states for every row, by column.
+        keys: the values that the title states for all rows, by column.
     """
 
     title: str

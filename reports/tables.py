@@ -23,7 +23,7 @@ NUMBER = re.compile(r"[-+]?(\d+(\.\d*)?(e[-+]?\d+)?( ?%)?|inf)")
 
 
 def text_of(value: Any) -> str:
-    """Return a value as text for people: floats with four digits, None and NaN empty, control characters escaped."""
+    """Return a value as display text: floats with four digits, None and NaN empty, control characters escaped."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if isinstance(value, float) and math.isfinite(value):
@@ -45,17 +45,17 @@ WORDS = {
 
 
 def title_of(name: str) -> str:
-    """Return a column's name as people read it: PSNR dB."""
+    """Return a column's name for display, such as `PSNR dB`."""
     return " ".join(WORDS.get(word, word) for word in name.split("_"))
 
 
 def visible(text: str) -> str:
-    """Return text with its control characters, which a terminal would obey, written as escapes."""
+    """Return text with control characters, which a terminal would obey, replaced by escapes."""
     return CONTROL.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
 
 
 def markdown_text(text: str) -> str:
-    """Return text unchanged, or as code if Markdown would interpret it."""
+    """Return text unchanged, or as Markdown code if Markdown would interpret it."""
     is_plain = PLAIN.fullmatch(text) and "://" not in text and "www." not in text.lower() and "<" not in text
     return text if is_plain or CODE.fullmatch(text) else code_text(text)
 
@@ -65,18 +65,18 @@ MARKED = re.compile(r"[^\w\s.,;:%°()+'?-]|^[-+]|(?<=[a-zA-Z])\.(?=\w)|(?<![^\W_
 
 
 def markdown_sentence(text: str) -> str:
-    """Return a sentence for Markdown and HTML: letters, digits and common marks stay, others become references."""
+    """Return a sentence for Markdown and HTML, with special characters replaced by character references."""
     return re.sub(MARKED, lambda match: f"&#{ord(match[0])};", visible(text))
 
 
 def code_text(text: str) -> str:
-    """Return text as Markdown's code, in backticks: backticks in it become apostrophes, white space single spaces."""
+    """Return text as Markdown code, in backticks: backticks in it become apostrophes, white space single spaces."""
     return f"`{' '.join(text.replace('`', chr(39)).split())}`"
 
 
 def _plain(value: Any) -> Any:
-    """Return a value for JSON: None instead of NaN and infinity (an identical image is marked `exact`), and Python's
-    numbers instead of NumPy's."""
+    """Return a value for JSON: None for NaN and infinity (an identical image is marked `exact`), and Python numbers
+    for NumPy numbers."""
     if hasattr(value, "item"):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value
@@ -87,13 +87,13 @@ def is_numeric(rows: Sequence[dict[str, Any]], column: str) -> bool:
 
 
 def to_json(rows: Sequence[dict[str, Any]]) -> str:
-    """Return rows as a JSON list of flat objects, with every control character written as an escape of JSON."""
+    """Return rows as a JSON list of flat objects, with every control character escaped."""
     text = json.dumps([{k: _plain(v) for k, v in row.items()} for row in rows], indent=1)
     return text.replace("\x7f", "\\u007f") + "\n"
 
 
 def to_csv(rows: Sequence[dict[str, Any]]) -> str:
-    """Return rows as CSV: a header, and a line for each row."""
+    """Return rows as CSV text: a header, and a line for each row."""
     import pandas as pd
 
     records = [{_no_formula(name): _no_formula(value) for name, value in row.items()} for row in rows]
@@ -101,7 +101,7 @@ def to_csv(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _no_formula(value: Any) -> Any:
-    """Return a value that no spreadsheet computes: text that begins like a formula gets a leading apostrophe, unless
+    """Return a value that no spreadsheet evaluates: text that begins like a formula gets a leading apostrophe, unless
     it is a number."""
     text = storable(value)
     is_formula = isinstance(text, str) and text.startswith(FORMULA) and not NUMBER.fullmatch(text)
@@ -109,13 +109,13 @@ def _no_formula(value: Any) -> Any:
 
 
 def storable(value: Any) -> Any:
-    """Return a value unchanged, except that lone surrogates in text, which may be in a file's name, become escapes:
-    no file could hold them."""
+    """Return a value unchanged, except that lone surrogates in text, which file names may contain, are escaped,
+    because no file can hold them."""
     return value.encode(errors="backslashreplace").decode() if isinstance(value, str) else value
 
 
 def to_markdown(rows: Sequence[dict[str, Any]], total: str = "") -> str:
-    """Return rows as a Markdown table, with columns aligned to be readable as source; `total` as in `written`."""
+    """Return rows as a Markdown table, with columns aligned for reading as source text; `total` as in `written`."""
     rows, caption = _captioned(rows, total)
     columns = list(rows[0])
     cells = [[markdown_text(text_of(row[c])).replace("|", "\\|") for c in columns] for row in rows]
@@ -131,17 +131,17 @@ def to_markdown(rows: Sequence[dict[str, Any]], total: str = "") -> str:
 
 
 def _captioned(rows: Sequence[dict[str, Any]], total: str) -> tuple[list[dict[str, Any]], str]:
-    """Return the rows with the columns that a table shows, and the line below it: `total` or, if that is empty, the
-    constant values."""
+    """Return the rows with only the columns that a table shows, and the line below the table: `total`, or the
+    constant values if `total` is empty."""
     if not total:
         return without_constants(rows)
     return [{k: v for k, v in row.items() if any(text_of(other[k]) for other in rows)} for row in rows], total
 
 
 def without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, Any]], str]:
-    """Return the rows without columns that are empty or the same in each row, and a line with these constant values.
+    """Return the rows without columns that are empty or equal in all rows, and a line with these constant values.
 
-    Measured figures, which are floats, stay in the table: equal figures are a result that the table has to show.
+    Measured figures, which are floats, stay in the table, because equal figures are a result to show.
     """
     if len(rows) < 2:
         return [{k: v for k, v in row.items() if text_of(v)} for row in rows], ""
@@ -153,8 +153,8 @@ def without_constants(rows: Sequence[dict[str, Any]]) -> tuple[list[dict[str, An
 
 
 def _fitting(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[str]) -> list[str]:
-    """Return the columns that remain when expendable columns are dropped, in order, until the table fits a width or
-    no more can be dropped."""
+    """Return the columns that remain when expendable columns are dropped, in order, until the table fits the width or
+    no more columns can be dropped."""
     columns = list(rows[0])
     spared = [column for column in expendable if column in columns]
     while spared and sum(_widths(rows, columns)) + GAP * (len(columns) - 1) > width:
@@ -163,15 +163,15 @@ def _fitting(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[st
 
 
 def _widths(rows: Sequence[dict[str, Any]], columns: Sequence[str]) -> list[int]:
-    """Return the width that each column needs: headers may break between words, cells only in long prose."""
+    """Return the width that each column needs: headers may wrap between words, cells only if they are long prose."""
     longest = (max(len(text_of(row[column])) for row in rows) for column in columns)
     return [max(min(cell, PROSE), *map(len, c.split("_"))) for cell, c in zip(longest, columns, strict=True)]
 
 
 def to_terminal(rows: Sequence[dict[str, Any]], width: int, expendable: Sequence[str] = (), total: str = "") -> str:
-    """Return a table for people; `total` as in `written`.
+    """Return rows as a table for a terminal; `total` as in `written`.
 
-    Columns with the same value in every row move to the line below the table. If the rest does not fit, the columns
+    Columns with the same value in every row move to the line below the table. If the other columns do not fit, those
     in `expendable` are left out, in order, and a note lists them.
     """
     from io import StringIO
@@ -216,9 +216,12 @@ def written(
 ) -> str:
     """Return rows as "table", "json", "csv" or "markdown"; an infinite figure is null in JSON.
 
-    Tables for people are split by the values of column `by`, if it is given. `lead` is the text above them. `total`
-    is the line below the table: columns with the same value in every row then stay in the table, because a line
-    of them would be read as their sum.
+    Args:
+        by: column by whose values tables for display are split; None for a single table.
+        lead: text above the tables.
+        total: line below the table. Columns with the same value in every row then stay in the table, because a
+            line of
+            constant values would be read as totals.
     """
     if format == "json":
         return to_json(rows)
@@ -235,8 +238,8 @@ def written(
 
 
 def _lead(lead: str, format: str) -> list[str]:
-    """Return a list with the text above a table, empty without text. An empty line follows it; in Markdown each of
-    its lines is a paragraph."""
+    """Return a list of the text above a table, followed by an empty line; an empty list without text. In Markdown
+    each line is a paragraph."""
     if not lead:
         return []
     lines = [markdown_sentence(line) if format == "markdown" else line for line in lead.split("\n")]

@@ -12,7 +12,7 @@ HEAD = """# Columns
 
 What does a column of a table mean? Each table has a part below. `normalbench columns quality` prints the same.
 """
-WAYS = {"more": "More is better.", "less": "Less is better."}
+WAYS = {"more": "Higher is better.", "less": "Lower is better."}
 
 
 def text() -> str:

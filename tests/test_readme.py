@@ -13,6 +13,7 @@ from typing import NoReturn
 import columns_page
 import devices
 import gpu_page
+import manual_pictures
 import numpy as np
 import pytest
 from manual import NAMED, PAGES, README, ROOT
@@ -265,3 +266,19 @@ def test_articles_are_not_named_by_seed_numbers():
     """Articles are named by author, title and year."""
     for path, text in PAGES.items():
         assert not re.search(r"\bseed \d", text), path.name
+
+
+# Screenshots of a run's page, in README.
+SHOTS = {"choose", "mirrors"}
+PICTURED = re.compile(r"^!\[[^]]+\]\((?:docs/)?pictures/([\w-]+)\.png\)\n(.*)$", re.M)
+
+
+def test_every_picture_of_a_page_has_a_caption_and_the_command_that_draws_it():
+    pages = {path: text for path, text in PAGES.items() if path != README}
+    captions = {name: caption for text in pages.values() for name, caption in PICTURED.findall(text)}
+    assert sorted(captions) == sorted(
+        path.stem for path in manual_pictures.FOLDER.glob("*.png") if path.stem not in SHOTS
+    )
+    assert not [name for name, caption in captions.items() if not re.fullmatch(r"\*.+\.\*", caption)]
+    for name in manual_pictures.PICTURES:
+        assert manual_pictures.command_of(name, pages)

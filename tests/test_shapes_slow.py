@@ -26,7 +26,7 @@ RUN = (
     "encodings/test_light_encodings.py",
     "encodings/test_motion_encodings.py",
     "encodings/test_normal_encodings.py",
-    "encodings/test_storage.py::test_floats_of_any_form_are_the_nearest_or_the_next_below",
+    "encodings/test_storage.py::test_floats_of_any_form_round_to_nearest_or_toward_zero",
 )
 
 

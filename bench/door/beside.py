@@ -1,6 +1,7 @@
-"""The work of the second process of a run; see `run/second.py`.
+"""The work of a run's second process (see `run/second.py`).
 
-Imports nothing heavy: the first process refers to these functions before it has imported what they need.
+This module has no slow imports, because the first process refers to its functions before it has imported the modules
+that they need.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from ..tables.table import Row, Step
 
 @dataclass(frozen=True)
 class Asking:
-    """A request for a table: its name, sets of its options, and its outputs."""
+    """A request for a table: the table's name, one or more sets of options, and its outputs."""
 
     table: str
     options: Sequence[Any]
@@ -49,11 +50,11 @@ class Sent:
         self._send = send
 
     def find(self, table: str, step: Step) -> list[Row] | None:
-        """Return the rows of a step that were kept before; None if no rows were kept."""
+        """Return the stored rows of a step; None if no rows are stored."""
         return self._rows.get(key_text(table, step.key))
 
     def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
-        """Send the rows of a step, and return them as JSON reads them back."""
+        """Send the rows of a step to the first process; return the rows as they are read back from JSON."""
         kept = plain(rows)
         self._send(Kept(key_text(table, step.key), kept))
         return kept
@@ -97,13 +98,14 @@ def measure(send: Send, folder: Path, own: Sequence[Asking], others: Sequence[As
 
 
 def _write(ask: Asked, sent: Sent, send: Send) -> None:
-    """Measure the missing rows of a table, write its files, and send a message that they are written."""
+    """Measure the missing rows of a table, write its files and send a message that the table is written."""
     ask.table.work.write(measured(ask, sent), lambda _: None)
     send(Written(ask.table.name))
 
 
 def _write_others(asks: Iterable[Asked], sent: Sent, send: Send) -> None:
-    """Write the files of each table whose steps the first process has all measured by now; leave out other tables."""
+    """Write the files of each table if the first process has measured all its steps by now; leave out other
+    tables."""
     for ask in asks:
         if all(sent.find(ask.table.name, step) is not None for step in ask.steps):
             _write(ask, sent, send)

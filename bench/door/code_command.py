@@ -23,7 +23,7 @@ from ..ground.options.words import Names
 from ..ground.output.errors import UsageError, leave_out, tell
 from ..ground.spelling import spelled
 from ..shaders.code.emit import LANGUAGES
-from ..shaders.code.files import Code, code_of, file_name, stem_of, usual_prefix
+from ..shaders.code.files import Code, code_of, stem_of, usual_prefix
 from ..shaders.code.kinds.table import kind_of
 from ..shaders.code.verify import Agreement, agreement
 from ..subjects.codecs.kinds.codecs import NAMED, codecs_of_kind, kinds_named
@@ -43,7 +43,7 @@ NOT_COMPARED = "not in this run; the command below runs the code and compares it
 
 
 def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
-    """Write the code or, with `check`, a table of how it was verified. Return the exit status: 1 if code differs.
+    """Write the code or, with `check`, a table of verification results. Return the exit status: 1 if code differs.
 
     Raises:
         UsageError: a name is unknown, nothing fits, or a file cannot be written.
@@ -62,16 +62,12 @@ def code_command(options: CodeOptions, format: str, output: Path | None) -> int:
     if options.check:
         codes = _all_made(codecs, languages, options.prefix)
         return check_codes(codes, verified, ("encoding", "storage", "rounding"), format, output)
-    if output and output.is_file():
-        raise UsageError(f"{output} is a file; code writes into a folder")
-    if output and output.suffix in {language.ending for language in LANGUAGES.values()}:
-        raise UsageError(f"{output}: code writes {file_name(codecs[0], languages[0])} into a folder; name the folder")
     check_place(output, len(codecs) * len(languages))
     return _write(codecs, languages, options, output)
 
 
 def _of_named(word: str) -> str:
-    """Return the kind that `--of` names, or LAYOUT; empty if the names decide. Raises UsageError."""
+    """Return the kind given with `--of`, or LAYOUT; empty without `--of`, if the names decide. Raises UsageError."""
     known = (*NAMED, LAYOUT)
     if not word:
         return ""
@@ -82,7 +78,7 @@ def _of_named(word: str) -> str:
 
 
 def _check_prefix(prefix: str) -> None:
-    """Raise UsageError for a prefix that names in some language cannot begin with."""
+    """Raise UsageError if names cannot begin with the prefix in every language."""
     is_name = re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", prefix) and not prefix.lower().startswith("gl_")
     if prefix and not (is_name and len(prefix) <= LONGEST):
         raise UsageError(
@@ -92,11 +88,10 @@ def _check_prefix(prefix: str) -> None:
 
 
 def _codecs(options: CodeOptions) -> list[Any]:
-    """Return the codecs of every kind that is named; a kind that does not take the options is reported on standard
-    error.
+    """Return the named codecs of every kind; a kind that does not accept the options is reported on standard error.
 
     Raises:
-        UsageError: no kind takes the options, or a name is unknown.
+        UsageError: no kind accepts the options, or a name is unknown.
     """
     codecs: list[Any] = []
     complaints: list[str] = []
@@ -133,8 +128,8 @@ def _write(codecs: Sequence[Any], languages: Sequence[str], options: CodeOptions
 
 
 def _prefix(codec: Any, codecs: Sequence[Any], options: CodeOptions) -> str:
-    """Return the prefix of a codec's names; empty for the usual prefix. Codecs of one kind are written to one folder
-    and may be used together, so each has names of its own."""
+    """Return the prefix of a codec's names; empty for the usual prefix. Codecs of one kind are written to the same
+    folder and may be used together, so each codec has its own names."""
     is_alone = sum(usual_prefix(other) == usual_prefix(codec) for other in codecs) == 1
     return options.prefix or ("" if is_alone else stem_of(codec))
 
@@ -172,8 +167,8 @@ class Proven:
 
 
 def proven(codec: Any, languages: Sequence[str], prefix: str = "") -> Iterator[Proven]:
-    """Yield a codec's code in each language, run and compared with the catalogue. Raises UsageError if it can be
-    written in no language."""
+    """Yield a codec's code in each language, run and compared with the catalogue. Raises UsageError if the codec
+    cannot be written in any language."""
     # Measured once, and only where something is written.
     cached_figures = cache(partial(figures, codec) if isinstance(codec, Codec) else list)
     own = replace(codec, encoding=getattr(codec.encoding, "own", None) or codec.encoding)
@@ -189,15 +184,15 @@ def _proven_head(code: Code, codec: Any, prefix: str, row: Row, figure_lines: Ca
 
 
 def unproven_head(code: Code) -> list[str]:
-    """Return the paragraphs above code of the catalogue that was not run; they name the command that runs it."""
+    """Return the header paragraphs for catalogue code that was not run; they name the command that runs it."""
     return head(code, code.codec, _command(code.codec, code.language, ""), NOT_COMPARED, ())
 
 
 def _why_not(code: Code, row: Row, pairs: Sequence[tuple[Code, Row]]) -> str:
-    """Return the reason why a language is not written; empty if it is written.
+    """Return the reason why the code in one language is not written; empty if it is written.
 
-    All languages are written from one tree. If the code of one language differs, the tree is taken to be wrong for
-    all. A language that is not run here, such as Metal, is written unless the code of another language differs.
+    All languages are written from one tree. If the code in one language differs, the tree is assumed to be wrong for
+    all. Code that cannot be run here, such as Metal, is written unless the code in another language differs.
     """
     if row["verdict"] == DIFFERS:
         return row["says"]
@@ -209,7 +204,7 @@ def _why_not(code: Code, row: Row, pairs: Sequence[tuple[Code, Row]]) -> str:
 
 
 def _all_made(codecs: Sequence[Any], languages: Sequence[str], prefix: str) -> list[Code]:
-    """Return the code of each codec in each language; report what cannot be written on standard error.
+    """Return the code of each codec in each language; report on standard error which code cannot be written.
 
     Raises:
         UsageError: no code can be written.
@@ -234,8 +229,8 @@ def _command(codec: Any, language: str, prefix: str) -> str:
 
 
 def verified(code: Code) -> Row:
-    """Run a file, and return a row: the codec, the language, and how its results compare with the catalogue's; see
-    `compared`."""
+    """Run a codec's code in one language and return a row: the codec, the language, and how the results compare with
+    the catalogue's (see `compared`)."""
     codec = code.codec
     row: Row = {"encoding": codec.encoding.name, "storage": codec.storage.name, "rounding": rounding_of(codec)}
 

@@ -1,4 +1,4 @@
-"""The header of a codec's source file: what the file is, its figures, and how it was verified."""
+"""The header of a codec's source file: what the file is, its figures and how it was verified."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def head(code: Code, codec: Any, command: str, verified: str, figure_lines: Sequ
 
     Args:
         code: the contents of the file.
-        codec: the measured codec; for a half other than z >= 0, its axes differ from the file's.
-        command: the command that made the file.
-        verified: how its results compare with the catalogue's.
-        figure_lines: the codec's figures, see `figures`.
+        codec: the measured codec; for a hemisphere other than z >= 0, its axes differ from the file's.
+        command: the command that wrote the file.
+        verified: how the file's results compare with the catalogue's.
+        figure_lines: the codec's figures (see `figures`).
     """
     encoding, kind = codec.encoding, kind_of(codec)
     compared = verified.replace(" are equal, bit", " are the catalogue's, bit", 1) if kind.is_ours(codec) else verified
@@ -65,7 +65,7 @@ def _licence(codec: Any) -> str:
 
 
 def figures(codec: Codec) -> list[str]:
-    """Measure a codec, and return paragraphs on its errors and its instruction counts."""
+    """Measure a codec and return paragraphs on its errors and its instruction counts."""
     return [*_errors(codec), *_instructions(codec)]
 
 
@@ -87,8 +87,8 @@ def _errors(codec: Codec) -> Iterator[str]:
 
 
 def _largest(supremum: float | None, met: float) -> str:
-    """Return text of the supremum, and of the largest sampled error if that is larger or the supremum is None; in
-    degrees."""
+    """Return text with the supremum in degrees, followed by the largest sampled error if that is larger; with the
+    largest sampled error alone if `supremum` is None."""
     if supremum is None:
         return f"largest sampled error {met:.4g} degrees"
     text = f"supremum {supremum:.4g} degrees"

@@ -1,4 +1,4 @@
-"""Shared parts of `code` for codecs and for layouts: comparing a file's results, their table, and output paths."""
+"""Parts of `code` that codecs and layouts share: verifying files, tabulating the verdicts and writing files."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ CodeT = TypeVar("CodeT", Code, GBufferCode)
 def compared(
     agreement: Callable[[], verify.Agreement | layout_verify.Agreement], language: str, more: Sequence[str] = ()
 ) -> Row:
-    """Run a file by `agreement`, and return a row of its "verdict" (VERIFIED, DIFFERS or NOT_RUN) and a description,
-    "says". If it ran, the row also has "values", "differing", "steps" and "run_by".
+    """Run a file with `agreement`, and return a row with its "verdict" (VERIFIED, DIFFERS or NOT_RUN) and "says", a
+    description. If the file ran, the row also has "values", "differing", "steps" and "run_by".
 
     Args:
         agreement: a function that runs the file and compares its results.
@@ -62,8 +62,10 @@ def witness(codes: Iterable[CodeT], verified: Callable[[CodeT], Row]) -> list[tu
 
 
 def check_place(output: Path | None, count: int) -> None:
-    """Raise UsageError if `count` files cannot be written to a folder, or to standard output without one."""
+    """Raise UsageError if `count` files cannot be written to the folder `output` or, for None, to standard output."""
     check_is_folder(output, "code writes into")
+    if output and output.suffix in {language.ending for language in LANGUAGES.values()}:
+        raise UsageError(f"{output}: code writes files into a folder; name a folder, or print one file with > {output}")
     if output:
         check_folder(output)
     elif count > 1:
@@ -114,8 +116,8 @@ def check_codes(
 
 
 def _by_language(rows: Sequence[Row], about: Sequence[str]) -> list[Row]:
-    """Return one row for each codec or layout: the columns `about`, and for each language "equal", how many values
-    differ, or the verdict if it is not VERIFIED."""
+    """Return one row per codec or layout: the columns `about`, and for each language "equal", the number of values
+    that differ, or a verdict other than VERIFIED."""
     lines: dict[tuple[Any, ...], Row] = {}
     for row in rows:
         line = {name: row[name] for name in about}

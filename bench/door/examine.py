@@ -55,19 +55,20 @@ def examine_encoding(
     report: Path | None = None,
     sources: Mapping[str, Any] = MappingProxyType({}),
 ) -> int:
-    """Write a verdict, findings and notes, and the plot if one is asked for.
+    """Write the verdict, findings and notes on a file's encoding, and a plot if one is requested. Examine every file
+    of a folder.
 
     Args:
         storage: the name of the storage to measure in; None for STORAGE.
-        domain: the domain that the encoding is meant for, one of DOMAINS; None to find out.
-        diff, report: for a folder, the paths of a patch and a page to write; None to write none.
-        sources: how the file is read, by options of `Sources`.
+        domain: the domain that the encoding is meant for, one of DOMAINS; None to detect the domain.
+        diff, report: for a folder, the paths of the patch and the page to write; None to write neither.
+        sources: options for reading the file; see `Sources`.
 
     Returns:
         the exit status: 1 if something is likely wrong.
 
     Raises:
-        UsageError: no file is given, it is not an encoding, a name is unknown, or something cannot be written.
+        UsageError: no file is given, the file is not an encoding, a name is unknown, or something cannot be written.
     """
     if file is None:
         raise UsageError("these options of doctor require a file or a folder; name one, such as mine.glsl")
@@ -169,7 +170,7 @@ def _text(about: Mapping[str, str], wrong: Sequence[str], notes: Sequence[str], 
 
 
 def bulleted(lines: Sequence[str], format: str) -> str:
-    """Return the text of a bulleted list of lines, in Markdown or wrapped to the terminal's width."""
+    """Return lines as a bulleted list, in Markdown or wrapped to the terminal's width."""
     if format == "markdown":
         return "\n".join(f"- {tables.markdown_sentence(line)}" for line in lines)
     width = shutil.get_terminal_size((120, 40)).columns
@@ -178,7 +179,7 @@ def bulleted(lines: Sequence[str], format: str) -> str:
 
 
 def _storage(name: str) -> Storage:
-    """Return the storage of a name. Raises UsageError if it does not name exactly one."""
+    """Return the storage with a name. Raises UsageError if the name does not match exactly one storage."""
     storages = storages_named((name,))
     if len(storages) != 1:
         raise UsageError(f"--storage {name}: doctor measures in one storage; name one")
@@ -186,13 +187,12 @@ def _storage(name: str) -> Storage:
 
 
 def _domain(examination: Examined) -> str:
-    """Return the name of the domain for a row; for a hemisphere other than z >= 0, also which one it is."""
+    """Return the domain's name for a row, followed by the hemisphere if it is not z >= 0."""
     return examination.domain.name + (f", {examination.domain.text}" if examination.domain.is_turned else "")
 
 
 def no_numbers(storage: Storage, row: Mapping[str, Any]) -> list[str]:
-    """Return a list of one line on how many rounded codes decode to NaN or infinity, whatever exact codes do; empty
-    if none does.
+    """Return a list with one line on the number of rounded codes that decode to NaN or infinity; empty if none do.
 
     Args:
         row: a row of `quality`."""
@@ -204,8 +204,8 @@ def no_numbers(storage: Storage, row: Mapping[str, Any]) -> list[str]:
 
 
 def _compared(examination: Examined, codec: Codec, row: Mapping[str, Any]) -> list[str]:
-    """Return a list of one line on how much worse an encoding is than the catalogue's version of it; empty if it is
-    as good, matches no encoding of the catalogue, or is so much worse that it is another encoding."""
+    """Return a list with one line on how much worse an encoding is than its version in the catalogue; empty if the
+    encoding is as good, has no version there, or is so much worse that it must be a different encoding."""
     if not examination.like:
         return []
     # Codes in [0, 1] fill a storage without a sign, and half of one that has a sign.
@@ -223,8 +223,8 @@ def _compared(examination: Examined, codec: Codec, row: Mapping[str, Any]) -> li
 
 
 def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
-    """Return a list of one line on the errors in half precision of an encoding whose file declares it; empty for
-    other encodings."""
+    """Return a list with one line on an encoding's errors in half precision, if its file declares half precision;
+    otherwise an empty list."""
     if not codec.encoding.is_also_half:
         return []
     half = Codec(in_half(codec.encoding), codec.storage)
@@ -239,8 +239,8 @@ def _half_note(codec: Codec, row: Mapping[str, Any]) -> list[str]:
 
 
 def _rounded_for(examination: Examined, codec: Codec) -> str:
-    """Return text on the steps to which the encoder itself rounds, with a storage that has these steps; empty if it
-    does not round, or if the codec's storage has them."""
+    """Return text on the steps that the encoder itself rounds to, and on a storage with these steps; empty if the
+    encoder does not round, or if the codec's storage already has these steps."""
     lattice, size = examination.lattice, codec.encoding.components
     if lattice is None or lattice.is_of(codec.storage, size):
         return ""
@@ -255,14 +255,14 @@ def _means(row: Mapping[str, Any]) -> tuple[float, float]:
 
 
 def row_of(codec: Codec) -> dict[str, Any]:
-    """Measure a codec on COUNT directions of its sphere or hemisphere, and return its row of the quality table."""
+    """Measure a codec in COUNT directions of its sphere or hemisphere, and return its row of the quality table."""
     chosen = NORMAL_SETS["sphere" if codec.encoding.domain == "sphere" else "hemisphere"](COUNT, 0)
     return measure(QualityCase(codec, chosen, "glsl"))
 
 
 def _picture(codec: Codec, examination: Examined) -> Any:
-    """Return a chart of the mean error over the sphere, with a mark at each direction that decodes to another
-    direction; without marks for a hemisphere other than z >= 0."""
+    """Return a chart of the mean error over the sphere, with a mark at each direction that does not round-trip;
+    without marks for a hemisphere other than z >= 0."""
     name, shown = codec.name, sphere_map(codec).mean_deg
     halves = ("z >= 0, towards the viewer", "z < 0")
     if examination.domain.is_turned:

@@ -1,4 +1,4 @@
-"""The `doctor FOLDER` command: reads every shader file below a folder once and tabulates the errors of their pairs."""
+"""The `doctor FOLDER` command: reads each shader file below a folder once, and tabulates the errors of the pairs."""
 
 from __future__ import annotations
 
@@ -75,9 +75,9 @@ class Pair:
     """An encoder–decoder pair.
 
     Attributes:
-        file: the path from the folder; both paths if the pair is in two files.
+        file: the path relative to the folder; two paths if the functions are in two files.
         word: the pair, as it is named on the command line.
-        looked: the result of a close examination.
+        looked: the result of examining the pair.
         storage: the storage of the pair's codes.
         row: the pair's figures.
         findings: lines on what is likely wrong.
@@ -101,10 +101,10 @@ class Other:
     """A file with functions that are not measured in the table.
 
     Attributes:
-        file: the path from the folder.
-        why: why they are not measured.
-        functions: ENCODE:DECODE, or the name of a function without a partner; None if there is no pair.
-        lone: the encoder or the decoder, if the other is missing.
+        file: the path relative to the folder.
+        why: the reason why the functions are not measured.
+        functions: ENCODE:DECODE, or the name of a function without a partner; None if the file has no pair.
+        lone: the encoder or the decoder, if the other function is missing.
         findings: lines on what is likely wrong.
     """
 
@@ -130,7 +130,7 @@ def examine_folder(
         storage: the storage of every pair; None for the storage that each pair implies.
         diff: a file for a patch that replaces worse encodings with the catalogue's best; None for no patch.
         report: the path of a page to write; None for no page.
-        sources: how files are read, by options of `Sources`.
+        sources: options for reading files; see `Sources`.
 
     Returns:
         the exit status: 1 if a problem is found.
@@ -201,7 +201,7 @@ def files_below(folder: Path) -> Iterator[Path]:
 
 
 def may_hold_a_pair(path: Path) -> bool:
-    """Whether a file defines a function that encodes or decodes by its name, or cannot be read as text."""
+    """Whether a file defines a function that is named like an encoder or a decoder, or cannot be read as text."""
     return any(map(role, _DEFINED.findall(_text(path)))) or not _is_text(path)
 
 
@@ -220,7 +220,8 @@ def _text(path: Path) -> str:
 
 
 def _looked(folder: Path, storage: Storage | None, word: str) -> list[Pair | Other]:
-    """Return the entries of a file: its pairs for normals, and those of other kinds by its functions' names."""
+    """Return a file's entries: its pairs for normals, and pairs of other kinds, which are recognised by function
+    names."""
     shader = UserFile(word)
     file = shader.path.relative_to(folder).as_posix()
     others = [_of_kind(file, shader, kind) for kind in _kinds_by_names(shader.path)]
@@ -231,8 +232,8 @@ def _looked(folder: Path, storage: Storage | None, word: str) -> list[Pair | Oth
 
 
 def _of_normals(folder: Path, storage: Storage | None, word: str) -> list[Pair | Other]:
-    """Return the pairs for normals in a file, or an `Other` with the reason why it has none; empty if the file only
-    seemed to have a pair."""
+    """Return the pairs for normals in a file, or an `Other` with the reason if the file has no pair; empty if the
+    file only seemed to have a pair."""
     path = UserFile(word).path
     file = path.relative_to(folder).as_posix()
     try:
@@ -249,14 +250,14 @@ def _of_normals(folder: Path, storage: Storage | None, word: str) -> list[Pair |
 
 
 def _names_a_pair(path: Path) -> bool:
-    """Whether two functions of a file are an encoder of normals and its decoder by their names."""
+    """Whether a file has two functions whose names identify them as an encoder of normals and its decoder."""
     names = [name for name in _DEFINED.findall(_text(path)) if role(name) and name_speaks_of_normals(name)]
     roles = {name: role(name) for name in names}
     return any(roles[name] != roles[other] and stem(name) == stem(other) for name in names for other in names)
 
 
 def _of_pairs(folder: Path, storage: Storage | None, word: str, pairs: Sequence[str]) -> list[Pair | Other]:
-    """Return the entries of pairs of a file, each given as ENCODE:DECODE; pairs beyond the first MOST_PAIRS are not
+    """Return the entries for pairs in a file, each given as ENCODE:DECODE; pairs after the first MOST_PAIRS are not
     measured."""
     words = [UserFile(word).with_pair(pair).word for pair in pairs]
     measured = (each for pair in words[:MOST_PAIRS] for each in _of_normals(folder, storage, pair))
@@ -277,7 +278,7 @@ def _kinds_by_names(path: Path) -> Iterator[OwnKind]:
 
 
 def _of_kind(file: str, shader: UserFile, kind: OwnKind) -> Other:
-    """Return the entry of an encoding of something other than normals, with the command that measures it."""
+    """Return the entry for an encoding of something other than normals, with the command that measures it."""
     try:
         own = examined_code(kind, shader)
     except (UsageError, MissingError) as error:
@@ -295,8 +296,8 @@ def _pair(file: str, word: str, storage: Storage | None) -> Pair:
 
 
 def implied_storage(looked: Examined) -> Storage:
-    """Return the storage that an encoding implies: 32 bits if it is packed, else the storage to whose steps it
-    rounds, else 8 bits per number."""
+    """Return the storage that an encoding implies: 32 bits if the encoding is packed, else the storage with the steps
+    that the encoder rounds to, else 8 bits per number."""
     encoding, lattice = looked.encoding, looked.lattice
     if encoding.is_packed:
         return BITS_32
@@ -311,8 +312,9 @@ def implied_storage(looked: Examined) -> Storage:
 def _across_files(
     folder: Path, storage: Storage | None, others: Sequence[Other], pairs: Sequence[Pair]
 ) -> Iterator[Pair]:
-    """Yield pairs of an encoder and a decoder in two files, matched by name. Add a finding to a decoder that does not
-    undo its encoder, or that reads another encoding than an encoder of its name writes."""
+    """Yield pairs with the encoder in one file and the decoder in another, matched by name. Add a finding to a
+    decoder that does not undo its encoder, or that reads a different encoding from the one that its namesake
+    writes."""
     lone = [(each, each.lone) for each in others if each.lone]
     for other, reader in ((other, candidate) for other, candidate in lone if candidate.side == "decode"):
         writers = [
@@ -344,7 +346,7 @@ def _disagreements(reader: OneFunctionError, pairs: Sequence[Pair]) -> Iterator[
 
 
 def _of_target(path: Path, functions: str) -> Iterator[str]:
-    """Yield likely problems with how the file itself reads and stores the texels: filtering and sRGB formats."""
+    """Yield likely problems with how a file itself reads and stores its texels: filtering and sRGB formats."""
     text, decode = _text(path), functions.rpartition(":")[2].partition("(")[0]
     if match := re.search(_FILTERED.format(re.escape(decode)), text, re.I):
         line = text.count("\n", 0, match.start()) + 1
@@ -355,7 +357,7 @@ def _of_target(path: Path, functions: str) -> Iterator[str]:
 
 
 def _measure(pairs: Sequence[Pair]) -> None:
-    """Fill in each pair's row: its errors, its cost and the best encoding of the catalogue in the same storage. Add
+    """Fill in each pair's row: its errors, its cost and the catalogue's best encoding in the same storage. Add
     findings to pairs that do not fit their storage or decode to NaN."""
     by_question: dict[tuple[str, str], list[Pair]] = {}
     for pair in pairs:
@@ -377,7 +379,7 @@ def _measure(pairs: Sequence[Pair]) -> None:
 
 
 def _picked(storage: str, domain: str | None, pairs: Sequence[Pair]) -> list[Row]:
-    """Return rows of `pick` in a storage, ranked by angles alone, for the catalogue's encodings and for `pairs`."""
+    """Return the rows of `pick` for a storage, ranked by angle only, with the catalogue's encodings and `pairs`."""
     encodings = (pair.looked.encoding for pair in pairs)
     against = tuple(Given(encoding.name, encoding) for encoding in encodings)
     (cases,) = questions(PickOptions(storage=(storage,), against=against, domain=domain, count=COUNT))
@@ -409,7 +411,7 @@ class Told:
 
     Attributes:
         rows: one row for each pair, and one for each file that seems to have a pair but does not.
-        measured: the rows of pairs that were measured, for people.
+        measured: the rows of the measured pairs, with the columns that people read.
         lines: likely problems, and the reasons why other pairs were not measured.
         lead: the counts, in a sentence.
     """

@@ -25,7 +25,7 @@ LAYOUT, ENDING = "layout", ".toml"
 
 
 def is_of_layouts(options: CodeOptions) -> bool:
-    """Whether layouts are named: by `--of layout`, or as files."""
+    """Whether the options name layouts, by `--of layout` or as layout files."""
     return options.of == LAYOUT or (not options.of and all(str(word).endswith(ENDING) for word in options.codec))
 
 
@@ -37,8 +37,8 @@ def check_no_layout(options: CodeOptions) -> None:
 
 
 def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str, output: Path | None) -> int:
-    """Write the code of layouts or, with `check`, a table of how it was verified. Return the exit status: 1 if code
-    differs.
+    """Write the code of layouts or, with `check`, a table of how the code was verified. Return the exit status: 1 if
+    any code differs.
 
     Raises:
         UsageError: a name is unknown, a layout is not supported, or a file cannot be written.
@@ -62,7 +62,8 @@ def gbuffer_command(options: CodeOptions, languages: Sequence[str], format: str,
 
 
 def _write_layout(layout: Layout, codes: Sequence[GBufferCode], options: CodeOptions, output: Path | None) -> int:
-    """Write the files of a layout. Return 1 and write no file if one differs, because all are made from one tree."""
+    """Write a layout's files, and return 0. If the results of any file differ, return 1 and write no file, because
+    all files are generated from one syntax tree."""
     rows = [(code, verified(code)) for code in codes if code.layout is layout]
     if not any(row["verdict"] == VERIFIED for _, row in rows):
         rows += witness((gbuffer_code(layout, name, options.prefix) for name in WITNESSES), verified)

@@ -1,4 +1,4 @@
-"""The patch of `doctor FOLDER --diff`: the catalogue's best code in place of a worse one, in the file's language."""
+"""The patch of `doctor FOLDER --diff`: replaces worse code with the catalogue's best, in the file's language."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ def _is_of_normals(pair: Pair) -> bool:
 
 
 def _part_of(folder: Path, file: str, pairs: Sequence[Pair]) -> str:
-    """Return the part of a patch for one file: a line on each changed pair, then the changes. Report pairs that
-    cannot be changed on standard error; empty if the file cannot be read."""
+    """Return one file's part of a patch: a line about each changed pair, then the changes; empty if the file cannot
+    be read. Report pairs that cannot be changed on standard error."""
     try:
         text = was = "" if "," in file else (folder / file).read_bytes().decode("utf-8")
     except (OSError, ValueError) as error:
@@ -76,7 +76,8 @@ def _part_of(folder: Path, file: str, pairs: Sequence[Pair]) -> str:
 
 
 def _mean_of(patched: str, path: Path, pair: Pair) -> float:
-    """Return the mean error of a patched file. Raises UsageError if it is not that of the best encoding."""
+    """Return a pair's mean error in a patched file. Raises UsageError if the error is not close to the best
+    encoding's."""
     with tempfile.TemporaryDirectory() as place:
         copy = Path(place) / path.name
         copy.write_bytes(patched.encode())
@@ -91,7 +92,7 @@ def _mean_of(patched: str, path: Path, pair: Pair) -> float:
 
 
 def patched_text(text: str, pair: Pair) -> str:
-    """Return a file's text with the code of the best encoding, and both functions of a pair calling it.
+    """Return a file's text in which both functions of a pair call the best encoding's code, which is added.
 
     Raises:
         UsageError: the pair cannot be changed in this way; the message is a sentence.
@@ -133,7 +134,8 @@ def patched_text(text: str, pair: Pair) -> str:
 
 
 def _parameter(bare: str, item: Item) -> str:
-    """Return the name of a function's first parameter in a text without comments. Raises UsageError."""
+    """Return the name of a function's first parameter, from text without comments. Raises UsageError if it has no
+    name."""
     match = _PARAMETER.search(bare[item.start : item.body])
     if not match:
         raise UsageError(f"the first parameter of {item.name} has no name")
@@ -141,6 +143,6 @@ def _parameter(bare: str, item: Item) -> str:
 
 
 def _line_start(bare: str, item: Item) -> int:
-    """Return the offset of the start of the line with a function's name, in a text without comments."""
+    """Return the offset of the start of the line that contains a function's name, in text without comments."""
     name = re.compile(rf"\b{item.name}\s*\(").search(bare, item.start)
     return bare.rfind("\n", 0, name.start() if name else item.start) + 1

@@ -1,4 +1,4 @@
-"""The `run` command: measures many tables into a results folder with its page. A stopped run resumes."""
+"""The `run` command: measures many tables, and writes the results and a page to a folder. A stopped run resumes."""
 
 from __future__ import annotations
 
@@ -41,22 +41,22 @@ REPORT = "report.html"
 
 
 def chosen_tables(names: Names, options: Mapping[str, Any]) -> list[Table]:
-    """Return the tables that names stand for; for "all", the tables that are measured by default with the given
-    options. Raises UsageError."""
+    """Return the tables with these names; for "all", the tables that are measured by default with the given options.
+    Raises UsageError if a name is unknown."""
     if names == ("all",):
         return [table for table in TABLES.values() if table.is_in_all(options)]
     return list(dict.fromkeys(choose("table", names, TABLES)))
 
 
 def given(request: Any) -> dict[str, Any]:
-    """Return the options that were given in a request, without `tables`."""
+    """Return the options that a request sets, by name, without `tables`."""
     values = {field.name: getattr(request, field.name) for field in fields(request) if field.name != "tables"}
     return {name: value for name, value in values.items() if value is not None}
 
 
 def options_of(table: Table, options: Mapping[str, Any]) -> list[Any]:
-    """Return a table's options in a run, one set for each of its usual sets, with the given values in place of the
-    usual values."""
+    """Return a table's sets of options in a run: its usual sets, in which the given values replace the usual
+    values."""
     known = fields_of(table.options)
     own = {name: value for name, value in options.items() if name in known and known[name].option.in_run}
     # A layout is measured as it is where nothing is said to put into it.
@@ -68,12 +68,12 @@ def options_of(table: Table, options: Mapping[str, Any]) -> list[Any]:
 
 
 def _read_so(values: dict[str, Any]) -> dict[str, Any]:
-    """Return options unchanged if they name files; otherwise without the options for how files are read."""
+    """Return options unchanged if they name files; otherwise without the options for reading files."""
     return values if names_files(values) else {name: option for name, option in values.items() if name not in SETTINGS}
 
 
 def asked_of(request: Any, folder: Path) -> list[Asked]:
-    """Return what a request asks of each table; report on standard error which tables this machine cannot measure.
+    """Return the request for each table, and report on standard error the tables that this machine cannot measure.
 
     Raises:
         UsageError: a table is unknown, or an option is invalid.
@@ -98,7 +98,8 @@ def asked_of(request: Any, folder: Path) -> list[Asked]:
 
 
 def _check_taken(chosen: Iterable[Table], options: Mapping[str, Any]) -> None:
-    """Raise UsageError for an option that no chosen table takes, or for an option for files if no file is named."""
+    """Raise UsageError for an option that no chosen table takes, or for an option for reading files if no file is
+    named."""
     in_names(options)
     for name in options:
         takers = [table for table in TABLES.values() if _takes(table, name)]
@@ -114,15 +115,15 @@ def _takes(table: Table, name: str) -> bool:
 
 
 def _asked(table: Table, options: Mapping[str, Any], folder: Path) -> Asked:
-    """Return the request for one table, each step once. Raises UsageError, and MissingError if this machine lacks
-    what the table needs."""
+    """Return the request for one table, without duplicate steps. Raises UsageError, and MissingError if this machine
+    lacks something that the table needs."""
     if missing := table.work.missing():
         raise MissingError(missing)
     return asked_together(table, options_of(table, options), in_folder(table, table.outputs(), folder))
 
 
 def run_command(request: Any, output: Path | None, on: str | None = None, commit: str | None = None) -> int:
-    """Measure tables into a results folder, and print their verdicts. A stopped run continues.
+    """Measure tables, write them to a results folder and print their verdicts. A stopped run is resumed.
 
     Args:
         on: where the tables are measured; None for this process.
@@ -157,7 +158,7 @@ def run_command(request: Any, output: Path | None, on: str | None = None, commit
 
 
 def _second(request: Any, on: str | None) -> AbstractContextManager[Second | None]:
-    """Return a context manager that gives the second process, or None if it would have nothing to do."""
+    """Return a context manager for the second process, or for None if that process would have nothing to do."""
     chosen = chosen_tables(request.tables, given(request))
     names = [table.name for table in chosen if not table.section.leads]
     return second_process(partial(beside.prepare, tables=names)) if not on and is_worth_it(chosen) else nullcontext()
@@ -221,8 +222,8 @@ def _measure_all(
 
 
 def _beside(asks: Iterable[Asked]) -> list[Asked]:
-    """Return the tables that the second process measures, so that both processes take about as long. The first
-    process keeps the answer and all timed tables."""
+    """Return the tables for the second process to measure, chosen so that both processes take about equally long. The
+    first process keeps the answer and all timed tables."""
     chosen: list[Asked] = []
     own = sum(seconds_of(ask) for ask in asks if ask.table.section.leads or _takes_times(ask))
     beside = 0.0
@@ -237,8 +238,8 @@ def _beside(asks: Iterable[Asked]) -> list[Asked]:
 
 
 def _measure_others(run: Run, asks: Iterable[Asked], others: Sequence[Asked], shown: Shown, second: Second) -> None:
-    """Measure and show the tables `asks`, timed tables last while nothing else runs. Show the tables `others`, which
-    the second process measures, as they are finished."""
+    """Measure and show the tables `asks`; timed tables are last, when nothing else runs. Show the tables `others` as
+    the second process finishes them."""
     # What takes times is measured when nothing else runs.
     for ask in sorted(asks, key=_takes_times):
         if _takes_times(ask):
@@ -250,7 +251,7 @@ def _measure_others(run: Run, asks: Iterable[Asked], others: Sequence[Asked], sh
 
 
 def _add_written(run: Run, asks: Iterable[Asked], shown: Shown, second: Second) -> None:
-    """Show those of the tables `asks` that the second process has written and that are not shown yet."""
+    """Show the tables among `asks` that the second process has written and that are not yet shown."""
     for ask in asks:
         if ask.table.name in second.written - shown.written:
             shown.written.add(ask.table.name)
@@ -263,11 +264,11 @@ def _takes_times(ask: Asked) -> bool:
 
 
 class Shown:
-    """Tables as they are measured: shown in the order in which they were asked for, whichever is done first.
+    """Tables of a run, shown in the order in which they were requested, regardless of which is finished first.
 
     Attributes:
         failed: whether a row fails.
-        done: what was measured, by table.
+        done: the measurements, by table name.
         written: the tables whose files are written.
     """
 
@@ -278,8 +279,8 @@ class Shown:
         self._left = deque(asks)
 
     def add(self, ask: Asked, done: Measured) -> None:
-        """Record what was measured for a table, and show each table whose turn it is: all tables before it are
-        measured. Set `failed` if a row fails."""
+        """Record a table's measurement. Show each table once it and all tables before it are measured. Set `failed`
+        if a row fails."""
         self.done[ask.table.name] = done
         give_back_what_a_table_needed()
         while self._left and self._left[0].table.name in self.done:

@@ -1,5 +1,5 @@
-"""The functions that `run` keeps for its page: every codec of the catalogue in all languages. The functions of the
-answers are also run."""
+"""The code that `run` keeps for its page: the functions of the catalogue's codecs in all languages. The functions of
+the best codecs are also executed."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ MOST, MOST_PROVEN = 400, 1
 
 
 def keep_code(folder: Path, done: Done) -> None:
-    """Write the code of a finished run's codecs of the catalogue, at most MOST of them, to its folder. Write
-    nothing if no such codec has code."""
+    """Write functions for at most MOST of a finished run's catalogue codecs to its folder. Write nothing if none of
+    these codecs has code."""
     finished = {name: done.finished_rows(name) for name in done.tables if ENCODING in TABLES[name].columns}
     codecs = _codecs(row for rows in finished.values() for row in rows)
     best = _codecs(row for name, rows in finished.items() for row in _best(name, rows))
@@ -41,7 +41,8 @@ def keep_code(folder: Path, done: Done) -> None:
 
 
 def _codecs(rows: Iterable[Row]) -> dict[str, Codec]:
-    """Return the codecs that rows name, by label. Rows without a codec of the catalogue that fits are skipped."""
+    """Return the codecs that rows name, by label. Rows without a catalogue codec that fits its storage are
+    skipped."""
     codecs: dict[str, Codec] = {}
     for row in rows:
         key = CodecKey.said_by(row)
@@ -51,14 +52,15 @@ def _codecs(rows: Iterable[Row]) -> dict[str, Codec]:
 
 
 def _best(name: str, rows: list[Row]) -> Iterator[Row]:
-    """Yield the first MOST_PROVEN rows of each sheet of a table's answer; nothing if the section does not lead."""
+    """Yield the first MOST_PROVEN rows of each sheet in a table's answer; nothing if the table's section does not
+    lead."""
     if TABLES[name].section.leads:
         for sheet in TABLES[name].work.summary(rows):
             yield from ({**sheet.keys, **row} for row in sheet.rows[:MOST_PROVEN])
 
 
 def _written(codec: Codec, is_proven: bool) -> Written:
-    """Return a codec's functions in all languages; for a codec of the catalogue, earlier results are reused."""
+    """Return a codec's functions in all languages; for a codec in the catalogue, earlier results are reused."""
     facts = (sources(), codec.name, str(is_proven), *LANGUAGES, *states())
     key = cache.key_of("code", *facts) if is_in_catalogue(codec.encoding) else ""
     return Written(**cache.kept(key, lambda: _written_now(codec, is_proven)._asdict()))

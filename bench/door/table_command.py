@@ -1,4 +1,4 @@
-"""The command of a table: measures, shows the rows, and writes the other outputs that were asked for."""
+"""The command of a table: measures it, shows the rows and writes any other outputs that were requested."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ def table_command(
     report: Path | None,
     on: str | None = None,
 ) -> int:
-    """Measure a table and write it. With -o, a stopped command continues.
+    """Measure a table and write it. With -o, a stopped command is resumed.
 
-    A kept answer is given again if the command writes nothing else.
+    A cached answer is printed again if the command writes nothing else.
 
     Args:
         on: where the table is measured; None for this process.
@@ -84,14 +84,14 @@ def _command(
 
 
 def in_folder(table: Table, outputs: Any, folder: Path) -> Any:
-    """Return outputs in which the files that a run keeps are in its folder, unless they have another place."""
+    """Return outputs with the files that a run keeps placed in its folder, except files that already have a path."""
     known = {field.name for field in fields(outputs)}
     places = {name: folder / place for name, place in table.files.items() if name in known}
     return replace(outputs, **{name: place for name, place in places.items() if getattr(outputs, name) is None})
 
 
 def _work(table: Table) -> Row:
-    """Return what must match for kept rows to be reused: the table's name, a digest of the sources, the platform."""
+    """Return the facts that must match for kept rows to be reused: table name, digest of the sources and platform."""
     return {"table": table.name, "sources": sources(), "machine": platform.platform()}
 
 
@@ -154,7 +154,8 @@ def _plot(table: Table, done: Measured) -> None:
 
 
 def _why_nothing(table: Table, rows: Sequence[Row]) -> str:
-    """Return why rows have no chart: the first reason that a row gives, or that they have too few figures."""
+    """Return the reason why rows have no chart: the first reason in a row or, without one, that figures are too
+    few."""
     few = f"too few figures for a chart in {len(rows)} row{'s' * (len(rows) != 1)}; for example, run: {table.example}"
     return next((row["skipped"] for row in rows if row.get("skipped")), few)
 

@@ -1,4 +1,4 @@
-"""The angle between vectors in NumPy, which needs neither unit length nor care near 0 and 180 degrees."""
+"""The angle between vectors in NumPy: accurate near 0 and 180 degrees, for vectors of any length above 0."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import numpy as np
 
 
 def angles_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the angles between vectors in degrees, float64 of shape (...): atan2(|a x (b - a)|, a . b). Vectors
-    of length 0 and NaN are the caller's concern.
+    """Return the angles between vectors in degrees, float64 of shape (...): atan2(|a x (b - a)|, a . b). The caller
+    has to handle vectors of length 0 and NaN.
 
     Args:
         a, b: of shape (..., 3).

@@ -1,4 +1,4 @@
-"""Values by their names, as people type them."""
+"""Lookup of values by their names, as people type them."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ PART, VERTICES = "#", "vertices"
 
 
 def choose(what: str, names: Iterable[Word], known: Mapping[str, T]) -> list[T]:
-    """Return the values that names stand for, however they are spelled, or all of them for "all"; a value of the
-    caller's own is returned unchanged.
+    """Return the values with these names, in any accepted spelling; for "all", every known value. The caller's own
+    values are returned unchanged.
 
     Raises:
         UsageError: an unknown name; the message suggests a similar name, and lists the known names.
@@ -36,8 +36,8 @@ def choose(what: str, names: Iterable[Word], known: Mapping[str, T]) -> list[T]:
 
 
 def choose_one(what: str, name: str, known: Collection[str]) -> str:
-    """Return the known name that a word stands for, however it is spelled. Raises UsageError for an unknown name,
-    and for several names."""
+    """Return the known name that matches a word in any accepted spelling. Raises UsageError for an unknown name, and
+    for several names."""
     key = spelled(what, name.strip(), known)
     if key is None and "," in name:
         raise UsageError(f"one {what} at a time, not {name}; known: {', '.join(known)}")
@@ -50,7 +50,7 @@ def unknown_name(what: str, names: Iterable[str], known: Collection[str], listed
     """Return the error for unknown names, with similar names as suggestions.
 
     Args:
-        listed: the list of what is known, if that is more than the names.
+        listed: text that lists what is known; empty to list the names in `known`.
     """
     listed = listed or ", ".join(known)
     guess = "".join(f" {hint}" for name in names if (hint := meant(name, known, what)))
@@ -60,10 +60,11 @@ def unknown_name(what: str, names: Iterable[str], known: Collection[str], listed
 def choose_or_read(
     what: str, names: Iterable[Word], known: Mapping[str, T], endings: Collection[str], read: Callable[[Path], T]
 ) -> list[T]:
-    """Return the values that names stand for, and the contents of files, which are recognised by their endings.
+    """Return the values with these names, and the contents of files, which are recognised by their extensions.
 
     Raises:
-        UsageError: an unknown name, or two files of one name, which rows could not tell apart; also errors of `read`.
+        UsageError: an unknown name, or two files with the same name, whose rows could not be told apart; also errors
+            of `read`.
     """
     words = list(names)
     files = [Path(word) for word in words if isinstance(word, str) and Path(word).suffix.lower() in endings]
@@ -80,7 +81,8 @@ def choose_or_read(
 
 
 def whole_file_of(word: str) -> str:
-    """Return the file of a word that names a part of it, mesh.glb of mesh.glb#vertices; other words unchanged."""
+    """Return the file in a word that names a part of it, such as mesh.glb for mesh.glb#vertices; other words
+    unchanged."""
     return word.removesuffix(f"{PART}{VERTICES}")
 
 

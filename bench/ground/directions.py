@@ -1,4 +1,4 @@
-"""Directions that encoders get wrong first: axes and their neighbours, diagonals, circles; and random ones."""
+"""Directions for tests of encoders: axes and their neighbours, diagonals, circles and random directions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ AROUND = 96
 
 
 def directions() -> np.ndarray:
-    """Return axes with both zeros and their neighbours, diagonals, and random directions: float32 of shape (count, 3).
+    """Return axes, their neighbours, diagonals and random directions: float32 of shape (count, 3). The zeros of the
+    axes have both signs.
 
     The last RANDOM directions are the random ones.
     """
@@ -25,7 +26,7 @@ def directions() -> np.ndarray:
 
 
 def circles() -> np.ndarray:
-    """Return directions around the three circles where one coordinate is exactly 0: float32 of shape (count, 3)."""
+    """Return directions on the three circles where one coordinate is exactly 0: float32 of shape (count, 3)."""
     turn = np.arange(AROUND) * (2 * np.pi / AROUND)
     return np.concatenate(
         [np.insert(np.stack([np.cos(turn), np.sin(turn)], axis=1), axis, 0.0, axis=1) for axis in range(3)]
@@ -33,6 +34,6 @@ def circles() -> np.ndarray:
 
 
 def unit(v: np.ndarray) -> np.ndarray:
-    """Return rows scaled to length 1; rows of length 0 stay."""
+    """Return rows scaled to length 1; rows of length 0 are unchanged."""
     length = np.linalg.norm(v.astype(np.float64), axis=1, keepdims=True)
     return v / np.where(length > 0, length, 1.0)

@@ -68,7 +68,9 @@ def plain(word: str) -> str:
 
 
 def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
-    """Return the known name that a word stands for; None if it stands for no name, or for several."""
+    """Return the known name that a word matches: a name that differs only in what `plain` ignores, a name with this
+    alias among the aliases for `what` (such as "storage"), or a format with the same channels; None unless exactly
+    one name matches."""
     known = list(known)
     if word in known:
         return word
@@ -80,8 +82,8 @@ def spelled(what: str, word: str, known: Iterable[str]) -> str | None:
 
 
 def channels_of(word: str) -> tuple[str, ...]:
-    """Return a format's channels with their bits, red first, and then its kind of numbers: ("r16", "g16",
-    "f") for RG16F. An empty tuple stands for any other word."""
+    """Return a format's channels with their bits, red first, and then its number type, such as ("r16", "g16", "f")
+    for RG16F; empty for a word that is not a format."""
     match = _FORMAT.fullmatch(_API.sub("", word.lower()))
     if not match:
         return ()

@@ -70,8 +70,8 @@ def _match(word: str) -> re.Match[str] | None:
 
 
 def _match_of_text(word: str) -> re.Match[str] | None:
-    """Return the match of a word that names an existing text file, whatever its ending; None for the endings of
-    other kinds of files, and for files that are not text."""
+    """Return the match of a word that names an existing text file with any extension; None for extensions of other
+    file types, and for files that are not text."""
     match = _OTHER.fullmatch(word)
     ending = Path(match["file"]).suffix.lower() if match else ""
     if not match or ending in _NO_SHADERS or ending in OTHER_LANGUAGES or not is_file(Path(), match["file"]):
@@ -88,10 +88,10 @@ class Settings(NamedTuple):
 
     Attributes:
         defines: macros, NAME or NAME=VALUE.
-        preludes: files that are put in front.
-        roots: folders in which includes are searched, each with the prefix of their names; empty for any.
-        language: one of LANGUAGES; empty for the language of the file's ending.
-        format: the storage format of a light encoding; empty for its usual one.
+        preludes: files to insert before the user's file.
+        roots: folders to search for includes, each with a prefix of include names; an empty prefix fits any name.
+        language: one of LANGUAGES; empty for the language of the file's extension.
+        format: the storage format of a light encoding; empty for its usual format.
     """
 
     defines: tuple[str, ...] = ()
@@ -106,17 +106,17 @@ _MACRO = re.compile(r"[A-Za-z_]\w*(?:=.*)?")
 
 
 def _root(text: str) -> tuple[str, str]:
-    """Return the prefix of names (empty if none is given) and the folder, from FOLDER or VIRTUAL=FOLDER."""
+    """Split FOLDER or VIRTUAL=FOLDER. Return the prefix of include names, empty if not given, and the folder."""
     virtual, mark, folder = text.partition("=")
     return (virtual.strip("/"), folder) if mark else ("", text)
 
 
 @dataclass(frozen=True)
 class UserFile:
-    """A user's file of shaders: which of its functions are meant, and how it is read.
+    """A user's shader file, with the functions to use and the settings for reading it.
 
     Attributes:
-        word: as the user names it.
+        word: the file, functions and settings as the user typed them.
     """
 
     word: str
@@ -126,12 +126,13 @@ class UserFile:
 
     @cached_property
     def path(self) -> Path:
-        """The path of the file; if the word names two files, of the encoder's."""
+        """The path of the file; if the word names two files, the path of the encoder's file."""
         return file_of(self.word)
 
     @cached_property
     def paths(self) -> list[Path]:
-        """The path of the file; if the word names two files, the paths of the encoder's and the decoder's."""
+        """The file's path in a list; if the word names two files, the path of the encoder's file and of the decoder's
+        file."""
         match = _match(self.word)
         return [self.path, *([Path(match["other"])] if match and match.re is _TWO else [])]
 
@@ -177,7 +178,7 @@ class UserFile:
         return self.path.suffix.lower() != GLSL or bool(match and (match["encode"] or match["settings"]))
 
     def with_pair(self, pair: str) -> UserFile:
-        """Return the file with two functions, ENCODE:DECODE, in place of any that the word names."""
+        """Return the file with two functions, ENCODE:DECODE, in place of any functions that the word names."""
         match = _match(self.word)
         if not match:
             return UserFile(f"{self.word}:{pair}")
@@ -192,7 +193,7 @@ def with_settings(words: Iterable[Word], **settings: Iterable[Word]) -> Names:
     """Return all words as a tuple, with settings appended to each word that is a user's file.
 
     Args:
-        settings: the values of each of SETTINGS, by its name.
+        settings: the values of each setting, by its name in SETTINGS.
 
     Raises:
         UsageError: a value contains a colon, which would end the setting.
@@ -200,7 +201,7 @@ def with_settings(words: Iterable[Word], **settings: Iterable[Word]) -> Names:
     more = [f":{kind}={value}" for kind, values in settings.items() for value in values]
     if wrong := next((setting for setting in more if ":" in setting[1:]), ""):
         raise UsageError(
-            f"--{wrong[1:].replace('=', ' ', 1)}: a colon ends a setting; write it in a file for --prelude"
+            f"--{wrong[1:].replace('=', ' ', 1)}: the value must not contain a colon; put it in a file for --prelude"
         )
     return tuple(_with_settings(word, more) if isinstance(word, str) else word for word in words)
 
@@ -217,22 +218,22 @@ def _with_settings(word: str, more: Sequence[str]) -> str:
 
 
 def is_a_users_file(word: Word) -> bool:
-    """Whether a word names a user's file of an encoder, by itself or in a chain."""
+    """Whether a word names a user's encoder file, by itself or in a chain."""
     return isinstance(word, str) and _with_settings(word, [":"]) != word
 
 
 def file_names(text: str, folder: Path = Path()) -> tuple[str, ...]:
-    """Split comma-separated names into a tuple, each once. A comma in a file's name is a part of it, and a comma
-    between an encoder and its decoder in two files joins them.
+    """Split comma-separated names into a tuple without duplicates. A comma in a file name is kept, and so is a comma
+    between the files of an encoder and its decoder.
 
     Args:
-        folder: where files are looked for.
+        folder: the folder to look for files in.
     """
     return names(text, lambda word: bool(_TWO.fullmatch(word)) or is_file(folder, str(file_of(word))))
 
 
 def parts_of(word: str) -> list[str]:
-    """Return the names in a word that are files, each with its settings: the parts of a chain, or files in settings."""
+    """Return the files that a word names, each with its settings: the parts of a chain, or files in settings."""
     if names_an_encoder(word) and (CHAIN not in word or is_file(Path(), str(file_of(word)))):
         return [word]
     before, is_chain, then = word.rpartition(CHAIN)
@@ -241,7 +242,7 @@ def parts_of(word: str) -> list[str]:
 
 
 def names_an_encoder(word: str) -> bool:
-    """Whether a word names the file of a user's encoder: by its ending, or because it is an existing text file."""
+    """Whether a word names the file of a user's encoder: by its extension, or because it is an existing text file."""
     is_by_ending = Path(file_of(word)).suffix.lower() in ENDINGS and not _is_only_an_ending(word)
     return is_by_ending or _match_of_text(word) is not None
 
@@ -251,19 +252,19 @@ def _is_only_an_ending(word: str) -> bool:
 
 
 def file_of(word: str) -> Path:
-    """Return the path of the file in a word: mine.hlsl of mine.hlsl:EncodeNormal:DecodeNormal, mesh.glb of
+    """Return the path of the file in a word: mine.hlsl for mine.hlsl:EncodeNormal:DecodeNormal, mesh.glb for
     mesh.glb#vertices."""
     match = _match(word)
     return Path(match["file"] if match else whole_file_of(word))
 
 
 def files_in(word: str, folder: Path = Path()) -> list[str]:
-    """Return the files that a word names, as they are written there: `mine.hlsl` of
-    mine.hlsl:EncodeNormal:DecodeNormal, both files of mine.glsl/rg8+best_fit:table=scales.npy, and also the folders
-    of mine.hlsl:include=../library.
+    """Return the files that a word names, as spelled in the word: `mine.hlsl` for
+    mine.hlsl:EncodeNormal:DecodeNormal, both files for mine.glsl/rg8+best_fit:table=scales.npy, and also the folders
+    for mine.hlsl:include=../library.
 
     Args:
-        folder: where the files are looked for.
+        folder: the folder to look for files in.
     """
     match = _match(word)
     whole = match["file"] if match else whole_file_of(word)
@@ -288,7 +289,7 @@ def is_file(folder: Path, text: str) -> bool:
 
 
 def with_files(word: str, others: Mapping[str, str]) -> str:
-    """Return a word with other files in place of those that `files_in` found in it; `others` maps old to new."""
+    """Return a word in which the files that `files_in` found are replaced; `others` maps old names to new names."""
     if not others:
         return word
     known = "|".join(map(re.escape, sorted(others, key=len, reverse=True)))
@@ -296,14 +297,14 @@ def with_files(word: str, others: Mapping[str, str]) -> str:
 
 
 def lacks_a_function(word: str) -> bool:
-    """Whether a word names a file and only one of the two functions in it, such as mine.hlsl:EncodeNormal."""
+    """Whether a word names a file but only one of its two functions, such as mine.hlsl:EncodeNormal."""
     head, mark, _ = word.partition(":")
     return bool(mark) and Path(head).suffix.lower() in ENDINGS and not names_an_encoder(word)
 
 
 def check_word(word: str, known: Collection[str], has_format: bool = False) -> None:
-    """Raise UsageError if a word names a shader in another language, lacks its ending, names only one of its two
-    functions, or has a format where none is allowed."""
+    """Raise UsageError if a word names a shader in an unsupported language, lacks the file extension, names only one
+    of two functions, or sets a format although that is not allowed."""
     file = next((word + ending for ending in ENDINGS if names_a_file(word + ending)), None)
     if file and spelled("encoding", word, known) is None:
         raise UsageError(f"unknown encoding {word!r}; did you mean the file {file}?")

@@ -28,7 +28,7 @@ Value = str | int | float | bool | None
 
 
 def answered(key: str, command: Callable[[], int]) -> int:
-    """Give the answer that is kept by a key, or run a command and keep its answer; with an empty key nothing is kept.
+    """Print the cached answer for a key, or run a command and cache its answer; with an empty key, cache nothing.
 
     Returns:
         the command's exit status.
@@ -51,7 +51,7 @@ def answered(key: str, command: Callable[[], int]) -> int:
 
 def key_of_answer(table: Table, options: Any, *printed: str) -> str:
     """Return the key of an answer: the question, the form of the output, the program, and the machine with its
-    packages and compilers. Empty if the question names files, which may change."""
+    packages and compilers; empty if the question names files, because files may change."""
     asked = [(field.name, getattr(options, field.name)) for field in fields(options)]
     values = [value for _, given in asked for value in _flat(given)]
     if not all(isinstance(value, Value) for value in values) or any(map(_may_be_a_file, values)):
@@ -74,13 +74,13 @@ def _may_be_a_file(value: Value) -> bool:
 
 
 def _packages() -> list[str]:
-    """Return the installed packages by the names of their folders, such as numpy-2.1.0.dist-info, in order."""
+    """Return the installed packages by the names of their folders, such as numpy-2.1.0.dist-info, sorted."""
     folders = {Path(sysconfig.get_path(name)) for name in ("purelib", "platlib")}
     return sorted(path.name for folder in folders for path in folder.glob("*.dist-info"))
 
 
 def _libraries() -> dict[str, list[int] | None]:
-    """Return, by path, the state of each library that this process has loaded, drivers among them, and of the
-    folders that they are in, which a newer one would be put into. Libraries in the cache are left out."""
+    """Return, by path, the states of the libraries that this process has loaded, including drivers, and of their
+    folders, into which newer libraries would be put. Libraries in the cache are left out."""
     paths = {Path(path) for path in loaded() if ".so" in path and not Path(path).is_relative_to(cache.folder())}
     return {str(path): state_of(path) for path in sorted(paths | {path.parent for path in paths})}

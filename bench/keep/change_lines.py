@@ -36,16 +36,16 @@ UNITS = ("degrees", "dB")
 
 
 def what_matters(before: Done, after: Done, changes: Sequence[Row]) -> list[str]:
-    """Return a sentence for each encoding that changed, the worst first: in how many of its rows, and the figures in
-    degrees and decibels of the row that changed most."""
+    """Return a sentence for each encoding that changed, the worst first: the number of its rows that changed, and the
+    figures in degrees and decibels of the row that changed most."""
     if changes and not _share_a_row(before, after):
         return ["the runs have no row in common"]
     return sentences(before, after, changes)
 
 
 def sentences(before: Done, after: Done, changes: Sequence[Row]) -> list[str]:
-    """Return the sentences of `what_matters`, also for runs without a common row: at most SENTENCES, and then how
-    many more there are."""
+    """Return the sentences of `what_matters`, even for runs without a common row: at most SENTENCES sentences,
+    followed by the number of the others."""
     counts = _rows_of_each(before, after)
     groups: dict[str, list[Row]] = {}
     for change in changes:
@@ -82,12 +82,13 @@ def _reasons(table: Table, rows: Sequence[Row]) -> list[tuple]:
 
 
 def _subject(table: str, keys: Mapping[str, object]) -> str:
-    """Return the subject of a row as text: the name of its encoding of any kind, else of its table."""
+    """Return the subject of a row as text: the name of its encoding, of whatever kind, or else of its table."""
     return str(next((keys[name] for name in SUBJECTS if keys.get(name)), table))
 
 
 def _sentence(name: str, count: int, changes: Sequence[Row]) -> str:
-    """Return a sentence: in how many of `count` rows an encoding changed, and the figures of its worst row."""
+    """Return a sentence on an encoding: the number of its `count` rows that changed, and the figures of its worst
+    row."""
     rows = rows_of(changes)
     verdicts = Counter(map(_verdict_word, rows))
     first, *others = (verdict for verdict in VERDICTS if verdicts[verdict])
@@ -104,8 +105,8 @@ def _share_text(some: int, count: int) -> str:
 
 
 def _figures_said(row: Sequence[Row], name: str) -> str:
-    """Return text that begins "; most in", with a row's name and its figures in degrees and decibels before and
-    after; empty if none of these figures changed."""
+    """Return text that begins "; largest change in", with the table, the row's name without `name`, and its figures
+    before and after, from the changes of one row."""
     where = " ".join(row[0]["row"].replace(name, " ", 1).split())
     known = (f"{change['column']} {_before_and_after(change)}" for change in known_figures(row, UNITS))
     figure_text = ", ".join(known)
@@ -118,8 +119,8 @@ def _before_and_after(change: Row) -> str:
 
 
 def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
-    """Return changes for people, the worst first: a line for each row, or for rows that changed together. If there
-    would be more than `most` lines, rows that share an encoding share a line, or else all rows of a table."""
+    """Return changes for people, the worst first: a line for each row, or for rows that changed together. If this
+    gives more than `most` lines, rows with the same encoding, or else all rows of a table, share a line."""
     grouped: list[list[Row]] = []
     for by in (_together_key(changes), _subject_key, _table_key):
         groups: dict[tuple, list[Row]] = {}
@@ -132,7 +133,7 @@ def in_short(changes: Sequence[Row], most: int = LINES) -> list[Row]:
 
 
 def _together_key(changes: Sequence[Row]) -> Callable[[Row], tuple]:
-    """Return a function that gives rows of a table the same key if their figures all changed from and to the same
+    """Return a function that gives rows of a table the same key if all their figures changed from and to the same
     values."""
     rows: dict[tuple, list[tuple]] = {}
     for change in changes:
@@ -149,7 +150,7 @@ def _table_key(change: Row) -> tuple:
 
 
 def _worst_row(group: Sequence[Row]) -> Row:
-    """Return the worst row of several changes, named by what they have in common, with its headline figure."""
+    """Return the worst row of several changes, named by the key values that they share, with its headline figure."""
     rows = rows_of(group)
     worst = headline(rows[0])
     shared = [v for n, v in worst["keys"].items() if v is not None and all(c["keys"].get(n) == v for c in group)]
@@ -171,7 +172,7 @@ def total(changes: Sequence[Row]) -> str:
 
 
 def _verdict_word(row: Sequence[Row]) -> str:
-    """Return the first of VERDICTS that applies to the changes of a row; if none does, the last."""
+    """Return the first of VERDICTS that applies to the changes of a row; the last of VERDICTS if none applies."""
     verdicts = {SLIGHTLY[change["verdict"]] if is_small(change) else change["verdict"] for change in row}
     verdicts |= {NEW for change in row if presence(change) == ONLY[False]}
     return next((verdict for verdict in VERDICTS if verdict in verdicts), VERDICTS[-1])
@@ -182,5 +183,5 @@ def _count_text(count: int, what: str) -> str:
 
 
 def _figure_count(changes: Sequence[Row]) -> int:
-    """Count the figures that changed, without the rows that only one of the runs has, which name no column."""
+    """Count the figures that changed, without changes of whole rows that only one run has, which name no column."""
     return sum(bool(change["column"]) for change in changes)

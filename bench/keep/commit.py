@@ -1,4 +1,4 @@
-"""The commit of a run: that of the working folder, or the user's name for the change."""
+"""The commit of a run: the commit of the working folder, or the user's name for the change."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ def commit_of(named: str | None, folder: Path) -> Row:
     """Return the facts that a run records about its commit: only `name` if the change is named; empty if it has no
     name and the folder is not in a repository.
 
-    Else `name`, `time` in seconds, `subject`, whether files of the repository were `changed` since, and `rank`,
-    which orders commits of the same second, such as those of a rebase.
+    Otherwise the facts are `name`, `time` in seconds, `subject`, whether files of the repository were `changed`
+    since, and `rank`, which orders commits of the same second, such as the commits of a rebase.
     """
     if named:
         return {"name": named}
@@ -38,7 +38,7 @@ def commit_of(named: str | None, folder: Path) -> Row:
 
 
 def _has_filters(folder: Path) -> bool:
-    """Whether the repository itself, and not the user's own settings, names programs that convert files."""
+    """Whether the repository's own settings, rather than the user's, name programs that convert files."""
     lines = _git(folder, "config", "--show-scope", "--get-regexp", r"^filter\.").splitlines()
     return any(line.startswith(("local", "worktree")) for line in lines)
 

@@ -24,7 +24,7 @@ FAILS = {"never": (), "worse": ("worse", GONE), "change": ("worse", "better", GO
 
 
 def compare_command(before: Path, after: Path, fail_on: str, format: str, output: Path | None) -> int:
-    """Write what changed from one results folder to another; if nothing did, report that on standard error.
+    """Write the changes from one results folder to another; if nothing changed, report that on standard error.
 
     Returns:
         the exit status: 1 if something changed that `fail_on` names.

@@ -46,7 +46,8 @@ def compared(before: Done, after: Done) -> list[Row]:
 
 
 def _tables_and_rows(before: Done, after: Done) -> Iterator[tuple[Table, Mapping[Any, Row], Mapping[Any, Row]]]:
-    """Yield each table that either run has, with its rows in the first and in the second run, as by `named_rows`."""
+    """Yield each table that either run has, with its rows in the first and in the second run, as `named_rows` returns
+    them."""
     ours, theirs = before.tables, after.tables
     for name in dict.fromkeys([*ours, *theirs]):
         before_rows, after_rows = (named_rows(TABLES[name], rows.get(name, [])) for rows in (ours, theirs))
@@ -67,7 +68,7 @@ def measured_otherwise(before: Done, after: Done) -> list[str]:
 
 
 def in_order(changes: Sequence[Row]) -> list[Row]:
-    """Return changes in order, those of one row together: rows by their headline, and the worst of a row first.
+    """Return changes in order, grouped by row: rows are sorted by headline, and the changes of a row from the worst.
 
     A row that lost a figure comes first, then increased errors, the largest increase first, other figures that are
     worse, rows that are gone, better figures, new rows, and last small changes.
@@ -90,19 +91,19 @@ def by_row(change: Row) -> tuple:
 
 
 def presence(change: Row) -> str:
-    """Return text that tells which run alone has the row of a change; empty if both runs have it."""
+    """Return text that names the only run with the row of a change; empty if both runs have the row."""
     return change["change"] if change["change"] in ONLY.values() else ""
 
 
 def headline(row: Sequence[Row]) -> Row:
-    """Return the first of a row's changes in decibels, else in degrees, of the same kind as its worst change; else
-    the worst change."""
+    """Return a row's first change in decibels, else in degrees, from the same group as its worst change; else the
+    worst change."""
     worst = min(row, key=rank_key)
     return next(known_figures(row, ERRORS), worst)
 
 
 def known_figures(row: Sequence[Row], units: Sequence[str]) -> Iterator[Row]:
-    """Yield the first change in each of some units, of a row's changes of the same kind as its worst."""
+    """Yield, for each of some units, a row's first change in that unit from the same group as its worst change."""
     group = min(map(_group_index, row))
     alike = _by_column([change for change in row if _group_index(change) == group])
     for unit in units:
@@ -143,7 +144,7 @@ def named_rows(table: Table, rows: Sequence[Row]) -> dict[tuple[str, int], Row]:
 
 
 def in_turn(rows: Sequence[Row], name_of: Callable[[Row], T]) -> dict[tuple[T, int], Row]:
-    """Return rows by what `name_of` gives and an index, which counts rows of the same name from 0."""
+    """Return rows by the name that `name_of` returns and an index, which counts rows of the same name from 0."""
     by_name: dict[tuple[T, int], Row] = {}
     counts: dict[T, int] = {}
     for row in rows:
@@ -193,7 +194,7 @@ def _column_changes(table: Table, called: str, earlier: Row, other: Row, same_ma
 
 
 def is_slower_or_faster(before: float, after: float) -> bool:
-    """Whether two medians differ by at least LEAST_EFFECT of the first; False if the first is 0."""
+    """Whether two medians differ by at least the fraction LEAST_EFFECT of the first; False if the first is 0."""
     return bool(before) and abs(after / before - 1) >= LEAST_EFFECT
 
 
@@ -214,9 +215,9 @@ def gives_reason(table: Table, row: Row) -> bool:
 def severity_of(column: Column, before: Any, after: Any, has_reason: bool) -> float:
     """Return how much worse a figure has become, in decibels; below 0 if it is better, 0 for neither.
 
-    A figure that can no longer be measured is infinitely worse; a figure that now can be is infinitely better. A
-    figure that is missing without a reason was not requested, such as the supremum of an encoding that is no longer
-    the best.
+    A figure that can no longer be measured is infinitely worse; a figure that can now be measured is infinitely
+    better. A figure that is missing without a reason was not requested, such as the supremum of an encoding that is
+    no longer the best.
     """
     if not column.better:
         return 0.0
@@ -250,7 +251,7 @@ def difference(before: Any, after: Any) -> str:
 
 
 def mann_whitney(sample: Sequence[float], other: Sequence[float]) -> float:
-    """Return the probability that two samples are by chance as far apart in rank as these, in either direction."""
+    """Return the two-sided p-value of the Mann–Whitney rank test for two samples."""
     from scipy.stats import mannwhitneyu
 
     # The exact distribution knows no ties.

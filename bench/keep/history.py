@@ -1,6 +1,6 @@
-"""Figures over runs of many commits: at which commit one got worse, and whether it was mended since.
+"""Figures over runs of many commits: the commit at which a figure became worse, and whether it has recovered since.
 
-Two runs are judged as `compare` does. A time is judged by all runs of one machine before and behind a step.
+Two runs are judged as in `compare`. A time is judged by all runs on one machine before and after a step.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ class Series:
     Attributes:
         table: the table of the row.
         called: the row's name.
-        rows: each version of the row, with the first run that has it.
-        runs: the runs that have the row.
-        gaps: a run that lacks the row although it was asked for the same, and the run that has it again, or None.
+        rows: each version of the row, with the index of the first run that has it.
+        runs: the indices of the runs that have the row.
+        gaps: a run that lacks the row although its request was the same, and the run that has the row again, or None.
         times: by machine and column, the runs and their times.
     """
 
@@ -58,7 +58,7 @@ class Series:
 
     @property
     def judged(self) -> list[str]:
-        """The names of the columns of figures, times and speeds that have a better direction."""
+        """The names of the columns of figures, times and speeds for which either less or more is better."""
         names = dict.fromkeys(name for _, row in self.rows for name in row)
         columns = ((name, self.table.column(name)) for name in names)
         return [
@@ -66,11 +66,12 @@ class Series:
         ]
 
     def values(self, column: str) -> list[tuple[int, Any]]:
-        """Return (run index, value) pairs of a column: for each version of the row, the first run that has it."""
+        """Return (run index, value) pairs of a column, one for each version of the row, with the first run that has
+        it."""
         return [(run, row.get(column)) for run, row in self.rows]
 
     def over_all(self, column: str) -> list[tuple[int, Any]]:
-        """Return (run index, value) pairs of a column: for every run that has the row."""
+        """Return (run index, value) pairs of a column, one for every run that has the row."""
         pairs, rest = [], list(self.rows)
         for run in self.runs:
             while len(rest) > 1 and rest[1][0] <= run:
@@ -86,7 +87,7 @@ class Change:
     Attributes:
         line: the change as `compare` reports it.
         at: the first run with the change.
-        mended: the run since which the figure is no longer worse; None if it is still worse.
+        mended: the first run in which the figure is no longer worse; None if it is still worse, or became better.
         series: the row that has the figure.
     """
 
@@ -121,7 +122,8 @@ def _asked_text(past: Past) -> str:
 
 
 class Rows:
-    """The rows of runs by their tables and keys; a table that has the same lines as in the run before is read once."""
+    """The rows of runs by their tables and keys. A table with the same lines as in the previous run is not read
+    again."""
 
     def __init__(self):
         self._names: dict[int, Called] = {}
@@ -148,8 +150,8 @@ class Rows:
 
 
 def _close_gap(series: Series, run_index: int, asked: Sequence[str], regained: int | None) -> None:
-    """Add a gap to a series if a run before `run_index` lacks its row, although its options were those of the last
-    run that has it. `regained` is the run that has the row again, or None."""
+    """Add a gap to a series if a run before `run_index` lacks the row although its request was the same as that of
+    the last run with the row. `regained` is the run that has the row again, or None."""
     last = series.runs[-1]
     lacking = (run for run in range(last + 1, run_index) if asked[run] and asked[run] == asked[last])
     if (lost := next(lacking, None)) is not None:
@@ -157,7 +159,7 @@ def _close_gap(series: Series, run_index: int, asked: Sequence[str], regained: i
 
 
 def _add(series: Series, run_index: int, row: Row, machine: str) -> None:
-    """Add the row of another run to a series; a row that is the same object as before adds no new version."""
+    """Add the row of another run to a series; the same object as the previous row adds no new version."""
     series.runs.append(run_index)
     if not series.rows or series.rows[-1][1] is not row:
         series.rows.append((run_index, row))
@@ -167,7 +169,7 @@ def _add(series: Series, run_index: int, row: Row, machine: str) -> None:
 
 
 def _clocks(table: Table, row: Row) -> Iterator[str]:
-    """Yield the names of a row's columns with a time or a speed above 0 that has a better direction."""
+    """Yield the names of a row's columns with a time or a speed above 0 for which either less or more is better."""
     for name, value in row.items():
         column = table.column(name) if is_value(value) and value > 0 else None
         if column and column.role is Role.TIME and column.better:
@@ -175,7 +177,7 @@ def _clocks(table: Table, row: Row) -> Iterator[str]:
 
 
 def changes_of(series: Sequence[Series]) -> list[Change]:
-    """Return the figures that became worse, or better than ever before, in any of some rows."""
+    """Return the figures that became worse, or better than ever before, in the histories of some rows."""
     tests = sum(len(times) - 1 for row_series in series for times in row_series.times.values())
     return [
         change
@@ -197,7 +199,8 @@ def _figures(series: Series) -> Iterator[Change]:
 
 
 def _is_told(series: Series, line: Row, run_index: int, column: Column) -> bool:
-    """Whether a figure became worse, or better than ever before; a return to an earlier figure is not reported."""
+    """Whether to report a change: the figure became worse, or better than ever before. A return to an earlier figure
+    is not reported."""
     if line["verdict"] == "worse":
         return True
     earlier = [value for run, value in series.values(line["column"]) if run < run_index]
@@ -205,8 +208,8 @@ def _is_told(series: Series, line: Row, run_index: int, column: Column) -> bool:
 
 
 def _mended_at(series: Series, line: Row, run_index: int, column: Column) -> int | None:
-    """Return the first run after `run_index` in which a figure is no longer worse, or little worse after much;
-    None if there is no such run, or the figure became better."""
+    """Return the first run after `run_index` in which a figure is no longer worse, or only slightly worse after being
+    much worse; None if no run qualifies, or the figure became better."""
     for run, value in series.values(line["column"]):
         severity = severity_of(column, line["before"], value, has_reason=True)
         is_as_good = severity <= 0 or (not is_small(line) and is_small(line | {"severity": severity}))
@@ -243,7 +246,7 @@ def _is_worse(line: Row, later: float) -> bool:
 
 
 def _is_better(line: Row, earlier: float) -> bool:
-    """Whether a time after a step is better than an earlier one."""
+    """Whether a time after a step is better than an earlier time."""
     after = line["after"]
     return is_slower_or_faster(earlier, after) and (after > earlier) == (after > line["before"])
 

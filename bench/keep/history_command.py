@@ -30,7 +30,7 @@ SPARED = ("figures", "rows", "date", "change")
 
 @dataclass(frozen=True)
 class Wanted:
-    """The selected part of the runs: names, or None for all."""
+    """The part of the runs to show: names of tables, encodings, storages and columns, or None for all."""
 
     tables: Names | None = None
     encoding: Names | None = None
@@ -40,7 +40,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Group:
-    """The changes that were made at one commit and mended at another one, or not yet."""
+    """The changes made at one commit that the same later commit mended, or that have not been mended."""
 
     kind: str
     at: int
@@ -49,12 +49,12 @@ class Group:
 
     @property
     def lines(self) -> list[Row]:
-        """The changes as `compare` reports them, the worst first."""
+        """The changes as `compare` reports them, worst first."""
         return in_order([change.line for change in self.changes])
 
 
 def history_command(folders: Sequence[Path], wanted: Wanted, by: str, format: str, output: Path | None) -> int:
-    """Write at which commits figures changed, or the figures by commit; the exit status is 0."""
+    """Write the changes of figures with their commits, or the figures by commit, and return exit status 0."""
     runs = past_runs(folders)
     # All rows are judged, whichever are shown: how large a time's step must be depends on how many there are.
     everything = series_of(runs)
@@ -109,8 +109,8 @@ def _columns(series: Sequence[Series], wanted: Wanted) -> set[str]:
 
 
 def _groups(changes: Sequence[Change]) -> list[Group]:
-    """Return groups of changes that share a commit and the commit that mended them: first figures that are still
-    worse, then mended figures, then better figures, the worst of each first."""
+    """Return the changes grouped by commit and by the commit that mended them. Figures that are still worse come
+    first, then mended figures, then better figures; within each kind, the worst group comes first."""
     by_commit: dict[tuple[str, int, int | None], list[Change]] = {}
     for change in changes:
         is_worse = change.line["verdict"] in ("worse", GONE)
@@ -127,8 +127,9 @@ def _ranked(changes: Sequence[Change]) -> list[Change]:
 
 
 def _figures(groups: Sequence[Group], series: Sequence[Series], columns: set[str]) -> list[tuple[Series, str]]:
-    """Return the figures to show over the runs, each as a series and a column: the columns that are named or, if
-    none is named, the most telling figure of each row that changed."""
+    """Return the figures to show for all runs, each as a series and a column: the figures in the named columns or,
+    if no column is named, the most telling figure of each row that changed. Of rows with identical changes, only the
+    first counts."""
     if columns:
         return [(shown_series, name) for shown_series in series for name in shown_series.judged if name in columns]
     figures: dict[tuple[Any, ...], tuple[Series, str]] = {}
@@ -158,8 +159,8 @@ def _tell_what_else(runs: Sequence[Past], groups: Sequence[Group]) -> None:
 
 
 def _lead(runs: Sequence[Past], series: Sequence[Series], groups: Sequence[Group]) -> str:
-    """Return the text above the table: the runs, the number of rows not compared, and a sentence for each commit
-    that made something worse."""
+    """Return the text above the table: the runs, the number of rows not compared, and a sentence for each commit that
+    made a figure worse."""
     first, last = runs[0], runs[-1]
     lines = [f"{len(runs)} run{'s' * (len(runs) > 1)}, from {_called(first)} to {_called(last)}"]
     others = len(series) - len({(each.table.name, each.called) for each in series})
@@ -184,7 +185,8 @@ def _sentence(runs: Sequence[Past], group: Group) -> str:
 
 
 def _lines(runs: Sequence[Past], groups: Sequence[Group]) -> list[Row]:
-    """Return the rows of the table for people: changes by group, with the commit, its date and the mending commit."""
+    """Return the rows of the table for people: changes by group, each with its commit, the date of the commit and the
+    commit that mended it."""
     most = max(1, LINES // max(1, len(groups)))
     return [
         {"commit": runs[group.at].name, "date": runs[group.at].day}
@@ -201,7 +203,7 @@ def _total(runs: Sequence[Past], series: Sequence[Series], groups: Sequence[Grou
 
 
 def _line(runs: Sequence[Past], change: Change) -> Row:
-    """Return a change as a row for programs, with facts of its commit."""
+    """Return a change as a row for programs, with facts about its commit."""
     about = _about(runs[change.at])
     kept = {name: change.line[name] for name in ("table", "row", "column", "before", "after", "change", "verdict")}
     return about | kept | {"mended": runs[change.mended].full_name if change.mended is not None else None}
@@ -213,7 +215,8 @@ def _about(past: Past) -> Row:
 
 
 def _across(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list[Row]:
-    """Return a line for each run, with a column for each figure, without lines that repeat the line above."""
+    """Return a row for each run, with a column for each of the first MOST figures. Between the first and the last
+    run, rows that repeat the row above are left out."""
     values = {f"{name} {row_series.called}": dict(row_series.over_all(name)) for row_series, name in figures[:MOST]}
     rows = [{called: by_run.get(i) for called, by_run in values.items()} for i in range(len(runs))]
     kept = [i for i, row in enumerate(rows) if i in (0, len(runs) - 1) or row != rows[i - 1]]
@@ -221,7 +224,7 @@ def _across(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list
 
 
 def _long(runs: Sequence[Past], figures: Sequence[tuple[Series, str]]) -> list[Row]:
-    """Return a row for each figure in each run that has it, with facts of the run's commit."""
+    """Return a row for each figure in each run that has it, with facts about the run's commit."""
     return [
         _about(runs[index]) | {"table": row_series.table.name, "row": row_series.called, "column": name, "value": value}
         for row_series, name in figures

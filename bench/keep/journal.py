@@ -1,4 +1,4 @@
-"""Lines of JSON that are stored on disk as they come, so that a stopped command can continue."""
+"""JSON Lines files that are written to disk line by line, so that a stopped command can continue."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ MOST = 1 << 30
 
 
 class Journal:
-    """A file of lines, open to this process alone; make it with `journal`.
+    """A JSON Lines file that is locked for this process; created by `journal`.
 
     Attributes:
         path: the file.
-        lines: everything that is kept.
+        lines: all complete lines of the file, parsed.
     """
 
     def __init__(self, path: Path, file: FileIO):
@@ -38,10 +38,10 @@ class Journal:
         self.lines = _whole_lines(path, content)
 
     def add(self, line: Line) -> None:
-        """Write a line to disk at once, so that it is either whole or cut off at its end.
+        """Write a line to disk immediately, so that a crash can only cut off its end.
 
         Raises:
-            UsageError: the line cannot be written; what was kept before stays.
+            UsageError: the line cannot be written; earlier lines are kept.
         """
         start, rest = self._file.seek(0, os.SEEK_END), json.dumps(line).encode() + b"\n"
         try:
@@ -57,7 +57,7 @@ class Journal:
         self.lines.append(line)
 
     def replace(self, lines: Sequence[Line]) -> None:
-        """Replace all lines by others, at once or not at all. Raises UsageError."""
+        """Replace all lines with the given lines, or none if writing fails. Raises UsageError."""
         data = data_of(lines)
         partial, file = partial_of(self.path), None
         try:
@@ -82,7 +82,7 @@ class Journal:
         remove(self.path, self._file)
 
     def close(self) -> None:
-        """Close the file, so that others may write it."""
+        """Close the file, so that other processes may write to it."""
         self._file.close()
 
 
@@ -93,10 +93,10 @@ def data_of(lines: Sequence[Line]) -> bytes:
 
 @contextmanager
 def journal(path: Path) -> Iterator[Journal]:
-    """Yield the journal in a file, which is made if it is missing.
+    """Yield the journal in a file, which is created if it is missing.
 
     Raises:
-        UsageError: another process is writing the file, or the file cannot be written.
+        UsageError: another process is writing to the file, or the file cannot be written.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -119,7 +119,8 @@ def read_lines(path: Path, known: dict[bytes, Line] | None = None) -> list[Line]
     """Return the complete lines of a journal, without writing to it; a missing file has no lines. Raises UsageError.
 
     Args:
-        known: lines that were parsed before, which are returned as the same objects; new lines are added.
+        known: lines that were parsed before, by their bytes. They are returned as the same objects; new lines are
+            added to the dictionary.
     """
     try:
         content = file_bytes(path, MOST) if path.exists() else b""
@@ -129,7 +130,8 @@ def read_lines(path: Path, known: dict[bytes, Line] | None = None) -> list[Line]
 
 
 def _whole_lines(path: Path, content: bytes, known: dict[bytes, Line] | None = None) -> list[Line]:
-    """Return the complete lines, without a line that was being written when the process was killed."""
+    """Return the complete lines of a journal's content, parsed. The last line is left out if it was cut off because a
+    process was killed."""
     whole = content[: content.rfind(b"\n") + 1].split(b"\n")[:-1]
     # An editor may leave an empty line.
     numbered = [(f"{path}, line {number}", line) for number, line in enumerate(whole, 1) if line.strip()]

@@ -64,12 +64,13 @@ def _gl_facts() -> dict[str, str]:
 
 
 def compilers() -> dict[str, str]:
-    """Return the versions of the compilers of GPU drivers and of shaders, by kind; if missing, what to install."""
+    """Return the versions of the GPU drivers' compilers and of the shader compilers, by kind; for a missing compiler,
+    what to install."""
     return isa.driver_versions() | _compiler_facts()
 
 
 def _compiler_facts() -> dict[str, str]:
-    """Return the versions of the compilers of shaders, by kind; if a compiler is missing, what to install."""
+    """Return the versions of the shader compilers, by kind; for a missing compiler, what to install."""
     glslang, optimiser = spirv.version(spirv.COMPILER), spirv.version(spirv.OPTIMISER)
     return {
         "GLSL compiler": spirv.title(glslang) if glslang else spirv.NO_COMPILER,
@@ -92,12 +93,12 @@ def require_radeons() -> None:
 
 
 def require_intel() -> None:
-    """Raise MissingError if one of Intel's drivers cannot compile, or the device that they are given is missing."""
+    """Raise MissingError if one of Intel's drivers cannot compile, or the null device for it is missing."""
     _require(ANV, HASVK)
 
 
 def require_nvidia() -> None:
-    """Raise MissingError if NVIDIA's compiler of CUDA or its disassembler is missing."""
+    """Raise MissingError if NVIDIA's CUDA compiler or its disassembler is missing."""
     _require(NVRTC)
 
 
@@ -109,8 +110,9 @@ def _require(*libraries: str) -> None:
 
 
 def examine() -> list[dict[str, str]]:
-    """Return rows of name and value, which end with the measurements that this machine can make. "GL rounds ..." is
-    the device's own conversion; if a codec asks for another conversion, the shader rounds before the write."""
+    """Return rows of name and value about this machine, ending with the measurements that it can make. "GL rounds
+    ..." is the OpenGL device's own conversion; if a codec needs a different conversion, the shader rounds before the
+    write."""
     from .capabilities import capabilities
 
     return [{"name": name, "value": value} for name, value in (machine() | capabilities()).items()]

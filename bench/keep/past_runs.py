@@ -1,4 +1,4 @@
-"""Runs in the order of the commits that they are of."""
+"""Runs in the order of their commits."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ LATEST = 32503680000
 
 @dataclass(frozen=True)
 class Past:
-    """A run of the history.
+    """A run in the history.
 
     Attributes:
         name: the name of its commit; without a commit, the name of its folder.
-        commit: the facts that it records about its commit; empty if it records none.
+        commit: the recorded facts about its commit; empty if none were recorded.
         seconds: when the commit was made; without a commit, when the run was made.
         ran: when the run was made.
-        done: its rows.
+        done: the content of its folder.
     """
 
     name: str
@@ -42,7 +42,7 @@ class Past:
 
     @property
     def full_name(self) -> str:
-        """The commit's name for programs: of a hash, all digits. Without a commit, the name of the run's folder."""
+        """The commit's name for programs, with the full hash; without a commit, the name of the run's folder."""
         return str(self.commit.get("name", self.name))
 
     @property
@@ -57,8 +57,8 @@ class Past:
 
 
 def past_runs(folders: Sequence[Path]) -> list[Past]:
-    """Return the runs in some folders in the order of their commits, and runs of the same commit by date. Runs
-    without rows are left out, unless all runs lack rows.
+    """Return the runs in some folders, ordered by commit and, for the same commit, by date. Runs without rows are
+    left out, unless no run has rows.
 
     Raises:
         UsageError: a folder has no run, or a run cannot be read.
@@ -73,8 +73,8 @@ def past_runs(folders: Sequence[Path]) -> list[Past]:
 
 
 def _run_folders(folder: Path) -> list[Path]:
-    """Return the folder if it holds a run, else the folders of the runs in it and in its folders. Raises
-    UsageError if there are none."""
+    """Return the folder itself if it holds a run, else the folders of the runs up to two levels below it. Raises
+    UsageError if no run is found."""
     if (folder / RUN).exists():
         return [folder]
     runs = sorted(path.parent for pattern in ("*", "*/*") for path in folder.glob(f"{pattern}/{RUN}"))
@@ -97,7 +97,7 @@ def _number(value: object, usual: float) -> float:
 
 
 def _seconds(text: str) -> float:
-    """Return the time of a date as `run` writes it, in seconds since 1970; 0 if the text is not a date."""
+    """Return the time of a date in the format of `run`, in seconds since 1970; 0 if the text is not such a date."""
     try:
         return max(0.0, datetime.strptime(text, "%Y-%m-%dT%H:%M:%S%z").timestamp())
     except ValueError:
@@ -105,8 +105,8 @@ def _seconds(text: str) -> float:
 
 
 def named_apart(runs: Sequence[Past]) -> Iterator[str]:
-    """Yield a text for each run with what differs from the run before, besides the commit: names of facts of the
-    machine, and normalbench itself. The text is empty for the first run, or if nothing differs."""
+    """Yield for each run a text that names what differs from the previous run, besides the commit: facts about the
+    machine, and normalbench itself. The text is empty for the first run, and if nothing differs."""
     yield ""
     for previous, other in pairwise(runs):
         there, here = (past.done.facts.get("machine") or {} for past in (previous, other))

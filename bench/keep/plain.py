@@ -1,4 +1,4 @@
-"""Rows and keys in the form that JSON reads back."""
+"""Rows and keys as they are read back from JSON."""
 
 from __future__ import annotations
 

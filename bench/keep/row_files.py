@@ -1,4 +1,4 @@
-"""Rows as a file, which replaces nothing but rows of normalbench."""
+"""Rows in a file, which may replace an existing file only if that contains rows of normalbench."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ KNOWN_SHARE = 0.75
 
 
 def check_rows(path: Path | None, columns: Iterable[str] = ()) -> None:
-    """Raise UsageError if rows cannot be written to a file, or the file holds something else; None is allowed.
+    """Raise UsageError if rows cannot be written to a file, or the file contains anything but rows. None is accepted.
 
     Args:
-        columns: other columns that the file may have, if the rows belong to no table.
+        columns: additional columns that the file may have, if the rows belong to no table.
     """
     if path is None:
         return
@@ -40,7 +40,7 @@ def check_rows(path: Path | None, columns: Iterable[str] = ()) -> None:
 
 
 def _is_table(data: bytes, known: Sequence[Sequence[str]]) -> bool:
-    """Whether the content of a file is rows, in any format, by the columns that tables have."""
+    """Whether the content of a file is rows in any format, judged by the columns of known tables."""
     names = _columns_of(data)
     is_for_programs = any(names[:1] == columns[:1] and _are_columns(names, columns) for columns in known)
     begin = [_beginnings(columns) for columns in known]
@@ -49,7 +49,7 @@ def _is_table(data: bytes, known: Sequence[Sequence[str]]) -> bool:
 
 
 def _columns_of(data: bytes) -> list[str]:
-    """Return all columns of a file for programs, in order; empty for damaged JSON."""
+    """Return the column names of a JSON or CSV file, in order; empty for damaged JSON."""
     try:
         if data.startswith(b"["):
             return list(parsed_json(data)[0])
@@ -72,7 +72,7 @@ def _beginnings(columns: Iterable[str]) -> set[str]:
 
 
 def _are_columns(names: Sequence[str], columns: Collection[str]) -> bool:
-    """Whether nearly all names are of these columns."""
+    """Whether there are at least two names and nearly all of them are among these columns."""
     return len(names) > 1 and sum(name in columns for name in names) >= KNOWN_SHARE * len(names)
 
 
@@ -87,7 +87,7 @@ def write(
 ) -> None:
     """Write rows to a file or to standard output; a table that does not fit the terminal omits `expendable` columns.
 
-    For people, rows that differ in column `by` are separate tables, `lead` is the text above the table, and `total`
+    In formats for people, rows are split into tables by column `by`, `lead` is the text above the table, and `total`
     is the line below it.
     """
     if output is None:

@@ -1,8 +1,9 @@
-"""Results folders: rows are stored as they are measured, so that a stopped run continues and a finished run can be
+"""Results folders: rows are stored as they are measured, so that a stopped run can continue and a finished run can be
 read.
 
-A folder holds `run.json`, the request and the machine, and `rows.jsonl`, a line for each finished step: the table,
-the key of everything that determines the rows, and the rows. Tables in other formats are written from these rows.
+A folder contains `run.json` with the request and the machine, and `rows.jsonl` with a line for each finished step:
+the table, the key (everything that determines the rows) and the rows. Tables in other formats are written from these
+rows.
 """
 
 from __future__ import annotations
@@ -40,14 +41,14 @@ def _identified(step: Row) -> list[tuple[str, Row]]:
 
 @dataclass(frozen=True)
 class Done:
-    """A folder's content.
+    """The content of a results folder.
 
     Attributes:
         facts: the content of run.json.
-        steps: the finished steps in their order, each `table`, `key` and `rows`.
-        damage: what happened to the rows since the run finished; empty if nothing did.
-        parts: the finished parts of steps that are not finished, in the same form.
-        whole: the finished rows by table, if they are known; `finished_rows` adds to them.
+        steps: the finished steps in order, each with `table`, `key` and `rows`.
+        damage: a message if rows of a finished run were changed or may be missing; otherwise empty.
+        parts: the finished parts of unfinished steps, in the same form.
+        whole: the finished rows by table, for the tables that `finished_rows` was called for.
         identified: a function that returns a step's rows, each with text that identifies its subject and its
             conditions.
     """
@@ -61,8 +62,8 @@ class Done:
 
     @cached_property
     def tables(self) -> dict[str, list[Row]]:
-        """The rows of each table that this version has, as they were measured. A row that was measured again replaces
-        the older one."""
+        """The rows of each table that this version has, as they were measured, by table. A row that was measured
+        again replaces the older row."""
         by_table: dict[str, list[Row]] = {}
         last: dict[tuple[str, str], int] = {}
         numbered_rows: list[tuple[int, str, str, Row]] = []
@@ -91,18 +92,18 @@ class Done:
 
     @staticmethod
     def remedy(name: str) -> str:
-        """Return what to do about rows of a table that are not what this version writes."""
+        """Return the advice for rows of a table that are not what this version writes."""
         return f"measure them again: normalbench run --tables {name}"
 
     @property
     def left_out(self) -> str:
-        """A sentence without its full stop on the rows that `tables` lacks; empty if it has all rows."""
+        """A sentence, without its full stop, about the rows that `tables` leaves out; empty if it has all rows."""
         names = dict.fromkeys(step["table"] for step in self.steps if step["table"] not in TABLES)
         return f"Rows of {', '.join(names)} are left out, because this version has no such table" if names else ""
 
     @property
     def finished(self) -> bool:
-        """Whether every step has its rows, for every request that was made for the folder."""
+        """Whether every step has its rows, for all requests that were made for the folder."""
         before = self.facts.get("before")
         requests = [facts for facts in before if isinstance(facts, dict)] if isinstance(before, list) else []
         # The same request may have been made again since.
@@ -118,7 +119,7 @@ def facts_of(command: Sequence[str]) -> Row:
 
 
 class Shared:
-    """Data that several runs share: a line that many of them have is parsed, checked and named once."""
+    """Data that several runs share, so that a line in many of them is parsed, checked and identified only once."""
 
     def __init__(self):
         self.lines: dict[bytes, Row] = {}
@@ -126,17 +127,17 @@ class Shared:
         self._identified: dict[int, list[tuple[str, Row]]] = {}
 
     def identified(self, step: Row) -> list[tuple[str, Row]]:
-        """Return the same as `Done.identified`, for a step among `lines`; the same objects each time."""
+        """Return what `Done.identified` returns for a step in `lines`, as the same objects on every call."""
         if id(step) not in self._identified:
             self._identified[id(step)] = _identified(step)
         return self._identified[id(step)]
 
 
 def read_run(folder: Path, shared: Shared | None = None) -> Done:
-    """Read a results folder; nothing is written.
+    """Return the content of a results folder, without writing to it.
 
     Args:
-        shared: what runs share, if many are read.
+        shared: the data that runs share, if several are read.
 
     Raises:
         UsageError: the folder is not a results folder, or cannot be read.
@@ -150,10 +151,10 @@ def read_run(folder: Path, shared: Shared | None = None) -> Done:
 
 
 def read_to_show(folder: Path, shared: Shared | None = None, needs_rows: bool = False) -> Done:
-    """Read a results folder that people look at, and report problems with its rows on standard error.
+    """Return the content of a results folder to show to people, and report problems with its rows on standard error.
 
     Raises:
-        UsageError: as `read_run`; or the folder has no rows but must have some.
+        UsageError: as for `read_run`; or the folder has no rows although `needs_rows` is true.
     """
     done = read_run(folder, shared)
     if needs_rows and not done.steps:
@@ -180,7 +181,7 @@ def _check_steps(folder: Path, lines: Sequence[Row], checked: set[int]) -> None:
 
 
 def _seal_columns(data: bytes) -> Row:
-    """Return the number of lines and the SHA-256 digest of rows, by which changes to a finished run are detected."""
+    """Return the number of lines and the SHA-256 digest of rows, which reveal changes to a finished run."""
     return {"lines": data.count(b"\n"), "digest": hashlib.sha256(data).hexdigest()}
 
 
@@ -209,7 +210,7 @@ def _facts(folder: Path) -> Row:
 
 
 class Run:
-    """A results folder being written; make it with `opened`."""
+    """A results folder that is being written; created by `opened`."""
 
     def __init__(self, folder: Path, facts: Row, kept: Journal):
         self.folder, self.facts, self._journal, self._lock = folder, facts, kept, Lock()
@@ -218,18 +219,18 @@ class Run:
 
     @property
     def kept(self) -> int:
-        """The number of steps with rows in the file, counted there because a signal may come just after a write."""
+        """The number of lines of rows, counted in the file because a signal may arrive just after a write."""
         return len(read_lines(self.folder / ROWS))
 
     def find(self, table: str, step: Step) -> list[Row] | None:
-        """Return the kept rows of a step; None if they are not kept."""
+        """Return the stored rows of a step; None if it has not been stored."""
         return self._kept.get(key_text(table, step.key))
 
     def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
-        """Store the rows of a step, and return them as they are read back.
+        """Store the rows of a step, and return them as they are read back from JSON.
 
         Raises:
-            UsageError: the rows cannot be written; rows that were stored before stay.
+            UsageError: the rows cannot be written; rows that were stored before are kept.
         """
         text, kept = key_text(table, step.key), plain(rows)
         # Those of the second process come in a thread of their own.
@@ -239,8 +240,9 @@ class Run:
         return kept
 
     def arrange(self, steps: Iterable[tuple[str, Step]]) -> None:
-        """Put the rows in the order of a request's steps, each with its table: workers return them in any order. Rows
-        of earlier requests stay in front; those of parts are removed once their step is whole. Raises UsageError."""
+        """Sort the rows by a request's steps, given as pairs of table and step: workers return them in any order.
+        Rows of earlier requests stay in front; rows of parts are removed if their step is complete. Raises
+        UsageError."""
         place = {key_text(table, step.key): index for index, (table, step) in enumerate(steps)}
         # As they lie in the file, with those that were kept since it was opened.
         before = read_lines(self.folder / ROWS)
@@ -251,7 +253,7 @@ class Run:
             self._journal.replace(lines)
 
     def finish(self) -> None:
-        """Record that every step has its rows, with the number of lines and the digest of the rows."""
+        """Record that every step has its rows, together with the number of lines and the digest of the rows."""
         self.facts |= {"finished": True, **_seal_columns((self.folder / ROWS).read_bytes())}
         _write_facts(self.folder, self.facts)
 
@@ -269,10 +271,10 @@ def _write_facts(folder: Path, facts: Row) -> None:
 
 
 class Amended:
-    """A run whose rows may be replaced by others; made by `amended`.
+    """A run whose rows may be replaced; created by `amended`.
 
     Attributes:
-        lines: the finished steps, each `table`, `key` and `rows`.
+        lines: the finished steps, each with `table`, `key` and `rows`.
         sources: the fingerprint of the sources that computed the rows; empty if unknown.
     """
 
@@ -283,7 +285,7 @@ class Amended:
         self.lines: Sequence[Row] = kept.lines
 
     def replace(self, lines: Sequence[Row]) -> None:
-        """Replace all steps by others, at once or not at all. Raises UsageError."""
+        """Replace all steps with the given steps, or none if writing fails. Raises UsageError."""
         seal = _seal_columns(data_of(lines)) if self._facts.get("finished") else {}
         # Whoever is killed between two of these leaves a run that is whole: its rows are the old or the next ones.
         if seal:
@@ -297,10 +299,10 @@ class Amended:
 
 @contextmanager
 def amended(folder: Path) -> Iterator[Amended]:
-    """Yield an existing run, whatever its sources and its machine, into which other rows can be put.
+    """Yield an existing run whose rows may be replaced, whatever its sources and its machine.
 
     Raises:
-        UsageError: the run is missing, another process writes it, or its rows were changed after it finished.
+        UsageError: the run is missing, another process is writing it, or its rows were changed after it finished.
     """
     # First, because a journal is made where there is none.
     _facts(folder)
@@ -329,8 +331,8 @@ def same_work(facts: Row, others: Row) -> bool:
 
 
 def _other_place(facts: Row, others: Row) -> str:
-    """Return what distinguishes a run from one that is to be added to it: sources, or facts of the machine with both
-    values; empty if nothing does."""
+    """Return a text about how a run differs from the run that is to be added to it: in its sources, or in facts about
+    the machine, with the values of both; empty if neither differs."""
     reasons = (
         [f"from other sources ({_there_and_here(facts, others, 'sources')})"]
         if _is_different(facts, others, "sources")
@@ -364,7 +366,7 @@ def _short_text(text: str, other: str) -> str:
 
 
 def unfinished(parent: Path, facts: Row) -> Path | None:
-    """Return the newest folder in `parent` with a stopped run of the same work; None if no folder has one."""
+    """Return the newest folder in `parent` that contains an unfinished run of the same work, or None."""
     candidates = sorted((path.parent for path in parent.glob(f"*/{RUN}")), reverse=True)
     for folder in candidates:
         try:
@@ -388,14 +390,14 @@ def _holds_something_else(folder: Path) -> bool:
 
 @contextmanager
 def opened(folder: Path, facts: Row) -> Iterator[Run]:
-    """Yield a run in a results folder: a new run, or the run in the folder, which continues.
+    """Yield the run in a results folder, which continues, or a new run if the folder has none.
 
     Args:
-        facts: `sources` and `machine` decide whether a run may continue; another `request` adds to it.
+        facts: `sources` and `machine` decide whether a run may continue; a different `request` is added to it.
 
     Raises:
-        UsageError: the folder holds something else, its run is of other sources or another machine, another process
-            writes it, or nothing can be written.
+        UsageError: the folder contains something else, its run has different sources or is from a different machine,
+            another process is writing it, or nothing can be written.
     """
     if _holds_something_else(folder):
         raise UsageError(f"{folder} already exists and contains no run; name a new folder")
@@ -405,8 +407,8 @@ def opened(folder: Path, facts: Row) -> Iterator[Run]:
 
 
 def _begun_facts(folder: Path, facts: Row) -> Row:
-    """Return the facts of a folder; write them if the folder is new or the request is another. Raises UsageError
-    if the folder holds a run of other sources or another machine, or changed rows."""
+    """Return the facts of a folder; write them if the folder is new or the request is different. Raises UsageError if
+    the folder's run has different sources or is from a different machine, or its rows were changed."""
     if not (folder / RUN).exists():
         _write_facts(folder, facts)
         return dict(facts)
@@ -421,7 +423,7 @@ def _begun_facts(folder: Path, facts: Row) -> Row:
 
 
 def _extended_facts(folder: Path, kept: Row, facts: Row) -> Row:
-    """Write and return the facts of a run that continues with another request; earlier requests are kept."""
+    """Write and return the facts of a run that continues with a different request; earlier requests are kept."""
     before = [*kept.get("before", ()), {name: kept.get(name) for name in ("request", "command", "time", "finished")}]
     new_facts = facts | {"before": before, "finished": False}
     _write_facts(folder, new_facts)

@@ -1,4 +1,4 @@
-"""The permitted contents of the files of runs and baselines: people edit them, so an error names its place."""
+"""Schemas for the files of runs and baselines. People edit these files, so an error names the place."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ WRONG = {
 
 
 def check_facts(facts: Any, place: str) -> None:
-    """Raise UsageError if `facts`, the parsed `run.json`, is malformed or has another schema version."""
+    """Raise UsageError if `facts`, the parsed `run.json`, is malformed or has a different schema version."""
     _check(FACTS, facts, [place])
     if facts.get("schema") != SCHEMA:
         raise UsageError(f"{place}: another version of normalbench measured this run; measure it again")
@@ -111,8 +111,8 @@ def check_step(line: Any, place: str, keys: Keys) -> None:
     is text in one row and a number in another.
 
     Args:
-        place: named first in messages.
-        keys: the keys of the lines before; those of this line are added.
+        place: the place that messages begin with.
+        keys: the keys of earlier lines; the keys of this line are added.
     """
     _check(STEP, line, [place])
     for number, row in enumerate(line["rows"], 1):

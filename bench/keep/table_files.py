@@ -11,7 +11,7 @@ from .runs import Done, Row
 
 
 def write_tables(folder: Path, done: Done, names: Iterable[str]) -> None:
-    """Write a run's tables into a folder for other programs, each as NAME.json and NAME.csv. Raises UsageError."""
+    """Write the named tables of a run to a folder, each as NAME.json and NAME.csv. Raises UsageError."""
     for name in names:
         _write_table(folder / name, done.finished_rows(name))
 

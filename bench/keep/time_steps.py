@@ -23,10 +23,10 @@ def time_steps(times: Sequence[float], tests: int) -> list[int]:
     """Return the indices at which `times` steps up or down, in order; empty if all differences are noise.
 
     Fit piecewise constant ranks by least squares, as Lung-Yut-Fong, Lévy-Leduc and Cappé (2015) do, and keep the
-    steps that the comparison of two runs takes for changes.
+    steps that a comparison of two runs would count as changes.
 
     Args:
-        tests: the number of places where a step was looked for, in this series and the others.
+        tests: the number of places that are tested for a step, in this series and all others.
     """
     begins = _pieces(times)
     while begins and max(doubts := _doubts(times, begins, tests)):
@@ -35,8 +35,8 @@ def time_steps(times: Sequence[float], tests: int) -> list[int]:
 
 
 def _placed(times: Sequence[float], begins: Sequence[int]) -> list[int]:
-    """Return the beginnings of pieces, each moved to the index where each time is nearest to the median of its piece:
-    ranks do not tell how far apart two times are."""
+    """Return the start of each piece but the first, moved so that the times deviate least from the medians of the two
+    pieces that meet there: ranks do not tell how far apart two times are."""
     placed = [0, *begins, len(times)]
     for index in range(1, len(placed) - 1):
         first, begin, end = placed[index - 1 : index + 2]
@@ -49,7 +49,7 @@ def _placed(times: Sequence[float], begins: Sequence[int]) -> list[int]:
 
 
 def _pieces(times: Sequence[float]) -> list[int]:
-    """Return the index at which each piece begins, except for the first piece, in the best fit of constant ranks."""
+    """Return the index at which each piece but the first begins, in the best piecewise constant fit of the ranks."""
     import numpy as np
 
     ordered, count = np.sort(times), len(times)
@@ -84,7 +84,7 @@ def _doubt(earlier: Sequence[float], other: Sequence[float], tests: int) -> floa
 
 
 def _is_large(earlier: Sequence[float], other: Sequence[float]) -> bool:
-    """Whether two pieces differ by more than anyone cares for, and by more than they waver."""
+    """Whether two pieces differ by a relevant amount, and by clearly more than the times vary within each piece."""
     before, after = median(earlier), median(other)
     off = [abs(time - middle) for times, middle in ((earlier, before), (other, after)) for time in times]
     return is_slower_or_faster(before, after) and abs(after - before) >= DEVIATIONS * FROM_MEDIAN * median(off)

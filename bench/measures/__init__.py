@@ -1,1 +1,1 @@
-"""The measurement of errors: angles, images, bounds, the worst case, and the meters."""
+"""Measurement of errors: angles, images, bounds, worst cases and the meters."""

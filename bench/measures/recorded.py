@@ -1,6 +1,6 @@
-"""Figures of the catalogue's codecs that come with the package, each with a key of the code that computed it.
+"""Figures for the catalogue's codecs that ship with the package, each with a key for the code that computed it.
 
-`python -m tests.recorded` computes them again.
+`python -m tests.recorded` recomputes them.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ OF_CODECS = (
 
 @dataclass(frozen=True)
 class Recorded:
-    """A file of figures.
+    """A file of recorded figures.
 
     Attributes:
         file: JSON: figures by name, each with its `key`.
-        sources: files that the figures depend on, from the package's root, besides OF_CODECS and the encoding's
-            module.
+        sources: files that the figures depend on, relative to the package's root, besides OF_CODECS and the
+            encoding's module.
     """
 
     file: Path
@@ -47,7 +47,7 @@ class Recorded:
         return known if known and is_in_catalogue(codec.encoding) and known["key"] == self.key(codec) else None
 
     def key(self, codec: Codec) -> str:
-        """Return a short text that changes with the code of anything that decides a figure; comments do not count."""
+        """Return a short text that changes with any code that affects the figures; comments are ignored."""
         module = sys.modules[codec.encoding.encode.__module__].__file__ or ""
         shared = "\n".join(code_of(ROOT / path) for path in (*self.sources, *OF_CODECS))
         return key_of(shared, code_of(Path(module)), codec.name)[:16]

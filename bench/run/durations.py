@@ -1,4 +1,4 @@
-"""Expected durations of steps: those of an earlier run with the same options, else on two cores without a GPU."""
+"""Expected durations of steps: as in an earlier run with the same options, else as on two cores without a GPU."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PAGE_S = 12.0
 
 
 def expected(asks: Sequence[Asked], beside: Sequence[Asked]) -> dict[str, tuple[int, float]]:
-    """Return for each table the number of its parts and the expected seconds of each, and the same for the page.
+    """Return for each table, and for the page, the number of parts and the expected seconds per part.
 
     Args:
         beside: the tables that a second process measures meanwhile; only the time by which it exceeds this process
@@ -37,7 +37,7 @@ def seconds_of(ask: Asked) -> float:
 
 
 def keep(ask: Asked, ticks: int, seconds: float) -> None:
-    """Keep the mean seconds of a table's `ticks` parts in the cache, for later estimates; nothing for 0 parts."""
+    """Store the mean seconds per part of a table in the cache, for later estimates; store nothing if `ticks` is 0."""
     if ticks:
         cache.write(_key(ask), {"seconds": seconds / ticks})
 

@@ -33,10 +33,10 @@ COMPANIONS = {".gltf": ("*.bin",), ".obj": ("*.mtl",)}
 
 @dataclass(frozen=True)
 class Asked:
-    """A table and what is asked of it, checked; nothing is measured yet.
+    """A checked request for steps of a table, before anything is measured.
 
     Attributes:
-        others: other options, whose steps are also among the steps.
+        others: other sets of options, whose steps are included in `steps`.
     """
 
     table: Table
@@ -47,10 +47,10 @@ class Asked:
 
 
 class Kept(Protocol):
-    """Rows that were measured before, and where new ones are kept."""
+    """A store of measured rows, to which new rows are added."""
 
     def find(self, table: str, step: Step) -> list[Row] | None:
-        """Return the kept rows of a step; None if they are not kept."""
+        """Return the stored rows of a step; None if it has not been stored."""
         ...
 
     def keep(self, table: str, step: Step, rows: Sequence[Row]) -> list[Row]:
@@ -62,17 +62,17 @@ class Place(Protocol):
     """A place where steps are measured."""
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
-        """Yield each step with its rows, in the order in which they are ready.
+        """Yield each step with its rows, in the order in which steps are completed.
 
         Args:
-            steps: the steps of `ask` that are wanted.
+            steps: the steps of `ask` to measure.
             tick: called once for each part of a step that is done.
         """
         ...
 
 
 class Here:
-    """Steps are measured in this process, in their order."""
+    """Measurement in this process, in the order of the steps."""
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Iterator[tuple[Step, list[Row]]]:
         """Yield each step with its rows, measured in this process. Raises MissingError if the OpenGL device was lost;
@@ -84,8 +84,8 @@ class Here:
 
 
 def _with_settings(table: Table, row: Row, settings_text: str) -> Row:
-    """Return a row whose device includes the settings from outside, if there are any. A device that identifies the
-    row is another machine's, and stays as it is."""
+    """Return a row whose device includes the settings from the environment, if there are any. If the device
+    identifies the row, it belongs to another machine and is not changed."""
     return (
         row | {"device": f"{row['device']}, {settings_text}"}
         if settings_text and row.get("device") and table.column("device") not in table.of_role(Role.KEY)
@@ -107,7 +107,7 @@ class Nothing:
 
 
 def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
-    """Return the steps that a table's options and outputs ask for.
+    """Return an `Asked` with the steps that a table's options and outputs require.
 
     Raises:
         UsageError: an option is invalid.
@@ -127,7 +127,8 @@ def asked(table: Table, options: Any, outputs: Any = None) -> Asked:
 
 
 def asked_together(table: Table, several: Sequence[Any], outputs: Any) -> Asked:
-    """Return the steps that several sets of options ask for, each step once. Raises UsageError and MissingError."""
+    """Return an `Asked` with the steps that several sets of options require, without duplicates. Raises UsageError
+    and MissingError."""
     asks = [asked(table, options, outputs) for options in several]
     steps = {repr(step.key): step for ask in asks for step in ask.steps}
     return replace(asks[0], steps=list(steps.values()), others=[ask.options for ask in asks[1:]])
@@ -138,14 +139,14 @@ def _with_files(step: Step, fingerprints: Row) -> Step:
 
 
 def measured(ask: Asked, kept: Kept, place: Place = HERE) -> Measured:
-    """Return the finished rows: rows that were kept, and others that are measured now and kept as they come."""
+    """Return the finished rows: stored rows, and rows that are measured now and stored as they arrive."""
     step_rows = _measured_steps(ask, kept, place)
     rows = ask.table.work.finish([row for rows in step_rows for row in rows])
     return Measured(ask.options, ask.outputs, ask.steps, rows, step_rows)
 
 
 def _measured_steps(ask: Asked, kept: Kept, place: Place) -> list[list[Row]]:
-    """Measure and keep the steps that are not kept yet, and return the rows of each step, not finished."""
+    """Measure and store the steps that are not stored yet, and return the unfinished rows of each step."""
     name = ask.table.name
     rows_by_id = {id(step): kept.find(name, step) for step in ask.steps}
     absent = [step for step in ask.steps if rows_by_id[id(step)] is None]
@@ -165,8 +166,8 @@ def _measured_steps(ask: Asked, kept: Kept, place: Place) -> list[list[Row]]:
 
 
 def _in_parts(steps: Sequence[Step]) -> Iterator[Step]:
-    """Yield the steps to measure: those without parts, then the first part of each of the others, and so on, because
-    data made for one part may serve several steps."""
+    """Yield the steps to measure: steps without parts, then the first part of every other step, then the second
+    parts, and so on, because data made for one part may serve several steps."""
     yield from (step for step in steps if not step.parts)
     for several in zip_longest(*(step.parts for step in steps)):
         yield from filter(None, several)
@@ -179,8 +180,8 @@ def with_parts(steps: Iterable[Step]) -> Iterator[Step]:
 
 
 def files_of(options: Any) -> Row:
-    """Return {"files": [...]}, a fingerprint for each file that options name, together with those read next to it. If
-    an option says how captures are read, return {"read": {...}} as well; return {} for no files."""
+    """Return {"files": [...]} with a fingerprint for each file that options name, which covers the files read with
+    it. If options change how captures are read, return {"read": {...}} as well. Return {} if no file is named."""
     words = {part for words in words_of(options).values() for word in words for part in parts_of(word)}
     digests = sorted(filter(None, map(_fingerprint, words)))
     reading = fields_of(Reading).values() if isinstance(options, Reading) else ()
@@ -190,14 +191,14 @@ def files_of(options: Any) -> Row:
 
 
 def words_of(options: Any) -> dict[str, list[str]]:
-    """Return by the option's name the words that may name files, for all options that take files."""
+    """Return the words that may name files, by option, for all options that take files."""
     known = fields_of(type(options))
     values = {name: getattr(options, name) or () for name, field in known.items() if field.option.files}
     return {name: [word for word in words_in(value) if isinstance(word, str)] for name, value in values.items()}
 
 
 def _fingerprint(word: str) -> str:
-    """Return a hash of a file, its companions and how it is read, wherever they are; empty if it cannot be read."""
+    """Return a hash of a file, its companions and how it is read, wherever they are; empty if reading fails."""
     path, shader = file_of(word), UserFile(word)
     try:
         if not path.is_file():
@@ -213,8 +214,8 @@ def _fingerprint(word: str) -> str:
 
 
 def companions(word: str | Path) -> list[Path]:
-    """Return, sorted, the files that are read with the file that a word names: parts of a scene or a frame, a
-    layout's files, and an encoder's twin and included files."""
+    """Return, sorted, the files that are read together with the file that a word names: parts of a scene or a frame,
+    a layout's files, and an encoder's twin and included files."""
     path = file_of(str(word))
     patterns = COMPANIONS.get(path.suffix.lower(), ())
     beside = {other for pattern in patterns for other in path.parent.glob(pattern)}
@@ -296,7 +297,7 @@ class Beside:
 
 
 def _checked(kept: Journal) -> list[Row]:
-    """Return the lines of a journal below the first. Raises UsageError if one of them is not a step."""
+    """Return the lines of a journal after the first. Raises UsageError if a line is not a step."""
     if lines := kept.lines[1:]:
         from ..keep.schema import check_kept
 
@@ -307,14 +308,15 @@ def _checked(kept: Journal) -> list[Row]:
 
 @contextmanager
 def beside(output: Path | None, work: Row) -> Iterator[Beside | None]:
-    """Keep rows next to an output file while a command runs, and delete them when the block ends without an error.
-    Yield None if there is no output file to keep them next to.
+    """Yield a store that keeps rows next to an output file, and delete it when the block ends without an error. Yield
+    None if the output is not an ordinary file.
 
     Args:
-        work: sources and machine; kept rows must match them.
+        work: sources and machine; stored rows must match them.
 
     Raises:
-        UsageError: another process writes the same output, it cannot be written, or it keeps other work's rows.
+        UsageError: another process is writing the same output, the rows cannot be written, or stored rows are from
+            different work.
     """
     if output is None or is_special(output):
         yield None

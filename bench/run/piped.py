@@ -1,10 +1,10 @@
-"""A process of this machine that calls the functions which it is sent, one after the other, in its main thread.
+"""A child process that calls the functions sent to it, one after the other, in its main thread.
 
     python -m normalbench.bench.run.piped
 
-is that process. Calls come through its standard input, and what functions send goes through its standard output, as
-pickles one after the other. It ends when its standard input does, as when the process that started it was killed.
-Imports nothing heavy.
+starts it. Calls arrive through its standard input, and values that functions send leave through its standard output,
+as consecutive pickles. The process ends when its standard input ends, for example because the process that started it
+was killed. The module imports nothing heavy.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ class Piped:
     """The child process, for use by the process that started it.
 
     Args:
-        first: called in it at once, for example to import modules.
+        first: called in the child immediately, for example to import modules.
         take: called in a thread with each value that a function sends, and with the exception if a function raised
             one.
 
     Attributes:
-        ended: set when nothing more comes.
+        ended: set when no more values come.
     """
 
     def __init__(self, first: Callable[[Send], None], take: Callable[[Any], None]):
@@ -64,12 +64,12 @@ class Piped:
 
     @property
     def status(self) -> int | None:
-        """The process's exit status, below 0 for a signal; None while it runs."""
+        """The exit status of the process, negative for a signal; None while it is running."""
         return self._process.poll()
 
     def call(self, function: Callable[..., None], *arguments: Any) -> None:
-        """Have the process call a function, whose first argument is a function that sends values here, and return at
-        once. A process that has ended calls nothing."""
+        """Have the child process call a function, and return immediately. The function's first argument is a function
+        that sends values here; `arguments` follow. A process that has ended ignores the call."""
         # Bytes within a pickle: importing what they name is left to its main thread.
         call = pickle.dumps(pickle.dumps((function, arguments)))
         assert self._process.stdin
@@ -86,13 +86,14 @@ class Piped:
         self.ended.set()
 
     def end(self) -> None:
-        """Ask the process to end, without waiting for it; `wait` makes sure that it does."""
+        """Ask the process to end, without waiting for it; `wait` makes sure that it has ended."""
         assert self._process.stdin
         with suppress(OSError):
             self._process.stdin.close()
 
     def wait(self) -> list[str]:
-        """End the process and all that it started, and delete its folder. Return its lines on standard error."""
+        """End the process and all processes that it started, delete its folder, and return the lines that it wrote to
+        standard error."""
         self.end()
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(END_S)
@@ -105,13 +106,14 @@ class Piped:
 
 
 def _end_now(*_: int | FrameType | None) -> None:
-    """End this process at once, whatever it computes, with all that it started and its folder."""
+    """End this process immediately, even during a computation, with all that it started, and delete its folder."""
     shutil.rmtree(os.environ[TEMPORARY[0]], ignore_errors=True)
     end_this_group()
 
 
 def _own_ends() -> tuple[IO[bytes], IO[bytes]]:
-    """Return the streams of calls and of values. Children read nothing, and libraries print to standard error."""
+    """Return the streams for calls and for values. Afterwards standard input is empty, and standard output goes to
+    standard error."""
     calls, values = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)
@@ -119,7 +121,7 @@ def _own_ends() -> tuple[IO[bytes], IO[bytes]]:
 
 
 def _take(calls: IO[bytes], waiting: SimpleQueue[bytes]) -> None:
-    """Queue calls as they come, and end this process when the stream of calls ends."""
+    """Queue calls as they arrive, and end this process when the stream of calls ends."""
     with suppress(EOFError, pickle.UnpicklingError):
         while True:
             waiting.put(pickle.load(calls))
@@ -138,7 +140,7 @@ def _call(call: bytes, send: Send) -> None:
 
 
 def main() -> None:
-    """Call the functions that arrive through standard input, until that ends and this process with it."""
+    """Call the functions that arrive through standard input, until the input ends and this process with it."""
     look_for_garbage_seldom()
     signal.signal(signal.SIGTERM, _end_now)
     calls, values = _own_ends()

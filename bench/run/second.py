@@ -1,4 +1,4 @@
-"""The second process of a run, which measures tables while the first one renders others.
+"""The second process of a run, which measures tables while the first process renders others.
 
 Python and the code that it waits for keep one core busy, and llvmpipe leaves much of a second core idle. A run starts
 the process with `second_process`, and tells it what to call. The process also writes the files of the tables that it
@@ -23,7 +23,7 @@ from .piped import Piped, Send
 
 @dataclass(frozen=True)
 class Kept:
-    """The rows of a step, by the text of its key."""
+    """The rows of a step, and the text of the step's key."""
 
     step: str
     rows: list[Row]
@@ -31,7 +31,7 @@ class Kept:
 
 @dataclass(frozen=True)
 class Written:
-    """A table whose steps are all measured and whose files are written."""
+    """A message that all steps of a table have been measured and its files written."""
 
     table: str
 
@@ -42,15 +42,15 @@ class Finished:
 
 
 def is_worth_it(tables: Sequence[Table]) -> bool:
-    """Whether a second process can measure at the same time: two or more tables, and two or more cores."""
+    """Whether a second process can measure at the same time: there are at least two tables and two cores."""
     return cores() > 1 and len(tables) > 1
 
 
 class Second:
-    """The second process, as the first one sees it.
+    """The second process, as used by the first process.
 
     Attributes:
-        written: the tables whose files are written, too.
+        written: the names of tables whose files have been written.
     """
 
     def __init__(self, first: Callable[[Send], None]):
@@ -61,7 +61,7 @@ class Second:
         self._process = Piped(first, self._take)
 
     def measure(self, run: Run, asks: Iterable[Asked], function: Callable[..., None], *arguments: Any) -> None:
-        """Have the process call a function that measures tables; the rows that it sends are kept in `run`."""
+        """Have the process call a function that measures tables; the rows that it sends are stored in `run`."""
         steps = ((ask.table.name, step) for ask in asks for step in with_parts(ask.steps))
         self._run, self._steps = run, {key_text(name, step.key): (name, step) for name, step in steps}
         self._process.call(function, *arguments)
@@ -77,7 +77,7 @@ class Second:
             raise self._error
 
     def end(self) -> None:
-        """End the process and all that it started; rows that it has sent are kept. Its messages are passed on."""
+        """End the process and all that it started, and report its messages; rows that it has sent are kept."""
         for line in self._process.wait():
             tell(line.removeprefix("normalbench: "))
 
@@ -107,10 +107,10 @@ class Second:
 
 @contextmanager
 def second_process(first: Callable[[Send], None]) -> Iterator[Second]:
-    """Yield a process that waits for tables to measure, and end it with the block.
+    """Yield a process that waits for tables to measure, and end it when the block ends.
 
     Args:
-        first: the function that the process calls at once, to import what it will need.
+        first: the function that the process calls immediately, to import what it will need.
     """
     second = Second(first)
     try:

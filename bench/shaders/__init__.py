@@ -1,1 +1,1 @@
-"""Shader code: read, written, run and counted in many languages."""
+"""Shader code in many languages: reading, writing, running and counting of instructions."""

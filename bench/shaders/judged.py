@@ -1,4 +1,4 @@
-"""Texts made from encoders, in a form that may be given to compilers."""
+"""Texts generated from encoders, in a form that may be passed to compilers."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from ..ground.compilers.text import RULES, RefusedError, Text, judged
 
 
 def judged_text(text: str, language: str, source: Source | None = None) -> Text:
-    """Return a text that was made from an encoder, without its comments, for compilers of a language.
+    """Return a text generated from an encoder, without its comments, for compilers of a language.
 
     Args:
         source: the text as lines that come from several files.
 
     Raises:
-        ShaderError: the text must not be given to a compiler; with file and line.
+        ShaderError: the text must not be passed to a compiler; the message has the file and the line.
     """
     whole = with_known_directives(bare(text, is_wgsl=language == "wgsl"), RULES[language].heads)
     try:

@@ -1,4 +1,4 @@
-"""The page's facts about each codec besides its rows: formulas, sources, engines, and the numbers that it stores."""
+"""The page's facts about codecs besides their rows: formulas, sources, engines and stored numbers."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ BODY = r"\b{name}\([^)]*\)\s*\{{\n(.*?)^\}}"
 
 
 def about_codecs(sections: Sequence[TableSection]) -> dict[str, Any]:
-    """Return what a page's cards show, as a dictionary: `encodings` by name, `codecs` by label, and `takes`, for each
-    table the options that name a codec."""
+    """Return the contents of a page's cards as a dictionary: `encodings` by name, `codecs` by label, and `takes`, the
+    options of each table that name a codec."""
     shown = [section for section in sections if _is_of_normals(section)]
     rows = [row for section in shown for row in section.rows]
     keys = dict.fromkeys(key for row in rows if (key := CodecKey.said_by(row)))
@@ -48,7 +48,7 @@ def about_codecs(sections: Sequence[TableSection]) -> dict[str, Any]:
 
 
 def _is_of_normals(section: TableSection) -> bool:
-    """Whether a table's encodings are codes of normals."""
+    """Whether a table's encodings are encodings of normals."""
     columns = TABLES[section.key].columns
     is_among_codecs = section.about.view is View.CODECS and ENCODING.name in {column.name for column in columns}
     return ENCODING in columns or is_among_codecs
@@ -61,7 +61,7 @@ def _takes(table: str, option: str) -> bool:
 
 
 def _codec_record(key: CodecKey) -> dict[str, Any]:
-    """Return a codec's `storage` in words, its `bits`, `codes`, the bits that its codes are worth if fewer, its
+    """Return a codec's `storage` in words, its `bits`, its `codes` (the bits that its codes amount to, if fewer), its
     `numbers` and its `domain`; empty for an unknown codec."""
     if not (codec := codec_of(key)):
         return {}
@@ -73,7 +73,7 @@ def _codec_record(key: CodecKey) -> dict[str, Any]:
 
 
 def codec_of(key: CodecKey) -> Codec | None:
-    """Return a codec of the catalogue; None if its encoding is not in the catalogue, or its storage is unknown."""
+    """Return the codec for a key; None if its encoding is not in the catalogue, or its storage is unknown."""
     encoding = ENCODINGS.get(key.encoding)
     try:
         storage = storage_of(key.storage)
@@ -105,8 +105,8 @@ def _first_sentence(documented: Any) -> str:
 
 
 def _formula(encoding: Encoding, what: str) -> list[str]:
-    """Return the lines of the formula of `what`, "encode" or "decode": the first paragraph of its docstring, then the
-    comments of its GLSL."""
+    """Return the lines of an encoding's formula for `what`, "encode" or "decode": the first paragraph of the
+    function's docstring, then the comments in its GLSL."""
     source = encoding.glsl.read_text(encoding="utf-8")
     match = re.search(BODY.format(name=f"{encoding.prefix}_{what}"), source, re.MULTILINE | re.DOTALL)
     comments = (COMMENT.fullmatch(line) for line in (match[1] if match else "").splitlines())
@@ -114,7 +114,7 @@ def _formula(encoding: Encoding, what: str) -> list[str]:
 
 
 def _engines(encoding: Encoding) -> Iterator[tuple[str, int, str]]:
-    """Yield (engine, year, storage) of each engine layout that keeps normals by an encoding, also in turned axes."""
+    """Yield (engine, year, storage) for each engine layout that stores normals in an encoding, with any axes."""
     for layout in sorted(LAYOUTS.values(), key=lambda preset: (preset.engine.lower(), preset.year)):
         if layout.engine and layout.encoding.name.partition(":")[0] == encoding.name:
             yield layout.engine, layout.year, layout.normal_storage

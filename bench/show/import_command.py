@@ -24,11 +24,11 @@ Identity = tuple[Any, Any]
 
 
 def import_command(files: Sequence[Path], folder: Path | None) -> int:
-    """Add device files to a run, write a line on each, and return exit status 0. Of one GPU in one browser the newest
-    file stays.
+    """Add device files to a run, print a line on each, and return exit status 0. For each GPU and browser, only the
+    newest file is kept.
 
     Raises:
-        UsageError: a file is not a device's, the folder is not a run's, or it cannot be written. Nothing is added
+        UsageError: a file is not a device file, the folder is not a run's, or it cannot be written. Nothing is added
             then.
     """
     if folder is None:
@@ -55,8 +55,8 @@ def import_command(files: Sequence[Path], folder: Path | None) -> int:
 
 
 def read_all(paths: Sequence[Path]) -> list[Read]:
-    """Return the contents of device files. Raises UsageError if any is faulty, for the last such file; the others are
-    reported on standard error first."""
+    """Return the contents of device files. If any files are faulty, report all but the last of these on standard
+    error, and raise UsageError for the last."""
     reads, wrong = list[Read](), list[UsageError]()
     for path in paths:
         try:
@@ -79,12 +79,12 @@ def _identity(line: Row) -> Identity:
 
 
 def _is_newer(file: DeviceFile, there: Mapping[str, Any] | None) -> bool:
-    """Whether a file is newer than the run's file from its device and browser, or the run has none."""
+    """Whether a file is newer than the run's file for the same device and browser, or the run has no such file."""
     return there is None or file.made > str(there.get("made"))
 
 
 def _said(file: DeviceFile, there: Mapping[str, Any] | None) -> str:
-    """Return a message on what was done with a file, compared with the run's file from its device and browser."""
+    """Return a message on what was done with a file, given the run's file for the same device and browser."""
     what = f"{many(len(file.codecs), 'codec')}, {many(len(file.facts), 'fact')}"
     if there is None:
         return f"added {what}"
@@ -97,7 +97,7 @@ def _said(file: DeviceFile, there: Mapping[str, Any] | None) -> str:
 
 
 def _with(lines: Sequence[Row], new: Sequence[Device]) -> list[Row]:
-    """Return the steps of a run with those of new devices, replacing older ones of the same devices and browsers."""
+    """Return a run's steps with new devices added; they replace older steps for the same device and browser."""
     replaced = {device.file.identity for device in new}
     kept = [line for line in lines if not (_is_ours(line) and _identity(line) in replaced)]
     return list(_renamed([*kept, *(line for device in new for line in _lines(device))]))
@@ -111,7 +111,7 @@ def _lines(device: Device) -> Iterator[Row]:
 
 
 def _renamed(lines: Sequence[Row]) -> Iterator[Row]:
-    """Yield a run's steps with names that tell its devices apart: two GPUs may come to share a short name."""
+    """Yield a run's steps with names that distinguish its devices, because two GPUs may share a short name."""
     names = told_apart(str(line["key"]["renderer"]) for line in lines if _is_ours(line))
     for line in lines:
         if not _is_ours(line):

@@ -1,4 +1,5 @@
-"""The code of a run's codecs, as `run` keeps it for the page: texts by codec and language, shared parts only once."""
+"""The code of a run's codecs, kept by `run` for the page: texts by codec and language; shared parts are
+stored once."""
 
 from __future__ import annotations
 
@@ -26,7 +27,7 @@ Place = Annotated[int, Field(ge=0)]
 
 @with_config(ConfigDict(strict=True, extra="forbid"))
 class CodecCode(TypedDict):
-    """A codec in each language: the places of its pieces; and whether it was run, and comes with look-up tables."""
+    """A codec's code: the indices of its pieces by language, whether it was run, and whether it has lookup tables."""
 
     texts: dict[Name, list[Place]]
     proven: bool
@@ -35,7 +36,7 @@ class CodecCode(TypedDict):
 
 @with_config(ConfigDict(strict=True, extra="forbid"))
 class KeptCode(TypedDict):
-    """The whole file: titles of languages by name, pieces, and codecs by label."""
+    """The whole file: language titles by name, pieces, and codecs by label."""
 
     languages: dict[Name, Name]
     pieces: list[str]
@@ -46,13 +47,13 @@ KEPT: TypeAdapter[Any] = TypeAdapter(KeptCode)
 
 
 class Shared:
-    """Texts as places in one list of pieces."""
+    """Texts as indices into a shared list of pieces."""
 
     def __init__(self) -> None:
         self._places: dict[str, int] = {}
 
     def places(self, text: str) -> list[int]:
-        """Return the indices in `pieces` of the pieces that make up a text; new pieces are added there."""
+        """Return the indices of a text's pieces in `pieces`, to which new pieces are added."""
         head, *rest = PIECES.split(text)
         pieces = [*LINES.split(head), *rest]
         return [self._places.setdefault(piece, len(self._places)) for piece in pieces if piece]
@@ -64,7 +65,7 @@ class Shared:
 
 
 class Written(NamedTuple):
-    """A codec's texts by language; whether they were run, and whether they come with look-up tables."""
+    """A codec's texts by language, whether they were run, and whether they come with lookup tables."""
 
     texts: Mapping[str, str] = MappingProxyType({})
     proven: bool = False
@@ -72,11 +73,11 @@ class Written(NamedTuple):
 
 
 def write_code(folder: Path, languages: Mapping[str, str], codecs: Mapping[str, Written]) -> None:
-    """Write the code of codecs to its file in a run's folder.
+    """Write the codecs' code to its file in a run's folder.
 
     Args:
-        languages: titles of languages, by name.
-        codecs: the texts of codecs, by the codec's label.
+        languages: the languages' titles, by name.
+        codecs: the codecs' texts, by label.
     """
     shared = Shared()
     records = {
@@ -89,8 +90,8 @@ def write_code(folder: Path, languages: Mapping[str, str], codecs: Mapping[str, 
 
 
 def read_code(folder: Path) -> dict[str, Any]:
-    """Return the kept code of a run: `languages`, `pieces` and `codecs`, with texts as indices of pieces; empty if
-    the run keeps no code, or its file is damaged."""
+    """Return the kept code of a run: `languages`, `pieces` and `codecs`, with texts as indices into `pieces`; empty
+    if the run has no kept code, or its file is damaged."""
     try:
         kept = KEPT.validate_python(parsed_json(file_bytes(folder / FILE, MOST_BYTES)))
     except (OSError, ValueError, ValidationError):

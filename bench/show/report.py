@@ -45,7 +45,7 @@ CHARTS_OF_A_RUN = 3
 def report_command(
     folder: Path, as_markdown: bool, pictures_beside: bool, charts_beside: bool, output: Path | None
 ) -> None:
-    """Write a page of a run and print its path, or write a Markdown text for a pull request; the run stays as it is.
+    """Write a run's page and print its path, or write a Markdown text for a pull request; the run is not changed.
 
     Args:
         pictures_beside, charts_beside: whether the page's pictures, and its charts as files, go into folders next to
@@ -53,7 +53,7 @@ def report_command(
         output: the file to write; None for the page in the run's folder, and for the text on standard output.
 
     Raises:
-        UsageError: the folder is not a run's, or the page cannot be written.
+        UsageError: the folder is not a run's, or the output cannot be written.
     """
     if output:
         _check_output(output, as_markdown)
@@ -66,8 +66,7 @@ def report_command(
 
 
 def _check_output(output: Path, as_markdown: bool) -> None:
-    """Raise UsageError for a file that cannot be written, or whose name or contents are of another kind than is
-    written."""
+    """Raise UsageError if a file cannot be written, or if its name or contents do not match the kind of output."""
     check_writable(output, mark=b"" if as_markdown else MARK)
     if not as_markdown:
         check_page(output)
@@ -91,12 +90,13 @@ def write_report(
     most_charts: int | None = None,
     name: str = "",
 ) -> Path:
-    """Write the page and, next to it, a folder of its charts and one of its pictures, if asked for.
+    """Write a run's page and, if requested, a folder of its charts and a folder of its pictures next to the page.
 
     Args:
-        charts: the folder of charts next to the page; empty for none.
-        most_charts: how many charts are written, the page's first ones; None for all.
-        name: the page's name; empty for the name of the folder.
+        charts: the name of the folder of charts; empty for no such folder.
+        pictures_beside: whether to write a folder of pictures, rather than pictures in the page.
+        most_charts: the maximum number of charts to write, the page's first; None for all.
+        name: the run's name on the page; empty for the name of the folder.
 
     Returns:
         the page's path.
@@ -121,13 +121,14 @@ def write_report(
 def drawn_page(
     run: Found, charts: Path | None = None, pictures: str = "", most_charts: int | None = None
 ) -> tuple[Found, embedded.Gallery, dict[str, wire.Spec]]:
-    """Return a run with remarks on what could not be drawn, its pictures, and its charts by name.
+    """Draw a run's charts, and return the run, with remarks on what could not be drawn, its pictures, and its charts
+    by name.
 
     Args:
-        run: the run as it was gathered.
-        charts: the folder for files of its charts; None for no files.
+        run: the run, as `gathered` returns it.
+        charts: the folder for the charts as files; None for no files.
         pictures: the folder of pictures, relative to the page's folder; empty for pictures in the page.
-        most_charts: the number of charts that are written; None for all.
+        most_charts: the maximum number of charts to write as files; None for all.
     """
     # Pictures are packed while charts are drawn; either takes a core for seconds.
     with ThreadPoolExecutor(1) as pool:
@@ -147,8 +148,8 @@ def library_of(specs: Mapping[str, wire.Spec]) -> str:
 
 
 def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
-    """Write the scripts that hold pictures, text by file name, to a folder; delete those of an earlier page. Do
-    nothing without scripts."""
+    """Write the scripts that contain pictures, as text by file name, to a folder, and delete an earlier page's
+    scripts. Do nothing if there are no scripts."""
     if not files:
         return
     for name, path in files_of(folder).items():
@@ -160,8 +161,8 @@ def _write_beside(folder: Path, files: Mapping[str, str]) -> None:
 
 
 def _drawn(run: Found, folder: Path | None, most: int | None) -> tuple[dict[str, wire.Spec], list[str]]:
-    """Write the first charts as files, if there is a folder for them. Return the page's charts by name, and a sentence
-    for each chart that cannot be drawn."""
+    """Write the first `most` charts to a folder, if it is given. Return the page's charts by name, and a sentence for
+    each chart that cannot be drawn."""
     specs, failed = {}, []
     for number, drawing in enumerate(page.drawings(run)):
         try:
@@ -185,8 +186,8 @@ def _write_chart(drawing: drawings.Drawing, folder: Path) -> None:
 
 
 def gathered(folder: Path, done: Done, name: str = "") -> Found:
-    """Return everything that a page shows of a run, which is called by its folder unless `name` is given; nothing is
-    measured. Problems become remarks."""
+    """Return everything that a page shows of a run, without measuring anything. The run is named after its folder
+    unless `name` is given. Problems become remarks."""
     done = _cleaned(done)
     # In the order of the page, whichever was measured first.
     tables = {name: done.tables[name] for name in TABLES if name in done.tables}
@@ -222,20 +223,20 @@ def _other_version(facts: Row) -> str:
 
 
 def _clean_code(kept: dict[str, Any]) -> dict[str, Any]:
-    """Return kept code in which the control characters of its pieces, except ends of lines, are spaces."""
+    """Return kept code in which the control characters of all pieces, except newlines, are replaced by spaces."""
     pieces = ["\n".join(map(str, map(plain_text, piece.split("\n")))) for piece in kept.get("pieces", ())]
     return kept | {"pieces": pieces} if kept else {}
 
 
 def _encodings(tables: Mapping[str, Sequence[Row]]) -> frozenset[str]:
-    """Return the names of encodings of normals: the catalogue's, and those of users' files in a run's rows."""
+    """Return the names of encodings of normals: those in the catalogue, and those of users' files in a run's rows."""
     of_normals = (rows for name, rows in tables.items() if ENCODING in TABLES[name].columns)
     names = {str(row["encoding"]) for rows in of_normals for row in rows if row.get("encoding")}
     return frozenset(names | ENCODINGS.keys())
 
 
 def _section(folder: Path, run: Found, done: Done, table: Table, remarks: list[str]) -> TableSection:
-    """Return a table's section of the page; problems with its rows are added to the remarks."""
+    """Return the page's section for a table; problems with the table's rows are added to the remarks."""
     rows = _finished(done, table) if table.name in run.tables else ()
     return TableSection(
         key=table.name,
@@ -251,7 +252,7 @@ def _section(folder: Path, run: Found, done: Done, table: Table, remarks: list[s
 
 
 def _summary(done: Done, table: Table, remarks: list[str]) -> list[Sheet]:
-    """Return the sheets that sum up a table. If its rows are of another version, add a remark and return none."""
+    """Return the sheets that summarise a table. If its rows do not match, add a remark and return no sheets."""
     try:
         return summary(table, done.finished_rows(table.name))
     except UNEXPECTED:
@@ -270,7 +271,7 @@ def _drawings(run: Found, done: Done, table: Table, remarks: list[str]) -> list[
 
 
 def _finished(done: Done, table: Table) -> Sequence[Row]:
-    """Return a table's finished rows; if rows of another version cannot be finished, the rows as they are."""
+    """Return a table's finished rows; if a different version's rows cannot be finished, the rows unchanged."""
     try:
         return done.finished_rows(table.name)
     except UNEXPECTED:
@@ -278,8 +279,8 @@ def _finished(done: Done, table: Table) -> Sequence[Row]:
 
 
 def _films(folder: Path, table: Table, rows: Sequence[Row], remarks: list[str]) -> list[tuple[str, str]]:
-    """Return the caption and the data URI of each animation of a table whose file exists. If the rows do not fit, add
-    a remark and return none."""
+    """Return the caption and the data URI of each of a table's animations whose file exists. If the rows do not match
+    this version, add a remark and return an empty list."""
     try:
         films = list(table.work.films(folder / table.files["images"], rows)) if "images" in table.files else []
     except UNEXPECTED as error:
@@ -306,7 +307,7 @@ def _command(facts: Row) -> str:
 
 
 def _asked(facts: Row) -> set[str]:
-    """Return the names of the tables that a run was asked for, by its last command or by an earlier one."""
+    """Return the names of the tables that were requested for a run, in its last command or an earlier command."""
     before = facts.get("before")
     requests = [
         facts.get("request"),
@@ -321,7 +322,7 @@ def _asked(facts: Row) -> set[str]:
 
 
 def _subjects(folder: Path, done: Done, names: Iterable[str], remarks: list[str]) -> Iterator[Subject]:
-    """Yield the subjects of the pictures of these tables; where rows do not fit, add a remark instead."""
+    """Yield the subjects of these tables' pictures; if a table's rows do not match, add a remark instead."""
     for name in names:
         if "images" in TABLES[name].files:
             try:
@@ -332,8 +333,7 @@ def _subjects(folder: Path, done: Done, names: Iterable[str], remarks: list[str]
 
 
 def _extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> dict[str, Any]:
-    """Return the extras that tables show besides their rows, by attributes of `found.Found`. Problems become
-    remarks."""
+    """Return the data that tables show besides their rows, by attribute of `found.Found`. Problems become remarks."""
     extras: dict[str, Any] = {}
     for name in tables:
         try:
@@ -344,7 +344,7 @@ def _extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str
 
 
 def _live(folder: Path) -> Live | None:
-    """Return the contents of the page's laboratory; None if the run keeps none of it."""
+    """Return the contents of the page's laboratory; None if the run has no data for it."""
     codecs, left_out = read_live(folder)
     if not codecs:
         return None

@@ -1,4 +1,4 @@
-"""The `show` command: prints the results of a run, or a table of it."""
+"""The `show` command: prints the verdicts of a run's tables, or the summaries of named tables."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ from .showing import say_verdict, show_summary
 
 
 def show_command(folder: Path, tables: Names) -> None:
-    """Print the verdict of each table of a run; if tables are named, their summaries instead.
+    """Print the verdict of each table of a run; if tables are named, print their summaries instead.
 
     Args:
+        folder: the run's folder.
         tables: the names of tables; empty for the verdicts of all tables.
 
     Raises:
-        UsageError: the folder is not a run's, it has no such table, or its rows are of another version.
+        UsageError: the folder has no run or no rows, the run has no such table, or the rows do not match this
+            version.
     """
     done = read_to_show(folder, needs_rows=True)
     if not done.facts.get("finished", True):

@@ -1,4 +1,4 @@
-"""The output of a measured table: on the terminal for people, as text for programs, and remarks on its rows."""
+"""Output of a measured table: for people on the terminal, as text for programs, and messages about skipped rows."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ SENTENCE_WIDTH = 100
 
 
 def show(table: Table, done: Measured, format: str, output: Path | None) -> None:
-    """Write the rows to a file or, without a file, to standard output. Raises UsageError if they cannot be
-    written."""
+    """Write the rows of a table to a file or, if `output` is None, to standard output. Raises UsageError if the file
+    cannot be written."""
     if output is None:
         width = shutil.get_terminal_size((120, 40)).columns
         say(written(table, done, format, width))
@@ -35,11 +35,11 @@ def show(table: Table, done: Measured, format: str, output: Path | None) -> None
 
 
 def written(table: Table, done: Measured, format: str, width: int, spares: bool = True) -> str:
-    """Return the rows as text in a format.
+    """Return the rows of a table as text in a format.
 
     Args:
-        width: the number of letters in a line, for formats that people read.
-        spares: whether columns may be left out to keep to the width."""
+        width: the number of characters in a line, for formats that people read.
+        spares: whether columns may be left out to fit the width."""
     if format == "json":
         return tables.written(_with_lists(table, done.rows), format)
     if format not in FOR_PEOPLE:
@@ -48,25 +48,25 @@ def written(table: Table, done: Measured, format: str, width: int, spares: bool 
 
 
 def _flat(table: Table, rows: Sequence[Row]) -> list[Row]:
-    """Return rows without the columns of histograms."""
+    """Return the rows without their histogram columns."""
     hidden = {column.name for column in table.columns if column.is_histogram}
     return [{name: value for name, value in row.items() if name not in hidden} for row in rows]
 
 
 def _with_lists(table: Table, rows: Sequence[Row]) -> list[Row]:
-    """Return rows in which each histogram is a list of (lower edge, count), one for each bin."""
+    """Return the rows with each histogram as a list of (lower edge, count), one item per bin."""
     names = [column.name for column in table.columns if column.is_histogram]
     return [row | {name: bins(row[name]) for name in names if row.get(name) is not None} for row in rows]
 
 
 def bins(text: str) -> list[tuple[float, int]]:
-    """Return (lower edge, count) for each bin of a text such as `0:12 0.5:3`."""
+    """Return (lower edge, count) for each bin of a histogram in text form, such as `0:12 0.5:3`."""
     pairs = (word.split(":") for word in text.split())
     return [(float(edge), int(count)) for edge, count in pairs]
 
 
 def sheets(table: Table, done: Measured) -> Iterator[Sheet]:
-    """Yield the sheets of finished rows that are shown to people."""
+    """Yield the sheets in which people read a table's rows; the first sheet starts with the verdict."""
     yield from with_verdict(table, done.rows, _own_sheets(table, done))
 
 
@@ -90,8 +90,8 @@ def _sheet(sheet: Sheet, format: str, width: int, spares: bool) -> str:
 
 
 def _said(sheet: Sheet, width: int) -> str:
-    """Return the paragraphs of a sheet as one text for a terminal and for Markdown: the first as it is, the others as
-    a list; empty if it has none."""
+    """Return a sheet's paragraphs as text for a terminal or for Markdown, with a bullet before all but the first;
+    empty if `sheet.said` is empty."""
     if not sheet.said:
         return ""
     first, *rest = (*sheet.said, *sheet.aside)
@@ -101,19 +101,19 @@ def _said(sheet: Sheet, width: int) -> str:
 
 
 def with_verdict(table: Table, rows: Sequence[Row], sheets: Iterable[Sheet]) -> Iterator[Sheet]:
-    """Yield the sheets; in the first sheet the table's verdict comes before the sheet's own paragraphs."""
+    """Yield the sheets, with the table's verdict before the first sheet's own paragraphs."""
     verdict = tuple(table.work.verdict(rows))
     for number, sheet in enumerate(sheets):
         yield replace(sheet, said=(*verdict, *sheet.said)) if verdict and not number else sheet
 
 
 def summary(table: Table, rows: Sequence[Row]) -> list[Sheet]:
-    """Return the sheets that people look at first: the verdict, and sheets that have rows."""
+    """Return the sheets of a table's summary that have rows; the first sheet starts with the verdict."""
     return list(with_verdict(table, rows, (sheet for sheet in table.work.summary(rows) if sheet.rows)))
 
 
 def show_summary(table: Table, rows: Sequence[Row]) -> None:
-    """Write a table's summary to standard output; every row if it has none."""
+    """Write a table's summary to standard output; if the table has no summary, write its rows."""
     width = shutil.get_terminal_size((120, 40)).columns
     shown = table.without_hidden(rows)
     for sheet in summary(table, rows) or ([Sheet(table.section.title, shown, table.drops(shown))] if shown else []):
@@ -121,8 +121,8 @@ def show_summary(table: Table, rows: Sequence[Row]) -> None:
 
 
 def say_verdict(table: Table, rows: Sequence[Row]) -> None:
-    """Write NAME: SENTENCE to standard output for each sheet of a table's summary, with the first sentence that the
-    sheet has."""
+    """Write NAME: SENTENCE to standard output for each sheet in a table's summary that has sentences; SENTENCE is the
+    sheet's first."""
     width = min(shutil.get_terminal_size((120, 40)).columns, SENTENCE_WIDTH)
     for sheet in summary(table, rows):
         if sheet.said:
@@ -130,11 +130,10 @@ def say_verdict(table: Table, rows: Sequence[Row]) -> None:
 
 
 def say_skipped(table: Table, rows: Sequence[Row], known: Iterable[str] = ()) -> None:
-    """Write each reason why rows have no figures once to standard error, except reasons that contain a `known`
-    phrase.
+    """Write each reason for missing figures once to standard error, except reasons that contain a `known` phrase.
 
     Raises:
-        UsageError: no row has figures, in a table whose rows must have all.
+        UsageError: no row has figures, and the table does not accept incomplete rows.
     """
     reasons = dict.fromkeys(row["skipped"] for row in rows if row.get("skipped"))
     told = [reason for reason in reasons if not any(phrase in reason for phrase in known)]
@@ -150,8 +149,8 @@ def _but_its_backend(table: Table, row: Row) -> tuple[object, ...]:
 
 
 def _kind_of_skip(table: Table, rows: Sequence[Row], reason: str) -> str:
-    """Return words for the rows that lack figures for this reason. A missing twin is not a failure if another backend
-    measures the encoding."""
+    """Return a description of the rows skipped for this reason. A missing twin does not count as a failure if another
+    backend measures the encoding."""
     skipped = [row for row in rows if row.get("skipped") == reason]
     measured = {_but_its_backend(table, row) for row in rows if not row.get("skipped")}
     if lacks_twin(reason) and all(_but_its_backend(table, row) in measured for row in skipped):
@@ -162,12 +161,12 @@ def _kind_of_skip(table: Table, rows: Sequence[Row], reason: str) -> str:
 
 
 def _has_figures(table: Table, row: Row) -> bool:
-    """Whether a row of a table that may have some figures has any."""
+    """Whether a row has any figures, in a table that accepts incomplete rows."""
     return table.partial and any(row.get(c.name) is not None for c in table.of_role(Role.FIGURE, Role.TIME))
 
 
 def say_lines(lines: Iterable[str]) -> bool:
-    """Write lines to standard error, each with single spaces, and return whether there are any."""
+    """Write lines to standard error with repeated spaces removed, and return whether there are any lines."""
     sentences = [" ".join(line.split()) for line in lines]
     for line in sentences:
         tell(f"{line}")

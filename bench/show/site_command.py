@@ -34,14 +34,14 @@ DESCRIPTION = (
 
 
 def site_command(folders: Sequence[Path], output: Path) -> int:
-    """Write the site of a run and the devices that were imported into it, of the device files in folders and their
-    subfolders, or of both.
+    """Write a site for a run with the devices imported into it, for the device files in folders and their subfolders,
+    or for both.
 
     Returns:
-        the exit status: 1 if a file was left out because something is wrong with it.
+        the exit status: 1 if a file was skipped because it is not a valid device file.
 
     Raises:
-        UsageError: several folders are runs, there is no device file, or the site cannot be written.
+        UsageError: several folders are runs, folders contain no device file, or the site cannot be written.
     """
     runs, others = (
         [folder for folder in folders if _is_run(folder)],
@@ -67,8 +67,8 @@ def _counted(html_pages: dict[str, str], all_devices: Sequence[Device], is_run: 
 
 
 def _devices_in(folders: Sequence[Path], imported: Sequence[Read]) -> tuple[list[Device], int]:
-    """Return the devices of folders and the imported devices, and the number of the folders' other files. Raises
-    UsageError if there are folders but no device file in them."""
+    """Return the devices from folders together with the imported devices, and the number of files that were skipped.
+    Raises UsageError if folders are given but contain no device file."""
     read, wrong = _device_files(checked_number([path for folder in folders for path in _files_in(folder)]))
     if folders and not read:
         raise UsageError(f"{folders[0]} contains no device file; {SAVED}")
@@ -76,7 +76,7 @@ def _devices_in(folders: Sequence[Path], imported: Sequence[Read]) -> tuple[list
 
 
 def _files_in(folder: Path) -> list[Path]:
-    """Return the paths of all *.json files in a folder and its subfolders. Raises UsageError."""
+    """Return the sorted paths of all visible .json files in a folder and its subfolders. Raises UsageError."""
     if not folder.is_dir():
         raise UsageError(f"{folder}: no such folder" if not folder.exists() else f"{folder} is not a folder")
     paths = [Path(root) / name for root, _, names in os.walk(folder) for name in names if name.endswith(".json")]
@@ -85,7 +85,7 @@ def _files_in(folder: Path) -> list[Path]:
 
 
 def _device_files(paths: list[Path]) -> tuple[list[Read], int]:
-    """Read files. Return the device files, and the number of other files, each of which is reported."""
+    """Read device files. Return the valid files' contents and the number of invalid files, which are reported."""
     reads, wrong = [], 0
     for path in paths:
         try:
@@ -97,8 +97,8 @@ def _device_files(paths: list[Path]) -> tuple[list[Read], int]:
 
 
 def _pages_of_run(folder: Path, done: Done, all_devices: Sequence[Device]) -> dict[str, str]:
-    """Return the HTML of a site by path: a run's page, which begins with the laboratory, and pages that need no
-    scripts."""
+    """Return the HTML pages of a run's site by path: the run's page, which begins with the laboratory, and the pages
+    that work without scripts."""
     run, gallery, specs = drawn_page(gathered(folder, done))
     names = page.codecs(run, specs)
     views, devices_there = _views(run), f"{FOLDER}/{INDEX}"
@@ -113,8 +113,8 @@ def _pages_of_run(folder: Path, done: Done, all_devices: Sequence[Device]) -> di
 
 
 def _views(run: Found) -> list[ViewPage]:
-    """Return the pages of the views for readers without scripts: the recommendation and the layouts, without a view
-    that the run has no rows for."""
+    """Return the pages for readers without scripts: the recommendation and the layouts, each only if the run has rows
+    for it."""
     choose, layouts = _parts(run, View.CHOOSE), _parts(run, View.LAYOUTS)
     views = []
     if choose:
@@ -131,7 +131,7 @@ def _views(run: Found) -> list[ViewPage]:
 
 
 def _answer(parts: Sequence[page.PageSection]) -> str:
-    """Return the first sentence of the first table in these sections that has any; empty without any."""
+    """Return the first sentence of the first table in these sections that has any; empty if no table has."""
     return next((table.said[0] for part in parts for table in part.tables if table.said), "")
 
 

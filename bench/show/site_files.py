@@ -1,7 +1,7 @@
-"""The writing of a site into a folder: all of it or nothing, without changing anybody else's files.
+"""Writing a site into a folder without changing files that belong to anybody else.
 
-A marker file lists the files that this program wrote there. These files are replaced, or removed once they no longer
-belong to the site; any other file stays as it is.
+A marker file lists the files that this program wrote there. The next site replaces these files, and removes those
+that are not part of it; all other files stay unchanged.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ INDEX, FOLDERS = "index.html", ("codecs", "devices")
 
 
 def write_site(folder: Path, files: Mapping[str, str]) -> None:
-    """Write the files of a site, text by path, in place of an earlier site's.
+    """Write a site's files, given as text by relative path, in place of an earlier site's files.
 
     Raises:
-        UsageError: a file of that name is not this program's, the marker is damaged, or it cannot be written; then
-            the folder is as it was.
+        UsageError: a file of that name is not from an earlier site, the marker is damaged, or the site cannot be
+            written. The folder is unchanged, unless moving the finished files into it fails.
     """
     before = _files_before(folder)
     check_folder(folder)
@@ -45,8 +45,8 @@ def write_site(folder: Path, files: Mapping[str, str]) -> None:
 
 
 def _files_before(folder: Path) -> list[str]:
-    """Return the paths of the files that this program wrote to a folder before; empty without its marker there.
-    Raises UsageError."""
+    """Return the paths of the files that this program wrote to a folder earlier; empty if the folder has no marker
+    file. Raises UsageError if the folder cannot be used, or if its marker is damaged."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder; name a folder")
     # Behind a link lies somebody else's folder.
@@ -68,7 +68,7 @@ def _files_before(folder: Path) -> list[str]:
 
 @contextmanager
 def _partial_folder(folder: Path) -> Iterator[Path]:
-    """Yield a folder next to this one, on the same disk; delete it afterwards."""
+    """Create a temporary folder next to `folder`, on the same disk; yield its path, and delete it afterwards."""
     folder = folder.resolve()
     folder.parent.mkdir(parents=True, exist_ok=True)
     clear_away(folder)
@@ -91,7 +91,7 @@ def _marker_text(files: list[str]) -> str:
 
 
 def _put(partial: Path, folder: Path, files: Mapping[str, str]) -> None:
-    """Move the written files into place: at once if the folder is empty, else the marker first and the index last."""
+    """Move the written files into place: all at once if the folder is empty, otherwise the index last."""
     if not folder.exists() or not any(folder.iterdir()):
         place = folder.resolve()
         if place.exists():
@@ -105,7 +105,7 @@ def _put(partial: Path, folder: Path, files: Mapping[str, str]) -> None:
 
 
 def _clear(folder: Path, stale: set[str], files: Mapping[str, str]) -> None:
-    """Delete stale files of an earlier site, then remove them from the marker."""
+    """Delete an earlier site's files that the new site does not have, then remove them from the marker."""
     for path in stale:
         (folder / path).unlink(missing_ok=True)
     if stale:

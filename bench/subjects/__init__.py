@@ -1,1 +1,1 @@
-"""The subjects of measurements: codecs and sets of normals, by their names and from files."""
+"""Subjects of measurements: codecs and sets of normals, by name or from files."""

@@ -19,23 +19,23 @@ LINES = ("layout", "light_buffer", "light_targets", "pipeline", "shadow", "expos
 
 
 def having(rows: Sequence[Row], *columns: str) -> list[Row]:
-    """Return the rows with a finite figure in each of the columns."""
+    """Return the rows that have a finite number in each of these columns."""
     return [row for row in rows if all(is_number(row.get(c)) and math.isfinite(row[c]) for c in columns)]
 
 
 def lines_of(rows: Sequence[Row]) -> list[str]:
-    """Return labels that distinguish a chart's rows: the codec, and other names that differ between the rows."""
+    """Return labels that distinguish a chart's rows: the codec, and other columns that differ between rows."""
     others = [name for name in LINES if len({str(row.get(name)) for row in rows}) > 1]
     return [" ".join([CodecKey.of(row).label, *(str(row.get(name)) for name in others)]) for row in rows]
 
 
 def but_without_twins(rows: Sequence[Row]) -> list[Row]:
-    """Return rows, except those without figures only for lack of a Python twin, which is reported next to them."""
+    """Return the rows, without rows that were skipped for lack of a Python twin; these are reported separately."""
     return [row for row in rows if not lacks_twin(row.get("skipped") or "")]
 
 
 def one_backend(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of one backend for each encoding of normals or depth: JAX's if it has any."""
+    """Return the rows of one backend for each encoding of normals or depth: JAX if it has any rows."""
     chosen: dict[Any, Any] = {}
     for backend in dict.fromkeys([*BACKENDS, *(str(row.get("backend")) for row in rows)]):
         for row in rows:
@@ -49,19 +49,20 @@ def _code_name(row: Row) -> Any:
 
 
 def backends_of(rows: Sequence[Row]) -> str:
-    """Return the backends of rows for a title, joined by "or", whatever the order of the rows."""
+    """Return the backends of rows for a title, joined by "or", independent of the order of the rows."""
     names = dict.fromkeys(str(row.get("backend")) for row in rows)
     return " or ".join(sorted(names, key=_place))
 
 
 def _place(backend: str) -> int:
-    """Return the place of a backend among all backends; the last place for another name."""
+    """Return the position of a backend in the list of backends; after the last for an unknown name."""
     known = backends.BACKENDS
     return known.index(backend) if backend in known else len(known)
 
 
 def bins(text: Any) -> list[tuple[float, float, int]]:
-    """Return a row's histogram: lower and upper edge in degrees and count of each bin; empty if it is not one."""
+    """Return the bins of a row's histogram as (lower edge, upper edge, count), edges in degrees; empty if the text is
+    not a histogram."""
     try:
         pairs = [(float(edge), int(count)) for edge, count in (word.split(":") for word in str(text).split())]
     except ValueError:

@@ -9,7 +9,7 @@ from .table import Column, Row, Table
 
 
 def columns(names: Names) -> list[Row]:
-    """Return a row for each column of the tables that names stand for. Raises UsageError."""
+    """Return a row for each column of the tables with these names. Raises UsageError."""
     return [_column_row(table, column) for table in choose("table", names, TABLES) for column in table.columns]
 
 

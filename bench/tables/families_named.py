@@ -10,10 +10,10 @@ from .roofline.rates import GPUS
 
 
 def families_named(names: Names) -> list[str]:
-    """Return the families that names stand for, each once; a vendor stands for all of its families.
+    """Return the GPU families with these names, each once; a vendor's name stands for all of its families.
 
     Raises:
-        UsageError: an unknown name. For a GPU that `roofline` knows, the message names its family.
+        UsageError: a name is unknown. For a GPU that `roofline` knows, the message names its family.
     """
     if gpu := next((word for word in map(str, names) if word.lower() in GPUS), None):
         raise UsageError(f"{gpu} is a GPU, not a family; use its family, {GPUS[gpu.lower()].family}")

@@ -1,4 +1,4 @@
-"""The settings that frames are rendered with: layouts with codecs in them, and plans that suit a pipeline."""
+"""Settings for rendering frames: layouts with codecs in them, and plans that suit a pipeline."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 
 def with_codecs(chosen: Iterable[Layout], codecs: Sequence[Codec], complaints: list[str]) -> list[Layout]:
-    """Return each layout with every codec that fits in it; append to `complaints` why others do not fit."""
+    """Return each layout with every codec that fits in it; append to `complaints` why other codecs do not fit."""
     for encoding in dict.fromkeys(codec.encoding for codec in codecs):
         check_twin(encoding)
     complaints += by_reason((codec.name, codec.misfit) for codec in codecs if not codec.fits)
@@ -36,11 +36,11 @@ def with_codecs(chosen: Iterable[Layout], codecs: Sequence[Codec], complaints: l
 def suited(
     device: Device, pipeline: Pipeline, plans: list[Plan], complaints: list[str], is_metal_rough: bool = False
 ) -> list[Plan]:
-    """Return the plans that suit a pipeline, each once, without what makes no difference to the pipeline; append to
-    `complaints` why the others do not suit it.
+    """Return the plans that suit a pipeline, each once, with the settings that do not affect the pipeline at their
+    defaults; append to `complaints` why other plans do not suit it.
 
     Args:
-        is_metal_rough: whether the scene's materials are metallic-roughness.
+        is_metal_rough: whether the scene's materials use the metallic-roughness workflow.
     """
     suited_plans: dict[Plan, None] = {}
     for plan in plans:

@@ -1,4 +1,4 @@
-"""The tables, in the order of a run and of its page. Adding one is its folder, and one line here."""
+"""The tables, in the order of a run and of its page. To add a table, add its folder and one line here."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ NAMES = (
 
 
 class Tables(Mapping[str, Table]):
-    """The tables by name. Each is imported when it is asked for, so that a command imports its own alone."""
+    """The tables by name. A table is imported on access, so that a command imports only the tables it needs."""
 
     def __getitem__(self, name: str) -> Table:
         if name not in NAMES:

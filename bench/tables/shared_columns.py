@@ -1,4 +1,4 @@
-"""Columns that mean the same in several tables. Imports nothing heavy."""
+"""Columns with the same meaning in several tables. Imports nothing heavy."""
 
 from __future__ import annotations
 

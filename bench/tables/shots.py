@@ -1,4 +1,4 @@
-"""Steps that render frames: a row of figures against a reference, and pictures where somebody asks for them."""
+"""Steps that render frames: a row of figures against a reference and, on request, pictures."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ class Frame:
     """A rendered image.
 
     Attributes:
-        linear: light, float32 of shape (height, width, 3).
-        display: the exposure and the tone mapping with which it is shown.
-        times: the columns of its times; empty if it was not timed.
-        flip: FLIP against the reference, (height, width); None if it was not requested.
+        linear: linear light, float32 of shape (height, width, 3).
+        display: the exposure and the tone mapping for display.
+        times: the columns of the frame's times; empty if it was not timed.
+        flip: FLIP against the reference, of shape (height, width); None if it was not requested.
     """
 
     linear: np.ndarray
@@ -58,17 +58,17 @@ class Frame:
 
     @cached_property
     def shown(self) -> np.ndarray:
-        """The image as a display shows it, in [0, 1]."""
+        """The displayed image, with values in [0, 1]."""
         return self.display.image(self.linear)
 
     @cached_property
     def compared(self) -> Flip:
-        """The comparison of other frames with this one."""
+        """The FLIP comparison of other frames with this frame."""
         return Flip(self.shown)
 
 
 class Measurable(Protocol):
-    """A row to measure: a value that can be hashed, and the reference that it is measured against."""
+    """A hashable case that a row is measured for, and the reference for its figures."""
 
     @property
     def reference(self) -> Any: ...
@@ -99,25 +99,25 @@ class Bench(ABC, Generic[CaseT, FrameT]):
 
     @abstractmethod
     def frames(self, case: CaseT, repeats: int = 0) -> list[FrameT]:
-        """Render a case at each of its moments; if `repeats` is not 0, time the last frame."""
+        """Render a case at each of its points in time; if `repeats` is not 0, time the last frame."""
 
     @abstractmethod
     def display(self, case: CaseT, frames: list[FrameT]) -> Display:
-        """Return how a reference, and every image compared with it, is shown."""
+        """Return the display settings for a reference and for every image compared with it."""
 
     @abstractmethod
     def figures(self, case: CaseT, frames: list[FrameT], exact: list[FrameT]) -> Row:
-        """Return the figures that compare frames with the reference; if there are no figures, at least `skipped`."""
+        """Return the figures that compare frames with the reference; at least `skipped` if there are no figures."""
 
     def reference(self, case: CaseT) -> list[FrameT]:
         """Return the frames of a case's reference."""
         return self._kept(case.reference)
 
     def _kept(self, case: CaseT, frames: list[FrameT] | None = None) -> list[FrameT]:
-        """Return the frames of a case that is a reference, and keep them.
+        """Return the frames of a case that is a reference, and keep them for later calls.
 
         Args:
-            frames: its frames if they are rendered already; None to render them."""
+            frames: the frames of the case if they are already rendered; None to render them."""
         if case not in self._references:
             frames = self.frames(case) if frames is None else frames
             display = self.display(case, frames)
@@ -125,11 +125,11 @@ class Bench(ABC, Generic[CaseT, FrameT]):
         return self._references[case]
 
     def measure(self, case: CaseT) -> tuple[Row, FrameT | None]:
-        """Return the row of a case and its first frame. If the case cannot be measured, the reason is in `skipped`
+        """Return the row of a case and its first frame. If the case cannot be measured, `skipped` gives the reason,
         and the frame is None.
 
         Raises:
-            UsageError: the scene draws nothing.
+            UsageError: no surface of the scene is visible.
         """
         row = self.about(case)
         try:
@@ -154,22 +154,22 @@ def _made_scene(maker: SceneMaker, setting: Setting) -> Scene:
 
 
 def image_figures(frames: Sequence[Frame], exact: Sequence[Frame]) -> Row:
-    """Return columns that compare images as displayed: `mse`, the mean over frames, its `psnr_db`, and `invalid`, the
-    number of pixels of all frames that are not finite."""
+    """Return columns that compare displayed images: `mse`, the mean over frames; its `psnr_db`; and `invalid`, the
+    number of pixels in all frames that are not finite."""
     errors = [squared_error(frame.shown, other.shown) for frame, other in zip(frames, exact, strict=True)]
     mse = float(np.mean([error for error, _ in errors]))
     return {"mse": mse, "psnr_db": psnr_db(mse), "invalid": sum(broken for _, broken in errors)}
 
 
 def time_columns(timings: Mapping[str, Timing], clock: str) -> Row:
-    """Return columns of times in milliseconds: `ms_` and the median for each pass and the frame, `ms_frame_spread`,
-    the distance between the frame's quartiles; and `clock`."""
+    """Return columns of times in milliseconds: the medians for each pass and for the frame, prefixed with `ms_`;
+    `ms_frame_spread`, the interquartile range for the frame; and `clock`."""
     row: Row = {f"ms_{name}": timing.median for name, timing in timings.items()}
     return row | {"ms_frame_spread": timings["frame"].spread, "clock": clock}
 
 
 def described(pipeline: Pipeline, plan: Plan, setting: Setting, asked: int) -> Row:
-    """Return the columns on how a row was rendered; settings that do not affect the pipeline are None.
+    """Return the columns that describe how a row was rendered; settings that do not affect the pipeline are None.
 
     Args:
         asked: requested samples per pixel; `plan.samples` is the number that the device provides.
@@ -192,27 +192,27 @@ def described(pipeline: Pipeline, plan: Plan, setting: Setting, asked: int) -> R
 
 
 def require_surface(maker: SceneMaker, is_seen: bool) -> None:
-    """Raise UsageError if no surface of a scene is visible."""
+    """Raise UsageError if no surface in a scene is visible."""
     if not is_seen:
         raise UsageError(f"{maker.name}: {SEES_NOTHING}")
 
 
 def says_little(scene: str, covered: float) -> Iterator[str]:
-    """Yield a remark on a scene whose surfaces cover some of its image, but only a few percent.
+    """Yield a remark on a scene whose surfaces cover only a few percent of its image, but more than 0.
 
     Args:
-        covered: covered part of the image, in percent."""
+        covered: the part of the image that surfaces cover, in percent."""
     if 0 < covered < LEAST_COVERED:
         what = f"{scene}: surfaces cover only {covered:.0f}% of the image"
         yield f"{what}; move the camera in the file closer for more pixels to compare"
 
 
 def checked_device(repeats: int, least: int = 0) -> Device:
-    """Return the device that frames are rendered on.
+    """Return the device that renders frames.
 
     Raises:
         UsageError: `repeats` is out of range.
-        MissingError: there is no device, or no JAX.
+        MissingError: no device is available, or JAX is missing.
     """
     require_jax()
     device = require_device()
@@ -225,7 +225,8 @@ class Shot:
     """A case, the bench that measures it, and the folder for its pictures, if any.
 
     Attributes:
-        bench: object with `reference`, and with `measure`, which returns a case's row and frame (None if not drawn).
+        bench: an object with the methods `reference`, and `measure`, which returns a case's row and frame (None if
+            the case was not drawn).
         case: the case to measure.
         images: the folder for pictures; None for no pictures.
     """
@@ -240,7 +241,7 @@ def shot_steps(bench: Any, cases: Sequence[Any], images: Path | None, key: Calla
 
     Args:
         images: the folder for pictures; None for no pictures.
-        key: function from a case to the step's key columns."""
+        key: a function from a case to the key columns of its step."""
     if images:
         check_folder(images)
     return [Step(key(case), Shot(bench, case, images), case.name) for case in cases]
@@ -250,7 +251,7 @@ def by_shots(write: Callable[[Path, Row, Any, Any], None]) -> Callable[[Sequence
     """Return the `measure` function of a Work whose steps have shots as cases.
 
     Args:
-        write: writes the pictures, given the folder, the row, the frame and its reference.
+        write: a function that writes the pictures, given the folder, the row, the frame and its reference.
     """
 
     def measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
@@ -279,5 +280,6 @@ def by_shots(write: Callable[[Path, Row, Any, Any], None]) -> Callable[[Sequence
 
 
 def name_of_file(effects: str) -> str:
-    """Return the names of effects as part of a file's name: `_` replaces all but letters, digits, `_` and `.`."""
+    """Return effects for use in a file name: each run of characters other than letters, digits, `_` and `.` is
+    replaced by `_`."""
     return re.sub(r"[^\w.]+", "_", effects)

@@ -1,9 +1,9 @@
-"""The definition of a table: all its facts, each stated once. Imports nothing heavy.
+"""The definition of a table, with each fact stated once. Imports nothing heavy.
 
-A table is a folder with two files, and one line of `registry.py`:
+A table is a folder with two files, and one line in `registry.py`:
 
-    table.py    TABLE, a Table: name, options, columns, page section. Every start of the program imports it.
-    work.py     WORK, a Work: how the rows are measured and shown. Only imported when the table is measured.
+    table.py    TABLE, a Table: name, options, columns, page section. Imported whenever the program starts.
+    work.py     WORK, a Work: how the rows are measured and shown. Imported only if the table is measured.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ UNEXPECTED = (KeyError, TypeError, ValueError, IndexError, AttributeError)
 
 
 class Group(StrEnum):
-    """The purpose of a command, by which the program's help groups commands; in this order."""
+    """The purpose of a command; the program's help groups commands by purpose, in this order."""
 
     ANSWER = "The answer"
     MEASURE = "Measure"
@@ -45,19 +45,19 @@ class Group(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class NoOutputs:
-    """A table that writes nothing but its rows."""
+    """Output options for a table that writes only its rows."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """A unit that is measured, kept and resumed at once: a row, or several.
+    """A unit that is measured, kept and resumed as a whole: one or more rows.
 
     Attributes:
-        key: everything that determines the rows except the machine and the sources; plain values.
+        key: everything that determines the rows except the machine and the source code, as plain values.
         case: the case that the table's own code measures.
-        name: its name in a progress bar.
-        ticks: how many chunks it has.
-        parts: steps that are measured in place of a step that takes hours; `Work.merge` makes its rows from theirs.
+        name: the step's name in a progress bar.
+        ticks: the number of chunks in the step.
+        parts: steps that are measured in place of a long step; `Work.merge` makes its rows from theirs.
     """
 
     key: Row
@@ -69,13 +69,13 @@ class Step:
 
 @dataclass(frozen=True)
 class Measured:
-    """A table with its measured rows.
+    """A table's request with its measured rows.
 
     Attributes:
         options, outputs: the request.
         steps: the measured steps.
         rows: the finished rows.
-        kept: the rows of each step, as they were measured.
+        kept: the rows of each step, as measured.
     """
 
     options: Any
@@ -102,7 +102,7 @@ def _none(*_: Any) -> None:
 
 
 def _by_backend(step: Step) -> frozenset[str]:
-    """Return what the backend of a step needs; a step without a backend draws, as in GLSL."""
+    """Return what a step's backend needs; a step without a backend needs the same as GLSL."""
     return BACKENDS_NEED[step.key.get("backend", "glsl")]
 
 
@@ -119,36 +119,37 @@ class Work:
     """The code that measures and shows a table. Everything here may import heavy packages.
 
     Attributes:
-        steps: from options and outputs, both typed text, to steps. Raises UsageError and MissingError.
-        check: checks the outputs that a user asked for. Raises UsageError before anything is measured.
-        measure: the rows of each step, in the order of the steps.
-        merge: the rows of a step that is measured in parts, from all rows of its parts in their order.
-        finish: new rows completed with what needs all of them: their order, their ranks. It is called when rows are
-            measured, and when a run is read; all others receive finished rows.
-        shown: finished rows for people; None if they are shown as they are.
-        verdict: the conclusion from finished rows, as an engineer would put it: a sentence, and others that it
-            needs.
-        summary: the rows that people look at first, below the verdict.
-        warnings: a line for each row that is measured but odd.
-        failures: a line for each row that makes the command fail.
-        write: writes the files that were asked for besides the rows. Returns lines that make the command fail.
-        charts: `chart.Chart` values of rows, which the page, the files of `run`, notebooks and --plot draw.
-        plotted: the charts that --plot draws if they are not `charts` of the rows.
-        extras: the page's contents besides the rows, by attributes of `found.Found`, from the folder of a run, its
-            rows by table, and remarks that it may add to.
-        joined: charts of the page that need rows of several tables, from its contents, a `found.Found`.
-        subjects: the images of the rows among the files of `write`, in a folder: `pixels.Subject` values for the
-            page.
-        films: animations of the rows among the files of `write`, in a folder: `pixels.Film` values for the page.
-        worst: the normal that a step's codec turns the most; None if there is no such normal.
-        listing: the instructions that a step's row was counted in, as text; None if there are none.
-        lacking: what turned out to be missing on this machine; makes the exit status 3.
-        missing: why `run` leaves the table out on this machine; empty if it does not.
-        needs: what a step is measured with besides JAX: GL, VULKAN, COMPILERS, C_COMPILER. Workers that have
-            another one, or none, do not measure it.
-        is_timed: whether a clock is read for a step's rows: if so, the process that was asked measures it, after
-            all others.
-        stays: whether measuring leaves behind what `write` or `lacking` uses, so that no other process can do it.
+        steps: a function from options and outputs to steps. Raises UsageError and MissingError.
+        check: checks the outputs that a user requested. Raises UsageError before anything is measured.
+        measure: yields the rows of each step, in the order of the steps.
+        merge: returns the rows of a step that is measured in parts, from all rows of its parts in order.
+        finish: completes new rows with values that depend on all rows, such as order and ranks. It is called when
+            rows are measured and when a run is read; all other functions receive finished rows.
+        shown: returns the sheets that show finished rows to people; None to show the rows unchanged.
+        verdict: returns the conclusion from finished rows, as an engineer would put it: a sentence, and more if
+            needed.
+        summary: yields the sheets that people look at first, below the verdict.
+        warnings: returns a line for each row that was measured but is suspicious.
+        failures: returns a line for each row that makes the command fail.
+        write: writes the requested files other than the rows. Returns lines that make the command fail.
+        charts: returns `chart.Chart` values for rows, drawn on the page, in the files of `run`, in notebooks and for
+            --plot.
+        plotted: returns the charts for --plot; None if they are the `charts` of the rows.
+        extras: returns the page's contents other than the rows, by attribute of `found.Found`, from a run's folder,
+            its rows by table, and remarks that it may add to.
+        joined: returns the page's charts that need rows of several tables, from the page's contents, a `found.Found`.
+        subjects: yields the images that `write` saved for rows in a folder, as `pixels.Subject` values for the page.
+        films: yields the animations that `write` saved for rows in a folder, as `pixels.Film` values for the page.
+        worst: returns the normal with the largest error in a step's codec; None if no such normal is known.
+        listing: returns as text the instructions that a row's figures were counted from; None if they are not known.
+        lacking: returns what proved to be missing on this machine; the exit status is then 3.
+        missing: returns why `run` leaves the table out on this machine; empty if it does not.
+        needs: returns what measuring a step needs besides JAX: GL, VULKAN, COMPILERS, C_COMPILER. Workers that lack
+            it, or have a different version, do not measure the step.
+        is_timed: whether a step's rows contain times; such a step is measured by the requesting process, after all
+            other steps.
+        stays: whether measuring leaves data in the process that `write` or `lacking` uses, so that no other process
+            can measure the table.
     """
 
     steps: Callable[[Any, Any], Sequence[Step]]
@@ -184,32 +185,32 @@ class Work:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Table:
-    """A table.
+    """A table: its command, options, columns and place on the page.
 
     Attributes:
-        package: the package of its code: `__package__` of the file that makes it.
-        help: the command's help: a sentence, and a paragraph if need be.
+        package: the package of the table's code: `__package__` in the file that defines the table.
+        help: the command's help: a sentence, and a paragraph if needed.
         example: a command that answers a common question.
-        options: the dataclass of what is measured; the command line, tests, gates and Python read it.
+        options: the dataclass of what is measured; used by the command line, tests, gates and Python.
         outputs: the dataclass of what may be written besides the rows.
-        columns: the columns of its rows, in order.
-        also: columns that only its summaries have.
-        section: its part of the page.
-        group: the group of its command in the program's help.
-        usual: what `run` measures of it if nothing else is asked for: sets of options.
+        columns: the columns of the rows, in order.
+        also: columns that occur only in summaries.
+        section: the table's part of the page.
+        group: the group of the command in the program's help.
+        usual: the sets of options that `run` measures if no others are given.
         usual_where_said: by option, what replaces parts of `usual` if `run` is given that option.
-        single: options of a gate or a test that gives no others.
-        files: by output, the folder or file of a run that holds it.
-        by: a column; for people, rows that differ in it form separate tables.
+        single: the default options of a gate or a test.
+        files: by output, the folder or file in a run that contains it.
+        by: a column; for people, rows are split into separate tables by its value.
         partial: whether a row that says why figures are missing may have other figures.
-        in_all: whether `run` measures it without being asked to.
-        asked_by: an option; if it is given, `run` measures the table without being asked to.
+        in_all: whether `run` measures the table by default.
+        asked_by: an option; if it is given, `run` measures the table by default.
         not_with: an option; if it is given, `run` measures the table only if it is named.
-        is_usual: whether a gate or a test that names no table means this one.
-        is_kept: whether the command repeats its answer while nothing that determines it has changed.
-        step_s: seconds per step in the default run, on two cores: the estimate of a run until it has measured its
-            own.
-        compilers: columns that name the compilers of a row's figures; figures of two versions are not compared.
+        is_usual: whether a gate or a test that names no table means this table.
+        is_kept: whether the command repeats its answer as long as nothing that determines the answer has changed.
+        step_s: seconds per step in the default run, on two cores; used as an estimate until a run has measured steps.
+        compilers: columns that name the compilers behind a row's figures; figures from different versions are not
+            compared.
     """
 
     package: str
@@ -236,27 +237,27 @@ class Table:
     compilers: tuple[str, ...] = ()
 
     def is_in_all(self, options: Mapping[str, Any]) -> bool:
-        """Whether `run` with these options, by name, measures it where no table is named."""
+        """Whether `run` with these options, by name, measures the table if no tables are named."""
         is_usual = self.in_all and options.get(self.not_with) is None
         return is_usual or options.get(self.asked_by) is not None
 
     @property
     def name(self) -> str:
-        """The command, the table of a run and the anchor on the page: the folder's name."""
+        """The name of the table's folder, which is also its command, its name in a run and its anchor on the page."""
         return self.package.rpartition(".")[2]
 
     @property
     def work(self) -> Work:
-        """The code that measures and shows it."""
+        """The code that measures and shows the table."""
         return import_module(f"{self.package}.work").WORK
 
     def empty(self, parts: Iterable[str] = ()) -> Row:
-        """Return a row without values; each of `parts` replaces `*` in the names of columns."""
+        """Return a row without values; a column with `*` in its name becomes one column per item of `parts`."""
         names = [[c.name.replace("*", part) for part in parts] if "*" in c.name else [c.name] for c in self.columns]
         return dict.fromkeys(name for several in names for name in several)
 
     def column(self, name: str) -> Column | None:
-        """Return the column of a row or a summary by its name; None if there is no such column."""
+        """Return the column with this name in a row or a summary; None if there is no such column."""
         return _column_of(self, name)
 
     def of_role(self, *roles: Role) -> list[Column]:
@@ -264,7 +265,7 @@ class Table:
         return [column for column in self.columns if column.role in roles]
 
     def as_now(self, row: Row) -> Row:
-        """Return a row with the key columns that it lacks from an older version, at their values of then."""
+        """Return an older version's row with missing key columns added, at the values they had at that time."""
         return row | {c.name: c.before for c in self.of_role(Role.KEY) if c.before and c.name not in row}
 
     def name_of(self, row: Mapping[str, Any]) -> str:
@@ -279,11 +280,11 @@ class Table:
         yield from self.work.warnings(rows)
 
     def lacking(self, done: Measured) -> list[str]:
-        """Return what the machine turned out to lack, each item once."""
+        """Return what proved to be missing on the machine, each item once."""
         return list(dict.fromkeys(self.work.lacking(done)))
 
     def drops(self, rows: Sequence[Row]) -> tuple[str, ...]:
-        """Return the names of the columns that a narrow terminal leaves out, the first to go first."""
+        """Return the names of the columns that a narrow terminal leaves out, in order of removal."""
         ranks = {name: column.drops for name in (rows[0] if rows else ()) if (column := self.column(name))}
         return tuple(sorted((name for name, rank in ranks.items() if rank), key=lambda name: ranks[name]))
 
@@ -295,8 +296,8 @@ class Table:
 
 @cache
 def _column_of(table: Table, name: str) -> Column | None:
-    """Return the column of a table by its name; None if no column has it. Cached, because rows are many and patterns
-    of names take long."""
+    """Return the column of a table with this name; None if there is no such column. Cached, because there are many
+    rows and name patterns are slow to match."""
     return column_called(name, (*table.columns, *table.also))
 
 
@@ -304,7 +305,7 @@ def each(measure_case: Callable[[Any], Sequence[Row]]) -> Callable[[Sequence[Ste
     """Return the `measure` function of a Work that measures one case at a time.
 
     Args:
-        measure_case: function from a case to its rows."""
+        measure_case: a function from a case to its rows."""
 
     def measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
         for step in steps:

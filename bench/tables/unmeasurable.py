@@ -1,4 +1,4 @@
-"""Why a row of codes may have no figures."""
+"""Reasons why a codec's row may have no figures."""
 
 from __future__ import annotations
 

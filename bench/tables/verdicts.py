@@ -1,4 +1,4 @@
-"""Words that the verdicts of several tables have in common."""
+"""Wording shared by the verdicts of several tables."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ MOST_TIED = 3
 
 
 def best_by_bits(rows: Iterable[Row], figure: str, bits: str = "bits") -> list[list[Row]]:
-    """Return the rows with the smallest figure for each bit count and the rows that tie with them, the best first.
-    Bit counts whose best row does not beat fewer bits are left out.
+    """Return, for each bit count, the row with the smallest figure and the rows that tie with it, best first. Bit
+    counts whose best row does not beat all smaller bit counts are left out.
 
     Args:
-        figure: column of the error.
-        bits: column of the bit count.
+        figure: the column with the error.
+        bits: the column with the bit count.
     """
     groups: dict[float, list[Row]] = {}
     for row in sorted((row for row in rows if row[bits]), key=lambda row: (row[bits], row[figure])):
@@ -34,24 +34,24 @@ def best_by_bits(rows: Iterable[Row], figure: str, bits: str = "bits") -> list[l
 
 
 def by_bits(rows: Iterable[Row], figure: str, told: Callable[[Row], str], bits: str = "bits") -> str:
-    """Return the most accurate codecs for each bit count in words: "16 bits: octahedral in rg8 (mean 0.336°)".
+    """Return the most accurate codecs for each bit count as text: "16 bits: octahedral in rg8 (mean 0.336°)".
 
     Args:
-        told: function from a row to the text in brackets.
+        told: a function from a row to the text in parentheses.
     """
     best = best_by_bits(rows, figure, bits)
     return "; ".join(f"{tied[0][bits]:g} bits: {codecs(tied, alternatives)} ({told(tied[0])})" for tied in best)
 
 
 def codec_name(row: Row) -> str:
-    """Return the name of a row's codec as it appears in a sentence."""
+    """Return the name of a row's codec for use in a sentence."""
     rounding = row.get("rounding") or "nearest"
     encoding = row.get("encoding") or row.get("depth")
     return f"{encoding} in {row['storage']}" + (f" ({rounding})" if rounding != "nearest" else "")
 
 
 def codecs(rows: Sequence[Row], joined: Callable[[Iterable[str]], str]) -> str:
-    """Return the names of the rows' codecs for a sentence; a storage that all of them share is named once."""
+    """Return the names of the rows' codecs for use in a sentence; a storage that all of them share is named once."""
     shared = {(row["storage"], row.get("rounding") or "nearest") for row in rows}
     if len(rows) == 1 or shared != {(rows[0]["storage"], "nearest")}:
         return joined(map(codec_name, rows))
@@ -59,7 +59,7 @@ def codecs(rows: Sequence[Row], joined: Callable[[Iterable[str]], str]) -> str:
 
 
 def alternatives(names: Iterable[str]) -> str:
-    """Join the names of alternatives: "a, b or c"; for many names, return the first and the number of the others."""
+    """Return names as alternatives: "a, b or c"; if there are many, the first and the number of the others."""
     known = list(dict.fromkeys(names))
     if len(known) > MOST_TIED:
         return f"{known[0]} or {len(known) - 1} others that tie"
@@ -67,7 +67,7 @@ def alternatives(names: Iterable[str]) -> str:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Return names in a sentence: "a, b and c"."""
+    """Return names for use in a sentence: "a, b and c"."""
     return _listed(list(dict.fromkeys(names)), "and")
 
 

@@ -26,7 +26,7 @@ LEAST_BITS = 4
 
 
 def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
-    """Return why a storage's channels cannot hold numbers with these value counts, 0 for any; None if they can."""
+    """Return why a storage's channels cannot hold numbers with these value counts (0: any); None if they can."""
     if len(levels) > storage.channels:
         has = f"{storage.channels} channel" + "s" * (storage.channels > 1)
         return f"{len(levels)} components, but {storage.title} has {has}"
@@ -41,17 +41,17 @@ def numbers_misfit(storage: Storage, levels: Sequence[int]) -> str | None:
 
 
 def fewer_bits(bits: int | None, code_bits: float | None) -> int | None:
-    """Return `code_bits`, rounded to a whole number, if it is below `bits`; else None, also if one is missing."""
+    """Return `code_bits`, rounded to a whole number, if it is below `bits`; otherwise, or if one is missing, None."""
     return round(code_bits) if bits and code_bits and round(code_bits) < bits else None
 
 
 def codec_name(encoding_name: str, storage_name: str, rounding: str) -> str:
-    """Return the name of a codec, `encoding/storage/rounding`, where rounding to nearest is left out."""
+    """Return the name of a codec, `encoding/storage/rounding`, without the rounding if it is to nearest."""
     return f"{encoding_name}/{storage_name}" + ("" if rounding == "nearest" else f"/{rounding}")
 
 
 def rounding_misfit(storage: Storage, rounding: str) -> str | None:
-    """Return why a storage's numbers cannot have a rounding, one of ROUNDINGS or DITHERED; None if they can."""
+    """Return why a storage does not support a rounding, one of ROUNDINGS or DITHERED; None if it does."""
     if storage.kind == "float" and rounding == DITHERED:
         return f"{storage.title}: float steps are uneven; use noise only with fixed point"
     if storage.kind == "float" and rounding == "truncate_half":
@@ -61,16 +61,16 @@ def rounding_misfit(storage: Storage, rounding: str) -> str | None:
 
 def dither_of(storage: Storage, levels: Sequence[int], frame: int) -> Dither:
     """Return noise of one step of the storage for each component whose value count in `levels` is 0, and no noise for
-    the others. See `Dither.frame`."""
+    the others. For `frame`, see `Dither`."""
     return Dither(tuple(0.0 if count else storage.step(channel) for channel, count in enumerate(levels)), frame)
 
 
 @dataclass(frozen=True)
 class Codec:
-    """An encoding, the storage of its components, and its rounding: one of `storage.ROUNDINGS`, or DITHERED.
+    """An encoding, the storage for its components, and the rounding: one of `storage.ROUNDINGS`, or DITHERED.
 
-    An encoding of numbers in [0, 1] fills every storage with them, even a signed storage. An encoding that packs its
-    own code has its own storage, whatever storage is given.
+    If an encoding's numbers are in [0, 1], the texels hold these numbers unchanged, even in a signed storage. An
+    encoding that packs its own code has its own storage, which replaces the given storage.
     """
 
     encoding: Encoding
@@ -114,7 +114,7 @@ class Codec:
 
     @property
     def is_dithered(self) -> bool:
-        """Whether noise is added to its numbers before they are rounded to the nearest."""
+        """Whether noise is added to the numbers before they are rounded to nearest."""
         return self.rounding == DITHERED
 
     @property
@@ -128,8 +128,8 @@ class Codec:
 
     @property
     def _not_in_half(self) -> str:
-        """The reason why the encoding does not support half arithmetic, to precede "for half arithmetic" in a
-        message; empty if it supports it."""
+        """The reason why the encoding does not support half arithmetic, worded to precede "for half arithmetic" in a
+        message; empty if the encoding supports it."""
         if self.encoding.is_packed:
             return "a 32-bit integer code is not supported"
         if self.encoding.before:
@@ -143,7 +143,7 @@ class Codec:
 
     @property
     def undithered(self) -> str | None:
-        """The reason why noise cannot be added to its numbers before rounding, requested or not; None if it can."""
+        """The reason why noise, requested or not, cannot be added to the numbers before rounding; None if it can."""
         encoding = self.encoding
         if encoding.is_packed or (encoding.levels and all(encoding.levels)):
             return "its code is an integer, such as an index, and noise would select a different one"
@@ -154,7 +154,7 @@ class Codec:
         return None
 
     def dither(self, frame: int) -> Dither:
-        """Return noise of a whole step for its numbers; `frame` is the frame of moving noise, 0 for still noise."""
+        """Return noise of one step for the codec's numbers, for a frame of moving noise; frame 0 is still noise."""
         return dither_of(self.storage, list(map(self.encoding.levels_of, range(self.encoding.components))), frame)
 
     @property
@@ -164,14 +164,14 @@ class Codec:
 
     @property
     def is_integer(self) -> bool:
-        """Whether its texels are bits without a meaningful mean: an integer, or floats across channels."""
+        """Whether the texels hold bits without a meaningful mean: an integer, or floats laid across channels."""
         return self.encoding.is_packed or self.storage.is_word or self.storage.form is not None
 
     @property
     def bits(self) -> int:
-        """The bits that it uses: all of every channel used, and its sign bits. For an integer, only the bits used.
+        """The number of bits used: all bits of each channel in use, and the sign bits; for an integer, its used bits.
 
-        A component of few values counts its whole channel, too, because another storage has a channel that fits.
+        A component with few values also counts as a whole channel, since other storages have a channel that fits.
         """
         if self.encoding.is_packed:
             return self.encoding.packed_bits
@@ -179,7 +179,7 @@ class Codec:
 
     @property
     def codes(self) -> int:
-        """The number of its codes: all values that its numbers in [-1, 1] can have, used or not."""
+        """The number of codes: all combinations of values that the numbers in [-1, 1] can have, used or not."""
         if self.encoding.is_packed:
             return 2**self.encoding.packed_bits
         size = self.encoding.components + self.encoding.sign_bits
@@ -187,13 +187,13 @@ class Codec:
 
     @property
     def code_bits(self) -> float | None:
-        """Base-2 logarithm of the number of codes, if all components have fixed levels; otherwise None."""
+        """The base-2 logarithm of the number of codes if every component has fixed levels; otherwise None."""
         is_fixed = all(map(self.encoding.levels_of, range(self.encoding.components)))
         return math.log2(self.codes) if is_fixed else None
 
     def numbers(self, component: int) -> Float[np.ndarray, " numbers"]:
-        """Return every number in [-1, 1] that a component can have after storage, ascending; float64. If it has a
-        fixed number of values, these are the stored numbers nearest to them; a sign bit has -1 and 1."""
+        """Return all numbers in [-1, 1] that a component can have after storage, ascending; float64. For a component
+        with a fixed number of values, these are the nearest stored numbers; for a sign bit, -1 and 1."""
         if component >= self.encoding.components:
             return np.array([-1.0, 1.0])
         levels = self.encoding.levels_of(component)
@@ -209,7 +209,7 @@ class Codec:
         return every[above - ~is_above]
 
     def rounding_of(self, component: int) -> str:
-        """Return how a component rounds: to nearest if it has few values, whatever the others do."""
+        """Return the rounding of a component: always to nearest if it has a fixed number of values."""
         return "nearest" if self.encoding.levels_of(component) else rounds_to(self.rounding)
 
     def store(self, code):
@@ -242,7 +242,7 @@ class Codec:
         return [type(code)(*numbers) for numbers in itertools.product(*around)]
 
     def _nearest_of(self, code, n: Vec3, view: Vec3):
-        """Return the code, among those around `code`, that decodes nearest to n."""
+        """Return the code that decodes nearest to n, from the codes around `code`."""
         codes = self.around(code)
         # Squared distances, not cosines: near 1 those no longer tell fine codes apart.
         misses = [n - self.encoding.decode(candidate, view) for candidate in codes]
@@ -251,8 +251,8 @@ class Codec:
     def round_trip(
         self, n: Vec3, view: Vec3, noise: Sequence[Float[Array | np.ndarray, "*shape"]] | None = None
     ) -> Vec3:
-        """Unit normals (any shape, as `from_array` makes them) encoded, stored and decoded; not renormalised. See
-        `stored`."""
+        """Return unit normals (any shape, as from `from_array`) after encoding, storage and decoding; not
+        renormalised. For `noise`, see `stored`."""
         decoded = self.encoding.decode(self.stored(n, view, noise), view)
         # A component that is a number of Python, or of another type, becomes one for each normal.
         return Vec3(*(jnp.broadcast_to(jnp.asarray(c, n.z.dtype), jnp.shape(n.z)) for c in decoded))

@@ -1,5 +1,5 @@
-"""Depth codecs: depth encodings, each a pair of maps between view depth and one number in both languages, with a
-storage. `normalbench depth` measures them."""
+"""Depth codecs: a depth encoding, which maps view depth to one number and back in both languages, and its storage.
+`normalbench depth` measures them."""
 
 from __future__ import annotations
 
@@ -40,36 +40,36 @@ SCALING_ULPS, POSITION_ULPS = 1, 3
 
 @dataclass(frozen=True, eq=False)
 class DepthEncoding:
-    """A pair of maps between depths and numbers, in JAX here and in GLSL in the file next to it.
+    """A pair of maps between depths and numbers, in JAX and, in the file next to it, in GLSL.
 
     The depth is planar: -z of the view-space position, not the distance from the eye. The GLSL file defines
-    `float <name>_encode_depth(float depth, float near, float far)`, and `<name>_decode_depth` of a number likewise;
-    the suffix distinguishes them from light encodings, which are compiled with them. The inputs of an encoder have
-    passed through `vec.depth_or_far`: none is NaN, infinite or beyond `far`. The encoder itself clamps depths
-    nearer than its range.
+    `float <name>_encode_depth(float depth, float near, float far)` and likewise `<name>_decode_depth`, which takes a
+    number; the suffix distinguishes these functions from those of light encodings, which are compiled with them. The
+    inputs of an encoder have passed through `vec.depth_or_far`: none is NaN, infinite or beyond `far`. The encoder
+    itself clamps depths nearer than its range.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
         title: human-readable name.
-        encode: (depth, near, far) -> number in [0, 1]; in [-1, 1] with the depth's sign if `signed`. On float64
-            arrays the exact map.
-        decode: (number, near, far) -> depth, likewise.
+        encode: (depth, near, far) -> number in [0, 1]; in [-1, 1] with the depth's sign if `signed`. Exact on float64
+            arrays.
+        decode: (number, near, far) -> depth. Exact on float64 arrays.
         storages: usual storages, names of DEPTH_STORAGES.
         citation: source of the encoding.
         glsl: the GLSL twin.
-        ulps: allowed error of either language against the exact maps, encode and decode. A unit is 2^-23 of the
-            number, plus the change of the number when the depth changes by 2^-23; for decode, the same for the
-            depth.
+        ulps: allowed errors of encode and decode, in either language, compared with the exact maps. For encode, a
+            unit is 2^-23 of the number, plus the change in the number when the depth changes by 2^-23; for decode,
+            the same with number and depth exchanged.
         ulps_reason: reason for these numbers.
-        projection: how clip space counts depth, if the number is what a depth buffer holds; the inverse projection
-            then gives the position.
-        signed: whether the depth's sign is that of the normal's z. Zero has a sign too.
-        own_units: whether float formats hold the depth in the scene's own units, which is a far plane at 1: they
+        projection: how depth maps to clip space, if the number is a depth buffer's value; the inverse projection then
+            gives the position.
+        signed: whether the depth has the sign of the normal's z. Zero has a sign too.
+        own_units: whether float formats hold the depth in the scene's own units, as with a far plane of 1, and so
             need no range.
-        constants: numbers that both languages need, by their GLSL name.
-        functions: prefix of its GLSL functions in a user's file; empty if it is the name.
-        bytes: number of 8-bit channels that its code takes; then a number in [0, 1] is encoded, whatever depth that
-            is. 0 for a code of one number.
+        constants: numbers that both languages need, by GLSL name.
+        functions: prefix of the GLSL functions in a user's file; empty if it is the name.
+        bytes: number of 8-bit channels that the code fills; the encoder's input is then a number in [0, 1], however
+            it represents the depth. 0 for a code of one number.
     """
 
     kind: ClassVar[Kind] = DEPTH
@@ -91,12 +91,12 @@ class DepthEncoding:
 
     @property
     def prefix(self) -> str:
-        """The prefix of the names of its GLSL functions."""
+        """The prefix of the names of the GLSL functions."""
         return self.functions or self.name
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """The GLSL signatures of its encoder and its decoder, without the semicolon."""
+        """The GLSL signatures of the encoder and the decoder, without semicolons."""
         if self.bytes:
             return f"vec4 {self.prefix}_encode_bytes(float number)", f"float {self.prefix}_decode_bytes(vec4 texel)"
         return (
@@ -107,7 +107,7 @@ class DepthEncoding:
 
 @dataclass(frozen=True)
 class DepthCodec:
-    """A depth encoding, the storage of its number, and how that rounds: one of `storage.ROUNDINGS`, or DITHERED."""
+    """A depth encoding, the storage for its number, and the rounding: one of `storage.ROUNDINGS`, or DITHERED."""
 
     encoding: DepthEncoding
     storage: DepthStorage
@@ -119,7 +119,7 @@ class DepthCodec:
 
     @property
     def misfit(self) -> str | None:
-        """The reason why the storage cannot hold the encoding's number, or not with this rounding; None if it can."""
+        """The reason why the storage cannot hold the encoding's number with this rounding; None if it can."""
         if self.encoding.signed and not self.storage.is_signed:
             return f"{self.storage.title}: no room for a sign"
         if self.storage.home in ("attachment", "bytes") and self.rounding != "nearest":
@@ -128,17 +128,17 @@ class DepthCodec:
 
     @property
     def is_dithered(self) -> bool:
-        """Whether noise is added to its number before it is rounded to the nearest."""
+        """Whether noise is added to the number before it is rounded to nearest."""
         return self.rounding == DITHERED
 
     @property
     def step(self) -> float:
-        """The distance between neighbouring numbers of a fixed-point storage."""
+        """The distance between neighbouring numbers in a fixed-point storage."""
         return 1.0 / (self.storage.scale // 2 if self.encoding.signed else self.storage.scale)
 
     @property
     def dither(self) -> Dither:
-        """Noise of one step for its number, the same in every frame."""
+        """Noise of one step for the codec's number, the same in every frame."""
         return Dither((self.step,))
 
     @property
@@ -153,7 +153,7 @@ class DepthCodec:
 
     @property
     def codes(self) -> int:
-        """The number of its codes: all values of its number in [0, 1], or in [-1, 1] with a sign."""
+        """The number of codes: all values that the number can have in [0, 1], or in [-1, 1] with a sign."""
         if self.storage.format.kind != "float":
             return 2**self.bits
         both = self.storage.format.count(0)
@@ -161,12 +161,12 @@ class DepthCodec:
 
     @property
     def is_window(self) -> bool:
-        """Whether the number is a depth buffer's."""
+        """Whether the number is a depth buffer's value."""
         return self.encoding.projection is not None
 
     def far(self, far: Float[ArrayLike, "*shape"]) -> Float[ArrayLike, "*shape"]:
-        """Return the far plane that the encoding is given: 1 if the storage holds the depth in the scene's units,
-        else `far` unchanged."""
+        """Return the far plane to pass to the encoding: 1 if the storage holds the depth in the scene's units,
+        otherwise `far` unchanged."""
         return jnp.ones_like(far) if self.encoding.own_units and self.storage.is_open else far
 
     def stored(
@@ -176,13 +176,13 @@ class DepthCodec:
         far: Float[ArrayLike, "*#shape"],
         noise: Float[Array | np.ndarray, "*shape"] | None = None,
     ) -> Float[Array | np.ndarray, "*shape"]:
-        """Return the numbers of depths (float32, any shape) as the storage returns them.
+        """Return the numbers for depths (float32, any shape) as the storage returns them.
 
         Args:
-            depth: view depth, with the sign of the normal's z if the encoding keeps one.
-            near, far: the planes' distances, float32, for all depths or for each; 0 < near < far.
-            noise: noise to add to the numbers before they are rounded, of the depths' shape, or None. The numbers
-                keep their sign.
+            depth: view depth, with the sign of the normal's z if the encoding keeps it.
+            near, far: distances of the planes, float32, for all depths or per depth; 0 < near < far.
+            noise: noise to add to the numbers before they are rounded, of the same shape as the depths, or None. The
+                numbers keep their signs.
         """
         number = self.encoding.encode(depth_or_far(depth, far), near, self.far(far))
         if noise is not None:
@@ -195,7 +195,7 @@ class DepthCodec:
         near: Float[ArrayLike, "*#shape"],
         far: Float[ArrayLike, "*#shape"],
     ) -> Float[Array | np.ndarray, "*shape"]:
-        """Return the depths of numbers, with the signs that were kept."""
+        """Return the depths that stored numbers represent, with the signs that the encoding keeps."""
         return self.encoding.decode(number, near, self.far(far))
 
     def round_trip(
@@ -204,7 +204,7 @@ class DepthCodec:
         near: Float[ArrayLike, "*#shape"],
         far: Float[ArrayLike, "*#shape"],
     ) -> Float[Array | np.ndarray, "*shape"]:
-        """Depths encoded, stored and decoded; see `stored`."""
+        """Return depths after encoding, storage and decoding; see `stored`."""
         return self.depths(self.stored(depth, near, far), near, far)
 
     def furthest(
@@ -212,8 +212,8 @@ class DepthCodec:
     ) -> Float[np.ndarray, "*shape"]:
         """Return the largest possible error of each depth after a round trip through the storage.
 
-        It is the error from rounding the number, through the exact maps. If `with_arithmetic` is true, it includes
-        the error that float32 arithmetic adds to the number and to the depth, up to the position.
+        This is the error that rounding the number causes in the exact maps. If `with_arithmetic` is true, the error
+        that float32 arithmetic adds to the number and to the depth, up to the position, is included.
 
         Args:
             depth: float64, positive.
@@ -240,7 +240,7 @@ class DepthCodec:
 
     def _rounded_by(self, number: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
         """Return the largest rounding error of each float64 number: half a step of the storage if it rounds to
-        nearest, else a step; infinite if a float format cannot hold the number."""
+        nearest, otherwise a whole step; infinite if a float format cannot hold the number."""
         share = 0.5 if self.rounding == "nearest" else 1.0
         if self.storage.format.kind != "float":
             return np.full_like(number, share * self.step)
@@ -253,7 +253,7 @@ class DepthCodec:
 def by_inverse_projection(
     _: DepthCodec, number: Float[Array | np.ndarray, "*shape"], place: Vec2, seen: CameraTerms
 ) -> Vec3:
-    """Return view-space positions of stored window depths by the inverse projection; the encoding must have a
+    """Return view-space positions from stored window depths, by the inverse projection; the encoding must have a
     projection. `place` is the position on the screen, from -1 to 1."""
     return position_from_window_depth(place, number, seen.clip, seen.clip_to_view)
 
@@ -261,25 +261,25 @@ def by_inverse_projection(
 def by_projection_terms(
     _: DepthCodec, number: Float[Array | np.ndarray, "*shape"], place: Vec2, seen: CameraTerms
 ) -> Vec3:
-    """Return view-space positions of stored window depths by the two terms of the projection; the encoding must have
-    a projection. `place` is the position on the screen, from -1 to 1."""
+    """Return view-space positions from stored window depths, by the two terms of the projection; the encoding must
+    have a projection. `place` is the position on the screen, from -1 to 1."""
     return position_from_projection_terms(place, number, seen.clip, seen.terms, seen.rays)
 
 
 def by_eye_ray(codec: DepthCodec, number: Float[Array | np.ndarray, "*shape"], place: Vec2, seen: CameraTerms) -> Vec3:
-    """Return view-space positions of stored numbers: the decoded depth, without its sign, times the eye's ray through
+    """Return view-space positions from stored numbers: the decoded depth, without its sign, times the eye ray through
     `place`, a position on the screen from -1 to 1."""
     return position_from_linear_depth(place, abs(codec.depths(number, seen.near, seen.far)), seen.rays)
 
 
 @dataclass(frozen=True)
 class Rebuild:
-    """A way from a number to a position.
+    """A method of reconstructing a position from a stored number.
 
     Attributes:
         position: (codec, number, place, seen) -> view-space position.
-        by_projection: whether it takes the number for a depth buffer's, which only some encodings' are.
-        way: its number in GLSL.
+        by_projection: whether the number must be a depth buffer's value, which only some encodings produce.
+        way: the method's number in GLSL.
     """
 
     position: Callable[[DepthCodec, Any, Vec2, CameraTerms], Vec3]

@@ -1,4 +1,4 @@
-"""The definition of an encoding: a pair of maps between unit normals and a few numbers, written twice."""
+"""The definition of an encoding: a pair of maps between unit normals and a few numbers, in JAX and in GLSL."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ AXES: Mapping[str, tuple[str, str]] = MappingProxyType({"x": ("yzx", "zxy"), "y"
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number of an encoding that can be changed: `encode` and `decode` both take it by its name.
+    """A tunable parameter of an encoding, which `encode` and `decode` both take as a keyword argument.
 
     Attributes:
         name: the keyword, and the name on the command line.
-        constant: its GLSL macro; its value in `constants` is the published one.
-        least, most: its range.
+        constant: its GLSL macro, whose value in `constants` is the published value.
+        least, most: its minimum and maximum.
     """
 
     name: str
@@ -41,12 +41,12 @@ class Parameter:
 
 @dataclass(frozen=True)
 class LookUp:
-    """A lookup table of an encoding that can be changed: `encode` takes it by the keyword `table`.
+    """A replaceable lookup table of an encoding, which `encode` takes as the keyword argument `table`.
 
     Attributes:
         sampler: its key in `tables`.
-        levels: how many values each number of the code may have in a storage for which the table can be fitted;
-            evenly spread, the same for every number.
+        levels: numbers of values, evenly spaced and the same for all components of the code, for which the table can
+            be fitted to a storage.
         fit: (normals, levels, prior) -> the table with the smallest squared error on the normals. Normals are
             float64 of shape (count, 3); `prior` is the number of normals that the centre of a texel counts as.
     """
@@ -62,7 +62,7 @@ def _none(_: Mapping[str, Any]) -> Mapping[str, float]:
 
 @dataclass(frozen=True, eq=False)
 class Encoding:
-    """A pair of maps between normals and codes, in JAX here and in GLSL in the file next to it.
+    """A pair of maps between normals and codes, in JAX and, in the file next to it, in GLSL.
 
     The GLSL file defines `<name>_encode(vec3 n, vec3 view)` and `<name>_decode(code, vec3 view)`; the code is a
     vec2 or vec3 of `components + sign_bits` numbers.
@@ -74,38 +74,37 @@ class Encoding:
             position.
         decode: (code, view) -> normal, not renormalised unless the method does so.
         components: number of components that are stored with the storage's precision.
-        domain: the normals that it can hold: "sphere", "hemisphere" (z >= 0) or "view" (facing the viewer).
+        domain: the normals that it can represent: "sphere", "hemisphere" (z >= 0) or "view" (facing the viewer).
         citation: source of the encoding.
         glsl: the GLSL twin.
-        ulps: allowed difference between the two languages before storage, encode and decode, in 2^-23 (a unit in
-            the last place of 1), times the change of the map's result per unit of its input where that is more than
-            one.
+        ulps: allowed differences between the two languages before storage, of encode and decode, in 2^-23 (a unit in
+            the last place of 1), times the change of the map's result per unit of its input if that is more than 1.
         ulps_reason: reason for these numbers.
         sign_bits: number of additional components that are 1 or -1 and take one bit, stored in the sign of the depth.
-        constants: numbers that both languages need, by their GLSL name.
-        derived: additional constants that follow from these.
-        levels: how many values each component may have, evenly spread from -1 to 1; 0, or no levels at all, for an
-            ordinary number.
-        is_precise: whether the code that decodes nearest is stored, among those with every component rounded down
-            or up.
-        searches: whether the encoder takes the best of several codes; if two are equally good the languages may
-            differ.
+        constants: numbers that both languages need, by GLSL name.
+        derived: function that returns additional constants computed from `constants`.
+        levels: number of values that each component may have, evenly spaced from -1 to 1; 0 for an ordinary number.
+            Empty if all components are ordinary numbers.
+        is_precise: whether each component is rounded down or up so that the code decodes nearest to the normal.
+        searches: whether the encoder takes the best of several codes; if two are equally good, the languages may
+            choose differently.
         tables: function that returns the lookup tables by GLSL sampler name, float32 arrays of shape (height, width,
             channels).
-        functions: prefix of its GLSL functions, for a variant that shares another encoding's file.
-        parameters: the constants that may have other values.
+        functions: prefix of the GLSL functions, for a variant that shares another encoding's file.
+        parameters: the constants that can be changed.
         look_up: the table that can be changed.
-        axis: which axis of a normal is its z, a key of AXES.
-        sign: 1, or -1 if the opposite of a normal is encoded.
+        axis: the axis of a normal that serves as z, a key of AXES.
+        sign: 1, or -1 if the opposite direction is encoded.
         is_half: whether every step of encode and decode is rounded to a 16-bit float; codes are of that type.
-        source: the user's file from which its GLSL was translated; None if the GLSL was written.
-        before: the codec that normals have passed through before they are encoded; None if they have not.
-        is_unit: whether its author's functions take and return numbers in [0, 1], u for c = 2 u - 1: every storage
-            holds u.
-        packed_bits: number of bits used in a code that is one integer of 32 bits as its author's functions make it:
-            its two numbers are the halves, and it is stored unchanged. 0 for any other code.
+        source: the user's file from which its GLSL was translated; None if the GLSL was not translated.
+        before: the codec that normals pass through before they are encoded; None if there is no such codec.
+        is_unit: whether its author's functions take and return numbers u in [0, 1], with c = 2 u - 1; every storage
+            then holds u.
+        packed_bits: number of bits used in a code that its author's functions pack into one 32-bit integer, which is
+            stored unchanged; the code's two numbers are the halves of this integer. 0 for any other code.
         declares_half: whether its author's functions use 16-bit numbers.
-        own: the same encoding in its author's axes, for a code of another hemisphere than z >= 0, which tables turn.
+        own: the same encoding in its author's axes, if it encodes a hemisphere other than z >= 0 and is therefore
+            rotated for tables; otherwise None.
     """
 
     kind: ClassVar[Kind] = NORMAL
@@ -144,27 +143,27 @@ class Encoding:
 
     @property
     def is_packed(self) -> bool:
-        """Whether its code is one 32-bit integer, which is stored unchanged."""
+        """Whether the code is a single 32-bit integer, which is stored unchanged."""
         return self.packed_bits > 0
 
     @property
     def is_also_half(self) -> bool:
-        """Whether it is also measured in half arithmetic if the user selects no arithmetic."""
+        """Whether the encoding is also measured in half arithmetic if the user selects no arithmetic."""
         return self.declares_half and not self.is_packed and not self.is_half
 
     @property
     def twin(self) -> Path:
-        """The path of the Python half of a user's encoding."""
+        """The path of the Python file that accompanies a user's encoding."""
         return (self.source or self.glsl).with_suffix(".py")
 
     @property
     def prefix(self) -> str:
-        """The prefix of the names of its GLSL functions."""
+        """The prefix of the names of the GLSL functions."""
         return self.functions or self.name
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """The GLSL signatures of its encoder and its decoder, without the semicolon."""
+        """The GLSL signatures of the encoder and the decoder, without semicolons."""
         code = f"vec{self.components + self.sign_bits}"
         return (
             f"{code} {self.prefix}_encode(vec3 n, vec3 view)",
@@ -173,7 +172,7 @@ class Encoding:
 
     @cached_property
     def fingerprint(self) -> str:
-        """16 hex digits that change with its files, constants and tables. Raises OSError where one cannot be read."""
+        """A hash of 16 hex digits over the files, constants and tables. Raises OSError if a file cannot be read."""
         code = (self.prefix, self.components, self.sign_bits, self.levels, self.is_precise)
         code = (*code, self.axis, self.sign, self.is_half)
         if self.before:
@@ -181,7 +180,7 @@ class Encoding:
         return fingerprint(self.glsl, (code, sorted(self.constants.items())), self.tables(), self.twin)
 
     def levels_of(self, component: int) -> int:
-        """Return how many values a number of its code has; 0 for an ordinary number, 2 for a sign bit."""
+        """Return how many values a component of the code can have; 0 for an ordinary number, 2 for a sign bit."""
         if component >= self.components:
             return 2
         return self.levels[component] if self.levels else 0
@@ -193,41 +192,41 @@ class Encoding:
 
     @property
     def reach_deg(self) -> float:
-        """The largest angle, in degrees, between a normal and the line of sight, if its domain is "view"."""
+        """The largest angle, in degrees, between a normal and the line of sight, for the domain "view"."""
         return self.published.get("cap", 90.0)
 
     @property
     def can_turn(self) -> bool:
-        """Whether it may have another axis or sign: it holds every direction, and no part of it is in a depth."""
+        """Whether the axis and sign can be changed: the domain is the sphere, and no bit is stored in the depth."""
         return self.domain == "sphere" and not self.sign_bits
 
     @property
     def is_turned(self) -> bool:
-        """Whether it has another axis or sign than its files."""
+        """Whether the axis or the sign differs from that of the encoding's files."""
         return (self.axis, self.sign) != ("z", 1)
 
     @property
     def is_exact(self) -> bool:
-        """Whether its maps are on real numbers, which only the storage rounds."""
+        """Whether the maps are defined on real numbers, so that only the storage rounds."""
         return not self.is_half and self.before is None
 
     @property
     def published(self) -> dict[str, float]:
-        """The values of its parameters by their names, as published."""
+        """The published values of the parameters, by name."""
         return {p.name: float(self.constants[p.constant]) for p in self.parameters}  # type: ignore[arg-type]
 
     def with_parameters(self, values: Mapping[str, float]) -> Encoding:
-        """Return the encoding with other values of some parameters, in both languages; its name states the values."""
+        """Return the encoding with new values for some parameters, in both languages; its name contains them."""
         macros = {p.constant: values[p.name] for p in self.parameters if p.name in values}
         suffix = "".join(f":{name}={value:.9g}" for name, value in values.items())
         encoding = replace(self, constants={**self.constants, **macros})
         return encoding._variant(suffix, **values)
 
     def turned(self, axis: str, sign: int, suffix: str = "") -> Encoding:
-        """Return the encoding of directions in other axes, in both languages, with `suffix` appended to its name.
+        """Return the encoding of directions in different axes, in both languages, with `suffix` appended to its name.
 
         Args:
-            axis: which axis of a normal becomes its z, a key of AXES.
+            axis: the axis of a normal that becomes its z, a key of AXES.
             sign: -1 to encode the opposite direction.
         """
         order, back = AXES[axis]
@@ -256,11 +255,11 @@ class Encoding:
         return replace(self, encode=half_encode, decode=half_decode, is_half=True)._variant(suffix)
 
     def behind(self, before: Any) -> Encoding:
-        """Return the encoding of another codec's normals: of a G-buffer that is decoded, renormalised and encoded
-        again.
+        """Return the encoding of normals that have passed through another codec, as when a G-buffer is decoded,
+        renormalised and encoded again.
 
         Args:
-            before: the `Codec` that normals have passed through.
+            before: the `Codec` that normals pass through first.
         """
         encode = self.encode
 
@@ -273,7 +272,8 @@ class Encoding:
         return replace(self, encode=encode_again, before=before, **named)
 
     def with_table(self, table: Float[Array | np.ndarray, "height width channels"], table_name: str) -> Encoding:
-        """Return the encoding with another lookup table, named `table_name`, float32 of the published table's shape."""
+        """Return the encoding with a different lookup table, named `table_name`; float32, of the published table's
+        shape."""
         assert self.look_up
         tables = {**self.tables(), self.look_up.sampler: table}
         encoding = replace(self, tables=lambda: tables)._variant(f":table={table_name}")

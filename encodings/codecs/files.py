@@ -1,4 +1,4 @@
-"""Reading of users' files: in full, up to a maximum size and without waiting; and the errors that files can have."""
+"""Reading of users' files: in full, up to a maximum size and without blocking; and the errors that can occur."""
 
 from __future__ import annotations
 
@@ -39,21 +39,21 @@ TOO_LONG = re.compile(r"(?<![\w.])[-+]?\d[\d_]{4300,}")
 
 
 class FileError(OSError):
-    """A file that cannot be read. Its text is the reason alone, for messages that name the file themselves."""
+    """The error for a file that cannot be read. Its text is only the reason; callers name the file."""
 
     def __str__(self) -> str:
         return self.strerror or super().__str__()
 
 
 class CatalogueError(Exception):
-    """An encoding that cannot be imported or does not match the catalogue; the message names its file."""
+    """The error for an encoding that cannot be imported or does not match the catalogue; it names the file."""
 
 
 def file_bytes(path: Path, most: int) -> bytes:
     """Return the contents of a file of at most `most` bytes.
 
     Raises:
-        FileError: the file cannot be read, is larger, or is not a plain file: a pipe may never end.
+        FileError: the file cannot be read, is larger, or is not a regular file: a pipe may never end.
         ValueError: no file can have this name.
     """
     try:
@@ -79,17 +79,17 @@ def _bytes(path: Path, most: int) -> bytes:
 
 
 def reason_of(error: OSError) -> str:
-    """Why the system does not give a file, for messages that name the file themselves."""
+    """Return why the system could not read a file, for messages that name the file themselves."""
     return REASONS.get(error.errno or 0, error.strerror or str(error))
 
 
 def why_no_file(path: Path) -> str:
-    """Return why a path does not name a plain file (a folder, not plain or missing), without opening anything."""
+    """Return why a path is not a regular file (a folder, a special file or missing), without opening anything."""
     return FOLDER if path.is_dir() else NOT_PLAIN if path.exists() else MISSING
 
 
 def file_text(path: Path) -> str:
-    """Return the text of a UTF-8 file without its byte-order mark; every line end becomes a line feed.
+    """Return the text of a UTF-8 file without its byte-order mark, with every line ending converted to a line feed.
 
     Raises:
         FileError: see file_bytes.
@@ -107,7 +107,7 @@ def file_toml(path: Path) -> dict[str, Any]:
 
     Raises:
         FileError: see file_bytes.
-        ValueError: the file is not TOML, is nested too deep, or has a number that is not finite.
+        ValueError: the file is not TOML, is nested too deeply, or contains a number that is not finite.
     """
     text = file_text(path)
     try:
@@ -132,8 +132,8 @@ TWICE = ("overwrite", "twice", "immutable", "redefine")
 
 
 def _not_toml(message: str) -> str:
-    """Return a short reason, with its place, for a message of `tomllib` such as `Cannot overwrite a value (at line 3,
-    column 22)`: invalid TOML, or a key or table that is given twice."""
+    """Return a short reason, with its place, for a `tomllib` message such as `Cannot overwrite a value (at line 3,
+    column 22)`: the text is not valid TOML, or a key or table is given twice."""
     place = re.search(r"line (\d+), column (\d+)", message)
     where = f"line {place[1]}, column {place[2]}" if place else "its end"
     what = "a key or a table is given twice" if any(word in message for word in TWICE) else "this is not TOML"
@@ -154,13 +154,14 @@ Pairs = Callable[[list[tuple[str, Any]]], dict[str, Any]]
 
 
 def parsed_json(data: str | bytes, pairs: Pairs | None = None) -> Any:
-    """Return the value of JSON from outside, text or UTF-8 bytes; all numbers in it are finite.
+    """Return the value of external JSON, given as text or UTF-8 bytes; all numbers in it are finite.
 
     Args:
-        pairs: makes an object from its names and values; its exceptions pass through.
+        pairs: function that makes an object from its names and values; its exceptions pass through.
 
     Raises:
-        ValueError: the data is not JSON, is nested too deep, or has a number that is not finite; with its place.
+        ValueError: the data is not JSON, is nested too deeply, or contains a number that is not finite; the message
+            gives the position.
     """
     try:
         text = data if isinstance(data, str) else data.decode("utf-8-sig")
@@ -174,8 +175,8 @@ def parsed_json(data: str | bytes, pairs: Pairs | None = None) -> Any:
 
 
 def _whole(digits: str) -> int | float:
-    """Return the whole number of a text as an int, or as a float, which may be infinite, if it is longer than
-    LONG_NUMBER: Python refuses to convert very long texts to an int."""
+    """Return the whole number in a text as an int. If the text is longer than LONG_NUMBER, return a float, which may
+    be infinite: Python refuses to convert very long texts to an int."""
     return int(digits) if len(digits) <= LONG_NUMBER else float(digits)
 
 
@@ -202,5 +203,5 @@ def _is_finite(value: float) -> bool:
 
 
 def called(name: str) -> str:
-    """Return a file's name as text: bytes that are not UTF-8 become escapes, because no UTF-8 file could hold them."""
+    """Return a file's name with bytes that are not UTF-8 as escapes, because no UTF-8 file could contain them."""
     return name.encode(errors="backslashreplace").decode()

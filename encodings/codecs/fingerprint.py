@@ -1,4 +1,4 @@
-"""Fingerprints that distinguish encodings of the same name: hashes of everything that determines their figures."""
+"""Fingerprints that distinguish encodings with the same name: hashes of everything that determines their figures."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)
 
 
 def fingerprint(glsl: Path, values: object, tables: Mapping[str, Any], twin: Path | None = None) -> str:
-    """Return a hash in hex digits of a GLSL file and its includes, its Python twin if it has one, values and tables.
+    """Return a hash, in hex digits, of a GLSL file and its includes, its Python twin if it exists, values and tables.
 
     Args:
-        twin: a Python file that may be missing; None for the one next to the GLSL file.
+        twin: a Python file that may be missing; None for the file next to the GLSL file.
 
     Raises:
         OSError: a file cannot be read.

@@ -1,4 +1,4 @@
-"""Frame codecs, which `normalbench frames` measures: a frame encoding and its storage."""
+"""Tangent-frame codecs, which `normalbench frames` measures: a frame encoding and its storage."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from .frame_encoding import FrameEncoding
 
 @dataclass(frozen=True)
 class FrameCodec:
-    """A frame encoding, the storage of its numbers, and how that rounds: one of `storage.ROUNDINGS`, or DITHERED.
-    Numbers of few values are rounded to the nearest, without noise."""
+    """A frame encoding, the storage for its numbers, and the rounding: one of `storage.ROUNDINGS`, or DITHERED.
+    Numbers with a fixed number of values are rounded to nearest, without noise."""
 
     encoding: FrameEncoding
     storage: Storage
@@ -40,18 +40,18 @@ class FrameCodec:
 
     @property
     def bits(self) -> int:
-        """The bits that it uses: all bits of every channel used."""
+        """The number of bits used: all bits of every channel in use."""
         return sum(self.storage.bits[: self.encoding.components])
 
     @property
     def codes(self) -> int:
-        """The number of its codes: all values that its numbers in [-1, 1] can have, used or not."""
+        """The number of codes: all combinations of values that the numbers in [-1, 1] can have, used or not."""
         return math.prod(n or self.storage.count(i) for i, n in enumerate(self.encoding.levels))
 
     @property
     def least(self) -> float:
-        """The smallest number above 0 that the storage can hold in place of the hand: a whole step of SNORM, half a
-        step of UNORM, which has no 0. It is 0 if the encoding keeps no hand."""
+        """The smallest positive number that the storage can hold in the component whose sign is the hand: a whole
+        step of SNORM, or half a step of UNORM, which has no 0. It is 0 if the encoding does not keep the hand."""
         if self.encoding.hand_in is None:
             return 0.0
         if self.storage.kind == "float":
@@ -61,16 +61,16 @@ class FrameCodec:
 
     @property
     def is_dithered(self) -> bool:
-        """Whether noise is added to its numbers before they are rounded to the nearest."""
+        """Whether noise is added to the numbers before they are rounded to nearest."""
         return self.rounding == DITHERED
 
     @property
     def dither(self) -> Dither:
-        """Noise of one step for its numbers, the same in every frame."""
+        """Noise of one step for the codec's numbers, the same in every frame."""
         return dither_of(self.storage, self.encoding.levels, 0)
 
     def rounding_of(self, component: int) -> str:
-        """Return how a component rounds: to nearest if it has few values, whatever the others do."""
+        """Return the rounding of a component: always to nearest if it has a fixed number of values."""
         has_levels = component < self.encoding.components and self.encoding.levels[component]
         return "nearest" if has_levels else rounds_to(self.rounding)
 
@@ -106,5 +106,6 @@ class FrameCodec:
         return Vec4(*(select(number == before, before, after) for number, before, after in kept))
 
     def round_trip(self, frame: Frame, noise: Vec4 | None = None) -> Frame:
-        """Frames (float32, any shape, as `frame_of` makes them) encoded, stored and decoded; see `stored`."""
+        """Return frames (float32, any shape, as from `frame_of`) after encoding, storage and decoding. See `stored`
+        for `noise`."""
         return self.encoding.decode(self.stored(frame, noise), self.least)

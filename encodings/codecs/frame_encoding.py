@@ -1,4 +1,4 @@
-"""The definition of a frame encoding: a pair of maps between tangent frames and up to four numbers, written twice."""
+"""The definition of a frame encoding: maps between tangent frames and up to four numbers, in JAX and in GLSL."""
 
 from __future__ import annotations
 
@@ -14,33 +14,34 @@ from ..vec import Vec4
 
 @dataclass(frozen=True, eq=False)
 class FrameEncoding:
-    """A pair of maps between tangent frames and codes, in JAX here and in GLSL in the file next to it.
+    """A pair of maps between tangent frames and codes, in JAX and, in the file next to it, in GLSL.
 
     The GLSL file defines `vec4 <name>_encode(Frame frame, float least)` and
-    `Frame <name>_decode(vec4 e, float least)`, and `vec4 <name>_settle(Frame frame, vec4 stored)` if it settles.
-    The inputs of an encoder have passed through `rotation.frame_of`: none is NaN or infinite.
+    `Frame <name>_decode(vec4 e, float least)`, and also `vec4 <name>_settle(Frame frame, vec4 stored)` if it has a
+    `settle`. The inputs of an encoder have passed through `rotation.frame_of`: none is NaN or infinite.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
         title: human-readable name.
         encode: (frame, least) -> four numbers in [-1, 1]; numbers that it does not use are 0. `least` is the
-            smallest number above 0 that the storage holds in place of the hand, so that the sign is kept.
+            smallest positive number that the storage can hold in the number whose sign is the hand, so that the sign
+            is kept.
         decode: (numbers, least) -> frame.
         hand_in: index of the number whose sign is the frame's hand; None for encodings of rotations, whose frames
-            all come back with hand 1.
-        levels: how many values each of its numbers may have, evenly spread from -1 to 1; 0 for an ordinary number.
+            all decode with hand 1.
+        levels: how many values each of its numbers may have, evenly spaced from -1 to 1; 0 for an ordinary number.
         storages: usual storages, names of FRAME_STORAGES.
         citation: source of the encoding.
         glsl: the GLSL twin.
-        ulps: allowed difference between the two languages before storage, encode and decode, in 2^-23; encode is
-            compared after decoding where two codes represent frames this close to each other.
+        ulps: allowed differences between the two languages before storage, of encode and decode, in 2^-23; encode is
+            compared after decoding if two codes represent frames this close to each other.
         ulps_reason: reason for these numbers.
-        settle: (frame, the code as it comes back) -> the code to store, if some numbers depend on how others were
-            rounded; the others stay as they came back.
-        constants: numbers that both languages need, by their GLSL name.
-        functions: prefix of its GLSL functions in a user's file; empty if it is the name.
-        is_unit: whether its author's functions take and return numbers in [0, 1], u for c = 2 u - 1: every storage
-            holds u.
+        settle: (frame, code as read back) -> code to store, if some numbers depend on how the others were rounded;
+            those others remain as read back.
+        constants: numbers that both languages need, by GLSL name.
+        functions: prefix of the GLSL functions in a user's file; empty if it is the name.
+        is_unit: whether its author's functions take and return numbers u in [0, 1], with c = 2 u - 1; every storage
+            then holds u.
     """
 
     kind: ClassVar[Kind] = FRAME
@@ -62,17 +63,17 @@ class FrameEncoding:
 
     @property
     def prefix(self) -> str:
-        """The prefix of the names of its GLSL functions."""
+        """The prefix of the names of the GLSL functions."""
         return self.functions or self.name
 
     @property
     def components(self) -> int:
-        """The number of components that it makes."""
+        """The number of components that the encoder produces."""
         return len(self.levels)
 
     @property
     def signatures(self) -> tuple[str, ...]:
-        """The GLSL signatures of its encoder, its decoder and, if it has one, its `settle`, without the semicolon."""
+        """The GLSL signatures of the encoder, the decoder and, if it exists, `settle`, without semicolons."""
         settle = (f"vec4 {self.prefix}_settle(Frame frame, vec4 stored)",) if self.settle else ()
         return (
             f"vec4 {self.prefix}_encode(Frame frame, float least)",

@@ -1,4 +1,4 @@
-"""The model of a light buffer: lights added one by one, stored with rounding at every blend."""
+"""A model of a light buffer: lights are added one by one, with rounding at every blend."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Blending:
-    """The way a device adds up light in a target.
+    """The way in which a device accumulates light in a render target.
 
     Attributes:
         rounding: rounding of the result, "nearest" or "truncate".
         rounds_source: whether the shader's output is also rounded to the format before it is blended, as
             fixed-point hardware may do if the format is linear.
         by_shifts: whether products of such codes are computed with shifts, p + p / 256 + 1/2 for p / 255, as
-            software does.
+            software rasterisers do.
     """
 
     rounding: str = "nearest"
@@ -33,8 +33,8 @@ IDEAL = Blending()
 
 
 def blended(codec: LightCodec, texel: Vec4, light: Vec4, blending: Blending = IDEAL) -> Vec4:
-    """Return the contents of a texel (any shape) after one more light is added in the codec's way: decoded, added and
-    encoded again, or blended by a sum or a product of codes."""
+    """Return a texel (any shape) after one more light is added by the codec's method: decoding, adding and encoding
+    again, or blending codes by a sum or a product."""
     storage = codec.storage
     if codec.blend == "read":
         total = light_or_none(codec.decode(texel) + light)
@@ -50,7 +50,7 @@ def blended(codec: LightCodec, texel: Vec4, light: Vec4, blending: Blending = ID
 
 
 def _shifted(a: Float[Array, "*shape"], b: Float[Array, "*shape"], scale: int) -> Float[Array, "*shape"]:
-    """The product of two codes of a fixed-point channel, rounded as shifts round it."""
+    """Return the product of two codes of a fixed-point channel, rounded as in arithmetic with shifts."""
     bits = (scale + 1).bit_length() - 1
     product = jnp.round(a * scale).astype(jnp.int32) * jnp.round(b * scale).astype(jnp.int32)
     code = product + (product >> bits) + 2 ** (bits - 1) >> bits
@@ -66,7 +66,7 @@ def accumulate(codec: LightCodec, lights: Vec4, count: Int[ArrayLike, ""], blend
         blending: how the device rounds each sum or product.
 
     Returns:
-        planes of shape (...); `codec.decode` makes light of them.
+        planes of shape (...), not yet decoded; see `codec.decode`.
     """
     from jax import lax
 

@@ -1,4 +1,4 @@
-"""Light codecs, the contents of light buffers: a light encoding and its storage."""
+"""Light codecs, the formats of light buffers: a light encoding and its storage."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COLOURS = 3
 
 @dataclass(frozen=True)
 class LightCodec:
-    """A light encoding and the storage of its texels."""
+    """A light encoding and the storage for its texels."""
 
     encoding: LightEncoding
     storage: Storage
@@ -31,7 +31,7 @@ class LightCodec:
 
     @property
     def _named(self) -> tuple[str, str]:
-        """Name and title of the encoding in this format."""
+        """The name and the title of the encoding in this format."""
         if self.storage.curved:
             return self.encoding.in_curve
         if self.storage.name in self.encoding.storages:
@@ -68,7 +68,7 @@ class LightCodec:
 
     @property
     def bytes_per_pixel(self) -> int:
-        """The bytes of one target. A code that is read while it is written has two copies."""
+        """The bytes per pixel of one target, or of two copies if the code is read while it is written."""
         return self.storage.texel_bytes * (2 if self.blend == "read" else 1)
 
     @property
@@ -78,12 +78,12 @@ class LightCodec:
 
     @property
     def limit(self) -> float:
-        """The brightest white light that it holds."""
+        """The brightest white light that the codec can store."""
         return self.storage.largest if self.encoding.is_plain else self.encoding.limit
 
     @property
     def blend(self) -> str:
-        """The way light is added: one of light_encoding.BLENDS. Numbers across channels cannot be blended."""
+        """The method of adding light, one of light_encoding.BLENDS. Numbers across channels cannot be blended."""
         return "read" if self.storage.is_packed else self.encoding.blend
 
     @property
@@ -93,11 +93,11 @@ class LightCodec:
 
     @property
     def glsl(self) -> Path:
-        """The path of its encoding's GLSL file."""
+        """The path of the encoding's GLSL file."""
         return self.encoding.glsl
 
     def encode(self, light: Vec4) -> Vec4:
-        """Return the texel of light (not negative, finite, any shape), before the format stores it."""
+        """Return the texel for light (not negative, finite, any shape), before the format stores it."""
         return self.encoding.encode(light)
 
     def store(self, texel: Vec4, rounding: str = "nearest") -> Vec4:
@@ -108,12 +108,12 @@ class LightCodec:
         )
 
     def decode(self, texel: Vec4) -> Vec4:
-        """Return the light of a texel, as the format returns it; the fourth number is 0 if the format lacks it."""
+        """Return the light in a texel that the format has returned; the fourth number is 0 if the format lacks it."""
         light = self.encoding.decode(texel)
         return light if self.storage.channels == 4 else Vec4(light.x, light.y, light.z, light.x * 0.0)
 
     def stored(self, light: Vec4) -> Vec4:
-        """Encode light and return the texel as the format returns it, not decoded yet."""
+        """Encode light and return the texel as the format returns it, not yet decoded."""
         return self.store(self.encode(light))
 
     def round_trip(self, light: Vec4) -> Vec4:

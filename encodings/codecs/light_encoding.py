@@ -1,4 +1,4 @@
-"""A light encoding: a pair of maps between light and a texel, written twice, and the way light is added."""
+"""The definition of a light encoding: maps between light and a texel, in JAX and in GLSL, and how light is added."""
 
 from __future__ import annotations
 
@@ -17,34 +17,34 @@ BLENDS = ("add", "multiply", "read")
 
 @dataclass(frozen=True, eq=False)
 class LightEncoding:
-    """A pair of maps between light and the contents of a texel, in JAX here and in GLSL in the file next to it.
+    """A pair of maps between light and the contents of a texel, in JAX and, in the file next to it, in GLSL.
 
     The GLSL file defines `vec4 <name>_encode(vec4 light)` and `vec4 <name>_decode(vec4 e)`. Light is linear: three
-    colours and, if `has_alpha`, a fourth number that is added up on its own.
+    colours and, if `has_alpha`, a fourth number that is accumulated separately.
 
     Attributes:
         name: the catalogue's key, the file's name and the prefix of the GLSL functions.
         title: human-readable name.
-        encode: light (Vec4) to a texel, before the format stores it. An encoder that computes anything treats
-            negative light and NaN as 0, and infinite light as the maximum that it holds; `plain` and `linear`
-            leave that to the format.
-        decode: a texel, as the format returns it, to light.
-        storages: the formats that it is made for, names of LIGHT_STORAGES.
+        encode: light (Vec4) -> texel, before the format stores it. An encoder that computes anything treats
+            negative light and NaN as 0, and infinite light as the maximum that it can represent; `plain` and
+            `linear` leave them to the format.
+        decode: texel, as the format returns it -> light.
+        storages: the formats for which it is made, names of LIGHT_STORAGES.
         blend: one of BLENDS.
-        has_alpha: whether it holds a fourth number, in a format that has four.
-        limit: the brightest white light that it holds; infinite if only the format limits it.
+        has_alpha: whether it stores a fourth number in formats with four channels.
+        limit: the brightest white light that it can represent; infinite if only the format limits it.
         citation: source of the encoding.
         glsl: the GLSL twin.
-        ulps: allowed difference between the two languages, encode and decode, in 2^-23 of the brightest channel.
+        ulps: allowed differences between the two languages, of encode and decode, in 2^-23 of the brightest channel.
         ulps_reason: reason for these numbers.
-        constants: numbers that both languages need, by their GLSL name.
-        ranged: function that returns the encoding over another range, named `<name>:<range>`; None if it has no
+        constants: numbers that both languages need, by GLSL name.
+        ranged: function that returns the encoding over a different range, named `<name>:<range>`; None if it has no
             range.
         is_plain: whether a texel is the light itself; its light buffer has the format's name.
-        in_curve: its name and title in a format that stores colours by the sRGB curve, if it is made for one.
-        functions: prefix of its GLSL functions in a user's file; empty if it is the file's name.
-        any_bits: "unorm" or "float", if it may use all storages of that kind with three or four numbers; empty if
-            it is made for the named storages alone.
+        in_curve: its name and title in an sRGB format, if it is made for such a format.
+        functions: prefix of the GLSL functions in a user's file; empty if it is the file's name.
+        any_bits: "unorm" or "float", if it can use all storages of that kind with three or four numbers; empty if
+            it is made for the named storages only.
     """
 
     kind: ClassVar[Kind] = LIGHT
@@ -69,15 +69,15 @@ class LightEncoding:
 
     @property
     def no_light(self) -> float:
-        """The value of every channel of a texel without light, which leaves another texel unchanged when blended."""
+        """The value of every channel of a texel without light; blending such a texel leaves the target unchanged."""
         return 1.0 if self.blend == "multiply" else 0.0
 
     @property
     def prefix(self) -> str:
-        """The prefix of the names of its GLSL functions, which are the same over another range."""
+        """The prefix of the names of the GLSL functions, which is the same for every range."""
         return self.functions or self.glsl.stem
 
     @property
     def signatures(self) -> tuple[str, str]:
-        """The GLSL signatures of its encoder and its decoder, without the semicolon."""
+        """The GLSL signatures of the encoder and the decoder, without semicolons."""
         return f"vec4 {self.prefix}_encode(vec4 light)", f"vec4 {self.prefix}_decode(vec4 e)"

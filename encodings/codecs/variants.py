@@ -1,4 +1,4 @@
-"""Variants of an encoding by name: `stereographic:scale=1.31`, `octahedral:axis=y`, `octahedral:arithmetic=half`."""
+"""Named variants of an encoding: `stereographic:scale=1.31`, `octahedral:axis=y`, `octahedral:arithmetic=half`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HALF_NAME = f"{MARK}arithmetic={HALF}"
 
 
 def settings_in(word: str) -> tuple[str, dict[str, str]]:
-    """Return the name and the settings of a word such as NAME:KEY=VALUE:KEY=VALUE, with the values as text by key.
+    """Split a word such as NAME:KEY=VALUE:KEY=VALUE. Return the name, and the values as text by key.
 
     Raises:
         ValueError: a setting has no value, or is given twice; the message is one sentence.
@@ -34,7 +34,7 @@ def settings_in(word: str) -> tuple[str, dict[str, str]]:
 
 
 def known_settings(encoding: Encoding) -> dict[str, str]:
-    """Return the names of an encoding's settings, each with an example of a value as text."""
+    """Return the names of an encoding's settings, each with an example value as text."""
     known = {name: f"{value:g}" for name, value in encoding.published.items()}
     known |= {TABLE: "FILE.npy"} if encoding.look_up else {}
     known |= {"axis": "y", "sign": "-1"} if encoding.can_turn else {}
@@ -42,11 +42,11 @@ def known_settings(encoding: Encoding) -> dict[str, str]:
 
 
 def variant(encoding: Encoding, values: Mapping[str, str]) -> Encoding:
-    """Return an encoding with settings applied: its own parameters by number, `axis` and `sign` if it holds every
-    direction, and `arithmetic`. A setting `table` is accepted but not applied.
+    """Return an encoding with settings applied: its own parameters as numbers, `axis` and `sign` if it represents
+    every direction, and `arithmetic`. A setting `table` is accepted but not applied.
 
     Raises:
-        ValueError: an unknown setting, or a value that it cannot have; the message is one sentence.
+        ValueError: a setting is unknown, or its value is invalid; the message is one sentence.
     """
     for key in values:
         if key not in known_settings(encoding):

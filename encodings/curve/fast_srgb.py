@@ -1,4 +1,4 @@
-"""The sRGB curve without its line near 0, and a polynomial back: cheaper, and not each other's inverse."""
+"""The sRGB curve without its linear segment near 0, and a polynomial decoder: cheaper, but not an exact inverse."""
 
 from pathlib import Path
 
@@ -11,13 +11,13 @@ BACK = (0.305306011, 0.682171111, 0.012522878)
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape) up to the range to [0, 1]; negative x and NaN count as 0."""
     # e = (1 + offset) s^(1 / power) - offset for s = x / range, at least 0
     return maximum((1.0 + SRGB_OFFSET) * (maximum(x, 0.0) / range) ** (1.0 / SRGB_POWER) - SRGB_OFFSET, 0.0)
 
 
 def decode(e, range):
-    """Return the quantity of a number, of its shape, by a cubic polynomial that only approximates the inverse."""
+    """Return the quantity that a number represents, by a cubic polynomial that only approximates the inverse."""
     # x = e (e (e a + b) + c) range
     a, b, c = BACK
     return e * (e * (e * a + b) + c) * range

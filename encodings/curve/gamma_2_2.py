@@ -1,4 +1,4 @@
-"""Power: the share of the range to the power 1 / 2.2, as colours are stored in a format without its own curve."""
+"""Power: x / range to the power 1 / 2.2, as colours are stored in a format without its own curve."""
 
 from pathlib import Path
 
@@ -9,13 +9,13 @@ GAMMA = 2.2
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to (x / range)^(1 / GAMMA)."""
+    """Map a quantity (float32 or float64, any shape) to (x / range)^(1 / GAMMA); negative x and NaN count as 0."""
     # e = (x / range)^(1 / gamma)
     return (maximum(x, 0.0) / range) ** (1.0 / GAMMA)
 
 
 def decode(e, range):
-    """Return the quantity of a number, of its shape: e^GAMMA range."""
+    """Return the quantity that a number represents, e^GAMMA range, of the same shape."""
     # x = e^gamma range
     return e**GAMMA * range
 

@@ -1,4 +1,4 @@
-"""Inverted: 1 minus the share of the range. For a perceptual roughness it is the smoothness that engines store."""
+"""Inverted: 1 - x / range. For perceptual roughness, this is the smoothness that engines store."""
 
 from pathlib import Path
 
@@ -7,13 +7,13 @@ from ..vec import maximum
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1], from 1 down to 0."""
+    """Map a quantity (float32 or float64, any shape) to 1 - x / range; negative x and NaN count as 0."""
     # e = 1 - x / range
     return 1.0 - maximum(x, 0.0) / range
 
 
 def decode(e, range):
-    """Return the quantity of a number, of its shape: (1 - e) range."""
+    """Return the quantity that a number represents, (1 - e) range, of the same shape."""
     # x = (1 - e) range
     return (1.0 - e) * range
 

@@ -1,4 +1,4 @@
-"""Linear: the share of the range. Steps are even."""
+"""Linear: x / range, with steps of equal size."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ def encode(x, range):
 
 
 def decode(e, range):
-    """Return the quantity of a number, of its shape: e range."""
+    """Return the quantity that a number represents, e range, of the same shape."""
     # x = e range
     return e * range
 

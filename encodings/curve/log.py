@@ -1,4 +1,4 @@
-"""Logarithm of one more than the quantity: steps are even near 0 and grow with the quantity beyond 1."""
+"""Logarithm of 1 plus the quantity: steps are even near 0 and grow with the quantity above 1."""
 
 from pathlib import Path
 
@@ -9,13 +9,14 @@ RANGE = 31.0
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative and NaN as 0) to log2(1 + x) / log2(1 + range)."""
+    """Map a quantity (float32 or float64, any shape) to log2(1 + x) / log2(1 + range); negative x and NaN count as
+    0."""
     # e = log2(1 + x) / log2(1 + range)
     return log2(1.0 + maximum(x, 0.0)) / log2(1.0 + range)
 
 
 def decode(e, range):
-    """Return the quantity of a number, of its shape: (1 + range)^e - 1."""
+    """Return the quantity that a number represents, (1 + range)^e - 1, of the same shape."""
     # x = 2^(e log2(1 + range)) - 1
     return exp2(e * log2(1.0 + range)) - 1.0
 

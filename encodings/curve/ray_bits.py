@@ -1,7 +1,7 @@
-"""Eight rays that hit or miss: the share of rays that miss, as the number of low bits that are set in a byte.
+"""Eight rays that hit or miss: the fraction of rays that miss, as the number of low bits set in a byte.
 
-A quantity takes one of nine values. If each ray has its own bit, the byte tells which rays hit; here the bits are set
-in order.
+A quantity takes one of nine values. With one bit for each ray, the byte would tell which rays hit; here the bits are
+set in order.
 """
 
 from pathlib import Path
@@ -13,14 +13,14 @@ RAYS, BYTE = 8.0, 255.0
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative and NaN as 0) to the byte of its rays, over 255."""
+    """Map a quantity (float32 or float64, any shape) to its byte of rays, over 255; negative x and NaN count as 0."""
     # e = (2^k - 1) / 255 of k rays, the nearest to 8 x / range
     k = floor(minimum(maximum(x, 0.0) / range, 1.0) * RAYS + 0.5)
     return (2.0**k - 1.0) * (1.0 / BYTE)
 
 
 def decode(e, range):
-    """Return the quantity of a byte over 255, of its shape: its number of rays over RAYS, times the range."""
+    """Return the quantity that a byte over 255 represents: its number of rays over RAYS, times the range."""
     # x = log2(1 + 255 e) / 8 range
     k = floor(log2(1.0 + maximum(floor(e * BYTE + 0.5), 0.0)) + 0.5)
     return k * (1.0 / RAYS) * range

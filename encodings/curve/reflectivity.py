@@ -15,7 +15,7 @@ def encode(x, range):
 
 
 def decode(e, range):
-    """The quantity of a number, of its shape; 0 for less than a dielectric reflects."""
+    """Return the quantity that a number represents; 0 if the number is below a dielectric's reflectance."""
     # x = (e - d) / (1 - d) range
     return maximum((e - DIELECTRIC) / (1.0 - DIELECTRIC) * range, 0.0)
 

@@ -7,13 +7,13 @@ from ..vec import maximum, sqrt
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to sqrt(x / range)."""
+    """Map a quantity (float32 or float64, any shape) to sqrt(x / range); negative x and NaN count as 0."""
     # e = sqrt(x / range)
     return sqrt(maximum(x, 0.0) / range)
 
 
 def decode(e, range):
-    """Return the quantity of a number, of its shape: e^2 range."""
+    """Return the quantity that a number represents, e^2 range, of the same shape."""
     # x = e^2 range
     return e * e * range
 

@@ -1,4 +1,4 @@
-"""Squared: steps are wide near 0 and narrow near the range. Of a perceptual roughness it is the alpha of GGX."""
+"""Squared: steps are wide near 0 and narrow near the range. For perceptual roughness, this is the alpha of GGX."""
 
 from pathlib import Path
 
@@ -7,14 +7,14 @@ from ..vec import maximum, sqrt
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to (x / range)^2."""
+    """Map a quantity (float32 or float64, any shape) to (x / range)^2; negative x and NaN count as 0."""
     # e = (x / range)^2
     share = maximum(x, 0.0) / range
     return share * share
 
 
 def decode(e, range):
-    """Return the quantity of a number, of its shape: sqrt(e) range."""
+    """Return the quantity that a number represents, sqrt(e) range, of the same shape."""
     # x = sqrt(e) range
     return sqrt(e) * range
 

@@ -1,4 +1,4 @@
-"""The sRGB curve, computed by the shader: for a format without the curve, or for numbers packed into integers."""
+"""The sRGB curve, computed by the shader: for formats without the curve, or for numbers packed into integers."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from ..vec import maximum, select
 
 
 def encode(x, range):
-    """Map a quantity (float32 or float64, any shape; negative numbers and NaN as 0) to [0, 1] up to the range."""
+    """Map a quantity (float32 or float64, any shape) up to the range to [0, 1]; negative x and NaN count as 0."""
     # e = slope s for s = x / range up to the knee, else (1 + offset) s^(1 / power) - offset
     s = maximum(x, 0.0) / range
     curved = (1.0 + SRGB_OFFSET) * maximum(s, SRGB_KNEE) ** (1.0 / SRGB_POWER) - SRGB_OFFSET
@@ -16,7 +16,7 @@ def encode(x, range):
 
 
 def decode(e, range):
-    """Return the quantity of a number, of its shape, by the inverse of the sRGB curve, times the range."""
+    """Return the quantity that a number represents: the inverse of the sRGB curve, times the range."""
     # x = e / slope range up to the knee, else ((e + offset) / (1 + offset))^power range
     line = e * (1.0 / SRGB_SLOPE)
     curved = ((e + SRGB_OFFSET) / (1.0 + SRGB_OFFSET)) ** SRGB_POWER

@@ -1,4 +1,4 @@
-"""Linear depth: the share of the far plane's distance, or in floats the depth itself."""
+"""Linear depth: the depth as a fraction of the far plane's distance or, in float formats, the depth itself."""
 
 from pathlib import Path
 
@@ -7,13 +7,13 @@ from ..vec import maximum
 
 
 def encode(depth, near, far):
-    """Map depth to its share of `far`; depth behind the eye becomes 0."""
+    """Map depth to a fraction of `far`; depth behind the eye becomes 0."""
     # l = d / far
     return maximum(depth, 0.0) / far
 
 
 def decode(number, near, far):
-    """Return the depth of a share of `far`."""
+    """Return the depth, given as a fraction of `far`."""
     # d = l far
     return number * far
 

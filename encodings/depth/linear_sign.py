@@ -1,4 +1,4 @@
-"""Linear depth with the sign of the normal's z as its own: X and Y are then a whole normal."""
+"""Linear depth with the sign of the normal's z, so that X and Y are enough for the normal."""
 
 from pathlib import Path
 
@@ -7,13 +7,13 @@ from ..vec import with_sign_of
 
 
 def encode(depth, near, far):
-    """Map signed depth to its share of `far`, with the sign bit of the depth, also for zeros."""
+    """Map signed depth to a fraction of `far` with the depth's sign bit, even for zero."""
     # l = sign |d| / far
     return with_sign_of(abs(depth) / far, depth)
 
 
 def decode(number, near, far):
-    """Return the depth of a share of `far`, with the sign bit of the share."""
+    """Return the signed depth, given as a fraction of `far`, with the fraction's sign bit."""
     # d = sign |l| far
     return with_sign_of(abs(number) * far, number)
 

@@ -1,4 +1,4 @@
-"""Logarithmic depth: every step is the same share of the depth."""
+"""Logarithmic depth: every step is the same fraction of the depth."""
 
 from pathlib import Path
 
@@ -8,13 +8,13 @@ from ..vec import maximum
 
 
 def encode(depth, near, far):
-    """Map depth to its logarithm between the planes; depth nearer than `near` becomes 0."""
+    """Map depth to its logarithmic position between the planes, 0 to 1; depth nearer than `near` becomes 0."""
     # l = log2(d / near) / log2(far / near)
     return log2_of(maximum(depth, near) / near) / log2_of(far / near)
 
 
 def decode(number, near, far):
-    """Return the depth of a number that `encode` made: near (far / near)^number."""
+    """Return the depth that a number from `encode` represents: near (far / near)^number."""
     # d = near 2^(l log2(far / near))
     return near * exp2_of(number * log2_of(far / near))
 

@@ -1,4 +1,4 @@
-"""Reversed z/w: 1 at the near plane and 0 at the far one, where floats have their finest steps."""
+"""Reversed z/w: 1 at the near plane and 0 at the far plane, where floats have their finest steps."""
 
 from pathlib import Path
 
@@ -8,20 +8,20 @@ from ..vec import maximum
 
 
 def encode(depth, near, far):
-    """Map depth to reversed window depth, not as 1 - z/w, which would cancel; depth nearer than `near` becomes 1."""
+    """Map depth to reversed window depth, without the cancellation in 1 - z/w; depth nearer than `near` becomes 1."""
     # r = near (far - d) / (d (far - near))
     d = maximum(depth, near)
     return near * (far - d) / (d * (far - near))
 
 
 def decode(number, near, far):
-    """The depth of a reversed window depth."""
+    """Return the depth for a reversed window depth."""
     # d = near far / (near + r (far - near))
     return near * far / (near + number * (far - near))
 
 
 def clip_row(near, far):
-    """Return a and b of the projection's row for z, for which (a z + b) / -z is 1 at z = -near and 0 at z = -far."""
+    """Return a and b of the projection's z row, so that (a z + b) / -z is 1 at z = -near and 0 at z = -far."""
     return near / (far - near), near * far / (far - near)
 
 

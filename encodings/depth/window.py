@@ -15,13 +15,13 @@ def encode(depth, near, far):
 
 
 def decode(number, near, far):
-    """The depth of a window depth; 1 - w is exact where it matters, far - w (far - near) would cancel."""
+    """Return the depth for a window depth. 1 - w is exact where it matters; far - w (far - near) would cancel."""
     # d = near far / (near + (1 - w) (far - near))
     return near * far / (near + (1.0 - number) * (far - near))
 
 
 def clip_row(near, far):
-    """Return a and b of the projection's row for z, for which (a z + b) / -z is -1 at z = -near and 1 at z = -far."""
+    """Return a and b of the projection's z row, so that (a z + b) / -z is -1 at z = -near and 1 at z = -far."""
     return (near + far) / (near - far), 2 * near * far / (near - far)
 
 

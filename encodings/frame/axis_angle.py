@@ -1,7 +1,7 @@
-"""Axis and angle of a frame's rotation: the axis on the octahedral square, the angle with the hand as its sign.
+"""Axis and angle of a frame's rotation: the axis on the octahedral square, and the angle with the hand as its sign.
 
-An angle of 0 has no sign, so the smallest number with a sign replaces it. For a half turn, both ends of the axis
-are the same rotation.
+An angle of 0 has no sign, so the smallest number with a sign replaces it. For a half turn, opposite axes give the
+same rotation.
 """
 
 from pathlib import Path
@@ -13,8 +13,8 @@ from ..vec import TINY, Vec2, Vec3, Vec4, dot, inversesqrt, maximum, minimum, no
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """Return the rotation's axis as a point of the octahedral square, x and y; in z the angle in half turns, at least
-    `least`, times the hand; in w 0."""
+    """Return the rotation's axis, as a point of the octahedral square, in x and y; the angle in half turns, at least
+    `least`, times the hand, in z; and 0 in w."""
     q = quaternion_of(frame)
     v = q.xyz * sign_not_zero(q.w)
     # p = v.xy / (|v.x| + |v.y| + |v.z|), and for v.z < 0 (1 - |p.yx|) sign(p)
@@ -27,7 +27,7 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """Return the frame turned about the axis of e.xy by |e.z| half turns, with the sign of e.z as its hand."""
+    """Return the frame rotated by |e.z| half turns about the axis in e.xy, with the sign of e.z as its hand."""
     # k = (e, 1 - |e.x| - |e.y|), and for k.z < 0 k.xy - sign(e) (-k.z)
     xy = Vec2(e.x, e.y)
     z = 1.0 - abs(xy.x) - abs(xy.y)

@@ -1,6 +1,7 @@
-"""Hexadecachoral: a quaternion over the sum of its absolute components, which is the octahedral map one dimension up.
+"""Hexadecachoral: a quaternion over the sum of its absolute components, the octahedral map in four dimensions.
 
-q and -q are the same rotation, so w is made positive and follows from the other three. The hand has its own number.
+q and -q are the same rotation, so w is made positive and follows from the other three. The hand is a separate
+number.
 """
 
 from pathlib import Path
@@ -11,7 +12,7 @@ from ..vec import Vec4, dot, inversesqrt, maximum, sign_not_zero
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """Return three components in the octahedron |x| + |y| + |z| <= 1, and in w the hand; `least` is ignored."""
+    """Return three components in the octahedron |x| + |y| + |z| <= 1, and the hand in w; `least` is ignored."""
     # p = sign(q.w) q.xyz / (|q.x| + |q.y| + |q.z| + |q.w|)
     q = quaternion_of(frame)
     a = abs(q)
@@ -20,7 +21,7 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """Return the frame of three components and a hand, the sign of e.w; `least` is ignored."""
+    """Return the frame for three components and a hand, which is the sign of e.w; `least` is ignored."""
     # q = (p, 1 - |p.x| - |p.y| - |p.z|) at length 1
     q = Vec4(e.x, e.y, e.z, maximum(1.0 - abs(e.x) - abs(e.y) - abs(e.z), 0.0))
     return rotated_frame(q * inversesqrt(dot(q, q)), sign_not_zero(e.w))

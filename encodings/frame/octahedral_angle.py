@@ -1,7 +1,7 @@
-"""Octahedral normal, and the tangent's angle around it from a fixed tangent of that normal.
+"""An octahedral normal, and the angle of the tangent around it from a tangent that is fixed for each normal.
 
-The fixed tangent is that of the decoded normal: every field of tangents has a seam or a pole, where a normal that
-was moved by rounding would have another fixed tangent. -1 and 1 are the same angle, so one of 2^n codes is unused.
+The fixed tangent belongs to the decoded normal: every field of tangents has a seam or a pole, at which a normal moved
+by rounding would have a different fixed tangent. -1 and 1 are the same angle, so one of 2^n codes is unused.
 """
 
 from pathlib import Path
@@ -24,7 +24,7 @@ def point(n: Vec3) -> Vec2:
 
 
 def fixed(p: Vec2) -> Frame:
-    """Return the frame of a point of the octahedral square: the unit normal, its fixed tangent, and hand 1."""
+    """Return the frame at a point of the octahedral square: the unit normal, its fixed tangent, and hand 1."""
     # n = (p, 1 - |p.x| - |p.y|), and for z < 0 n.xy - sign(p) (-n.z)
     z = 1.0 - abs(p.x) - abs(p.y)
     xy = p - sign_not_zero(p) * maximum(-z, 0.0)
@@ -36,8 +36,8 @@ def fixed(p: Vec2) -> Frame:
 
 
 def settle(frame: Frame, stored: Vec4) -> Vec4:
-    """Return the code with the normal's numbers as stored in x and y; in z the tangent's angle around the stored
-    normal in half turns, in w the hand."""
+    """Return the code: in x and y the normal's numbers as stored, in z the tangent's angle around the stored normal,
+    in half turns, and in w the hand."""
     f = fixed(Vec2(stored.x, stored.y))
     # a = atan2(t' . (n x t), t' . t) / pi
     angle = atan2_pi(dot(frame.tangent, cross(f.normal, f.tangent)), dot(frame.tangent, f.tangent))
@@ -45,14 +45,14 @@ def settle(frame: Frame, stored: Vec4) -> Vec4:
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """Return the normal's point on the octahedral square in x and y, in z the tangent's angle around the normal in
-    half turns, in w the hand; `least` is ignored."""
+    """Return the code: in x and y the normal's point on the octahedral square, in z the tangent's angle around the
+    normal, in half turns, and in w the hand. `least` is ignored."""
     p = point(frame.normal)
     return settle(frame, Vec4(p.x, p.y, 0.0, 0.0))
 
 
 def decode(e: Vec4, least) -> Frame:
-    """Return the frame of a point of the square, an angle in half turns and a hand, the sign of e.w."""
+    """Return the frame for a point of the square, an angle in half turns, and a hand, which is the sign of e.w."""
     f = fixed(Vec2(e.x, e.y))
     # t' = cos(pi a) t + sin(pi a) (n x t)
     sine, cosine = sincos_pi(e.z)

@@ -1,7 +1,7 @@
 """QTangent: a whole quaternion whose sign is the frame's hand.
 
-q and -q are the same rotation, so the sign of w is free. It must not be lost where w is 0: there w becomes the
-smallest number with a sign, at an error of up to twice that number in angle.
+q and -q are the same rotation, so the sign of w is free. It must not be lost if w is near 0: w is then replaced by
+the smallest number with a sign, which changes the angle by up to twice that number.
 """
 
 from pathlib import Path
@@ -22,7 +22,7 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """Return the frame of a quaternion of any length, with w's sign as its hand; normal +z, tangent +x for zero."""
+    """Return the frame for a quaternion of any length, with w's sign as its hand; for zero, normal +z, tangent +x."""
     # q = e / |e|
     q = e * inversesqrt(maximum(dot(e, e), TINY))
     return rotated_frame(q, sign_not_zero(e.w))

@@ -1,7 +1,7 @@
-"""Modified Rodrigues parameters of a rotation without a handedness: its quaternion, projected from -w onto a ball.
+"""Modified Rodrigues parameters of a rotation without handedness: its quaternion, projected from -w onto a ball.
 
-This is the stereographic projection one dimension up: all rotations are in the unit ball, and both ends of a half
-turn's axis are the same rotation. No angle is needed.
+This is the stereographic projection in one more dimension: all rotations are in the unit ball, and for a half turn,
+opposite axes give the same rotation. No angle is needed.
 """
 
 from pathlib import Path
@@ -12,7 +12,7 @@ from ..vec import Vec3, Vec4, dot, sign_not_zero
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """Return q.xyz / (1 + w) of the frame's quaternion with w >= 0, and 0 in w; the hand is not kept."""
+    """Return q.xyz / (1 + w) for the frame's quaternion q with w >= 0, and 0 in w; the hand is not kept."""
     q = quaternion_of(frame)
     # e = q.xyz / (1 + w)
     e = q.xyz * (sign_not_zero(q.w) / (1.0 + abs(q.w)))
@@ -20,8 +20,8 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """Return the frame, of hand 1, that a point e.xyz encodes; a point outside the unit ball gives the same frame as
-    some point inside it."""
+    """Return the frame, with hand 1, that a point e.xyz represents; a point outside the unit ball gives the same
+    frame as some point inside it."""
     v = Vec3(e.x, e.y, e.z)
     # q = (2 e, 1 - |e|^2) / (1 + |e|^2)
     square = dot(v, v)

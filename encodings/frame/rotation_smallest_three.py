@@ -1,6 +1,6 @@
-"""Smallest three of a rotation without a handedness: three components of its quaternion, and the largest's index.
+"""Smallest three for a rotation without handedness: three components of a quaternion, and the index of the largest.
 
-Like `smallest_three`, but all three components use their whole range, because none has the hand as its sign.
+Like `smallest_three`, but all three components use their whole range, because no component's sign stores the hand.
 """
 
 import math
@@ -14,8 +14,8 @@ RANGE = math.sqrt(0.5)
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """Return the three smaller components of the frame's quaternion over RANGE; w holds the index, 0 to 3, of the
-    largest as a number in [-1, 1]. The hand is not kept."""
+    """Return the three smallest components of the frame's quaternion over RANGE, and in w the index of the largest, 0
+    to 3, as a number in [-1, 1]. The hand is not kept."""
     q = quaternion_of(frame)
     a = abs(q)
     xy, zw = maximum(a.x, a.y), maximum(a.z, a.w)
@@ -28,8 +28,8 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """Return the frame, of hand 1, of three components and the largest one's index; numbers that no unit quaternion
-    has give no unit vectors."""
+    """Return the frame, with hand 1, for three components and the index of the largest. Components that no unit
+    quaternion has do not give unit vectors."""
     # q_i = sqrt(1 - |e.xyz|^2 / 2)
     s = Vec3(e.x, e.y, e.z) * RANGE
     largest = sqrt(maximum(1.0 - dot(s, s), 0.0))

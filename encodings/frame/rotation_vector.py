@@ -1,6 +1,7 @@
-"""Axis and angle of a rotation without a handedness, as one vector: the axis times the angle in half turns.
+"""Axis and angle of a rotation without handedness, as one vector: the axis times the angle in half turns.
 
-Also called exponential map. All rotations are in the unit ball; both ends of a half turn's axis are one rotation.
+Also called the exponential map. All rotations are in the unit ball; for a half turn, opposite axes give the same
+rotation.
 """
 
 from pathlib import Path
@@ -23,7 +24,7 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """Return the frame, of hand 1, rotated about e.xyz by its length in half turns, at most one half turn."""
+    """Return the frame, with hand 1, rotated about e.xyz by its length in half turns, at most one half turn."""
     v = Vec3(e.x, e.y, e.z)
     # q = (v / |v| sin(pi |v| / 2), cos(pi |v| / 2))
     square = maximum(dot(v, v), TINY)

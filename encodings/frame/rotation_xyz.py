@@ -1,8 +1,8 @@
-"""Three components of a quaternion, the fourth positive: a rotation without a handedness.
+"""Three components of a quaternion whose fourth is positive: a rotation without handedness.
 
-q and -q are the same rotation, so w is positive and follows from the squares of the others. Where w is near 0, steps
-of the others change it most: half turns are far less accurate than small rotations. Gaussian splats are stored this
-way.
+q and -q are the same rotation, so w is made positive and follows from the squares of the others. If w is near 0, it
+changes most with a step of another component: half turns are far less accurate than small rotations. Gaussian splats
+are stored this way.
 """
 
 from pathlib import Path
@@ -20,7 +20,7 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """Return the frame, of hand 1, of a quaternion's x, y and z, with w >= 0; if longer than 1, a half turn."""
+    """Return the frame, with hand 1, for a quaternion's x, y and z, with w >= 0; beyond length 1, a half turn."""
     # w = sqrt(1 - |e|^2)
     v = Vec3(e.x, e.y, e.z)
     square = dot(v, v)

@@ -1,8 +1,8 @@
 """Smallest three: the three smallest components of a quaternion, and the index of the largest.
 
-q and -q are the same rotation, so the largest is positive and follows from the squares of the others. The others
-are in [-1, 1] / sqrt(2). The third of them is stored as its distance from the lower end of that range, with the
-hand as its sign: that takes one bit of its precision, and no other bit.
+q and -q are the same rotation, so the largest component is made positive and follows from the squares of the others,
+which are in [-1, 1] / sqrt(2). The third of these is stored as its distance from the lower end of that range, with
+the hand as its sign: this takes one bit of its precision, and no additional bit.
 """
 
 import math
@@ -16,8 +16,8 @@ RANGE = math.sqrt(0.5)
 
 
 def encode(frame: Frame, least) -> Vec4:
-    """Return the three smaller components of the frame's quaternion over RANGE, where z is remapped to a magnitude of
-    at least `least` whose sign is the hand; w holds the index, 0 to 3, of the largest as a number in [-1, 1]."""
+    """Return the three smallest components of the frame's quaternion over RANGE, with z remapped to a magnitude of at
+    least `least` whose sign is the hand, and in w the index of the largest, 0 to 3, as a number in [-1, 1]."""
     q = quaternion_of(frame)
     a = abs(q)
     xy, zw = maximum(a.x, a.y), maximum(a.z, a.w)
@@ -32,8 +32,8 @@ def encode(frame: Frame, least) -> Vec4:
 
 
 def decode(e: Vec4, least) -> Frame:
-    """Return the frame of three components and the largest one's index, with the sign of e.z as its hand; numbers
-    that no unit quaternion has give no unit vectors."""
+    """Return the frame for three components and the index of the largest, with the sign of e.z as its hand.
+    Components that no unit quaternion has do not give unit vectors."""
     # s.z = 2 (|e.z| - least) / (1 - least) - 1; q_i = sqrt(1 - |s|^2 / 2)
     third = (abs(e.z) - least) / (1.0 - least) * 2.0 - 1.0
     s = Vec3(e.x, e.y, third) * RANGE

@@ -1,6 +1,6 @@
-"""Colours over their largest channel, as square roots in eight bits each, and that channel as a half float's bits.
+"""Colours over their largest channel, as square roots in 8 bits each, and that channel as the bits of a half float.
 
-Five bytes. A number of 16 bits holds the bits of the half as an integer. Codes do not add.
+Five bytes. A 16-bit number holds the bits of the half float as an integer. Codes do not add.
 """
 
 from pathlib import Path
@@ -14,8 +14,8 @@ MOST, MOST_BITS, STEPS = FORMS[16].largest, 31.0 * 1024.0 - 1.0, 65535.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Map light to [0, 1]: the roots of the colour over its largest channel, and in w that channel's half-float bits.
-    Negative light and NaN are treated as 0, light above 65504 as 65504."""
+    """Map light to [0, 1]: the square roots of the colour over its largest channel and, in w, the half-float bits of
+    that channel. Negative light and NaN are treated as 0, light above 65504 as 65504."""
     c = Vec3(*(minimum(maximum(channel, 0.0), MOST) for channel in light.xyz))
     half = maximum(maximum(c.x, c.y), c.z).astype(jnp.float16)
     bits, m = half.view(jnp.uint16).astype(jnp.float32), half.astype(jnp.float32)

@@ -1,7 +1,8 @@
-"""Hue in six bits, saturation in two, and the square root of the largest channel in eight: emission in two bytes.
+"""Hue in 6 bits, saturation in 2 bits, and the square root of the largest channel in 8 bits: emission in two bytes.
 
-Saturation has the steps 1/4, 1/2, 3/4 and 1. A colour with less than 1/4 becomes white, which is the last hue at
-the lowest saturation; a colour with that code gets the first hue instead, which is also red. Codes do not add.
+Saturation has the steps 1/4, 1/2, 3/4 and 1. A colour with a saturation below 1/4 becomes white, stored as the last
+hue with the lowest saturation; a colour with that code gets the first hue instead, which is also red. Codes do not
+add.
 """
 
 from pathlib import Path
@@ -14,8 +15,8 @@ HUES, SATURATIONS = 63.0, 3.0
 
 
 def encode(light: Vec4) -> Vec4:
-    """Map light to hue, saturation and the root of the largest channel in [0, 1], and 0 in w. Negative light and NaN
-    are treated as 0; the format clamps values above 16."""
+    """Map light to hue, saturation and the square root of the largest channel in [0, 1], and 0 in w. Negative light
+    and NaN are treated as 0; the format clamps values above 16."""
     c = light_or_none(light).xyz
     v = maximum(maximum(c.x, c.y), c.z)
     d = v - minimum(minimum(c.x, c.y), c.z)
@@ -33,7 +34,7 @@ def encode(light: Vec4) -> Vec4:
 
 
 def decode(e: Vec4) -> Vec4:
-    """A texel's light; the fourth number is 0."""
+    """Return a texel's light; the fourth number is 0."""
     six, v = e.x * 6.0, e.z * e.z * LIMIT
     is_white = (e.x * HUES + 0.5 >= HUES) & (e.y * SATURATIONS < 0.5)
     s = select(is_white, 0.0, (e.y * SATURATIONS + 1.0) * 0.25)

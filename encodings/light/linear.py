@@ -1,7 +1,7 @@
-"""Light over a range, in fixed point: Ols's RGBA8 scaled to [0, 2].
+"""Light over a range, in fixed point: RGBA8 scaled to [0, 2], as published by Ols.
 
-`srgb` has the same numbers in a target that stores colours on the sRGB curve and adds them in linear light. The
-hardware applies the curve: the shader writes and reads linear numbers. The fourth channel has no curve.
+`srgb` stores the same numbers in an sRGB target, which adds them in linear light. The hardware applies the curve: the
+shader writes and reads linear numbers. The fourth channel has no curve.
 """
 
 from dataclasses import replace
@@ -21,7 +21,7 @@ def encode(light: Vec4, limit: float = RANGE) -> Vec4:
 
 
 def decode(e: Vec4, limit: float = RANGE) -> Vec4:
-    """Return the light of a texel: e times the range."""
+    """Return the light that a texel represents: e times the range."""
     # L = e range
     return e * limit
 

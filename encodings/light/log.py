@@ -1,7 +1,7 @@
-"""Logarithmic light: codes multiply where light adds, so that blending by DST_COLOR, ZERO adds up light.
+"""Logarithmic light: adding light means multiplying codes, so blending with DST_COLOR, ZERO accumulates light.
 
-The code of no light is exactly 1. The last code before 0 is log2(255) = 7.994, a whole 1.0 of light after the code
-before it; 0 is read as that code.
+The code for no light is exactly 1. The last code before 0 represents log2(255) = 7.994, a whole 1.0 of light more
+than the code before it; 0 is read as that last code.
 """
 
 import math
@@ -20,7 +20,7 @@ def encode(light: Vec4) -> Vec4:
 
 
 def decode(e: Vec4) -> Vec4:
-    """Return the light of a texel, -log2(e); e is treated as at least 1/255."""
+    """Return the light that a texel represents: -log2(e), with e raised to at least 1/255."""
     # L = -log2(e), e at least 1/255
     return Vec4(*(-log2(maximum(c, LEAST)) for c in e))
 

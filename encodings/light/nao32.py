@@ -1,6 +1,7 @@
-"""NAO32: the logarithm of the luminance in 16 bits, two chromaticities in eight bits each (LogLuv in RGBA8).
+"""NAO32: the logarithm of the luminance in 16 bits, and two chromaticities in 8 bits each (LogLuv in RGBA8).
 
-Le counts half stops from 2^-63.5 up: its whole part in the third channel, the rest in the fourth. Codes do not add.
+Le counts half stops from 2^-63.5 up: the third channel holds its integer part, the fourth its fraction. Codes do not
+add.
 """
 
 from pathlib import Path
@@ -25,7 +26,7 @@ def _product(v: Vec3, m: tuple[float, ...]) -> Vec3:
 
 
 def encode(light: Vec4) -> Vec4:
-    """Map light to [0, 1]: 0 for negative values and NaN; light below 2^-63.5 is lost."""
+    """Map light to [0, 1]; negative values and NaN are treated as 0, and light below 2^-63.5 is lost."""
     # (X', Y, XYZ') = L M, x = X' / XYZ', y = Y / XYZ'
     p = _product(light_or_none(light).xyz, MATRIX)
     x, y = p.x / maximum(p.z, TINY), p.y / maximum(p.z, TINY)
@@ -35,7 +36,7 @@ def encode(light: Vec4) -> Vec4:
 
 
 def decode(e: Vec4) -> Vec4:
-    """A texel's light; the fourth number is 0."""
+    """Return a texel's light; the fourth number is 0."""
     # Y = 2^((Le - 127) / 2), XYZ' = Y / y, X' = x XYZ'; nothing for Le = 0
     le = e.z * STEPS + e.w
     y = select(le > 0.0, exp2((le - BIAS) * 0.5), 0.0)

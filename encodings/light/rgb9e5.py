@@ -1,6 +1,6 @@
-"""RGB9E5: three mantissas of nine bits under one exponent of five, as the four bytes of an RGBA8 texel.
+"""RGB9E5: three 9-bit mantissas with a shared 5-bit exponent, as the four bytes of an RGBA8 texel.
 
-The format itself is rarely one to render to; the same 32 bits are, in four channels. Codes do not add.
+The format itself is rarely renderable; the four channels hold the same 32 bits. Codes do not add.
 """
 
 from pathlib import Path
@@ -29,7 +29,7 @@ def encode(light: Vec4) -> Vec4:
 
 
 def decode(e: Vec4) -> Vec4:
-    """A texel's light; the fourth number is 0."""
+    """Return a texel's light; the fourth number is 0."""
     r, g, b, a = ((c * STEPS + 0.5).astype(jnp.uint32) for c in e)
     word = r | g << 8 | b << 16 | a << 24
     # L = m 2^(x - B - N)

@@ -1,6 +1,6 @@
-"""RGBM: colours in eight bits, times a shared multiplier in the fourth channel.
+"""RGBM: colours in 8 bits, times a shared multiplier in the fourth channel.
 
-The multiplier is rounded up to its own eight bits first, so that no colour exceeds 1. Codes do not add.
+The multiplier is first rounded up to its own 8 bits, so that no colour exceeds 1. Codes do not add.
 """
 
 from dataclasses import replace
@@ -17,8 +17,8 @@ SLACK = 2.0**-10
 
 
 def encode(light: Vec4, limit: float = RANGE) -> Vec4:
-    """Map light to [0, 1]: the colour over M times the range, and M in w. Negative light and NaN are treated as 0;
-    values above the range are clamped by the format."""
+    """Map light to [0, 1]: the colour divided by M times the range, and M in w. Negative light and NaN are treated as
+    0; the format clamps values above the range."""
     # m = ceil(255 max(L) / range - slack) / 255, at least 1/255 and at most 1
     rgb = light_or_none(light).xyz
     largest = maximum(maximum(rgb.x, rgb.y), rgb.z)
@@ -29,7 +29,7 @@ def encode(light: Vec4, limit: float = RANGE) -> Vec4:
 
 
 def decode(e: Vec4, limit: float = RANGE) -> Vec4:
-    """A texel's light; the fourth number is 0."""
+    """Return a texel's light; the fourth number is 0."""
     # L = e.rgb m range
     c = e.xyz * (e.w * limit)
     return Vec4(c.x, c.y, c.z, c.x * 0.0)

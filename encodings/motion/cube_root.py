@@ -1,4 +1,4 @@
-"""Cube root: steps grow with the square of the root, and around no motion they are finer than the square root's."""
+"""Cube root: steps grow with the square of the root and, near zero motion, are finer than for the square root."""
 
 from pathlib import Path
 
@@ -8,20 +8,20 @@ from ..vec import TINY, Vec2, maximum, select, sign_not_zero
 
 
 def root(share):
-    """Return the cube root of a number from 0 up; NaN and numbers below the smallest normal float32 give 0."""
+    """Return the cube root of a non-negative number; NaN and numbers below the smallest normal float32 give 0."""
     # s^(1/3) = 2^(log2(s) / 3)
     return select(share >= TINY, exp2_of(log2_of(maximum(share, TINY)) * (1.0 / 3.0)), 0.0)
 
 
 def encode(motion: Vec2, range) -> Vec2:
-    """Map motion to the signed cube root of its share of the range: [-1, 1] up to the range, larger beyond it."""
+    """Map motion to the signed cube root of motion / range, in [-1, 1] up to the range and larger beyond it."""
     # c = sign(v) (|v| / range)^(1/3)
     share = abs(motion) / range
     return sign_not_zero(motion) * Vec2(root(share.x), root(share.y))
 
 
 def decode(e: Vec2, range) -> Vec2:
-    """Return the motion of two numbers: e^3 range."""
+    """Return the motion that two numbers represent: e^3 range."""
     # v = c^3 range
     return e * e * e * range
 

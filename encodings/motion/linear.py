@@ -1,4 +1,4 @@
-"""Linear: a motion as a share of the range. Floats hold the motion itself."""
+"""Linear: motion as a fraction of the range. Float formats hold the motion itself."""
 
 from pathlib import Path
 
@@ -7,13 +7,13 @@ from ..vec import Vec2
 
 
 def encode(motion: Vec2, range) -> Vec2:
-    """Map motion to its share of the range: [-1, 1] up to the range, larger numbers beyond it."""
+    """Map motion to a fraction of the range, in [-1, 1] up to the range and larger beyond it."""
     # c = v / range
     return motion / range
 
 
 def decode(e: Vec2, range) -> Vec2:
-    """Return the motion of two numbers: e range."""
+    """Return the motion that two numbers represent: e range."""
     # v = c range
     return e * range
 

@@ -1,8 +1,8 @@
-"""Logarithm: steps of one size below range / k, and above it steps of one share of the motion.
+"""Logarithm: steps of equal size below range / k, and steps proportional to the motion above it.
 
-k is where the two meet. With k = 2^11 - 1 and a range of one screen they meet at 1 / 2047 of the screen, which is a
-pixel of an image 2047 pixels wide: a motion below a pixel is kept to a distance, and a motion above it to a share of
-itself. 2^11 makes the divisor log2(1 + k) a whole number, 11.
+With k = 2^11 - 1 and a range of one screen, the two regions meet at 1 / 2047 of the screen, one pixel of an image
+2047 pixels wide: motions below a pixel have a constant absolute precision, and larger motions a constant relative
+precision. 2^11 makes the divisor log2(1 + k) a whole number, 11.
 """
 
 from pathlib import Path
@@ -25,7 +25,7 @@ def encode(motion: Vec2, range) -> Vec2:
 
 
 def decode(e: Vec2, range) -> Vec2:
-    """Return the motion of two numbers: the inverse of `encode`, with a limit so that large numbers stay finite."""
+    """Return the motion that two numbers represent: the inverse of `encode`, limited to keep large numbers finite."""
     # v = sign(c) (2^(|c| log2(1 + k)) - 1) range / k
     x = Vec2(*(minimum(share * OCTAVES, MOST) for share in abs(e)))
     return sign_not_zero(e) * (Vec2(exp2_of(x.x), exp2_of(x.y)) - 1.0) * (range / K)

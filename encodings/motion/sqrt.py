@@ -1,4 +1,4 @@
-"""Square root: steps grow with the root of the motion, and around no motion they are finest."""
+"""Square root: steps grow with the square root of the motion and are finest near zero motion."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ def encode(motion: Vec2, range) -> Vec2:
 
 
 def decode(e: Vec2, range) -> Vec2:
-    """Return the motion of two numbers: e |e| range."""
+    """Return the motion that two numbers represent: e |e| range."""
     # v = c |c| range
     return e * abs(e) * range
 

@@ -1,14 +1,14 @@
-"""Best-fit normals: the most accurate of all 8-bit codes along a direction, with its length from a table.
+"""Best-fit normals: the most accurate of all 8-bit codes along a direction, with a length from a table.
 
-Scaling a normal before UNORM8 rounds it moves it among the codes; decoding removes the length again. The best scale
-is the same for a direction's mirror images and whichever axis is the largest, so the table holds a sixth of an
-octant, with the lookup coordinates of the source, and is not interpolated. UNORM8 has no code for 0: its values are
-the odd multiples of 1/255. The scale puts the largest component exactly on one of them.
+Scaling a normal before it is rounded to UNORM8 moves it relative to the codes; decoding removes the length again. The
+best scale is the same for all mirror images of a direction and for any order of the axes, so the table covers a sixth
+of an octant, with the lookup coordinates of the source, and is not interpolated. UNORM8 has no code for 0: its values
+are the odd multiples of 1/255. The scale puts the largest component exactly on one of these values.
 
 RMS angle in RGBA8 for uniform directions, in degrees, by the side of the table: 0.126 for 128, 0.070 for 256, 0.046
-for 512, 0.038 for 1024, 0.0357 for 2048; 0.0348 for the nearest of all codes, 0.184 unscaled. The axes are no
-better than unscaled, 0.32 degrees. The table is for UNORM8 rounded to nearest: elsewhere the scale only reduces
-precision, and another table can be fitted.
+for 512, 0.038 for 1024, 0.0357 for 2048; 0.0348 for the nearest of all codes, 0.184 unscaled. Directions along the
+axes are no better than unscaled: 0.32 degrees. The table is for UNORM8 rounded to nearest: in other storages the
+scale only reduces precision, and a different table can be fitted.
 """
 
 from collections.abc import Callable
@@ -32,9 +32,9 @@ _CENTRE = (np.arange(SIZE, dtype=np.float32) + 0.5) / SIZE
 def _misfit(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
     """Return the squared sine of the angle from (x, y, 1) to the nearest code (p, q, k), up to a factor without k.
 
-    In codes of half steps, p and q are even or odd as k is: odd if there is no code for 0. Both vectors are halved
-    here, so that their numbers are whole numbers and halves. The result is |(x, y, 1) x (p, q, k)|^2 / |(p, q,
-    k)|^2, computed in place: fresh arrays would take as long as the arithmetic.
+    In units of half a step, p and q are even or odd like k, which is odd if there is no code for 0. Both vectors are
+    halved here, so that their components are whole numbers and halves. The result, |(x, y, 1) x (p, q, k)|^2 /
+    |(p, q, k)|^2, is computed in place: allocating new arrays would take as long as the arithmetic.
     """
     odd, half = k % 2, k / 2
     u, v = x * half, y * half
@@ -53,7 +53,7 @@ def _misfit(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
 
 
 def _best_scales(misfit: Callable[[int], np.ndarray], levels: int) -> np.ndarray:
-    """Return the scales k / (levels - 1) with the smallest misfit, trying every k; the largest of equal ones."""
+    """Return the scales k / (levels - 1) with the smallest misfit over all codes k; on a tie, the largest scale."""
     last = levels - 1
     least = misfit(last)
     best = np.ones_like(least)
@@ -68,8 +68,8 @@ def _best_scales(misfit: Callable[[int], np.ndarray], levels: int) -> np.ndarray
 def centres(levels: int = LEVELS) -> np.ndarray:
     """Return the best scale at each texel's centre, over (middle / largest, smallest / middle).
 
-    The result is float32 of shape (SIZE, SIZE, 1). The function processes some rows at a time, which stay in a
-    core's cache: a quarter of a second instead of a whole one.
+    The result is float32 of shape (SIZE, SIZE, 1). The function processes blocks of rows that fit in a core's cache,
+    which takes a quarter of a second instead of a whole second.
     """
     y, blocks = _CENTRE, []
     for ratio in np.split(_CENTRE[:, None], SIZE // ROWS):
@@ -83,8 +83,8 @@ def tables() -> dict[str, np.ndarray]:
 
 
 def fit(normals: np.ndarray, levels: int, prior: float) -> np.ndarray:
-    """Return the table whose scales have the smallest squared error on each texel's normals, for numbers of
-    `levels` values; float32 of shape (SIZE, SIZE, 1), as `centres`.
+    """Return the table whose scales have the smallest squared error on each texel's normals, for numbers with
+    `levels` values; float32 of shape (SIZE, SIZE, 1), like `centres`.
 
     Args:
         normals: float64 of shape (count, 3), unit.
@@ -109,7 +109,7 @@ def fit(normals: np.ndarray, levels: int, prior: float) -> np.ndarray:
 
 
 def _summed(x, y, starts: np.ndarray, centre_x, centre_y, prior: float, k: int) -> np.ndarray:
-    """Return for each texel the summed misfits of its normals, and of its centre, which counts `prior` times."""
+    """Return, for each texel, the summed misfits of its normals, plus `prior` times the misfit of its centre."""
     return np.add.reduceat(_misfit(x, y, k), starts) + prior * _misfit(centre_x, centre_y, k)
 
 
@@ -132,9 +132,10 @@ def _texel(a: Vec3):
 
 
 def encode(n: Vec3, view: Vec3, table: Any = None) -> Vec3:
-    """Map a unit normal to the vector along it whose UNORM8 code points best; its largest component is the scale.
+    """Map a unit normal to the multiple whose UNORM8 code has the most accurate direction; the scale is its largest
+    component.
 
-    Another `table` of scales than the published one is float32 of shape (SIZE, SIZE, 1).
+    `table` replaces the published table of scales: float32 of shape (SIZE, SIZE, 1).
     """
     # with |n|'s components sorted, x <= y <= z: c = n s(y / z, x / y) / z
     a = _sorted(abs(n))
@@ -143,7 +144,7 @@ def encode(n: Vec3, view: Vec3, table: Any = None) -> Vec3:
 
 
 def decode(e: Vec3, view: Vec3) -> Vec3:
-    """The stored vector at unit length; a stored zero, which no normal makes, is +x."""
+    """Return the stored vector at unit length; a stored zero, which no normal produces, gives +x."""
     return unit(e)
 
 

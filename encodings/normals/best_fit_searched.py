@@ -1,4 +1,4 @@
-"""Best-fit normals without a lookup: every length is tried, and the most accurate of these 8-bit codes is kept.
+"""Best-fit normals without a lookup: the encoder tries every length and keeps the most accurate of these 8-bit codes.
 
 UNORM8 has no code for 0: its values are the odd multiples of 1/255, so that the largest component can be exactly on
 128 of them.
@@ -22,7 +22,7 @@ def _code(n: Vec3, k) -> Vec3:
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Map a unit normal to the vector of odd multiples of 1/255 along it that points best; of equals the longest."""
+    """Map a unit normal to the vector of odd multiples of 1/255 nearest to its direction; on a tie, the longest."""
     from jax.lax import fori_loop  # a second to import, which `normalbench list` does not take
 
     def tried(step, carry):
@@ -41,7 +41,7 @@ def encode(n: Vec3, view: Vec3) -> Vec3:
 
 
 def decode(e: Vec3, view: Vec3) -> Vec3:
-    """The stored vector at unit length; a stored zero, which no normal makes, is +x."""
+    """Return the stored vector at unit length; a stored zero, which no normal produces, gives +x."""
     return unit(e)
 
 

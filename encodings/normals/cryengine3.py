@@ -3,8 +3,8 @@
 Drobot's slides ("Sphere Map - macro") write the same map with the other orientation: enc = normalize(n.xy)
 sqrt(n.z/2 + 1/2), n.z = 2 |enc|^2 - 1, n.xy = normalize(enc) sqrt(1 - n.z^2).
 
-Here 1/2 - n.z/2 cancels near +z: in float32 directions around it, though not +z itself, are 0.014 degrees off whatever
-the storage.
+Here 1/2 - n.z/2 cancels near +z: in float32, directions around +z, though not +z itself, are off by 0.014 degrees in
+every storage.
 """
 
 from pathlib import Path
@@ -20,7 +20,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The unit normal of a point of the disk; beyond its rim, where only rounding lands, -z."""
+    """Return the unit normal for a point of the disk; beyond the rim, which only rounding can reach, -z."""
     # l = (e, 1) . -(e, -1), n.xy = 2 e sqrt(l), n.z = 2 l - 1
     l = maximum(1.0 - dot(e, e), 0.0)  # noqa: E741 - the source's symbol
     g = 2.0 * sqrt(l)

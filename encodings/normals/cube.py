@@ -1,4 +1,4 @@
-"""Cube map: the face that a normal passes through, and the point on that face."""
+"""Cube map: the cube face that a normal points to, and the point on that face."""
 
 from pathlib import Path
 
@@ -9,7 +9,8 @@ FACES = 6
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Map a unit normal to a point of its face's square [-1, 1]^2 and the index of the face: +x, -x, +y ..."""
+    """Map a unit normal to a point of its face's square [-1, 1]^2, and the index of the face (+x, -x, +y ...) as a
+    number in [-1, 1]."""
     a = abs(n)
     # the largest component's axis; the others over it
     is_z, is_y = (a.z >= a.x) & (a.z >= a.y), a.y >= a.x
@@ -22,7 +23,7 @@ def encode(n: Vec3, view: Vec3) -> Vec3:
 
 
 def decode(e: Vec3, view: Vec3) -> Vec3:
-    """The unit normal of a point of a face."""
+    """Return the unit normal for a point of a face."""
     face = index_of(e.z, FACES)
     axis = floor(0.5 * face)
     side = 1.0 - 2.0 * (face - 2.0 * axis)

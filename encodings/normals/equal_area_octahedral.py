@@ -1,4 +1,4 @@
-"""Equal-area octahedral map: every part of the square holds its share of the sphere."""
+"""Equal-area octahedral map: equal areas of the square represent equal areas of the sphere."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The unit normal of a point of the square."""
+    """Return the unit normal for a point of the square."""
     a = abs(e)
     # d = 1 - |e.x| - |e.y|, r = 1 - |d|, phi = pi / 4 ((|e.y| - |e.x|) / r + 1)
     d = 1.0 - a.x - a.y

@@ -1,4 +1,4 @@
-"""Hemi-octahedral map: the upper half of the octahedron turned by 45 degrees fills the whole square."""
+"""Hemi-octahedral map: the upper half of the octahedron, rotated by 45 degrees, fills the whole square."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The unit normal of a point of the square; z >= 0."""
+    """Return the unit normal, with z >= 0, for a point of the square."""
     # p = (e.x + e.y, e.x - e.y) / 2, n = (p, 1 - |p.x| - |p.y|)
     p = Vec2(e.x + e.y, e.x - e.y) * 0.5
     return normalize(Vec3(p.x, p.y, 1.0 - abs(p.x) - abs(p.y)))

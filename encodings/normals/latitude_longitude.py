@@ -1,4 +1,4 @@
-"""Longitude and latitude: the angle around Z and the angle from it, both in equal steps."""
+"""Longitude and latitude: the angle around the z axis and the angle from the z axis, both in equal steps."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The unit normal of the longitude pi e.x at the angle pi (e.y + 1) / 2 from +z."""
+    """Return the unit normal at longitude pi e.x and at the angle pi (e.y + 1) / 2 from +z."""
     # n = (sin theta (cos phi, sin phi), cos theta)
     s, c = sincos_pi(e.x)
     r, z = sincos_pi(0.5 * e.y + 0.5)

@@ -1,4 +1,4 @@
-"""Octahedral map: the sphere projected on an octahedron, its lower half folded out into the corners of the square."""
+"""Octahedral map: the sphere projected onto an octahedron, whose lower half is folded out into a square's corners."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The unit normal of a point of the square."""
+    """Return the unit normal for a point of the square."""
     # n = (e, 1 - |e.x| - |e.y|), and for z < 0 n.xy - sign(e) (-n.z)
     z = 1.0 - abs(e.x) - abs(e.y)
     p = e - sign_not_zero(e) * maximum(-z, 0.0)

@@ -1,7 +1,7 @@
-"""Optimised rings: 2^16 points on rings of latitude, each with as many as one covering radius needs, in two bytes.
+"""Optimised rings: the index, in two bytes, of one of 2^16 points on rings of latitude with a common covering radius.
 
-Ring j of R is at the angle j pi / (R - 1) from +z. It has enough points that every direction between its borders,
-half way to its neighbours, is within the radius of a point. The radius is as small as 2^16 points allow: 0.5624
+Ring j of R is at the angle j pi / (R - 1) from +z. It has enough points for every direction between its borders,
+halfway to its neighbours, to be within the radius of a point. The radius is as small as 2^16 points allow: 0.5624
 degrees, for the best number of rings, 227.
 """
 
@@ -21,7 +21,8 @@ RINGS = round(math.sqrt(math.pi * COUNT / 4))
 
 
 def points_needed(radius: float, count: int = RINGS) -> np.ndarray:
-    """Return the points that each of `count` rings needs for `radius` to reach half a step around and its borders."""
+    """Return how many points each of `count` rings needs so that every direction between its borders is within
+    `radius` (radians) of a point; float64 of shape (count,)."""
     theta = np.arange(1, count - 1) * np.pi / (count - 1)
     needed = np.ones(count)
     for border in (theta - 0.5 * np.pi / (count - 1), theta + 0.5 * np.pi / (count - 1)):
@@ -35,7 +36,7 @@ def points_needed(radius: float, count: int = RINGS) -> np.ndarray:
 
 @cache
 def covering_radius() -> float:
-    """Return the largest angle between a direction and its point, in radians: the smallest that COUNT allows."""
+    """Return the largest angle between a direction and its point, in radians: the smallest possible with COUNT."""
     low, high = 0.0, math.pi
     for _ in range(60):
         middle = 0.5 * (low + high)
@@ -45,18 +46,18 @@ def covering_radius() -> float:
 
 @cache
 def rings() -> np.ndarray:
-    """Return the number of points in each ring and in all rings before it; float32 of shape (RINGS, 2)."""
+    """Return the number of points in each ring and the number in all rings before it; float32 of shape (RINGS, 2)."""
     counts = points_needed(covering_radius())
     return np.stack([counts, np.cumsum(counts) - counts], axis=1).astype(np.float32)
 
 
 def tables() -> dict[str, np.ndarray]:
-    """Return the rings by the sampler's name, as a texture of one row: float32 of shape (1, RINGS, 2)."""
+    """Return the rings by sampler name, as a texture with one row: float32 of shape (1, RINGS, 2)."""
     return {"optimised_rings_table": rings()[None]}
 
 
 def _ring(ring, dtype) -> tuple:
-    """Return, for an array of ring numbers, the points of each ring and of all rings before it, as two arrays."""
+    """Return, for an array of ring indices, two arrays: the point count of each ring and of all rings before it."""
     return tuple(jnp.asarray(column, dtype)[ring.astype(jnp.int32)] for column in rings().T)
 
 
@@ -69,8 +70,8 @@ def _point(ring, share) -> Vec3:
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Map a unit normal to the number of the nearest point of the two rings around it: its high and its low byte,
-    each as a number in [-1, 1]."""
+    """Map a unit normal to the index of the nearest point in the two rings around the normal: the high and the low
+    byte of the index, each as a number in [-1, 1]."""
     # ring = theta (RINGS - 1) / pi, share = phi / (2 pi)
     theta = atan2_pi(sqrt(n.x * n.x + n.y * n.y), n.z)
     turn = 0.5 * atan2_pi(n.y, n.x)
@@ -89,7 +90,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """Return the unit normal of the point whose number the two bytes hold."""
+    """Return the unit normal at the point whose index the two bytes hold."""
     i = index_of(e.x, BYTE) * BYTE + index_of(e.y, BYTE)
     # the last ring that begins at i or before
     ring = jnp.searchsorted(jnp.asarray(rings()[:, 1]), i.astype(jnp.float32), side="right") - 1

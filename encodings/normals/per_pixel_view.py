@@ -1,4 +1,4 @@
-"""X and Y in the pixel's own frame, whose Z points back along the eye ray: visible surfaces face it."""
+"""X and Y in the pixel's own frame, whose Z points back along the eye ray: visible normals have z >= 0."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The unit normal with z >= 0 in the pixel's frame; a code beyond the unit circle gets z = 0 there."""
+    """Return the unit normal with z >= 0 in the pixel's frame; a code outside the unit circle gives z = 0 there."""
     x, y, z = view_frame(view)
     return x * e.x + y * e.y + z * sqrt(maximum(1.0 - dot(e, e), 0.0))
 

@@ -1,7 +1,7 @@
-"""Spheremap transform in its Lambert azimuthal equal-area form: the reflection vector's place in a sphere map.
+"""Spheremap transform in its Lambert azimuthal equal-area form: the reflection vector's position in a sphere map.
 
-As published. 8 n.z + 8 cancels near -z, and in float32 the rounding of n.z alone turns directions within 0.01 rad of it
-by up to 27 degrees, within 0.001 by up to 90, whatever the storage; the n / p form does not.
+As published. 8 n.z + 8 cancels near -z: in float32, whatever the storage, the rounding of n.z alone turns directions
+within 0.01 rad of -z by up to 27 degrees, and within 0.001 rad by up to 90. The n / p form does not cancel.
 """
 
 from pathlib import Path
@@ -18,7 +18,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The unit normal of a point of the disk; beyond its rim, where only rounding lands, -z."""
+    """Return the unit normal for a point of the disk; beyond the rim, which only rounding can reach, -z."""
     # fenc = 2 e, f = fenc . fenc, n.xy = fenc sqrt(1 - f/4), n.z = 1 - f/2
     fenc = e * 2.0
     f = minimum(dot(fenc, fenc), 4.0)

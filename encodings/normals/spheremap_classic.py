@@ -1,7 +1,8 @@
-"""Spheremap transform as sphere-map texture coordinates were always computed: n / p.
+"""Spheremap transform in the traditional form of sphere-map texture coordinates: n / p.
 
-Equal to the Lambert form for unit normals only: here the length of n enters p. Nothing cancels in this sum of squares,
-so of the three forms it alone keeps float32's precision all the way to -z; expanded to n . n + 2 n.z + 1 it would not.
+Equal to the Lambert form for unit normals only, because p depends on the length of n. Nothing cancels in this sum of
+squares, so it is the only one of the three forms that keeps float32's precision all the way to -z; expanded to
+n . n + 2 n.z + 1, it would not.
 """
 
 from pathlib import Path
@@ -18,7 +19,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The unit normal of a point of the disk; beyond its rim, where only rounding lands, -z."""
+    """Return the unit normal for a point of the disk; beyond the rim, which only rounding can reach, -z."""
     # with t = (e + 1) / 2: f = t.x - t.x^2 + t.y - t.y^2, m = sqrt(4 f - 1), n.xy = m (4 t - 2), n.z = 8 f - 3
     f = maximum((2.0 - dot(e, e)) / 4.0, 0.25)
     m = sqrt(4.0 * f - 1.0)

@@ -1,6 +1,6 @@
-"""Spherical coordinates: the angle around Z, and Z itself.
+"""Spherical coordinates: the angle around the z axis, and z itself.
 
-Few normals of a view have a Z near -1: a bias and a scale put the codes for Z where the normals are.
+Few normals in a view have a z near -1: a bias and a scale put the codes for z where the normals are.
 """
 
 from pathlib import Path
@@ -19,8 +19,8 @@ def encode(n: Vec3, view: Vec3, bias: float = BIAS, scale: float = SCALE) -> Vec
 
 
 def decode(e: Vec2, view: Vec3, bias: float = BIAS, scale: float = SCALE) -> Vec3:
-    """Return the unit normal of the angle pi e.x at height z = scale e.y + bias. A height beyond 1 or -1 is kept,
-    with x and y at 0: the vector is then longer than 1."""
+    """Return the unit normal at the angle pi e.x and the height z = scale e.y + bias. A height beyond 1 or -1 is
+    kept, with x and y at 0: the vector is then longer than 1."""
     s, c = sincos_pi(e.x)
     # sin(phi) = sqrt(1 - cos^2(phi)), cos(phi) = scale e.y + bias
     z = e.y * scale + bias

@@ -1,6 +1,7 @@
 """Spherical Fibonacci lattice of 2^16 points: the index of the nearest point, in two bytes.
 
-Point i is at z = 1 - (2 i + 1) / N, rotated around Z by a golden section of a turn from the point before.
+Point i is at z = 1 - (2 i + 1) / N, rotated around the z axis from the previous point by 0.618 of a turn, the golden
+ratio.
 """
 
 import math
@@ -35,7 +36,7 @@ def _point(i) -> Vec3:
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Map a unit normal to the number of the lattice's nearest point: its high and its low byte, each as a number in
+    """Map a unit normal to the index of the nearest lattice point: the high and the low byte, each as a number in
     [-1, 1]."""
     # k = max(2, floor(log(N pi sqrt(5) (1 - n.z^2)) / log(PHI^2))): here steps of F_k and F_k+1 are the shortest
     around = maximum(n.x * n.x + n.y * n.y, TINY)
@@ -58,7 +59,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """Return the unit normal of the lattice's point whose number the two bytes hold."""
+    """Return the unit normal at the lattice point whose index the two bytes hold."""
     return _point(index_of(e.x, BYTE) * BYTE + index_of(e.y, BYTE))
 
 

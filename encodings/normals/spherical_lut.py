@@ -1,7 +1,7 @@
-"""Spherical coordinates with the trigonometry read from two lookup textures of 256 x 256.
+"""Spherical coordinates, with trigonometry read from two 256 x 256 lookup textures.
 
-A texel (i, j) stands for the point (-1 + 2 i / 255, -1 + 2 j / 255), so that 8-bit codes fall on texels; the nearest
-texel is read. More than 8 bits of storage therefore gain nothing.
+Texel (i, j) represents the point (-1 + 2 i / 255, -1 + 2 j / 255), so that 8-bit codes coincide with texels. The
+nearest texel is read, so more than 8 bits of storage gain nothing.
 """
 
 from functools import cache
@@ -33,13 +33,13 @@ def _texel(p: Vec2):
 
 
 def encode(n: Vec3, view: Vec3) -> Vec2:
-    """Map a unit normal to (angle / pi, z); the angle is the table's at the texel nearest to (x, y)."""
+    """Map a unit normal to (angle / pi, z); the angle is read from the table's texel nearest to (x, y)."""
     angle = jnp.asarray(tables()["spherical_lut_angle"][..., 0], n.z.dtype)
     return Vec2(angle[_texel(n.xy)], n.z)
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """Return the normal of height e.y, with the table's x and y at the texel nearest to the code; not normalised."""
+    """Return the normal at height e.y, with x and y from the table's texel nearest to the code; not normalised."""
     xy = jnp.asarray(tables()["spherical_lut_xy"], e.y.dtype)
     texel = _texel(e)
     return Vec3(xy[..., 0][texel], xy[..., 1][texel], e.y)

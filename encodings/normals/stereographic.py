@@ -1,8 +1,8 @@
-"""Stereographic projection from -z, scaled so that the normals one practically sees fill the unit disk.
+"""Stereographic projection from -z, scaled so that the normals that occur in practice fill the unit disk.
 
-At scale s the disk reaches 2 atan(s) from +z, so normals that reach an angle t need s = tan(t / 2), and no code is
-spared. A surface that a ray may hit turns at most 90 degrees from it: a view whose corners are f from its axis sees
-normals up to t = 90 degrees + f.
+At scale s the disk reaches 2 atan(s) from +z, so normals up to an angle t need s = tan(t / 2), which wastes no codes.
+The normal of a visible surface is at most 90 degrees from the direction to the eye: a view whose corners are at an
+angle f from its axis sees normals up to t = 90 degrees + f.
 """
 
 from pathlib import Path
@@ -23,7 +23,7 @@ def encode(n: Vec3, view: Vec3, scale: float = SCALE) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3, scale: float = SCALE) -> Vec3:
-    """The unit normal of a point of the plane."""
+    """Return the unit normal for a point of the plane."""
     # nn = (scale e, 1), g = 2 / (nn . nn), n = (g nn.xy, g - 1)
     nn = e * scale
     g = 2.0 / (dot(nn, nn) + 1.0)

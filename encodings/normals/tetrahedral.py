@@ -1,4 +1,4 @@
-"""Tetrahedral: X and Y in the frame of the tetrahedron's face that a normal is nearest to, and the face."""
+"""Tetrahedral: X and Y in the frame of the tetrahedron's face nearest to the normal, and the index of the face."""
 
 import math
 from pathlib import Path
@@ -12,8 +12,8 @@ SIDE, UP = math.sqrt(2 / 3), math.sqrt(1 / 3)
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Map a unit normal to a point of the disk of radius 0.943 about the nearest face's normal, and the face, 0 to 3,
-    as a number in [-1, 1]."""
+    """Map a unit normal to a point of the disk of radius 0.943 about the nearest face's normal, and the index of the
+    face, 0 to 3, as a number in [-1, 1]."""
     # is_upper = SIDE |n.x| + UP n.z > SIDE |n.y| - UP n.z, side = sign of the n.x or n.y that counts
     is_upper = SIDE * abs(n.x) + UP * n.z > SIDE * abs(n.y) - UP * n.z
     deciding = select(is_upper, n.x, n.y)
@@ -28,7 +28,7 @@ def encode(n: Vec3, view: Vec3) -> Vec3:
 
 
 def decode(e: Vec3, view: Vec3) -> Vec3:
-    """The normal of a point in a face's frame; a point beyond the unit circle gets no height above the face."""
+    """Return the normal for a point in a face's frame; outside the unit circle, with no height above the face."""
     face = index_of(e.z, FACES)
     is_upper = face >= 2.0
     side = 1.0 - 2.0 * (face - 2.0 * floor(0.5 * face))

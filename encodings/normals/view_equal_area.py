@@ -1,7 +1,7 @@
 """Equal-area map in the pixel's own frame, for normals up to an angle from the line of sight.
 
-Visible surfaces face the camera, except for interpolated and mapped normals, which turn a few degrees further. All
-codes are within the angle, with equal shares of the cap: 100 degrees are 59% of the sphere, a gain of 2.3 dB.
+Normals of visible surfaces face the camera, but interpolated and mapped normals can be turned a few degrees away. All
+codes are within the angle and share the cap equally: 100 degrees cover 59% of the sphere, a gain of 2.3 dB.
 """
 
 from collections.abc import Mapping
@@ -19,13 +19,13 @@ CAP_DEG, CAPS_DEG = 100.0, (90.0, 150.0)
 
 
 def height_of(cap: float) -> float:
-    """Return how far a cap's rim is below its middle, for an angle in degrees."""
+    """Return how far the rim of a spherical cap is below its centre, for the cap's angle in degrees."""
     return 1.0 - cos(radians(cap))
 
 
 def encode(n: Vec3, view: Vec3, cap: float = CAP_DEG) -> Vec2:
-    """Map a unit normal to a point of the square [-1, 1]^2, the line of sight at its centre. Normals beyond the cap,
-    an angle in degrees, go to its edge."""
+    """Map a unit normal to a point of the square [-1, 1]^2, with the line of sight at its centre. Normals more than
+    `cap` degrees from the line of sight are moved to its edge."""
     x, y, z = view_frame(view)
     m = Vec3(dot(x, n), dot(y, n), dot(z, n))
     # r = min(sqrt((1 - m.z) / height), 1), where 1 - m.z = (m.x^2 + m.y^2) / (1 + m.z)
@@ -38,7 +38,7 @@ def encode(n: Vec3, view: Vec3, cap: float = CAP_DEG) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3, cap: float = CAP_DEG) -> Vec3:
-    """The unit normal of a point of the square."""
+    """Return the unit normal for a point of the square."""
     height = height_of(cap)
     x, y, z = view_frame(view)
     # p = (e.x + e.y, e.x - e.y) / 2, r = |p.x| + |p.y|, phi = pi |p.y| / (2 r)

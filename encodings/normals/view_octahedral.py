@@ -1,8 +1,9 @@
 """Octahedral map in the pixel's own frame, for normals up to an angle from the line of sight.
 
-Visible surfaces face the camera, except for interpolated and mapped normals, which turn a few degrees further. The
-pyramid of the hemi-octahedral map, with its foot at that angle instead of 90 degrees, holds these normals; at 90
-degrees it is that map. The foot is a square around the cap's circle, so some codes are beyond the angle.
+Normals of visible surfaces face the camera, but interpolated and mapped normals can be turned a few degrees away. The
+pyramid of the hemi-octahedral map holds these normals if its base is at that angle instead of 90 degrees; at 90
+degrees, the two maps are the same. The base is a square around the cap's circle, so some codes are beyond the
+angle.
 """
 
 from collections.abc import Mapping
@@ -19,13 +20,13 @@ CAP_DEG, CAPS_DEG = 100.0, (90.0, 150.0)
 
 
 def foot(cap: float) -> tuple[float, float]:
-    """Return how far the pyramid's foot is below its tip, and half of its diagonal, for an angle in degrees."""
+    """Return how far the pyramid's base is below its apex, and half the base's diagonal, for an angle in degrees."""
     return 1.0 - cos(radians(cap)), sin(radians(cap))
 
 
 def encode(n: Vec3, view: Vec3, cap: float = CAP_DEG) -> Vec2:
-    """Map a unit normal to a point of the square [-1, 1]^2, the line of sight at its centre. Normals beyond the
-    pyramid's foot, at `cap` degrees, go to its edge."""
+    """Map a unit normal to a point of the square [-1, 1]^2, with the line of sight at its centre. Normals beyond the
+    pyramid's base, at `cap` degrees, are moved to its edge."""
     height, half = foot(cap)
     x, y, z = view_frame(view)
     m = Vec3(dot(x, n), dot(y, n), dot(z, n))
@@ -36,7 +37,7 @@ def encode(n: Vec3, view: Vec3, cap: float = CAP_DEG) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3, cap: float = CAP_DEG) -> Vec3:
-    """The unit normal of a point of the square."""
+    """Return the unit normal for a point of the square."""
     height, half = foot(cap)
     x, y, z = view_frame(view)
     # p = (e.x + e.y, e.x - e.y) / 2, m = (half p, 1 - height (|p.x| + |p.y|))

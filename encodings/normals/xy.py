@@ -1,4 +1,4 @@
-"""X and Y; Z is rebuilt as if the normal faced the camera."""
+"""X and Y; Z is reconstructed as if the normal faced the camera."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ def encode(n: Vec3, view: Vec3) -> Vec2:
 
 
 def decode(e: Vec2, view: Vec3) -> Vec3:
-    """The normal with z >= 0; a code beyond the unit circle, where rounding can land, gets z = 0."""
+    """Return the normal with z >= 0; a code outside the unit circle, which rounding can produce, gives z = 0."""
     # n.z = sqrt(1 - e . e)
     return Vec3(e.x, e.y, sqrt(maximum(1.0 - dot(e, e), 0.0)))
 

@@ -1,4 +1,4 @@
-"""X and Y, with the sign of Z kept as one more bit."""
+"""X and Y, with the sign of Z as an additional bit."""
 
 from pathlib import Path
 
@@ -7,12 +7,12 @@ from ..vec import Vec2, Vec3, dot, maximum, sign_not_zero, sqrt
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Map a unit normal to X, Y and the sign of Z (1 or -1, 1 for z = 0)."""
+    """Map a unit normal to X, Y and the sign of Z (1 or -1, and 1 for z = 0)."""
     return Vec3(n.x, n.y, sign_not_zero(n.z))
 
 
 def decode(e: Vec3, view: Vec3) -> Vec3:
-    """The normal with z of the sign kept; a code beyond the unit circle gets z = 0."""
+    """Return the normal whose z has the stored sign; a code outside the unit circle gives z = 0."""
     xy = Vec2(e.x, e.y)
     # n.z = sign sqrt(1 - e . e)
     return Vec3(e.x, e.y, e.z * sqrt(maximum(1.0 - dot(xy, xy), 0.0)))

@@ -1,4 +1,4 @@
-"""The normal over its largest component: a point of the cube around the sphere, renormalised when read."""
+"""The normal over its largest component: a point of the cube around the sphere, renormalised when decoded."""
 
 from pathlib import Path
 
@@ -7,14 +7,14 @@ from ..vec import Vec3, maximum, unit
 
 
 def encode(n: Vec3, view: Vec3) -> Vec3:
-    """Map a unit normal to the point of the surface of the cube [-1, 1]^3 in its direction."""
+    """Map a unit normal to the point in its direction on the surface of the cube [-1, 1]^3."""
     # e = n / max(|n.x|, |n.y|, |n.z|)
     a = abs(n)
     return n * (1.0 / maximum(maximum(a.x, a.y), a.z))
 
 
 def decode(e: Vec3, view: Vec3) -> Vec3:
-    """The unit vector toward a point of the cube; a stored zero, which no normal makes, is +x."""
+    """Return the unit vector toward a point of the cube; a stored zero, which no normal produces, gives +x."""
     # n = e / |e|
     return unit(e)
 

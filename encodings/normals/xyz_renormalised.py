@@ -12,7 +12,7 @@ def encode(n: Vec3, view: Vec3) -> Vec3:
 
 
 def decode(e: Vec3, view: Vec3) -> Vec3:
-    """The stored vector at unit length; a stored zero, which no normal makes, is +x."""
+    """Return the stored vector at unit length; a stored zero, which no normal produces, gives +x."""
     return unit(e)
 
 

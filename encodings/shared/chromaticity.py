@@ -1,4 +1,4 @@
-"""The chromaticity of light, from which a single light target rebuilds the colour of highlights.
+"""The chromaticity of light, with which the colour of highlights is reconstructed from a single light target.
 
 The GLSL twin is `chromaticity.glsl`, which takes the weights from here.
 """
@@ -25,5 +25,5 @@ def chromaticity(c: Vec3) -> Vec3:
 
 
 def coloured(diffuse: Vec3, specular) -> Vec3:
-    """Return specular light, given by its luminance alone, in the colour of the diffuse light: chroma(D) A."""
+    """Return specular light, given only by its luminance, in the colour of the diffuse light: chroma(D) A."""
     return chromaticity(diffuse) * specular

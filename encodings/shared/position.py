@@ -1,6 +1,7 @@
-"""View-space positions from stored depths: by the inverse projection, by its two terms, and by the eye's ray.
+"""View-space positions from stored depths: by the inverse projection, by its two terms, and by the eye ray.
 
-All take the place on the screen, from -1 to 1 to the right and up. The GLSL twin of this file is `position.glsl`.
+All functions take the position on the screen, from -1 to 1 to the right and up. The GLSL twin of this file is
+`position.glsl`.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ if TYPE_CHECKING:
 
 
 class CameraTerms(NamedTuple):
-    """The terms of a camera and a projection that a shader is given, in float32.
+    """The values of a camera and a projection that are passed to a shader, in float32.
 
-    `terms` are the two terms of the projection's row for z: clip-space z is terms.x z + terms.y.
+    `terms` are the two terms of the projection's z row: clip-space z is terms.x z + terms.y.
     """
 
     near: Float[Array, ""]
@@ -33,7 +34,7 @@ class CameraTerms(NamedTuple):
 
 @dataclass(frozen=True)
 class Projection:
-    """The way clip space counts depth.
+    """The mapping from depth to clip space.
 
     Attributes:
         row: (near, far) -> a, b: clip-space z is a z + b, with w = -z.
@@ -62,7 +63,7 @@ class Camera:
 
     @property
     def rays(self) -> tuple[float, float]:
-        """The position of the ray through the screen's upper right corner at depth 1."""
+        """The x and y at depth 1 of the ray through the screen's upper right corner."""
         up = float(np.tan(np.radians(self.fov) / 2))
         return up * self.aspect, up
 
@@ -78,11 +79,11 @@ class Camera:
         return np.linalg.inv(matrix)
 
     def terms(self, projection: Projection | None) -> tuple[float, float]:
-        """Return a and b of a projection's row for z, a z + b, for this camera; 0 and 1 if the projection is None."""
+        """Return a and b of a projection's z row, a z + b, for this camera; 0 and 1 if the projection is None."""
         return projection.row(self.near, self.far) if projection else (0.0, 1.0)
 
     def seen(self, projection: Projection | None) -> CameraTerms:
-        """Return the camera's values for a projection, in float32, as a shader is given them."""
+        """Return the camera's values for a projection, in float32, as passed to a shader."""
         near, far, *rays = map(jnp.float32, (self.near, self.far, *self.rays))
         clip = Vec2(*map(jnp.float32, projection.clip if projection else (1.0, 0.0)))
         terms = Vec2(*map(jnp.float32, self.terms(projection)))
@@ -92,11 +93,11 @@ class Camera:
 def position_from_window_depth(
     place: Vec2, depth: Float[Array | np.ndarray, "*shape"], clip: Vec2, clip_to_view: Float[Array, "4 4"]
 ) -> Vec3:
-    """Return the view-space position of a depth buffer's depth, from 0 to 1, by the inverse projection.
+    """Return the view-space position for a depth buffer's depth, from 0 to 1, by the inverse projection.
 
     Args:
-        place: position on the screen, -1 to 1 to the right and up; arrays of one shape with `depth`.
-        clip: how clip space counts depth, see `Projection`.
+        place: position on the screen, -1 to 1 to the right and up; arrays of the same shape as `depth`.
+        clip: how depth maps to clip space (see `Projection`).
         clip_to_view: the inverse projection, float32.
     """
     # p = clip_to_view (place, clip.x depth + clip.y, 1), position = p.xyz / p.w
@@ -108,19 +109,19 @@ def position_from_window_depth(
 def position_from_projection_terms(
     place: Vec2, depth: Float[Array | np.ndarray, "*shape"], clip: Vec2, terms: Vec2, rays: Vec2
 ) -> Vec3:
-    """The position of a depth buffer's depth by the two terms of the projection, as many engines compute it.
+    """Return the view-space position for a depth buffer's depth by the projection's two terms, as many engines do.
 
     Args:
         place, depth, clip: as in `position_from_window_depth`.
         terms: a, b: clip-space z is a z + b, with w = -z.
-        rays: where the ray through the screen's upper right corner is at depth 1.
+        rays: x and y at depth 1 of the ray through the screen's upper right corner.
     """
     # ndc = (a z + b) / -z, so -z = b / (ndc + a)
     return position_from_linear_depth(place, terms.y / (clip.x * depth + clip.y + terms.x), rays)
 
 
 def position_from_linear_depth(place: Vec2, depth: Float[Array | np.ndarray, "*shape"], rays: Vec2) -> Vec3:
-    """The position of a linear depth, which is planar (-z): the eye's ray times the depth."""
+    """Return the view-space position for a linear, planar depth (-z): the eye ray times the depth."""
     # position = (place rays, -1) depth
     ray = place * rays
     return Vec3(ray.x * depth, ray.y * depth, -depth)

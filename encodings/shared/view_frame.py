@@ -6,8 +6,8 @@ from ..vec import Vec3, cross, unit
 
 
 def view_frame(view: Vec3) -> tuple[Vec3, Vec3, Vec3]:
-    """Return the x, y and z axes of the pixel's frame, given its view-space position: z points to the eye, x is
-    horizontal, and +x if the ray goes straight up or down."""
+    """Return the x, y and z axes of the pixel's frame, given its view-space position: z points to the eye, and x is
+    horizontal (+x if the ray goes straight up or down)."""
     # z = -view, x = normalize(z.z, 0, -z.x), y = cross(z, x)
     z = -unit(view)
     x = unit(Vec3(z.z, 0.0 * z.z, -z.x))

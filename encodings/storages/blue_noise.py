@@ -1,4 +1,4 @@
-"""Blue noise: numbers for the pixels of a tile, each used once; neighbours differ and no patch stands out.
+"""Blue noise: a tile of numbers, each used once; neighbours differ and no patch stands out.
 
 Method: R. Ulichney, The void-and-cluster method for dither array generation, SPIE 1913, 1993.
 """
@@ -15,7 +15,7 @@ WIDTH, SHARE = 1.5, 0.1
 
 
 class _Pattern:
-    """Pixels that are set, and how crowded every pixel is by them, on a torus."""
+    """A set of pixels on a torus, and how much the set crowds each pixel."""
 
     def __init__(self, pixels: np.ndarray):
         self.pixels = np.zeros(SIZE * SIZE, bool)
@@ -26,7 +26,7 @@ class _Pattern:
             self.turn(int(pixel))
 
     def turn(self, pixel: int) -> None:
-        """Set a pixel, given by its index row by row, or clear it if it is set."""
+        """Set a pixel, given by its row-major index, or clear it if it is already set."""
         y, x = divmod(pixel, SIZE)
         around = self._filter[SIZE - y : 2 * SIZE - y, SIZE - x : 2 * SIZE - x].ravel()
         self._crowd += -around if self.pixels[pixel] else around
@@ -34,18 +34,18 @@ class _Pattern:
 
     @property
     def cluster(self) -> int:
-        """The index of the most crowded pixel of those that are set."""
+        """The index of the most crowded set pixel."""
         return int(np.argmax(np.where(self.pixels, self._crowd, -np.inf)))
 
     @property
     def void(self) -> int:
-        """The index of the least crowded pixel of those that are not set."""
+        """The index of the least crowded pixel that is not set."""
         return int(np.argmin(np.where(self.pixels, np.inf, self._crowd)))
 
 
 @cache
 def blue_noise() -> np.ndarray:
-    """Numbers in (0, 1), evenly spread, float64 of shape (SIZE, SIZE). The tile repeats without a seam."""
+    """Return evenly spaced numbers in (0, 1), float64 of shape (SIZE, SIZE). The tile repeats without a seam."""
     first = _spread_pattern()
     ranks = np.empty(SIZE * SIZE)
     thinned = _Pattern(first)
@@ -62,7 +62,8 @@ def blue_noise() -> np.ndarray:
 
 
 def _spread_pattern() -> np.ndarray:
-    """Return the indices of a few pixels, drawn at random and moved from clusters to voids until none moves."""
+    """Return the indices of a fraction SHARE of the pixels, drawn with SEED and moved from clusters to voids until
+    none moves."""
     drawn = np.random.default_rng(SEED).choice(SIZE * SIZE, round(SHARE * SIZE * SIZE), replace=False)
     pattern = _Pattern(drawn)
     while True:

@@ -1,4 +1,4 @@
-"""Storages of the number of a depth, and their arithmetic: channels of a target, or the depth buffer itself."""
+"""Storages for encoded depths, and their arithmetic: channels of a render target, or the depth buffer itself."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DepthStorage:
-    """The storage of the number of a depth.
+    """A storage for the number of a depth encoding.
 
     Attributes:
         name: the catalogue's key.
         title: human-readable name.
         format: format of the render target or of the depth attachment.
         home: "packed", an unsigned integer over the last of a target's 8-bit channels; "channel", the first channel
-            of a target; "attachment", the depth buffer itself; or "bytes", 8-bit channels as its author's shader
-            fills them.
-        bits: bits of the number.
-        code: a `DepthEncoding` whose two functions convert a number in [0, 1] to these bytes, and back; None for
-            others.
+            of a target; "attachment", the depth buffer itself; or "bytes", 8-bit channels as filled by the author's
+            shader.
+        bits: number of bits for the number.
+        code: a `DepthEncoding` whose two functions convert a number in [0, 1] to these bytes and back; None unless
+            `home` is "bytes".
     """
 
     name: str
@@ -41,17 +41,17 @@ class DepthStorage:
 
     @property
     def scale(self) -> int:
-        """The integer that stands for 1; 1 for floats."""
+        """The integer that represents 1; 1 for floats."""
         return 1 if self.format.kind == "float" else 2**self.bits - 1
 
     @property
     def is_signed(self) -> bool:
-        """Whether the storage has room for a sign: depth buffers and encodings in bytes hold 0 to 1."""
+        """Whether the storage can hold a sign: depth buffers and encodings in bytes hold only 0 to 1."""
         return self.home not in ("attachment", "bytes")
 
     @property
     def is_open(self) -> bool:
-        """Whether numbers beyond 1 keep their value: floats that are not a depth buffer's."""
+        """Whether numbers beyond 1 keep their values, as in floats outside a depth buffer."""
         return self.format.kind == "float" and self.home == "channel"
 
 
@@ -75,7 +75,7 @@ DEPTH_STORAGES: Mapping[str, DepthStorage] = MappingProxyType(
 
 
 def depth_storage_of(storage: Storage) -> DepthStorage | None:
-    """Return the depth storage for bits such as `unorm:20` or `float:5:10`; None if they cannot hold a depth."""
+    """Return the depth storage with the bits of a storage such as `unorm:20` or `float:5:10`; None if impossible."""
     alike = (depth_storage for depth_storage in DEPTH_STORAGES.values() if depth_storage.home == "channel")
     if storage.kind == "float" and storage.channels != 2:
         return next(
@@ -94,8 +94,8 @@ def depth_storage_of(storage: Storage) -> DepthStorage | None:
 def fixed(
     c: Float[Array | np.ndarray, "*shape"], scale: int, is_signed: bool, rounding: str = "nearest"
 ) -> UInt[Array, "*shape"]:
-    """Return the unsigned integer (uint32) for c in [0, 1] (float32, any shape), where `scale` stands for 1 and NaN
-    is 0, rounded by one of ROUNDINGS.
+    """Return c in [0, 1] (float32, any shape) as an unsigned integer (uint32), rounded by one of ROUNDINGS. `scale`
+    represents 1; NaN becomes 0.
 
     A signed c in [-1, 1] is stored as sign and magnitude: the upper half of the integers is for negative numbers
     and -0.
@@ -117,17 +117,17 @@ def from_fixed(integer: UInt[Array, "*shape"], scale: int, is_signed: bool) -> F
 
 
 def _share(integer: UInt[Array, "*shape"], scale: int) -> Float[Array, "*shape"]:
-    """integer / scale for a scale of 2^n - 1, rounded once: i / (2^n - 1) = i 2^-n + i 2^-2n + ...
+    """Return integer / scale for a scale of 2^n - 1, rounded once: i / (2^n - 1) = i 2^-n + i 2^-2n + ...
 
-    As a quotient a compiler may multiply by the rounded reciprocal, which is a whole step off where n is 24.
+    For a division, a compiler may multiply by the rounded reciprocal, which is a whole step off if n is 24.
     """
     high = integer.astype(jnp.float32) * jnp.float32(1.0 / (scale + 1))
     return high + high * jnp.float32(1.0 / (scale + 1))
 
 
 def store_bytes(integer: UInt[Array, "*shape"], bits: int) -> UInt[Array, "*shape"]:
-    """Return an unsigned integer after storing it in channels of 8-bit UNORM, the highest byte first. No byte is
-    rounded by itself, so none can carry into another."""
+    """Return an unsigned integer after storage in 8-bit UNORM channels, the highest byte first. No byte is rounded
+    separately, so none can carry into another."""
     together = jnp.zeros_like(integer)
     for shift in range((bits - 1) // 8 * 8, -1, -8):
         byte = ((integer >> shift) & 0xFF).astype(jnp.float32)
@@ -139,7 +139,7 @@ def store_bytes(integer: UInt[Array, "*shape"], bits: int) -> UInt[Array, "*shap
 def store_depth(
     c: Float[Array | np.ndarray, "*shape"], storage: DepthStorage, is_signed: bool = False, rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """Return the number of a depth (float32, any shape) as the storage returns it, rounded by one of ROUNDINGS; with
+    """Return the number for a depth (float32, any shape) as the storage returns it, rounded by one of ROUNDINGS; with
     a sign if `is_signed`. A depth buffer rounds to nearest."""
     if storage.home == "bytes":
         return storage.code.decode(storage.code.encode(c))

@@ -2,15 +2,15 @@
 
 UNORM of n bits: x = c/2 + 1/2 is clamped to [0, 1] and stored as the integer nearest x (2^n - 1). SNORM: c is
 clamped to [-1, 1] and stored as the integer nearest c (2^(n-1) - 1). Products are float32 products, ties go to the
-even integer, NaN takes the lower end; the value read back is the integer times the float32 reciprocal of the scale.
-This is OpenGL 4.6, section 2.3.5, with its open choices made as the tested devices make them (`test_storage.py`).
+even integer, and NaN becomes the lower end; the value read back is the integer times the float32 reciprocal of the
+scale. This is OpenGL 4.6, section 2.3.5; its open choices are made as on the tested devices (`test_storage.py`).
 
-Half floats round to nearest even, or are truncated: OpenGL allows both, and both ship. Truncation applies to the
-texel: UNORM goes down, which is toward -1 in the code; SNORM, centred or not, and floats go toward zero.
-`truncate_half`, floor(x (2^n - 1/2)), is how engines that pack by hand compensate for that. If a device does not
-round as a codec requests, the shader rounds before the write (`storage.glsl`), and the row says so.
+Half floats are rounded to nearest even, or truncated: OpenGL allows both, and devices do both. Truncation applies to
+the texel: UNORM is rounded down, toward -1 in the code; SNORM, centred or not, and floats are rounded toward zero.
+With `truncate_half`, floor(x (2^n - 1/2)), engines that pack by hand compensate for this. If a device does not
+round as a codec requests, the shader rounds before the write (`storage.glsl`), and the row states this.
 
-Numbers in float64 stand for the exact map: the same integers and floats, products and reciprocals in float64.
+Numbers in float64 represent the exact map: the same integers and floats, but products and reciprocals in float64.
 """
 
 from __future__ import annotations
@@ -31,22 +31,24 @@ SRGB_KNEE, SRGB_SLOPE, SRGB_OFFSET, SRGB_POWER = 0.0031308, 12.92, 0.055, 2.4
 
 
 class Scale(NamedTuple):
-    """The integer for 1 in a fixed-point channel, and its reciprocal: numbers, or arguments of a traced function."""
+    """The integer for 1 in a fixed-point channel, and its reciprocal; numbers, or arguments of a traced function."""
 
     one: Any
     reciprocal: Any
 
 
 def scale_of(integer: int) -> Scale:
-    """Return the scale of a channel in which an integer stands for 1."""
+    """Return the scale of a channel in which an integer represents 1."""
     return Scale(float(integer), 1.0 / integer)
 
 
 def rounded(x: Float[Array, "*shape"], scale: Scale, rounding: str = "nearest", most=None) -> Float[Array, "*shape"]:
-    """Round x in [-1, 1] (any shape) to a whole number: nearest, truncated toward zero, or x (one + 1/2) truncated.
+    """Scale x in [-1, 1] (any shape) and return it as whole numbers: to nearest, or truncated toward zero.
+
+    "truncate_half" truncates x (one + 1/2).
 
     Args:
-        most: the largest whole number, if it does not stand for 1.
+        most: the largest whole number, if it does not represent 1.
     """
     if rounding == "nearest":
         whole = jnp.round(x * scale.one)
@@ -65,7 +67,7 @@ def store_unorm(
 def store_snorm(
     x: Float[Array | np.ndarray, "*shape"], scale: Scale, rounding: str = "nearest", is_full: bool = False
 ) -> Float[Array, "*shape"]:
-    """Return x (float32, any shape) after storage as SNORM, in [-1, 1]; NaN becomes -1. A full SNORM has no 1."""
+    """Return x (float32, any shape) after storage as SNORM, in [-1, 1]; NaN becomes -1. A full SNORM lacks 1."""
     code = rounded(minimum(maximum(x, -1.0), 1.0), scale, rounding, scale.one - 1 if is_full else None)
     # An integer has no negative zero.
     return code.astype(jnp.int32).astype(x.dtype) * scale.reciprocal
@@ -87,7 +89,7 @@ def store_half(
 def store_small_float(
     x: Float[Array | np.ndarray, "*shape"], form: FloatForm, rounding: str = "nearest"
 ) -> Float[Array, "*shape"]:
-    """Return x (float32, any shape) as a float of this form stores it.
+    """Return x (float32, any shape) as a float of the given form stores it.
 
     Without a sign, negative numbers become 0 and finite numbers stay finite (OpenGL 4.6, 2.3.4.3 and 2.3.4.4). With a
     sign, numbers that are too large become infinite if rounded to nearest, but not toward zero (IEEE 754).
@@ -113,8 +115,8 @@ def store_small_float(
 def store_float(
     x: Float[Array | np.ndarray, "*shape"], form: FloatForm, rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """Return x (float64, any shape, magnitude below 2^15) as a float of this form stores it, by arithmetic: float64
-    stands for the exact map. Without a sign, negative numbers become 0."""
+    """Return x (float64, any shape, magnitude below 2^15) as a float of the given form stores it, computed by
+    arithmetic, because float64 represents the exact map. Without a sign, negative numbers become 0."""
     if form == FORMS[32]:
         return x.astype(jnp.float32).astype(x.dtype)
     octave = maximum(jnp.frexp(x)[1] - 1, 1 - form.one)
@@ -125,13 +127,13 @@ def store_float(
 
 
 def to_srgb(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.ndarray, "*shape"]:
-    """Return linear light in [0, 1] (float32, any shape) on the sRGB curve."""
+    """Return the sRGB-encoded value of linear light in [0, 1] (float32, any shape)."""
     curved = (1.0 + SRGB_OFFSET) * maximum(x, SRGB_KNEE) ** (1.0 / SRGB_POWER) - SRGB_OFFSET
     return select(x <= SRGB_KNEE, x * SRGB_SLOPE, curved)
 
 
 def from_srgb(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.ndarray, "*shape"]:
-    """Linear light of a value of the sRGB curve in [0, 1] (float32, any shape)."""
+    """Return the linear light of an sRGB-encoded value in [0, 1] (float32, any shape)."""
     straight = x * (1.0 / SRGB_SLOPE)
     return select(straight <= SRGB_KNEE, straight, ((x + SRGB_OFFSET) / (1.0 + SRGB_OFFSET)) ** SRGB_POWER)
 
@@ -139,13 +141,13 @@ def from_srgb(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.ndarra
 def store_srgb(
     x: Float[Array | np.ndarray, "*shape"], scale: Scale, rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """Return x (float32, any shape) after storage as a colour of an sRGB target, in [0, 1]; NaN becomes 0."""
+    """Return x (float32, any shape) after storage as a colour in an sRGB target, in [0, 1]; NaN becomes 0."""
     return from_srgb(store_unorm(to_srgb(minimum(maximum(x, 0.0), 1.0)), scale, rounding))
 
 
 def store_exactly(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.ndarray, "*shape"]:
-    """Return x (float32, any shape) unchanged, behind a barrier to optimisation: XLA would merge the scales and
-    offsets of the encoder and the decoder, and another method would be measured."""
+    """Return x (float32, any shape) unchanged, behind an optimisation barrier. Without the barrier, XLA would merge
+    the scales and offsets of the encoder and the decoder, and a different method would be measured."""
     from jax.lax import optimization_barrier  # a second to import, which `normalbench list` does not take
 
     return optimization_barrier(x)
@@ -153,7 +155,7 @@ def store_exactly(x: Float[Array | np.ndarray, "*shape"]) -> Float[Array | np.nd
 
 @dataclass(frozen=True)
 class Fixed(Storage):
-    """A fixed-point format whose scales are arguments: a traced function of it serves every number of bits."""
+    """A fixed-point format whose scales are arguments, so that a function is traced once for all bit counts."""
 
     scales: tuple[Scale, ...] = ()
 
@@ -165,10 +167,10 @@ def scales_of(storage: Storage, number: type[np.floating] = np.float32) -> tuple
 
 
 def shared(storage: Storage, count: int, number: type[np.floating] = np.float32) -> tuple[Storage, tuple[Scale, ...]]:
-    """Return the arguments with which one traced function serves every fixed-point format of a kind: a format that
-    stands for all of them, and this format's scales of the first `count` channels, in float32 or float64. Floats have
-    no scales; the first format with the same bits in these channels stands for them. Other formats stand for
-    themselves."""
+    """Return the arguments with which one traced function serves all fixed-point formats of a kind: a format that
+    represents them all, and the scales of this format's first `count` channels, in float32 or float64. The scales are
+    empty for float and sRGB formats. A GPU's float format is represented by the first format with the same bits in
+    these channels, and other such formats by themselves."""
     if storage.kind == "float":
         if storage.form:
             return storage, ()
@@ -185,7 +187,7 @@ def _filled_as(storage: Storage, like: Storage) -> Storage:
 
 
 def fixed(like: Storage, scales: tuple[Scale, ...]) -> Storage:
-    """Return a format of the same kind with its own scales, one per channel in use; `like` itself without scales."""
+    """Return `like` with the given scales, one per channel in use; `like` itself if there are no scales."""
     return Fixed(**vars(like), scales=scales) if scales else like
 
 
@@ -196,7 +198,7 @@ def _scale(storage: Storage, channel: int) -> Scale:
 def store_texel(
     x: Float[Array | np.ndarray, "*shape"], storage: Storage, channel: int, rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """Pass one number of a texel (float32, any shape), as the format is given it, through one channel and back.
+    """Return one number of a texel (float32, any shape), as given to the format, after storage in one channel.
 
     A float16 is a result of half arithmetic, which covers the shader's number, not the format's own conversion.
     """
@@ -222,7 +224,7 @@ def _store_float_texel(
 def store_number(
     c: Float[Array | np.ndarray, "*shape"], storage: Storage, channel: int, rounding: str = "nearest"
 ) -> Float[Array | np.ndarray, "*shape"]:
-    """Pass one number of a code (float32, any shape, nominally in [-1, 1]) through one channel and back."""
+    """Return one number of a code (float32, any shape, nominally in [-1, 1]) after storage in one channel."""
     # What is laid across channels is a whole number as UNORM and SNORM have it; its bytes are exact.
     if storage.is_biased:
         return store_texel(c * 0.5 + 0.5, storage, channel, rounding) * 2.0 - 1.0
@@ -230,7 +232,7 @@ def store_number(
 
 
 def numbers_around(c: Float[Array, "*shape"], storage: Storage, channel: int) -> tuple[Float[Array, "*shape"], ...]:
-    """Return the two numbers that a fixed-point channel can hold around c (float32, any shape), the lower one first;
+    """Return the two neighbouring numbers of a fixed-point channel around c (float32, any shape), the lower first;
     they are equal if c is at the upper end."""
     scale = _scale(storage, channel)
     x = minimum(maximum(c * 0.5 + 0.5, 0.0) if storage.is_biased else maximum(c, -1.0), 1.0)

@@ -1,4 +1,4 @@
-"""Storages that are named by their bits: unorm:9:7, snorm:12:12, centred:8:8, float:5:10.
+"""Storages named by their bits: unorm:9:7, snorm:12:12, centred:8:8, float:5:10.
 
 Each is the catalogue's format with exactly these bits, or numbers laid across the channels of RGBA8 or RGBA16.
 """
@@ -24,14 +24,14 @@ RGBA = "rgba"
 
 
 def across(kind: str, bits: tuple[int, ...]) -> Storage:
-    """Return the storage of numbers of these bits across the fewest 8-bit (or 16-bit) channels: rg8_9_7.
+    """Return the storage for numbers with these bits, laid across the fewest 8-bit (or 16-bit) channels: rg8_9_7.
 
     Args:
         kind: one of ENDINGS.
 
     Raises:
-        ValueError: the components are not one to four, of 1 (signed: 2) to MOST_BITS bits and of MOST_TOGETHER bits
-            in total at most; the message is one line.
+        ValueError: there are not one to four components, each of 1 (signed: 2) to MOST_BITS bits, with at most
+            MOST_TOGETHER bits in total; the message is one line.
     """
     spread = ":".join(map(str, bits))
     if not all(1 <= b <= MOST_BITS for b in bits) or sum(bits) > MOST_TOGETHER or len(bits) not in (1, 2, 3, 4):
@@ -47,16 +47,16 @@ def across(kind: str, bits: tuple[int, ...]) -> Storage:
 
 
 def _target_of(bits: int) -> str:
-    """Return the name of the fewest channels that hold this many bits: rgb8."""
+    """Return the name of the smallest target that holds this many bits, such as rgb8."""
     part = 8 if bits <= 32 else 16
     return f"{RGBA[: -(-bits // part)]}{part}"
 
 
 def word(kind: str, bits: tuple[int, ...]) -> Storage:
-    """Return the storage of numbers of these bits in an integer of 8, 16 or 32 bits, from the lowest: r32_uint_12_12.
+    """Return the storage for numbers with these bits in an integer of 8, 16 or 32 bits, lowest first: r32_uint_12_12.
 
     Raises:
-        ValueError: as `across`; the message is one line.
+        ValueError: as in `across`; the message is one line.
     """
     laid = across(kind, bits)
     spread, size = ":".join(map(str, bits)), next(size for size in (8, 16, 32) if size >= sum(bits))
@@ -71,17 +71,18 @@ BY_RULE = re.compile(rf"(?P<kind>{'|'.join(KINDS)}):(?P<bits>\d{{1,3}}(?::\d{{1,
 
 
 def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
-    """Return the storage of numbers of these bits: the catalogue's format with exactly these bits, or one laid
+    """Return the storage for numbers with these bits: the catalogue's format with exactly these bits, or numbers laid
     across channels.
 
     Args:
-        kind: "unorm", "snorm", "snorm_full", or another word for these; "uint" and "sint" are in one integer, if
-            they have at most 32 bits together. "centred" is for the integers of SNORM in the channels of a UNORM
-            format. "float" and "ufloat" have the bits of exponent and mantissa, with and without a sign, the same
-            for all numbers: see `of_count`.
+        kind: "unorm", "snorm", "snorm_full", or an alias of these; "uint" and "sint" numbers are in one integer if
+            they have at most 32 bits in total. "centred" is for SNORM integers in the channels of a UNORM format.
+            For "float" and "ufloat", with and without a sign, `bits` are those of the exponent and the mantissa,
+            the same for all numbers (see `of_count`).
 
     Raises:
-        ValueError: as `across`; for centred numbers that are not in a GPU format; and for floats that cannot exist.
+        ValueError: as in `across`; for centred numbers that are not in a GPU format; and for floats that cannot
+            exist.
     """
     if kind in ("float", "ufloat"):
         return _of_floats(kind, bits)
@@ -100,11 +101,11 @@ def by_rule(kind: str, bits: tuple[int, ...]) -> Storage:
 
 
 def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
-    """Return the storage of floats, with a sign unless `kind` is "ufloat": as many as a texel of 64 bits holds, four
-    at most.
+    """Return a storage for floats, signed unless `kind` is "ufloat": as many as fit in 64 bits, at most four.
 
     Raises:
-        ValueError: `bits` are not those of an exponent and a mantissa, or are out of range; the message is one line.
+        ValueError: `bits` are not the bits of an exponent and a mantissa, or are out of range; the message is one
+            line.
     """
     text = ":".join((kind, *map(str, bits)))
     if len(bits) != 2 or not (2 <= bits[0] <= MOST_EXPONENT and 1 <= bits[1] <= MOST_MANTISSA):
@@ -114,12 +115,13 @@ def _of_floats(kind: str, bits: tuple[int, ...]) -> Storage:
 
 
 def of_count(storage: Storage, count: int) -> Storage:
-    """Return a storage with as many floats as a code has numbers, if only the bits of each float were given."""
+    """Return a storage with `count` floats if only the bits per float were given; otherwise the storage unchanged."""
     return _floats(storage.float_form(0), count) if storage.is_uncounted else storage
 
 
 def _floats(form: FloatForm, count: int) -> Storage:
-    """Return a storage of at least `count` floats of a form, if 64 bits have room; a GPU's own format if it exists."""
+    """Return a storage for `count` floats of a form, or for fewer if 64 bits hold no more; a GPU's own format if one
+    exists, with four floats instead of three."""
     own = {FORMS[16]: "16f", FORMS[32]: "32f"}
     if form in own:
         # No GPU has three.
@@ -133,8 +135,8 @@ def _floats(form: FloatForm, count: int) -> Storage:
 
 
 def rule_of(storage: Storage) -> str:
-    """Return the rule that names a storage's bits, as text: snorm:16:16; for floats the exponent and mantissa bits
-    that its channels have, such as `ufloat:5:6 and 5:5`."""
+    """Return the rule that names a storage's bits, such as snorm:16:16; for floats, the exponent and mantissa bits of
+    its channels, such as `ufloat:5:6 and 5:5`."""
     if storage.kind != "float":
         kind = "centred" if storage.is_centred else "snorm_full" if storage.is_full else storage.kind
         kind = {"unorm": "uint", "snorm": "sint"}[kind] if storage.is_word else kind
@@ -146,14 +148,14 @@ def rule_of(storage: Storage) -> str:
 
 def rule_of_first(storage: Storage, count: int) -> str:
     """Return, as text, the bits of a storage's first `count` numbers, and whether they are laid across channels.
-    Codes of these numbers are the same in every storage for which this is the same: RG8 and RGBA8 for two."""
+    Storages with the same text give these numbers the same codes: for example, RG8 and RGBA8 for two numbers."""
     first = rule_of(replace(storage, bits=storage.bits[:count]))
     return f"{first} across channels of {storage.part} bits" if storage.is_packed else first
 
 
 def storage_of(name: str) -> Storage | None:
-    """Return the storage of a name: one of the catalogue's, numbers by rule as in `unorm:9:7`, or numbers laid across
-    channels as in `rg8_9_7`; None if the name has none of these forms.
+    """Return the storage with a name: an entry of the catalogue, numbers by rule as in `unorm:9:7`, or numbers laid
+    across channels as in `rg8_9_7`; None if the name has none of these forms.
 
     Raises:
         ValueError: the name has such a form, but such a storage cannot exist; the message is one line.

@@ -1,12 +1,12 @@
-"""Storages of numbers: render target formats, and integers laid across their channels.
+"""Storages for numbers: render target formats, and integers laid across their channels.
 
-Numbers may be laid across channels of 8 bits as integers of any size, the highest bits first: 12:12 in three bytes;
-and across channels of 16 bits if they have more than 32 together. A signed number of n bits is then the integer of
-SNORM plus 2^(n-1) - 1, so that -1 is 0 and there is a code for 0. Floats of any size are laid there by their own
-bits. The conversion of numbers to texels is in `rounding.py`.
+Numbers may be laid across 8-bit channels as integers of any size, the highest bits first (12:12 in three bytes), and
+across 16-bit channels if they have more than 32 bits in total. A signed number of n bits is then the integer of SNORM
+plus 2^(n-1) - 1, so that -1 becomes 0 and there is a code for 0. Floats of any size are laid out as their own bits.
+The conversion of numbers to texels is in `rounding.py`.
 
-A format in STORAGES holds normals everywhere. FORMATS, whose names layouts use, has these and more. Formats for
-tangent frames and motion vectors are picked from STORAGES by their names.
+Every format in STORAGES can hold normals. FORMATS, whose names layouts use, contains more formats. Formats for
+tangent frames and motion vectors are selected from STORAGES by name.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ ROUNDINGS_AND_DITHERED = (*ROUNDINGS, DITHERED)
 
 
 def rounds_to(rounding: str) -> str:
-    """Return one of ROUNDINGS: "nearest" for DITHERED, because noise is added before; other roundings unchanged."""
+    """Return one of ROUNDINGS: "nearest" for DITHERED, because noise is added first; other roundings unchanged."""
     return "nearest" if rounding == DITHERED else rounding
 
 
@@ -33,8 +33,8 @@ class FloatForm:
     """The layout of a float: a sign, an exponent and a mantissa. The highest exponent is for infinity and NaN.
 
     Attributes:
-        exponent: its bits, 2 to 8.
-        mantissa: its bits, 1 to 23.
+        exponent: number of exponent bits, 2 to 8.
+        mantissa: number of mantissa bits, 1 to 23.
         is_signed: whether it has a sign; without a sign, negative numbers become 0 and finite numbers stay finite.
     """
 
@@ -74,20 +74,20 @@ class Storage:
         kind: "unorm", "snorm" or "float".
         bits: bits of each channel, in channel order.
         internal_format: the OpenGL enum.
-        curved: how many of its first channels store linear light by the sRGB curve.
-        part: bits of each channel of a target that numbers are laid across as integers, 8 or 16; 0 if each number
-            has its own channel.
-        is_word: whether its numbers are in one integer, the first in the lowest bits, for an integer format or a
-            buffer. `part` is then for the channels that the same integer fills in other targets, where it is
+        curved: number of leading channels that store linear light on the sRGB curve.
+        part: bits per channel of the target across which numbers are laid as integers, 8 or 16; 0 if each number has
+            its own channel.
+        is_word: whether the numbers are in one integer, the first in the lowest bits, for an integer format or a
+            buffer. `part` then describes the channels that the same integer fills in other targets, where it is
             measured.
         is_centred: whether UNORM channels hold the integers of SNORM, increased by 2^(n-1) - 1.
-        holds_unit: whether its texels hold numbers in [0, 1] although it has a sign: those of an encoder that
-            returns them.
-        is_said: whether its bits were given explicitly, however few they are.
-        is_full: whether its signed integers are -2^(n-1) to 2^(n-1) - 1, so that 2^(n-1) would stand for 1.
-        form: form of its floats, if no GPU has it.
-        is_integer: whether its channels are whole numbers, which hold bits and are not blended.
-        is_uncounted: whether the bits of its floats were given, but not their number: see `rules.of_count`.
+        holds_unit: whether the texels hold numbers in [0, 1] although the format has a sign, because an encoder
+            returns such numbers.
+        is_said: whether the bits were given explicitly, however few they are.
+        is_full: whether signed integers are -2^(n-1) to 2^(n-1) - 1, so that 2^(n-1) would represent 1.
+        form: layout of the floats if no GPU has it; otherwise None.
+        is_integer: whether the channels are integers, which hold bits and are not blended.
+        is_uncounted: whether the bits per float were given, but not the number of floats (see `rules.of_count`).
     """
 
     name: str
@@ -108,11 +108,11 @@ class Storage:
 
     @property
     def is_packed(self) -> bool:
-        """Whether its numbers are laid across channels as integers."""
+        """Whether the numbers are laid across channels as integers."""
         return self.part > 0
 
     def float_form(self, channel: int) -> FloatForm:
-        """Return the layout of the floats of a channel."""
+        """Return the layout of the floats in a channel."""
         return self.form or FORMS[self.bits[channel]]
 
     @property
@@ -127,21 +127,21 @@ class Storage:
 
     @property
     def largest(self) -> float:
-        """The largest finite number of a texel that every channel can hold: 1 unless the channels are floats."""
+        """The largest finite number that every channel of a texel can hold: 1 unless the channels are floats."""
         if self.kind != "float":
             return 1.0
         return min(self.float_form(channel).largest for channel in range(self.channels))
 
     @property
     def target(self) -> Storage:
-        """The format of the render target: another one where numbers are laid across its channels, or centred."""
+        """The format of the render target; not the storage itself if numbers are centred or laid across channels."""
         if self.is_centred:
             return STORAGES[self.name.removesuffix(CENTRED)]
         return FORMATS[TARGETS[self.part][-(-sum(self.bits) // self.part)]] if self.is_packed else self
 
     @property
     def only_measured(self) -> str:
-        """A description of its numbers, if neither a layout stores them nor a page reads them; else empty."""
+        """A description of the numbers if layouts do not store them and pages do not read them; otherwise empty."""
         if self.form:
             return "float formats that no GPU has"
         if self.is_centred:
@@ -152,36 +152,36 @@ class Storage:
 
     @property
     def texel_bytes(self) -> int:
-        """Bytes of a texel of the render target, used or not."""
+        """The number of bytes in a texel of the render target, used or not."""
         return sum(self.target.bits) // 8
 
     @property
     def field_bits(self) -> int:
-        """The bits of the first channels of equal size, across which whole numbers may be laid; 0 if none may."""
+        """The total bits of all channels as large as the first, across which integers may be laid; 0 if none may."""
         return self.bits.count(self.bits[0]) * self.bits[0] if self.kind == "unorm" else 0
 
     def scale(self, channel: int) -> int:
-        """Return the integer that stands for 1 in a channel; 1 for float formats."""
+        """Return the integer that represents 1 in a channel; 1 for float formats."""
         if self.kind == "float":
             return 1
         return 2 ** (self.bits[channel] - (self.kind == "snorm")) - (not self.is_full)
 
     def most(self, channel: int) -> int:
-        """The largest integer of a fixed-point channel."""
+        """Return the largest integer that a fixed-point channel can hold."""
         return self.scale(channel) - self.is_full
 
     def levels(self, channel: int) -> int:
-        """Return the minimum number of evenly spread values in [-1, 1] that a channel can distinguish."""
+        """Return the minimum number of evenly spaced values in [-1, 1] that a channel can distinguish."""
         if self.kind != "float":
             return self.scale(channel) * (not self.is_biased) + self.most(channel) + 1
         return 2 ** (self.float_form(channel).mantissa + 1 - self.is_biased)
 
     def step(self, channel: int) -> float:
-        """Return the distance between neighbouring numbers in [-1, 1] of a fixed-point channel."""
+        """Return the distance between neighbouring numbers in [-1, 1] in a fixed-point channel."""
         return 1.0 / self.scale(channel) if self.is_full else 2.0 / (self.levels(channel) - 1)
 
     def count(self, channel: int) -> int:
-        """Return how many numbers in [-1, 1] a channel can distinguish, however they are spread."""
+        """Return how many numbers in [-1, 1] a channel can distinguish, evenly spaced or not."""
         if self.kind != "float":
             return self.levels(channel)
         # From 0 to 1 the floats of each octave, down from the exponent of 1.
@@ -190,7 +190,7 @@ class Storage:
         return to_one + 1 if self.is_biased else 2 * to_one + 1
 
     def numbers(self, channel: int) -> np.ndarray:
-        """Return the numbers that `count` counts, ascending; float64. Not for 32-bit floats, which are too many."""
+        """Return the numbers that `count` counts, ascending; float64. Not for 32-bit floats: there are too many."""
         if self.kind != "float":
             return np.linspace(-1.0, 1.0 - self.is_full * self.step(channel), self.count(channel))
         bias, mantissa = self.float_form(channel).one, self.float_form(channel).mantissa
@@ -205,7 +205,7 @@ def _packed_storage(name: str, title: str, kind: str, *bits: int) -> Storage:
 
 
 def centred_storage(like: Storage) -> Storage:
-    """Return a UNORM format as the storage of SNORM integers, whose zero is in the middle of its range."""
+    """Return a UNORM format as a storage for SNORM integers, with zero in the middle of its range."""
     name, title = f"{like.name}{CENTRED}", f"{like.title} centred"
     return replace(like, name=name, title=title, kind="snorm", is_centred=True)
 

@@ -31,7 +31,7 @@ def words(numbers: np.ndarray, storage: Storage, channel: int) -> np.ndarray:
 
 
 def float_words(texels: np.ndarray, form: FloatForm) -> np.ndarray:
-    """Return the bits (uint32) of numbers (any shape) that a float of a form holds: the inverse of `floats_of`."""
+    """Return the bits (uint32) of numbers (any shape) that a float of this form holds: the inverse of `floats_of`."""
     if form == FORMS[32]:
         return texels.astype(np.float32).view(np.uint32)
     magnitude = np.where(np.isfinite(texels), np.abs(texels), 0.0)
@@ -47,7 +47,7 @@ def float_words(texels: np.ndarray, form: FloatForm) -> np.ndarray:
 
 
 def numbers_across(words: np.ndarray, storage: Storage, channel: int) -> np.ndarray:
-    """Return the numbers (float32) of integers (uint32, any shape) laid across channels: the inverse of `words`."""
+    """Return the numbers (float32) for integers (uint32, any shape) laid across channels: the inverse of `words`."""
     number = _numbers_of(words, storage, channel)
     return number * np.float32(2) - np.float32(1) if storage.is_biased else number
 
@@ -61,7 +61,7 @@ def _numbers_of(words: np.ndarray, storage: Storage, channel: int) -> np.ndarray
 
 
 def floats_of(words: np.ndarray, form: FloatForm) -> np.ndarray:
-    """Return the numbers (float32) of the bits of floats (uint32, any shape): the inverse of `float_words`."""
+    """Return the numbers (float32) for the bits of floats (uint32, any shape): the inverse of `float_words`."""
     magnitude = words & 2 ** (form.exponent + form.mantissa) - 1
     exponent, mantissa = magnitude >> form.mantissa, magnitude & 2**form.mantissa - 1
     steps = mantissa + np.where(exponent > 0, 2**form.mantissa, 0)

@@ -1,1 +1,1 @@
-"""Codecs in shaders: encode into a target and decode from it."""
+"""Codecs in shaders: encoding into a target and decoding from the target."""

@@ -1,4 +1,4 @@
-"""Normals through a real render target: encoded by one fragment pass, decoded from the texture by a second."""
+"""Round trips of normals through a real render target: one fragment pass encodes, a second decodes the texture."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ def encoding_defines(encoding: Encoding, as_half: bool = False) -> dict[str, obj
     """Return the macros that adapt `code.glsl` to an encoding.
 
     Args:
-        as_half: whether the shader is compiled in 16-bit types, as encodings in half arithmetic need it.
+        as_half: whether the shader is compiled with 16-bit types, as encodings in half arithmetic require.
 
     Raises:
-        ShaderError: its GLSL file cannot be read or lacks one of the two functions; it is a chain of codecs; or it is
-            in half arithmetic without `as_half`.
+        ShaderError: the encoding's GLSL file cannot be read or lacks one of the two functions; or the encoding is a
+            chain of codecs, or uses half arithmetic without `as_half`.
     """
     if encoding.before:
         raise ShaderError(f"{encoding.name}: a chain of codecs cannot be drawn into a G-buffer; {BY_JAX}")
@@ -61,12 +61,12 @@ def _function_defines(encoding: Encoding) -> dict[str, object]:
 
 
 def levels_of(encoding: Encoding) -> tuple[int, ...]:
-    """Return the number of values of each of a code's three numbers."""
+    """Return the number of values that each of a code's three numbers can have; 0 for ordinary numbers."""
     return tuple(encoding.levels_of(component) for component in range(3))
 
 
 def storage_kind(storage: Storage) -> int:
-    """A format's kind as `storage.glsl` counts them: UNORM 0, SNORM 1, half 2, small floats 3, 32-bit floats 4."""
+    """Return a format's kind as numbered in `storage.glsl`: UNORM 0, SNORM 1, half 2, small float 3, float32 4."""
     if storage.kind == "float":
         return {16: 2, 32: 4}.get(storage.bits[0], 3)
     return KINDS.index(storage.kind)
@@ -82,7 +82,7 @@ def rounding_defines(
         channels: rounding of each channel, if channels differ.
 
     Returns:
-        "device" if the format's own conversion rounds like this, else "shader"; and the macros.
+        "device" if the format's own conversion rounds as requested, else "shader"; and the macros.
     """
     # Cut off, a centred integer goes toward its zero in the middle, and not toward that of its target.
     is_cut_otherwise = storage.is_centred and rounding != "nearest"
@@ -93,8 +93,8 @@ def rounding_defines(
 
 
 def storage_defines(storage: Storage, roundings: Sequence[str], shader_rounds: bool) -> dict[str, object]:
-    """Return the macros that adapt `storage.glsl` to a storage with a rounding from ROUNDINGS for each channel; the
-    shader rounds if `shader_rounds`, else the device."""
+    """Return the macros that adapt `storage.glsl` to a storage, with a rounding from ROUNDINGS for each channel. The
+    shader rounds if `shader_rounds` is true, else the device."""
     channels = [i % storage.channels for i in range(4)]
     scales = [storage.scale(i) for i in channels]
     return {
@@ -122,7 +122,7 @@ def _form_defines(storage: Storage) -> dict[str, object]:
 
 @dataclass(frozen=True)
 class Decoded:
-    """Decoded texels: `normals` as decoded and `codes` as stored, float32 arrays of shape (height, width, 3 and 4)."""
+    """Decoded texels: `normals` as decoded, (height, width, 3); `codes` as stored, (height, width, 4); float32."""
 
     normals: np.ndarray
     codes: np.ndarray
@@ -170,13 +170,13 @@ class CodecPasses(Passes):
 
 
 def _unit_pixels(normals: np.ndarray) -> np.ndarray:
-    """Return directions, (height, width, 3), at length 1, with a fourth number 0: (height, width, 4)."""
+    """Return directions, (height, width, 3), at length 1, with 0 as the fourth number: (height, width, 4)."""
     length = np.sqrt(np.sum(normals * normals, axis=-1, keepdims=True))
     return np.concatenate([normals / np.maximum(length, vec.TINY), np.zeros_like(length)], axis=-1)
 
 
 def exact_values(device: Device, encoding: Encoding, normals, views, given) -> tuple[np.ndarray, np.ndarray]:
-    """Codes of normals, and normals of given codes, by a compute shader and without storage.
+    """Return the codes of normals, and the normals of given codes, from a compute shader, without storage.
 
     Args:
         normals, views, given: float32 arrays of shape (count, 4).

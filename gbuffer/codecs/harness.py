@@ -1,4 +1,4 @@
-"""GL tools for codecs of every kind: a check for functions, two passes, and a compute shader."""
+"""OpenGL tools for codecs of every kind: a check for functions, a pair of passes, and a compute shader."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ def check_functions(glsl: Path, signatures: Iterable[str]) -> None:
 
 
 def takes_view(glsl: Path, function: str) -> bool:
-    """Whether a function of a GLSL file takes more than a vec2 or vec3, such as a view position after a normal."""
+    """Whether the function of this name in a GLSL file takes anything besides one vec2 or vec3; also true if the file
+    has no such function that returns a vec2 or vec3."""
     text = re.sub(r"//[^\n]*|/\*.*?\*/", " ", read_shader(glsl), flags=re.S)
     return not re.search(rf"\bvec[23]\s+{function}\s*\(\s*(?:(?:const|in)\s+)*vec[23]\s+\w+\s*\)", text)
 
@@ -48,16 +49,16 @@ def dithering(noise: np.ndarray | None) -> tuple[dict[str, object], Tables]:
 
 
 class Passes:
-    """A pass that encodes into targets and one that decodes from them; a context manager that releases both.
+    """A pass that encodes into targets and a pass that decodes from them, in a context manager that releases both.
 
     Args:
-        shaders: the encoding pass and the decoding one.
-        defines, names: as `Source` takes them.
-        formats: of the targets between them, by the decoding pass's sampler.
-        tables: makes the look-up tables of both by sampler.
+        shaders: the encoding pass and the decoding pass.
+        defines, names: macros and included files, as for `Source`.
+        formats: formats of the targets between the two passes, by the decoding pass's sampler names.
+        tables: function that returns the lookup tables of both passes, by sampler name.
 
     Raises:
-        ShaderError: one of them does not compile.
+        ShaderError: one of the shaders does not compile.
     """
 
     def __init__(

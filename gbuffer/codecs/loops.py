@@ -1,7 +1,7 @@
 """Iterations of a shader's loops, and whether a device ends the loops before they are done.
 
-A software driver ends all loops of a shader together after some number of iterations, without a message: the
-figures are then not those of a GPU. A short loop therefore runs after the user's functions: if their loops were
+A software driver ends all loops of a shader together after some number of iterations, without a message; the
+figures then differ from those of a GPU. A short loop therefore runs after the user's functions: if their loops were
 ended, the short loop is ended too.
 """
 
@@ -33,19 +33,19 @@ _NO_CODE = re.compile(r"//[^\n]*|/\*.*?\*/|^[ \t]*#(?:[^\n\\]|\\\n|\\)*", re.S |
 
 
 def loop_limit(device: Device) -> int | None:
-    """Return the number of turns after which the device ends a loop; None if it makes MANY turns."""
+    """Return the number of iterations after which the device ends a loop; None if MANY iterations complete."""
     (turns,) = exact(device, "loop_turns.comp", {}, {}, [np.zeros((1, 4), np.float32)], 1, asked_turns=MANY)
     return None if turns[0, 0] >= MANY else int(turns[0, 0])
 
 
 def loops_ended(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return for each normal whether the device ended a loop of encode, and of decode.
+    """Return, for each normal, whether the device ended a loop in encode, and whether it ended a loop in decode.
 
     Args:
         n, view: float32 arrays of shape (count, 4).
 
     Returns:
-        two arrays of bool of shape (count,); decode's is also set if a loop of encode was ended.
+        two arrays of bool of shape (count,); the array for decode is also true where a loop in encode was ended.
     """
     defines, names = encoding_defines(encoding), {"ENCODING": encoding.glsl}
     outputs = exact(device, "loops_done.comp", defines, names, [n, view], 2, encoding.tables, asked_turns=FEW)
@@ -61,10 +61,10 @@ def turns_made(device: Device, encoding: Encoding, n: np.ndarray, view: np.ndarr
         n, view: float32 arrays of shape (count, 4).
 
     Returns:
-        two float32 arrays of shape (count, loops), the loops in the order of the text.
+        two float32 arrays of shape (count, loops), with the loops in the order of the shader's text.
 
     Raises:
-        ShaderError: as `encoding_defines`, or there are more than MOST_LOOPS loops.
+        ShaderError: as in `encoding_defines`, or there are more than MOST_LOOPS loops.
     """
     scale = float(STORAGES["rgba8"].scale(0))
     defines = encoding_defines(encoding) | {"MOST_LOOPS": MOST_LOOPS, "KERNEL_SCALE": scale}
@@ -96,7 +96,7 @@ def _counted_text(source: Source) -> tuple[str, int]:
 
 
 def _conditions(code: str) -> Iterator[tuple[int, int, str]]:
-    """Yield the start and the end of each loop's condition, and the function that counts it."""
+    """Yield the start and end of each loop's condition, and the name of the function that counts evaluations."""
     for match in _LOOP.finditer(code):
         first, parts = match.end(), [match.end()]
         depth, position = 1, first

@@ -1,4 +1,4 @@
-"""Single operations wrapped into shaders, to find their cost with a compiler or a timer.
+"""Single operations wrapped in shaders, so that a compiler or a timer can find their cost.
 
 The cost of an empty operation that moves the same numbers is subtracted.
 """
@@ -27,11 +27,11 @@ class Operation:
     """The step between loading numbers and storing them.
 
     Attributes:
-        glsl: the file that defines `operation`, a shader's name or a path.
-        given, beside, made: number of inputs, of additional inputs and of outputs; at least 1.
+        glsl: the file that defines `operation`: a shader's name or a path.
+        given, beside, made: numbers of inputs, additional inputs and outputs; at least 1 each.
         own_defines, own_names: the macros and files that the file needs, as for `Source`.
         tables: function that returns the lookup tables by sampler name, like `Encoding.tables`.
-        is_portable: whether its SPIR-V shows its cost; false if a driver has to unroll and fold it first.
+        is_portable: whether its SPIR-V shows its cost; false if a driver has to unroll and fold the code first.
     """
 
     glsl: str | Path
@@ -45,7 +45,7 @@ class Operation:
 
     @property
     def empty(self) -> Operation:
-        """The operation that moves as many numbers and does nothing."""
+        """The operation that moves as many numbers but does nothing with them."""
         return Operation("kernel_empty.glsl", self.given, self.beside, self.made)
 
     @property
@@ -58,7 +58,7 @@ class Operation:
 
     @property
     def names(self) -> dict[str, Path]:
-        """The files that a kernel includes by name."""
+        """The paths of the files that a kernel includes, by name."""
         return {**self.own_names, "OPERATION": Path(shaders().get(str(self.glsl), self.glsl))}
 
     def source(self, shader: str) -> Source:
@@ -68,10 +68,10 @@ class Operation:
 
 
 def encode(encoding: Encoding) -> Operation:
-    """Return the operation from a normal and its view position to a code, for 8-bit UNORM if it is rounded precisely.
+    """Return the operation that encodes a normal, given its view position; if encoded precisely, for 8-bit UNORM.
 
     Raises:
-        ShaderError: as `encoding_defines`.
+        ShaderError: as in `encoding_defines`.
     """
     defines, *others = _read(encoding)
     scale = {"KERNEL_SCALE": float(STORAGES["rgba8"].scale(0))}
@@ -82,7 +82,7 @@ def encode(encoding: Encoding) -> Operation:
 
 
 def decode(encoding: Encoding) -> Operation:
-    """Return the operation from a code and its view position to a normal. Raises ShaderError as `encoding_defines`."""
+    """Return the operation that decodes a code, given its view position. Raises ShaderError as `encoding_defines`."""
     return Operation("kernel_decode.glsl", _number_count(encoding), 3, 3, *_read(encoding))
 
 
@@ -91,6 +91,6 @@ def _number_count(encoding: Encoding) -> int:
 
 
 def _read(encoding: Encoding) -> tuple[Any, ...]:
-    """Return the macros of an encoding, the files that its macros name and the function that returns its tables."""
+    """Return the macros of an encoding, the files named in the macros, and the function that returns the tables."""
     as_it_stands = {"AS_IT_STANDS": 1} if encoding.is_packed else {}
     return encoding_defines(encoding) | as_it_stands, {"ENCODING": encoding.glsl}, encoding.tables

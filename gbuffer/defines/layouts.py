@@ -26,7 +26,7 @@ def layout_defines(layout: Layout, rounds: tuple[int, ...], is_metal_rough: bool
     """Return the macros that adapt `gbuffer.glsl` to a layout.
 
     Args:
-        rounds: `shader_roundings`.
+        rounds: result of `shader_roundings`.
         is_metal_rough: whether the layout stores surfaces of metallic-roughness materials.
     """
     words = layout.words
@@ -79,7 +79,7 @@ def curve_files(layout: Layout) -> tuple[Path, ...]:
 
 
 def _curved_components(layout: Layout) -> list[str]:
-    """Return the components in channels that the format itself puts on the sRGB curve."""
+    """Return the components in channels to which the format itself applies the sRGB curve."""
     targets = [target.storage.curved for target in layout.targets]
     return [word.component for word in layout.words if word.first < targets[word.target]]
 
@@ -149,14 +149,14 @@ FIRST_OF_MOTION = "motion.x"
 
 
 def _motion_line(encoding: MotionEncoding, way: str, largest: float) -> str:
-    """Return the GLSL statement that, by `way`, encodes or decodes a motion's two numbers in place in `numbers`."""
+    """Return the GLSL statement that encodes or decodes, depending on `way`, a motion's two numbers in `numbers`."""
     x, y = (f"numbers[{COMPONENTS.index(f'motion.{axis}')}]" for axis in "xy")
     code = f"vec2 code_of_motion = {encoding.prefix}_{way}_motion(vec2({x}, {y}), {glsl_value(largest)});"
     return f"{{ {code} {x} = code_of_motion.x; {y} = code_of_motion.y; }}"
 
 
 def _sign_defines(layout: Layout) -> dict[str, object]:
-    """Return the macros of a number of the normal's code that is stored in the sign of a quantity."""
+    """Return the macros for the number of the normal's code that is stored in the sign of another quantity."""
     word = layout.carrier
     is_depth = word is not None and word.component == "depth"
     beside = word if word and not is_depth else None

@@ -40,11 +40,11 @@ class Packing(Protocol):
     def storage(self) -> Storage | None: ...
 
     def pack(self) -> Operation:
-        """Return the operation from the numbers to a texel; a depth is an additional input."""
+        """Return the operation that packs the numbers into a texel; a depth is an additional input."""
         ...
 
     def unpack(self) -> Operation:
-        """Return the operation from a texel back to the numbers."""
+        """Return the operation that unpacks the numbers from a texel."""
         ...
 
 
@@ -62,7 +62,7 @@ class StoragePacking:
 
     @property
     def channels(self) -> int:
-        """Number of channels of the target in use: at least 2, because GLSL has no one-component vectors."""
+        """The number of target channels in use: at least 2, because GLSL has no one-component vectors."""
         storage = self.storage
         taken = -(-sum(storage.bits[: self.numbers]) // storage.part) if storage.is_packed else self.numbers
         return max(2, taken)
@@ -79,12 +79,12 @@ class StoragePacking:
 
 @dataclass(frozen=True)
 class WordPacking:
-    """Words of a layout across the channels of a target: numbers of a code, or a depth.
+    """A packing of a layout's words into the channels of a target: the numbers of a code, or a depth.
 
     Attributes:
         name: its display name.
         target: the format and the words that fill it.
-        numbers: how many of a code's numbers; 0 for a depth.
+        numbers: number of a code's numbers; 0 for a depth.
         signed: whether the depth has the sign of the normal's z.
     """
 
@@ -99,7 +99,7 @@ class WordPacking:
 
     @property
     def channels(self) -> int:
-        """Number of channels in use: at least 2, because GLSL has no one-component vectors."""
+        """The number of channels in use: at least 2, because GLSL has no one-component vectors."""
         words, size = self._layout.words, self.target.storage.bits[0]
         last = (((w.first + w.bits - 1) // size if w.bits else w.first) for w in words if w.target == 0)
         return max(1, *last) + 1
@@ -120,7 +120,7 @@ class WordPacking:
         return Operation("kernel_unpack.glsl", self.channels, 3, outputs, *self._read(), is_portable=False)
 
     def _read(self) -> tuple[Any, ...]:
-        """The macros of a layout with these numbers, and the files that its macros name."""
+        """Return the macros of a layout with these numbers, and the files named in the macros."""
         layout = self._layout
         first = 0 if self.numbers else COMPONENTS.index("depth")
         rounds = (0,) * len(layout.targets)
@@ -132,7 +132,7 @@ class WordPacking:
 
 
 def packings_of(storage: Storage) -> tuple[Packing, ...]:
-    """Return the packings of two and of three numbers into a storage that has the channels; () for one channel."""
+    """Return the packings of two and of three numbers into a storage, as far as its channels suffice; else ()."""
     return tuple(StoragePacking(storage, numbers) for numbers in (2, 3) if numbers <= storage.channels)
 
 

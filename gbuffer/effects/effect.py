@@ -13,7 +13,7 @@ Value = int | float | str
 
 
 class EffectError(ValueError):
-    """An unknown effect or an invalid setting; the message is one line that says what is valid."""
+    """The error for an unknown effect or an invalid setting; its message is one line that says what is valid."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,8 @@ class Number:
     says: str
 
     def read(self, text: str) -> Value:
-        """Return the number that a text gives. Raises ValueError, with the valid range as its message, if the text is
-        no number of the type of `usual` from `least` to `most`."""
+        """Return the number in a text. Raises ValueError, with the valid range as its message, if the text is not a
+        number from `least` to `most` with the type of `usual`."""
         kind = type(self.usual)
         try:
             value = kind(text)
@@ -45,7 +45,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Choice:
-    """A setting that is one of some words; the first is usual."""
+    """A setting whose value is one of several words; the first is the default."""
 
     words: tuple[str, ...]
     says: str
@@ -70,10 +70,10 @@ class Effect:
         result: the image that tables compare: a resource that one of its passes writes.
         passes: function that returns its passes; takes a value for each of `settings` by keyword.
         settings: the available settings, by name.
-        lacks: function that returns what a scene lacks for the effect, such as "it has no skin"; None for nothing.
+        lacks: function that returns what a scene lacks for the effect, such as "it has no skin", or None.
         scene: default scene.
-        hits: the points that its pixels' rays hit: x and y in pixels, and w 1 for a hit or 0 for none; None for
-            an effect without rays.
+        hits: the resource of the points that the pixels' rays hit: x and y in pixels, and w 1 for a hit or 0 for a
+            miss; None for an effect without rays.
     """
 
     name: str
@@ -96,7 +96,7 @@ class ChosenEffect:
 
     @property
     def name(self) -> str:
-        """The text that names it: `gtao:slices=4`; settings that are as usual are left out."""
+        """The effect as text, such as `gtao:slices=4`; settings with default values are left out."""
         settings = self.effect.settings
         own = (f"{n}={v:g}" if isinstance(v, float) else f"{n}={v}" for n, v in self.values if v != settings[n].usual)
         return ":".join([self.effect.name, *own])
@@ -107,10 +107,10 @@ class ChosenEffect:
 
 
 def chosen(effect: Effect, given: Mapping[str, str]) -> ChosenEffect:
-    """Return an effect with settings given as text by name; settings that are not given have their usual values.
+    """Return an effect with settings given as text by name; settings that are not given have their default values.
 
     Raises:
-        EffectError: it has no such setting, or the value is out of range.
+        EffectError: the effect has no such setting, or a value is out of range.
     """
     settings = effect.settings
     for name, text in given.items():

@@ -1,8 +1,8 @@
 """Ground-truth ambient occlusion: the exact cosine-weighted visibility between two horizons, slice by slice.
 
-XeGTAO tuned some of it by eye: a power of 2.2, |m| drawn towards 1 by 0.05, a floor of 0.03, a fade where the
-radius is small on the screen. Of these, only the power is implemented, and it is off. Mipmaps of depth and the
-denoiser are left out. `radius` is XeGTAO's times 1.457: the distance beyond which nothing occludes.
+XeGTAO adds adjustments made by eye: a power of 2.2, |m| moved towards 1 by 0.05, a floor of 0.03, and a fade where
+the radius is small on the screen. Of these, only the power is implemented; by default it is 1. Mip levels of depth
+and the denoiser are left out. `radius` is XeGTAO's radius times 1.457: the distance beyond which nothing occludes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Horizon-based ambient occlusion as shipped: every tap above the horizon occludes by its angle and distance."""
+"""Horizon-based ambient occlusion as shipped: taps above the horizon occlude according to angle and distance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Noise that is fixed for each texel: the numbers of noise.glsl."""
+"""Noise with a fixed value for each texel: the constants of noise.glsl."""
 
 from __future__ import annotations
 

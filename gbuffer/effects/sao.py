@@ -1,4 +1,4 @@
-"""Scalable ambient obscurance: taps on a spiral, each by its height over the tangent plane and its distance."""
+"""Scalable ambient obscurance: taps on a spiral, weighted by height above the tangent plane and by distance."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ LEAST = 3.0  # pixels of the radius on the screen; with fewer nothing is compute
 
 
 def turns(taps: int) -> int:
-    """Return the turns of the spiral: the whole number nearest to the golden section of its taps that has no factor
-    in common with them, so that no two taps are in the same direction. 7 for the paper's 11."""
+    """Return the number of turns of the spiral: the whole number nearest to GOLDEN times `taps` that has no factor in
+    common with `taps`, so that no two taps are in the same direction. For the paper's 11 taps it is 7."""
     return min((n for n in range(1, taps + 1) if gcd(n, taps) == 1), key=lambda n: abs(n - GOLDEN * taps))
 
 

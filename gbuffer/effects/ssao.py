@@ -1,4 +1,4 @@
-"""Crytek's ambient occlusion: points around the surface, each in front of the depth buffer or behind it."""
+"""Crytek's ambient occlusion: points around the surface, tested against the depth buffer as in front or behind."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The distant surroundings of a scene: their images, and those images prefiltered for each roughness."""
+"""The distant surroundings of a scene: images, and levels prefiltered for each roughness."""

@@ -1,4 +1,4 @@
-"""A smaller picture of all directions: the mean over the area of each of its texels."""
+"""Downsampling of an environment: each texel is the mean over its area."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ def averaged(radiance: np.ndarray, height: int) -> np.ndarray:
     """Return an environment reduced to (height, 2 height, 3), float32, by area averages that conserve its light.
 
     Args:
-        radiance: (rows, 2 rows, 3) with at least as many rows."""
+        radiance: (rows, 2 rows, 3), where rows is at least `height`."""
     rows, columns = radiance.shape[:2]
     # The area of a band goes by the cosine of its polar angle.
     bands, wanted = (-np.cos(np.arange(count + 1) * np.pi / count) for count in (rows, height))

@@ -1,4 +1,4 @@
-"""Two environments of bright things with sharp edges on a dim ground, in which every step of a normal's code shows."""
+"""Two dim environments with bright, sharp-edged lights, in which every quantisation step of a normal is visible."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The environments there are without a file."""
+"""The built-in environments, which are computed without a file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class EnvironmentMaker:
     has_sun: bool = False
 
     def make(self) -> Environment:
-        """Return the environment; always the same value, whose levels a device keeps."""
+        """Return the environment: always the same object, so that a device can keep its levels."""
         return _made(self)
 
 

@@ -1,9 +1,10 @@
-"""Share of a constant environment that a rough metal reflects: the two numbers of the split sum.
+"""The share of light from a constant environment that a rough metal reflects: the two numbers of the split sum.
 
     reflected = f0 scale + bias,
     scale = integral of D V n.l (1 - (1 - v.h)^5),  bias = integral of D V n.l (1 - v.h)^5
 
-over light directions l. D is GGX's with alpha = roughness^2, V is height-correlated Smith's, times Schlick's F.
+over light directions l. D is GGX with alpha = roughness^2, V is height-correlated Smith visibility, and the Fresnel
+term is Schlick's.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ LEAST_N_V = 1e-9
 
 
 def dfg(n_v: np.ndarray, roughness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Scale and bias of f0, float64, of the shape that the two make together.
+    """Return the scale and the bias of f0, float64, in the broadcast shape of the arguments.
 
     Args:
         n_v: cosines between normal and viewer, in [0, 1].
-        roughness: perceptual roughness, in [0, 1]; 0 is a mirror, where Fresnel's term alone decides.
+        roughness: perceptual roughness, in [0, 1]; 0 is a mirror, for which only the Fresnel term matters.
     """
     n_v, alpha = np.broadcast_arrays(np.maximum(n_v, LEAST_N_V), np.square(np.asarray(roughness, np.float64)))
     weight, v_h = _microfacets(n_v[..., None], alpha[..., None])
@@ -36,9 +37,9 @@ def dfg(n_v: np.ndarray, roughness: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 def _microfacets(n_v: np.ndarray, alpha: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return each node's contribution to the integral without Fresnel, and its v.h; the nodes are the last axis.
 
-    A microfacet's slope is alpha tan(x) towards longitude p, p = 0 on the viewer's side. Then D n.h dh is sin 2x dx
-    dp / 2 pi, and twice that with the mirror image of p. Light reaches the horizon where slope^2 - 2 slope tan(v)
-    cos p = 1: x ends there, so the integrand is smooth.
+    A microfacet's slope is alpha tan(x) towards longitude p, where p = 0 is the viewer's side. Then D n.h dh is
+    sin 2x dx dp / 2 pi, and twice that with the mirror image of p. The light direction reaches the horizon at
+    slope^2 - 2 slope tan(v) cos p = 1; x ends there, so that the integrand is smooth.
     """
     share, of_share, cosine, of_turn = _nodes()
     sine = np.sqrt(1 - n_v**2)
@@ -62,8 +63,8 @@ def _microfacets(n_v: np.ndarray, alpha: np.ndarray) -> tuple[np.ndarray, np.nda
 
 @functools.cache
 def _nodes() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return four arrays with an entry per node: its share in [0, 1], the share's weight, the cosine of its longitude
-    and the longitude's weight. The products of both weights sum to 1."""
+    """Return four arrays with one entry per node: its share in [0, 1], the share's weight, the cosine of its
+    longitude and the longitude's weight. The products of the two weights sum to 1."""
     (shares, of_shares), (turns, of_turns) = (np.polynomial.legendre.leggauss(count) for count in NODES)
     # On the far side light ends earlier, and for grazing viewers suddenly: no node reaches across.
     longitudes = np.concatenate([(turns + 1) * np.pi / 4, (turns + 3) * np.pi / 4])
@@ -74,9 +75,10 @@ def _nodes() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
 
 @functools.cache
 def dfg_table(size: int = SIZE) -> np.ndarray:
-    """Scale and bias, (size, size, 2), float32: row i is roughness i / (size - 1), column j n.v = (j / (size - 1))^2.
+    """Return the scale and bias in a table, (size, size, 2), float32.
 
-    Grazing views have more columns: there a smooth surface's shadowing turns within n.v = roughness^2.
+    Row i is for roughness i / (size - 1), column j for n.v = (j / (size - 1))^2. Columns are denser at grazing
+    angles, because the shadowing of a smooth surface changes most for n.v below roughness^2.
     """
     nodes = np.linspace(0, 1, size)
     # Few at once: what is in the processor's cache is read many times.

@@ -18,8 +18,8 @@ class Environment:
     Attributes:
         name: its name in tables.
         radiance: linear light, (height, width, 3), float32; width is twice the height.
-        sun: the sun that was removed from the image and made a light: the unit direction in which its light travels,
-            and its irradiance on a perpendicular surface, linear colour; None if no sun was removed.
+        sun: the sun that was removed from the image and turned into a light: the unit direction in which its light
+            travels, and its irradiance on a perpendicular surface, linear colour; None if no sun was removed.
         changes: changes to the image since it was read or computed, as rows name them.
     """
 
@@ -30,17 +30,18 @@ class Environment:
 
 
 def directions(height: int) -> np.ndarray:
-    """Return the directions of the centres of an environment's texels, (height, 2 height, 3), float64, unit."""
+    """Return the unit directions of an environment's texel centres, (height, 2 height, 3), float64."""
     t = (np.arange(height)[:, None] + 0.5) * np.pi / height
     return towards(t, (np.arange(2 * height) + 0.5) * np.pi / height - np.pi)
 
 
 def towards(t: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """The unit directions of polar angles and longitudes in radians, of the shape that the two make together and 3."""
+    """Return unit directions from polar angles `t` and longitudes `p`, in radians. The shape is the broadcast shape
+    of both, plus an axis of 3."""
     return np.stack(np.broadcast_arrays(np.sin(p) * np.sin(t), np.cos(t), -np.cos(p) * np.sin(t)), -1)
 
 
 def solid_angles(height: int) -> np.ndarray:
-    """Return the solid angle of a texel of each row, (height, 1), float64, in steradians."""
+    """Return the solid angle of one texel in each row, (height, 1), float64, in steradians."""
     edges = np.cos(np.arange(height + 1) * np.pi / height)
     return -np.diff(edges)[:, None] * np.pi / height

@@ -1,10 +1,10 @@
-"""An environment seen through GGX's lobe around each direction: sums over all of its texels, not samples.
+"""An environment filtered by GGX's lobe around each direction: sums over all of its texels, not samples.
 
 The lobe depends on two latitudes and a difference of longitudes. The contribution of a row of texels to a row of
 directions is therefore a convolution along the longitudes, computed as a product of spectra. A lobe several texels
-wide is summed by its values at their centres. A narrower lobe is integrated over each texel, whose radiance is
-constant: with two latitudes and exactly along the longitudes far from the lobe's middle, and with as many nodes as
-needed near it.
+wide is summed by its values at texel centres. A narrower lobe is integrated over each texel, whose radiance is
+constant. Far from the lobe's centre the integral uses two latitudes per texel and is exact along the longitudes; near
+the centre it uses as many nodes as needed.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ class Grid:
     """Grid of texels and directions.
 
     Attributes:
-        height: rows of the environment; it is twice as wide.
-        step: number of texels per direction along either side: 1, or an even number.
-        alpha: of the lobe, above 0.
+        height: rows of the environment, which is twice as wide.
+        step: number of texels per direction along either axis: 1, or an even number.
+        alpha: alpha of the lobe, above 0.
     """
 
     height: int
@@ -46,17 +46,17 @@ class Grid:
 
     @property
     def texel(self) -> float:
-        """Height of a texel, in radians, and its width."""
+        """Height and width of a texel, in radians."""
         return np.pi / self.height
 
     @property
     def latitudes(self) -> np.ndarray:
-        """Polar angles of the rows of directions."""
+        """Polar angles of the rows of directions, in radians."""
         return (np.arange(self.height // self.step) + 0.5) * self.texel * self.step
 
     @property
     def offset(self) -> float:
-        """Distance from a direction to the texel in the middle or right of it, in texels of longitude."""
+        """Longitude from a direction to the centre of its own texel, or of the next texel to the right, in texels."""
         return 0.0 if self.step == 1 else 0.5
 
     @property
@@ -66,12 +66,12 @@ class Grid:
 
     @property
     def is_resolved(self) -> bool:
-        """Whether values in the middles of texels are enough."""
+        """Whether the lobe's values at texel centres are accurate enough."""
         return self.scale >= RESOLVED * self.texel
 
 
 def lobe(cosine: np.ndarray, alpha: float) -> np.ndarray:
-    """Return D n.l for n = v = r, by r.l, up to a factor; the result overwrites `cosine`."""
+    """Return D n.l for n = v = r, up to a factor, from r.l in `cosine`, which is overwritten with the result."""
     density = cosine * (0.5 * (alpha**2 - 1))
     density += 0.5 * (1 + alpha**2)
     np.square(density, out=density)
@@ -80,12 +80,12 @@ def lobe(cosine: np.ndarray, alpha: float) -> np.ndarray:
 
 
 def seen_through_lobe(radiance: np.ndarray, alpha: float, step: int = 1) -> np.ndarray:
-    """The mean of an environment by the lobe of each direction, (height / step, width / step, 3), float64.
+    """Return the mean of an environment over the lobe of each direction, (height / step, width / step, 3), float64.
 
     Args:
         radiance: (height, width, 3), width twice the height.
         alpha: roughness squared, above 0.
-        step: how many texels a direction has along either side: 1, or an even number that divides the height.
+        step: number of texels per direction along either axis: 1, or an even number that divides the height.
     """
     grid = Grid(len(radiance), step, alpha)
     spectra = _spectra(grid, radiance)
@@ -100,8 +100,8 @@ def seen_through_lobe(radiance: np.ndarray, alpha: float, step: int = 1) -> np.n
 
 
 def _spectra(grid: Grid, radiance: np.ndarray) -> np.ndarray:
-    """Spectra along the longitudes, (frequencies, rows, 12): of each channel, then of the picture upside down; real
-    parts of all of them, then imaginary ones."""
+    """Return spectra along the longitudes, (frequencies, rows, 12): those of each channel, then those of the image
+    upside down; first the real parts of all six, then their imaginary parts."""
     spectra = np.asarray(fft.rfft(radiance.astype(np.float64), axis=1, workers=1)).swapaxes(0, 1)
     spectra = spectra * _width(grid)[:, None, None]
     both = np.concatenate([spectra, spectra[:, ::-1]], axis=-1)
@@ -109,28 +109,29 @@ def _spectra(grid: Grid, radiance: np.ndarray) -> np.ndarray:
 
 
 def _width(grid: Grid) -> np.ndarray:
-    """Return the spectrum of a texel along its row, (height + 1,): of a peak in its middle if the lobe is resolved,
-    which is 1 everywhere, or of its area."""
+    """Return the spectrum of a texel along its row, (height + 1,): that of its whole width or, if the lobe is
+    resolved, that of a peak at its centre, which is 1 everywhere."""
     frequencies = np.arange(grid.height + 1)
     return np.ones(len(frequencies)) if grid.is_resolved else np.sinc(frequencies / grid.width)
 
 
 def _sums(grid: Grid, latitudes: np.ndarray, spectra: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Spectra of radiance times lobe, (frequencies, rows of directions, 6); and sums of the lobe, (rows, 1, 1)."""
+    """Return the spectra of radiance times lobe, (frequencies, rows of directions, 6), and the sums of the lobe,
+    (rows, 1, 1)."""
     lobes = _lobe_spectra(grid, latitudes)
     sums = lobes @ spectra
     return sums[..., :6] + 1j * sums[..., 6:], lobes[0].sum(-1)[:, None, None]
 
 
 def _pixels(grid: Grid, spectrum: np.ndarray) -> np.ndarray:
-    """Return rows of directions, (rows, width / step, 3), from their spectra, (frequencies, rows, 3)."""
+    """Return the values of rows of directions, (rows, width / step, 3), from spectra, (frequencies, rows, 3)."""
     turned = spectrum * np.exp(-2j * np.pi * grid.offset / grid.width * np.arange(len(spectrum)))[:, None, None]
     every = np.asarray(fft.irfft(turned, grid.width, axis=0, workers=1))
     return every[grid.step // 2 :: grid.step].swapaxes(0, 1)
 
 
 def _lobe_spectra(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
-    """Return the spectra of lobes around directions of these latitudes along each row of texels, with the shape
+    """Return the spectra, along each row of texels, of the lobes around directions of these latitudes, with the shape
     (frequencies, directions, rows)."""
     spectra = _transformed(grid, _far_lobes(grid, latitudes))
     if not grid.is_resolved:
@@ -142,8 +143,8 @@ def _lobe_spectra(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
 
 
 def _transformed(grid: Grid, lobes: np.ndarray) -> np.ndarray:
-    """Return the spectra of lobes, which are real, from half of their longitudes, the first axis; lobes are centred
-    on a texel's middle or its edge."""
+    """Return the real spectra of symmetrical lobes from one half of their longitudes, the first axis. A lobe is
+    centred on the centre or the edge of a texel."""
     if not grid.offset:
         return np.asarray(fft.dct(lobes, 1, axis=0, workers=1))
     spectrum = np.asarray(fft.dct(lobes, 2, axis=0, workers=1))
@@ -152,7 +153,7 @@ def _transformed(grid: Grid, lobes: np.ndarray) -> np.ndarray:
 
 
 def _far_lobes(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
-    """Return integrals of the lobe over texels' heights at middle longitudes, (longitudes, directions, rows)."""
+    """Return integrals of the lobe over texel heights, at central longitudes, (longitudes, directions, rows)."""
     turns = np.cos((np.arange(grid.height + (not grid.offset)) + grid.offset) * grid.texel)
     nodes, weights = _gauss(np.arange(grid.height + 1) * grid.texel, 1 if grid.is_resolved else 2)
     nodes, weights = nodes.T.ravel(), (weights * np.sin(nodes)).T.ravel()
@@ -168,7 +169,7 @@ def _far_lobes(grid: Grid, latitudes: np.ndarray) -> np.ndarray:
 
 
 def _near_lobes(grid: Grid, latitude: float) -> tuple[slice, np.ndarray]:
-    """Return the slice of rows near a direction's latitude, and (longitudes, rows) integrals of the lobe there."""
+    """Return the slice of rows near a direction's latitude, and integrals of the lobe there, (longitudes, rows)."""
     place = latitude / grid.texel
     first, end = max(0, int(np.ceil(place - NEAR - 0.5))), min(grid.height, int(place + NEAR + 0.5))
     edges = np.arange(first, end + 1) * grid.texel
@@ -186,7 +187,8 @@ def _near_lobes(grid: Grid, latitude: float) -> tuple[slice, np.ndarray]:
 def _pieces(edges: np.ndarray, middle: float, scale: float, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return nodes and weights of integrals between neighbouring edges, and the index of each integral's first node.
 
-    The pieces are half of `scale` wide at the lobe's middle and double from there; beyond `reach` each has two nodes.
+    Pieces are half of `scale` wide at the lobe's centre and double in width outwards; beyond `reach` each piece has
+    two nodes.
     """
     doublings = np.arange(1 + max(0, int(np.ceil(np.log2(2 * (edges[-1] - edges[0]) / scale)))))
     graded = scale / 2 * 2.0**doublings
@@ -201,7 +203,7 @@ def _pieces(edges: np.ndarray, middle: float, scale: float, reach: float) -> tup
 
 
 def _gauss(edges: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss-Legendre's nodes and weights between neighbouring edges, (intervals, count)."""
+    """Return Gauss-Legendre nodes and weights between neighbouring edges, (intervals, count)."""
     nodes, weights = _legendre(count)
     middles, halves = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
     return middles[:, None] + halves[:, None] * nodes, halves[:, None] * weights

@@ -1,4 +1,4 @@
-"""Pictures of all directions by formula, averaged over the area of each texel so that no edge is a step."""
+"""Environments computed from formulas, averaged over the area of each texel to avoid aliased edges."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Formula = Callable[[np.ndarray], np.ndarray]
 
 
 def drawn(formula: Formula, height: int = HEIGHT) -> np.ndarray:
-    """A formula's radiance, (height, 2 height, 3), float32, read-only: the mean of 4 x 4 directions in each texel."""
+    """Return a formula's radiance, (height, 2 height, 3), float32, read-only: the mean of 4 x 4 points per texel."""
     radiance = np.concatenate([_row(formula, row, height) for row in range(height)])
     radiance.setflags(write=False)
     return radiance
@@ -32,7 +32,7 @@ def _row(formula: Formula, row: int, height: int) -> np.ndarray:
 
 
 def rises(value: np.ndarray, start: float, end: float) -> np.ndarray:
-    """Return a smooth step of values: 0 before `start`, 1 from `end` on."""
+    """Return a smooth step of values: 0 up to `start`, 1 from `end` on."""
     share = np.clip((value - start) / (end - start), 0, 1)
     return share * share * (3 - 2 * share)
 

@@ -1,4 +1,4 @@
-"""The environment as surfaces of each roughness see it, in levels to interpolate between."""
+"""Environments prefiltered for surfaces of each roughness, in levels to interpolate between."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Prefiltered:
     A texel is the sum of L K divided by the sum of K, with K = D((1 + r.l) / 2) max(r.l, 0).
 
     Attributes:
-        fine: (levels, height, width, 3), float32, at the environment's own size; level 0 is its radiance.
+        fine: (levels, height, width, 3), float32, in the environment's own size; level 0 is its radiance.
         fine_roughness: roughness of each fine level, from 0 up.
         coarse: (levels, height / 4, width / 4, 3), float32.
         coarse_roughness: roughness of each coarse level, from that of the last fine level up to 1.
@@ -45,7 +45,8 @@ class Prefiltered:
 
     @property
     def irradiance(self) -> np.ndarray:
-        """The integral of L max(n.l, 0) over pi, (height / 4, width / 4, 3): D is constant at roughness 1."""
+        """Integral of L max(n.l, 0), divided by pi, (height / 4, width / 4, 3). This is the level of roughness 1, at
+        which D is constant."""
         return self.coarse[-1]
 
 
@@ -63,15 +64,16 @@ def keep_levels_by(keep: Keep) -> None:
 
 
 def kept_prefiltered(environment: Environment) -> Prefiltered:
-    """Return the levels of an environment, kept by the function set. Raises ValueError as `prefiltered` does."""
+    """Return the levels of an environment, kept by the function that `keep_levels_by` set. Raises ValueError as
+    `prefiltered` does."""
     return prefiltered(environment, _keepers[0])
 
 
 def prefiltered(environment: Environment, keep: Keep = _made_now) -> Prefiltered:
-    """Return the levels of an environment; 512 x 256 texels take 4 seconds on one core, 1024 x 512 half a minute.
+    """Return the levels of an environment. 512 x 256 texels take 4 seconds on one core, 1024 x 512 half a minute.
 
     Raises:
-        ValueError: its height is not a multiple of 4, or its width is not twice its height.
+        ValueError: the environment's height is not a multiple of 4, or its width is not twice its height.
     """
     radiance = environment.radiance
     height, width = radiance.shape[:2]
@@ -85,14 +87,15 @@ def prefiltered(environment: Environment, keep: Keep = _made_now) -> Prefiltered
 
 
 def key_of(radiance: np.ndarray) -> str:
-    """Return a key that changes with the radiance, the levels and VERSION."""
+    """Return a cache key that changes with the radiance, the levels and VERSION."""
     stored = np.ascontiguousarray(radiance, np.float32)
     facts = json.dumps([VERSION, FINE, COARSE, STEP, stored.shape])
     return hashlib.sha256(facts.encode() + stored.tobytes()).hexdigest()
 
 
 def _levels(radiance: np.ndarray) -> Arrays:
-    """Return the levels besides the radiance, stacked by roughness: "fine" of its size, "coarse" smaller by STEP."""
+    """Return the levels other than the radiance itself, stacked by roughness: "fine" in its size, "coarse" smaller by
+    STEP per side."""
     # SciPy's transforms: who only asks what environments there are does not wait for them.
     from .lobe_sums import seen_through_lobe
 

@@ -51,5 +51,5 @@ def _ground(height: np.ndarray) -> np.ndarray:
 
 
 def _is_sky(height: np.ndarray) -> np.ndarray:
-    """Return the share of sky at heights of directions: 0 below the horizon, 1 above, smooth in the haze between."""
+    """Return the share of sky at a direction's height: 0 below the horizon, 1 above, smooth in the haze between."""
     return rises(height, -0.012, 0.004)

@@ -27,9 +27,9 @@ class Panel:
 
     Attributes:
         axis, side: the wall: 0, 1, 2 for x, y, z, and -1 or 1.
-        middle, half: along the wall's other two axes, in metres.
-        edge: how far its light fades inwards, in metres.
-        light: linear colour of its middle.
+        middle, half: centre and half size along the wall's other two axes, in metres.
+        edge: width of the border in which its light fades, in metres.
+        light: linear colour at its centre.
     """
 
     axis: int
@@ -54,7 +54,7 @@ PANELS = (
 
 @functools.cache
 def studio() -> np.ndarray:
-    """Return the radiance, (256, 512, 3), float32, from 0.02 to 15: its tubes, of 20, are narrower than two texels."""
+    """Return the radiance, (256, 512, 3), float32, from 0.02 to 15. Tubes of 20 are narrower than two texels."""
     return drawn(_light)
 
 
@@ -71,7 +71,7 @@ def _light(towards: np.ndarray) -> np.ndarray:
 
 
 def _with_lamps(light: np.ndarray, wall: tuple[int, int], across: np.ndarray) -> np.ndarray:
-    """Return a wall's light, (count, 3), with its lamps and grid, at positions along the wall's two axes."""
+    """Return the light of a wall, (count, 3), with its lamps and grid, at positions along the wall's two axes."""
     if wall == GRID:
         light = mixed(light, LINES, _grid(across))
     for panel in PANELS:
@@ -83,7 +83,7 @@ def _with_lamps(light: np.ndarray, wall: tuple[int, int], across: np.ndarray) ->
 
 
 def _walls(place: np.ndarray) -> np.ndarray:
-    """Return the colour of the walls at places, (count, 3): darker in corners, and lighter below."""
+    """Return the colours of the walls at these points, (count, 3): darker in corners, lighter towards the floor."""
     x, y, z = np.moveaxis(np.abs(place) / ROOM, -1, 0)
     second = np.maximum(np.minimum(x, y), np.minimum(np.maximum(x, y), z))
     floor = mixed(WALL, FLOOR, rises(-place[..., 1], 1.4, 2.0))

@@ -1,4 +1,4 @@
-"""Suns: a small part of an environment, much brighter than the rest, that is removed and made a directional light."""
+"""Suns: a small, very bright part of an environment that is removed and replaced by a directional light."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class Sun:
     """Radiance above a threshold, in one small part of an environment.
 
     Attributes:
-        towards: unit direction to its middle.
-        irradiance: of that radiance, on a surface that faces it, linear colour.
+        towards: unit direction to its centre.
+        irradiance: irradiance from it on a surface that faces it, linear colour.
     """
 
     towards: tuple[float, float, float]
@@ -29,7 +29,8 @@ class Sun:
 
 
 def found_sun(radiance: np.ndarray, most: float = MOST) -> Sun | None:
-    """Return the sun of (height, 2 height, 3), or None if texels above `most` are missing or too far apart."""
+    """Return the sun in an image, (height, 2 height, 3); None if no texel exceeds `most`, or if such texels are too
+    far apart."""
     excess = np.maximum(radiance.astype(np.float64) - most, 0) * solid_angles(len(radiance))[..., None]
     bright = excess.any(-1)
     if not bright.any():
@@ -47,7 +48,7 @@ def without_sun(environment: Environment, most: float = MOST) -> Environment:
     if `found_sun` finds no sun.
 
     Args:
-        most: radiance, of each channel, that is left of the sun.
+        most: maximum radiance per channel that stays in the image.
     """
     sun = found_sun(environment.radiance, most)
     if sun is None:

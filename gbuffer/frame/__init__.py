@@ -1,1 +1,1 @@
-"""Frames: their plans, their resources and the drawing tools of passes."""
+"""Frames: their plans, their resources and the drawing tools for passes."""

@@ -1,4 +1,4 @@
-"""Drawing tools of a pass: targets that it writes, programs that know the frame, and its inputs, bound by name."""
+"""Drawing tools for a pass: targets that it writes, programs compiled for the frame, and inputs bound by name."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Canvas:
 
     Attributes:
         frame, device, plan: the frame, its device and its plan.
-        told: the macros that earlier passes and this one set.
+        told: macros that this pass and earlier passes set.
 
     Raises:
         PipelineError: the pass uses a resource that it does not declare.
@@ -51,7 +51,7 @@ class Canvas:
             self.frame.clear(resource)
 
     def textures(self, resource: Resource, copy: int = 0) -> list[Any]:
-        """Return a resource's textures, of the copy in use or of the `copy`th before it; [] if the plan has none."""
+        """Return a resource's textures in the current copy, or `copy` copies before it; [] if the plan has none."""
         return self.frame.textures(self._declared_resource(resource, (*self._pass.reads, *self._pass.writes)), copy)
 
     def swap(self, resource: Resource) -> None:
@@ -63,8 +63,8 @@ class Canvas:
 
         Args:
             colours: resources that the pass writes, in the order of the shader's outputs.
-            depth: depth and stencil to draw against; written if the pass writes it.
-            most: maximum number of textures.
+            depth: depth and stencil to test against; written if the pass writes it.
+            most: maximum number of colour textures; None for all.
         """
         for resource in colours:
             self._declared_resource(resource, self._pass.writes)
@@ -73,12 +73,13 @@ class Canvas:
         return Target(self, colours, depth, most, depth in self._pass.writes)
 
     def at(self, size: tuple[int, int], view: Sight | None) -> None:
-        """Prepare the programs that follow for a target of this size, seen from `view` or by the scene's own camera."""
+        """Set the target size and the view for the programs that follow; a view of None is the scene's own camera."""
         self._size, self._view = size, view
 
     def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
-        """Compile a pair of shaders for the frame's layout and the macros in `told` and `defines`. Raises
-        ShaderError, and PipelineError if they sample a resource that the pass does not read."""
+        """Return a program of a vertex and a fragment shader, compiled for the frame's layout with the macros in
+        `told` and `defines`. Raises ShaderError, and PipelineError if it samples a resource that the pass does not
+        read."""
         program = self.frame.program(vertex, fragment, **{**self.told, **defines})
         for name in program:
             if (
@@ -104,7 +105,7 @@ class Canvas:
         blend: tuple[int, int] | None = None,
         **defines: object,
     ) -> Run:
-        """Return a function that runs a shader over whole targets, or over covered pixels if a depth is given."""
+        """Return a function that runs a shader over whole targets, or over covered pixels if `depth` is given."""
         target, covers = self.target(*colours, depth=depth), self.fullscreen(fragment, **defines)
 
         def run() -> None:
@@ -130,20 +131,20 @@ class Canvas:
 
 
 def _is_read(name: str, program: Program) -> bool:
-    """Whether a program samples a resource; targets of whole numbers have a sampler of their own."""
+    """Whether a program samples the resource `name`; integer targets have a separate sampler."""
     return name in program or f"{name}{WORDS}" in program
 
 
 def _samplers(reads: tuple[Resource, ...], writes: tuple[Resource, ...]) -> dict[str, tuple[Resource, int]]:
-    """Return the names of the samplers for resources, each with its resource and copy: the current copy by the
-    resource's name, and for resources of several copies the previous copy by the name with `_before`."""
+    """Return the resource and the copy for each sampler name: the current copy for a resource's own name and, for
+    resources with several copies, the previous copy for the name with `_before`."""
     samplers = {resource.name: (resource, 0) for resource in reads}
     return samplers | {f"{r.name}_before": (r, 1) for r in (*reads, *writes) if r.copies > 1}
 
 
 @contextmanager
 def counted(context: Any, queries: list[Query] | None) -> Iterator[None]:
-    """Count the samples drawn in a query, which is added to `queries`; do nothing if `queries` is None."""
+    """Count the samples drawn, with a new query that is added to `queries`; do nothing if `queries` is None."""
     if queries is None:
         yield
         return
@@ -154,7 +155,7 @@ def counted(context: Any, queries: list[Query] | None) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Target:
-    """Textures to draw into, looked up at each use: copies move on."""
+    """Textures to draw into, looked up at each use because the current copy changes."""
 
     canvas: Canvas
     colours: tuple[Resource, ...]
@@ -163,7 +164,7 @@ class Target:
     writes_depth: bool
 
     def use(self, view: Sight | None = None, at: int | None = None) -> None:
-        """Bind the target, so that the draws that follow are into it.
+        """Bind the target for the draws that follow.
 
         Args:
             view: view to draw from; the scene's camera if None.

@@ -1,4 +1,4 @@
-"""The contract between passes: the resources that each reads and writes. Checked when a pipeline is created."""
+"""The contract between passes: the resources that each pass reads and writes. Checked when a pipeline is created."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Run = Callable[[], None]
 
 
 class PipelineError(Exception):
-    """Passes that do not fit together: one line that names the pass and the resource."""
+    """Passes that do not fit together; the message is one line that names the pass and the resource."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,13 +28,14 @@ class Pass:
     Attributes:
         name: its name in tables, unique in a pipeline.
         reads: resources that earlier passes have written, or that the previous frame has kept.
-        writes: resources that later passes may read. Those that it does not also read are cleared before it runs.
-        build: compiles the pass for a canvas, and returns the function to run for each frame. It is not called if
-            none of the resources that the pass writes exist.
-        after: for an effect's pass: the passes that it may follow; it follows the last of these in the pipeline.
+        writes: resources that later passes may read. Resources that the pass does not also read are cleared before it
+            runs.
+        build: function that compiles the pass for a canvas and returns the function to run for each frame. It is not
+            called if none of the resources that the pass writes exist.
+        after: for a pass of an effect: the passes that it may follow; it follows the last of these in the pipeline.
         tells: macros for itself and every later pass. An effect with macros lets later passes read what it writes.
-        expects: macro values that it can work with; an earlier pass must have set one of them.
-        needs: components that it requires in the G-buffer.
+        expects: macro values that the pass can work with; an earlier pass must have set one of them.
+        needs: components that the pass requires in the G-buffer.
     """
 
     name: str
@@ -53,8 +54,8 @@ class Pass:
 
     @property
     def offers(self) -> tuple[Resource, ...]:
-        """Resources that later passes may read without declaring them: all that an effect's pass with macros writes;
-        empty for other passes."""
+        """Resources that later passes may read without declaring them: all that the pass writes if it belongs to an
+        effect and sets macros; otherwise empty."""
         return self.writes if self.after and self.tells else ()
 
 
@@ -65,10 +66,10 @@ class Pipeline:
     Attributes:
         name, title, source: its name, its description and its origin.
         stages: the passes, in order.
-        usual_layout: the layout that it is published with.
+        usual_layout: the layout with which it was published.
 
     Raises:
-        PipelineError: its passes do not fit together.
+        PipelineError: the passes do not fit together.
     """
 
     name: str
@@ -85,7 +86,7 @@ class Pipeline:
 
     @cached_property
     def resources(self) -> Mapping[str, Resource]:
-        """All resources that its passes write, by name."""
+        """All resources that the pipeline's passes write, by name."""
         return {resource.name: resource for stage in self.stages for resource in stage.writes}
 
     @cached_property
@@ -95,7 +96,7 @@ class Pipeline:
 
     @property
     def needs(self) -> frozenset[str]:
-        """Components that it requires in the G-buffer, besides the normal."""
+        """Components that the pipeline requires in the G-buffer, besides the normal."""
         return frozenset().union(*(stage.needs for stage in self.stages))
 
     @property
@@ -105,15 +106,15 @@ class Pipeline:
 
     @property
     def light_targets(self) -> tuple[int, ...]:
-        """Possible target counts of the light buffer: (1,) if it holds finished colours, else (1, 2); empty without a
-        light buffer."""
+        """Possible numbers of targets in the light buffer: (1,) if it holds finished colours, else (1, 2); empty
+        without a light buffer."""
         if LIGHT.name not in self.resources:
             return ()
         return (1,) if self.told["LIGHT_HOLDS"] == COLOURS else (1, 2)
 
     @property
     def scaled(self) -> bool:
-        """Whether G-buffer and light buffer may be smaller than the image."""
+        """Whether the G-buffer and the light buffer may be smaller than the image."""
         return bool(self.told.get("FILTERS"))
 
     @property
@@ -130,7 +131,7 @@ class Pipeline:
         return self.stages[: self.stages.index(stage)] if stage in self.stages else self.stages
 
     def with_effect(self, passes: Iterable[Pass]) -> Pipeline:
-        """Return the pipeline with an effect's passes, each after the pass it names and any effect passes there.
+        """Return the pipeline with an effect's passes, each after the pass that it names and any effect passes there.
 
         Raises:
             PipelineError: a pass to follow does not exist, or the passes do not fit together.

@@ -38,7 +38,7 @@ KINDS = ((SAMPLERS, False), (WORD_SAMPLERS, True))
 
 
 class Frame:
-    """A pipeline's resources for one scene and plan, created on first use; a context manager that releases them.
+    """A pipeline's resources for one scene and plan, created on first use; as a context manager, it releases them.
 
     Args:
         device: the OpenGL device.
@@ -79,7 +79,7 @@ class Frame:
 
     def show(self, scene: Scene) -> None:
         """Replace the scene with another moment of it for the following draws. Raises ValueError as
-        `SceneBuffers.show`."""
+        `SceneBuffers.show` does."""
         self.scene_buffers.show(scene)
         self.scene = scene
         for block in self._blocks.values():
@@ -107,8 +107,8 @@ class Frame:
         return self._held[resource]
 
     def textures(self, resource: Resource, copy: int = 0) -> list[Any]:
-        """Return a resource's textures in the current copy, or in the copy that is `copy` steps before it; a depth
-        buffer as its texture. Empty if the plan leaves the resource out."""
+        """Return a resource's textures in the current copy, or `copy` copies before it; a depth buffer is returned as
+        its texture. The list is empty if the plan leaves the resource out."""
         held = self.held(resource).copy(copy)
         return [target.texture if isinstance(target, raw.DepthBuffer) else target for target in held]
 
@@ -138,7 +138,8 @@ class Frame:
 
         Args:
             colours: textures, or volumes of one size.
-            depth: the resource whose current copy is the depth; not used with volumes.
+            depth: the resource whose current copy is the depth attachment; not used with volumes.
+            writes_depth: whether draws write depth.
             layer: the slice of the volumes to draw into; None for all slices.
 
         Raises:
@@ -175,8 +176,8 @@ class Frame:
         }
 
     def _light_defines(self) -> dict[str, object]:
-        """Return macros by name: those of the light buffer, and those of the layout's curves and encoding of light.
-        Raises LayoutError if the two have different ranges."""
+        """Return the macros of the light buffer and those of the layout's curves and light encoding, by name. Raises
+        LayoutError if the light buffer and the layout have different ranges."""
         light, kept = light_defines(self.plan.light_buffer), curve_defines(self.plan.layout)
         if any(light[name] != kept[name] for name in light.keys() & kept.keys()):
             buffer = self.plan.light_buffer.name
@@ -186,7 +187,7 @@ class Frame:
         return {**light, **kept}
 
     def _material_defines(self) -> dict[str, object]:
-        """Return the macros of metallic-roughness materials and of the environment."""
+        """Return the macros for metallic-roughness materials and the environment."""
         around = self.scene.environment
         defines: dict[str, object] = {"HAS_MAPS": int(self.scene.has_maps), "HAS_ENVIRONMENT": int(around is not None)}
         defines |= {"SPECULAR_ANTIALIASING": int(self.plan.antialiased), "LEAST_ROUGHNESS": self.plan.least_roughness}
@@ -196,8 +197,8 @@ class Frame:
         return defines
 
     def _material_tables(self) -> dict[str, Any]:
-        """Return lookup textures of metallic-roughness surfaces by sampler: the split sum and, if the scene has an
-        environment, its two sets of levels. Empty for other scenes. The textures outlive the frame on the device."""
+        """Return lookup textures for metallic-roughness surfaces, by sampler: the split sum and, if the scene has an
+        environment, its two sets of levels. Empty for other scenes. The device keeps the textures after the frame."""
         if not self.scene.is_metal_rough:
             return {}
         device = self.device
@@ -212,8 +213,8 @@ class Frame:
         return {"dither": self.device.owned(self.stack, self.device.upload(noise.added))} if noise else {}
 
     def program(self, vertex: str | Path, fragment: str | Path, **defines: object) -> Program:
-        """Return a compiled vertex and fragment shader with the frame's macros and `defines`, which take precedence.
-        Raises ShaderError."""
+        """Return a program of a vertex and a fragment shader, compiled with the frame's macros and `defines`, which
+        take precedence. Raises ShaderError."""
         plan = self.plan
         names: Mapping[str, Path | tuple[Path, ...]] = {
             "ENCODING": plan.layout.codec.encoding.glsl,
@@ -231,7 +232,7 @@ class Frame:
         return vertex_array
 
     def bind(self, program: Program, size: tuple[int, int], view: Sight | None, textures: Mapping[str, Any]) -> None:
-        """Bind the inputs of a draw into a target of this size, seen from `view` or by the scene's camera (None)."""
+        """Bind the inputs of a draw into a target of this size, from `view` or, if None, from the scene's camera."""
         if (size, view) not in self._blocks:
             self._blocks[size, view] = self._frame_buffer(size, view)
         self._blocks[size, view].bind_to_uniform_block(FRAME_BINDING)
@@ -250,8 +251,8 @@ class Frame:
         return {**textures, **{name: several for name, several in parts.items() if several}}
 
     def _frame_buffer(self, size: tuple[int, int], view: Sight | None) -> Buffer:
-        """Return a new uniform buffer as `frame.glsl` declares it, for a target of this size, seen from `view` or by
-        the scene's camera (None)."""
+        """Return a new uniform buffer, as `frame.glsl` declares it, for a target of this size, as seen from `view`
+        or, if None, the scene's camera."""
         sight, previous = view or self.scene.view, view or self.scene.previous
         picture = size if view else self.plan.sampled_from or self.plan.size
         projection, to_world = sight.projection(picture[0] / picture[1]), np.linalg.inv(sight.matrix())
@@ -273,7 +274,7 @@ def _levels_uploaded(device: Device, levels: Prefiltered) -> list[Any]:
 
 
 def shader_roundings(device: Device, layout: Layout) -> tuple[int, ...]:
-    """Return for each target 0 if the device rounds as requested, else 1 + the rounding's number in `storage.glsl`."""
+    """Return, per target, 0 if the device rounds as requested, else 1 + the rounding's number in `storage.glsl`."""
     homes = {word.target for word in layout.words if word.component.startswith("normal.")}
     return tuple(
         _shader_rounding(device, target.storage, rounds_to(layout.rounding) if i in homes else "nearest")

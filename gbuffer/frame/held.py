@@ -13,7 +13,7 @@ from .resource import DEPTH_MAP, Resource, Texel
 
 
 class Held:
-    """A resource's copies, created on first use and released with the stack; one copy at a time is in use."""
+    """A resource's copies, created on first use and released with the stack; one copy at a time is current."""
 
     def __init__(self, device: Device, stack: ExitStack, resource: Resource, plan: Plan):
         self._device, self._stack, self._resource = device, stack, resource
@@ -22,8 +22,8 @@ class Held:
         self._used = 0
 
     def copy(self, before: int) -> list[Any]:
-        """Return the textures of the current copy (`before` is 0) or of the copy that is `before` steps before it,
-        created on first use. Depth with stencil is one `DepthBuffer`."""
+        """Return the textures of the current copy, or of the copy that is `before` steps before it, created on first
+        use. Depth with stencil is one `DepthBuffer`."""
         place = (self._used - before) % self._resource.copies
         if place not in self._copies:
             self._copies[place] = [self._owned_texture(texel) for texel in self._texels]

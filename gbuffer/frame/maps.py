@@ -1,4 +1,4 @@
-"""Metal/rough materials on the device: their numbers, and the pictures that vary them."""
+"""Metallic-roughness materials on the device: their parameters and their texture maps."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WHITE = np.full((1, 1, 4), 255, np.uint8)
 
 
 class Maps:
-    """The pictures of a scene's materials, released with `stack`; materials may share them."""
+    """The texture maps of a scene's materials, released with `stack`; materials may share maps."""
 
     def __init__(self, device: Device, stack: ExitStack, scene: Scene):
         def kept(make: Callable[[], Texture]) -> Texture:
@@ -49,7 +49,7 @@ class Maps:
 
 
 def _sampled(texture_map: Map) -> tuple[object, ...]:
-    """Return a key for a map's texture: maps that differ only in their placement have equal keys."""
+    """Return a key for a map's texture: maps that differ only in their texture coordinates have equal keys."""
     return id(texture_map.texels), texture_map.is_srgb, _repeats(texture_map)
 
 
@@ -59,7 +59,7 @@ def _repeats(texture_map: Map) -> tuple[bool, bool]:
 
 
 def metal_rough_numbers(material: MetalRough) -> list[float]:
-    """Return the numbers of a metallic-roughness material in the order in which `instance.glsl` declares them."""
+    """Return the parameters of a metallic-roughness material, in the order in which `instance.glsl` declares them."""
     numbers = [*material.base, material.alpha, material.metalness, material.roughness, material.reflectance]
     has_normals = float(material.normal_map is not None)
     numbers += [material.cutoff, *material.emission, 0.0]

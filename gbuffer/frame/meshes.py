@@ -24,7 +24,7 @@ class Geometry:
         """Draw a list of `SceneBuffers.draws`, by its name or by a light's index.
 
         Args:
-            cull: the faces to cull, "back" or "front"; meshes that are two-sided are drawn in full."""
+            cull: the faces to cull, "back" or "front"; two-sided meshes are drawn without culling."""
         buffers, device = self._frame.scene_buffers, self._frame.device
         device.context.cull_face = cull
         for draw in buffers.draws[name]:

@@ -22,11 +22,12 @@ class Plan:
         layout, light_buffer: storage of the G-buffer and of the light.
         light_targets: 1 or 2; see `accumulation.glsl`.
         shadows: whether the sun has a shadow map.
-        antialiased: whether varying normals within a pixel make metallic-roughness surfaces rougher.
-        least_roughness: lowest roughness for lights; the environment is reflected down to 0.
-        scale: size of the G-buffer and light buffer relative to the image's, for pipelines that have the choice.
-        apart: whether G-buffer and light buffer have that scale, and one sample per pixel; set by the pipeline.
-        dither: the noise that is added to the normal's code; None for the layout's own.
+        antialiased: whether normals that vary within a pixel make metallic-roughness surfaces rougher.
+        least_roughness: lowest roughness for lights; the environment is reflected down to roughness 0.
+        scale: size of the G-buffer and the light buffer relative to the image, for pipelines that allow it.
+        apart: whether the G-buffer and the light buffer have that scale, and one sample per pixel; set by the
+            pipeline.
+        dither: the noise that is added to the normal's code; None for the layout's own noise.
         sampled_from: width and height of the frame that the pixels were sampled from; None if not sampled.
     """
 
@@ -45,13 +46,13 @@ class Plan:
 
     @property
     def noise(self) -> Dither | None:
-        """Noise that is added to the numbers of the normal's code before they are rounded; None for no noise."""
+        """Noise that is added to the numbers of the normal's code before rounding; None for no noise."""
         codec = self.layout.codec
         return codec.dither(0) if self.dither is None and codec.is_dithered else self.dither
 
     @property
     def surface_scale(self) -> float:
-        """Size of the G-buffer relative to the image's."""
+        """Size of the G-buffer relative to the image."""
         return self.scale if self.apart else 1.0
 
     @property
@@ -61,7 +62,7 @@ class Plan:
 
     @property
     def surface_samples(self) -> int:
-        """Samples of each pixel of the G-buffer."""
+        """Samples per pixel of the G-buffer."""
         return 1 if self.apart else self.samples
 
 

@@ -1,4 +1,4 @@
-"""Resources that passes hand on: textures by name, whose formats and sizes follow from a frame's plan."""
+"""Resources that passes share: named textures whose formats and sizes follow from a frame's plan."""
 
 from __future__ import annotations
 
@@ -47,19 +47,20 @@ KNOWN = (*FORMATS, *PLANNED, DEPTH_MAP, DEPTH_STENCIL)
 
 @dataclass(frozen=True)
 class Resource:
-    """A texture, or several of one size, that passes write and read.
+    """A texture, or several of the same size, that passes write and read.
 
     Attributes:
-        name: the sampler that reads it; `<name>_before` reads the copy before.
+        name: the sampler that reads it; `<name>_before` reads the previous copy.
         format: one of KNOWN.
-        scale: size relative to what it follows, or a size in pixels of its own.
+        scale: size relative to what `follows` names, or a fixed size in pixels.
         follows: what decides its size and samples: the IMAGE, or the G-buffer's SURFACES.
         samples: samples per pixel: 1, or AS_MANY.
-        copies: 2 or more if it is read while it is written. The second is made at the first request.
+        copies: 2 or more if it is read while it is written. The second copy is created at the first request.
         depth: number of slices of a volume; 0 for a two-dimensional texture.
         kept: whether the next frame reads it. Each frame then moves on by one copy, and may read before it writes.
-        smooth: whether `texture()` blends neighbouring texels.
-        shares: the resource that it replaces if size and samples agree; later passes may not read that resource.
+        smooth: whether it is sampled with linear filtering.
+        shares: the resource whose textures it reuses if size and samples agree; later passes may not read that
+            resource.
     """
 
     name: str
@@ -90,8 +91,8 @@ class Resource:
         return self.shares is not None and self.shares.shape(plan) == self.shape(plan)
 
     def bytes_per_pixel(self, plan: Plan) -> float:
-        """Return the bytes of one copy, or of all copies if `kept`, per pixel of the image, with all samples; 0 if
-        the size is given in pixels or the resource is shared."""
+        """Return the bytes per pixel of the image for one copy, or for all copies if `kept`, with all samples; 0 if
+        the size is given in pixels or the textures are shared."""
         if isinstance(self.scale, tuple) or self.is_shared(plan):
             return 0.0
         sizes = (sum(t.bits) // 8 if isinstance(t, Storage) else DEPTH_STENCIL_BYTES for t in self.texels(plan))
@@ -113,6 +114,6 @@ class Resource:
 
 
 def _is_plain(storage: Storage | None) -> bool:
-    """Whether a device makes volumes of a format: every channel is unorm8, float16 or float32. False for None."""
+    """Whether devices support volumes of a format: every channel is unorm8, float16 or float32. False for None."""
     usual = {("unorm", 8), ("float", 16), ("float", 32)}
     return storage is not None and {(storage.kind, bits) for bits in storage.bits} <= usual

@@ -1,4 +1,4 @@
-"""A scene on the device: meshes, instances, materials, lights and the lists that passes draw."""
+"""A scene on the device: meshes, instances, materials, lights and the draw lists of the passes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ IDENTITIES = 255
 
 
 class Sight(Protocol):
-    """A viewpoint on a scene: a `View`, or any other hashable value that has these methods."""
+    """A viewpoint in a scene: a `View`, or any other hashable value that has these methods."""
 
     def matrix(self) -> np.ndarray:
         """World to view space, (4, 4)."""
@@ -34,14 +34,14 @@ class Sight(Protocol):
         ...
 
     def rays(self, size: tuple[int, int]) -> tuple[float, float, float, float]:
-        """Return x and y of an image's upper right corner at depth 1, and the near and far distances."""
+        """Return x and y of the image's upper right corner at depth 1, and the near and far distances."""
         ...
 
 
 @dataclass(frozen=True)
 class Draw:
     """Some instances of one mesh: `count` entries of the instance order from `first` on. In a scene with maps they
-    have one material, whose maps are bound before the draw."""
+    all have the same material, whose maps are bound before the draw."""
 
     mesh: int
     first: int
@@ -50,11 +50,12 @@ class Draw:
 
 
 class SceneBuffers:
-    """Buffers that a scene's frames are drawn from, released with `stack`; the scene may move from frame to frame.
+    """Buffers from which a scene's frames are drawn, released with `stack`; the scene may move from frame to frame.
 
     Attributes:
         draws: draw lists by name: "opaque", "general", "special", "transparent" (farthest first), "casters"
-            (closed) and "thin casters" (two-sided), and by each light's index the opaque instances within its range.
+            (closed) and "thin casters" (two-sided); and, by the index of each light, the opaque instances within its
+            range.
         view: matrix from world space to the scene's own view space, by which transparent instances are ordered.
         lights, first_lamp: the lights in the order of the shaders, and the index of the first that is not a sun.
         meshes: vertex and index buffers.
@@ -74,10 +75,10 @@ class SceneBuffers:
         self.show(scene)
 
     def show(self, scene: Scene) -> None:
-        """Replace the scene with another moment of it: make its tables and draw lists for the following draws.
+        """Replace the scene with another moment of it: create its tables and draw lists for the following draws.
 
         Raises:
-            ValueError: the scene has other meshes, lights of other kinds or other surroundings; see `what_is_built`.
+            ValueError: the scene has other meshes, kinds of light or surroundings; see `what_is_built`.
         """
         if what_is_built(scene) != what_is_built(self._scene):
             raise ValueError("another moment of a scene must have the same meshes and kinds of light")
@@ -96,8 +97,8 @@ class SceneBuffers:
         self._seen: dict[Sight, dict[int, Buffer]] = {}
 
     def bind(self, view: Sight | None = None) -> None:
-        """Bind the tables of instances, lights and materials for shaders; instances and lights in the space of
-        `view`, or of the scene's camera (None)."""
+        """Bind the tables of instances, lights and materials for shaders. Instances and lights are in the space of
+        `view` or, if None, of the scene's camera."""
         sight = view or self._scene.view
         if sight not in self._seen:
             matrix = sight.matrix()
@@ -139,7 +140,7 @@ class SceneBuffers:
         return np.array([_light_numbers(light, view) for light in self.lights], np.float32).reshape(-1, 16)
 
     def _ordered_instances(self) -> np.ndarray:
-        """Fill `draws`, and return the numbers of the instances, int32, in the order in which the draws list them. An
+        """Fill `draws`, and return the indices of the instances, int32, in the order in which the draws list them. An
         instance is repeated for each list that contains it."""
         parts, transparent = self._scene.parts, self._transparent
         mesh = np.repeat(np.arange(len(parts)), [len(part.models) for part in parts])
@@ -198,8 +199,8 @@ def _light_numbers(light: Light, view: np.ndarray) -> list[float]:
 
 
 def what_is_built(scene: Scene) -> tuple[object, ...]:
-    """Return all that passes are built for, as a key to compare: meshes, kinds of light, material model, maps and
-    surroundings. They may not change from frame to frame."""
+    """Return a key of everything that passes are built for and that may not change from frame to frame: meshes, kinds
+    of light, material model, maps and surroundings."""
     meshes = ((part.mesh.positions.tobytes(), part.mesh.triangles.tobytes(), part.casts) for part in scene.parts)
     lights = sorted(light.kind for light in scene.lights)
     return *meshes, *lights, scene.is_metal_rough, scene.has_maps, scene.environment
@@ -247,7 +248,7 @@ def _bump_texture(device: Device) -> Texture:
 
 @cache
 def bumps(size: int = 256) -> np.ndarray:
-    """A normal map, tiling: round pits, as slopes along u and v up to about 0.7; float16 of shape (size, size, 2)."""
+    """Return a tiling normal map of round pits: slopes along u and v up to about 0.7, float16, (size, size, 2)."""
     u, v = np.meshgrid((np.arange(size) + 0.5) / size, (np.arange(size) + 0.5) / size)
     cells = 4
     x, y = (u * cells) % 1 - 0.5, (v * cells) % 1 - 0.5

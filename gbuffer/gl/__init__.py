@@ -1,1 +1,1 @@
-"""OpenGL: the device, shaders and raw calls. moderngl is imported here alone."""
+"""OpenGL: the device, shaders and raw calls. Only this package imports moderngl."""

@@ -16,9 +16,9 @@ def device_texels(device: Device, blocks: bytes, size: tuple[int, int], internal
     """Return the texels that a shader fetches from compressed blocks, float32 of shape (height, width, 4).
 
     Args:
-        blocks: row by row.
+        blocks: the compressed blocks, row by row.
         size: width and height in texels.
-        internal_format: the GL enum.
+        internal_format: the OpenGL enum.
 
     Raises:
         FormatError: the device does not support the format, or a texture of this size.

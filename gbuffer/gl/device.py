@@ -54,7 +54,7 @@ Owned = TypeVar("Owned", bound=_Releasable)
 
 
 class NoDeviceError(Exception):
-    """This machine has no usable GL driver."""
+    """This machine has no usable OpenGL driver."""
 
 
 def _release_all(resources: Sequence[_Releasable]) -> None:
@@ -84,7 +84,7 @@ def _dtype(storage: Storage) -> str:
 
 
 class Device:
-    """An OpenGL context and the few operations that passes consist of.
+    """An OpenGL context and the few operations of which passes consist.
 
     Raises:
         NoDeviceError: no OpenGL 4.3 driver was found; the message says what to install.
@@ -115,10 +115,10 @@ class Device:
         """Return a vertex array that runs a fragment shader over a whole target when it is rendered; see `render`.
 
         Args:
-            path, defines, names: as of `Source`.
+            path, defines, names: as in `Source`.
 
         Raises:
-            ShaderError: it does not compile; the message names the file and the line.
+            ShaderError: the shader does not compile; the message names the file and the line.
         """
         return self.context.vertex_array(self.program("fullscreen.vert", path, defines, names), [])
 
@@ -137,7 +137,7 @@ class Device:
         defines: Mapping[str, object],
         names=None,
     ) -> moderngl.Program:
-        """Return a program that is in use until the stack closes; the device keeps it for later requests of the same
+        """Return a program that is in use until the stack closes; the device keeps it for later requests for the same
         shaders. Raises ShaderError as `fragment_pass` does."""
         sources = Source(vertex, defines, names), Source(fragment, defines, names)
         key = (sources[0].text, sources[1].text)
@@ -160,7 +160,7 @@ class Device:
 
     def computed(self, compute: moderngl.ComputeShader, inputs: Sequence[np.ndarray], outputs: int) -> list[np.ndarray]:
         """Run a compute shader in groups of 64 on float32 arrays of shape (count, 4), and return `outputs` arrays of
-        that shape. Storage buffers are bound from 0: the inputs, then the outputs."""
+        that shape. Storage buffers are bound from 0 on: the inputs, then the outputs."""
         count = len(inputs[0])
         with ExitStack() as stack:
             given = [self.context.buffer(np.ascontiguousarray(a, np.float32)) for a in inputs]
@@ -171,7 +171,7 @@ class Device:
             return [np.frombuffer(buffer.read(), np.float32).reshape(count, 4) for buffer in output_buffers]
 
     def target(self, size: tuple[int, int], storage: Storage, samples: int = 1) -> moderngl.Texture:
-        """A texture of a storage format, to render to and to fetch from."""
+        """Return a texture of a storage format to render to and to fetch from."""
         texture = self.context.texture(
             size,
             storage.channels,
@@ -184,10 +184,10 @@ class Device:
         return texture
 
     def volume(self, size: tuple[int, int, int], storage: Storage) -> moderngl.Texture3D:
-        """A texture of three dimensions, to render to by slices. moderngl chooses its format by type and channels.
+        """Return a volume (3D texture) to render to slice by slice. moderngl chooses its format by type and channels.
 
         Raises:
-            FormatError: it is larger than the device's volumes.
+            FormatError: the volume is larger than the device supports.
         """
         if max(size) > self.max_volume:
             asked = " x ".join(map(str, size))
@@ -199,7 +199,7 @@ class Device:
         return volume
 
     def depth_map(self, size: tuple[int, int]) -> moderngl.Texture:
-        """A depth texture whose depths shaders read as numbers."""
+        """Return a depth texture whose depths shaders can read as numbers, without comparison."""
         texture = self.context.depth_texture(size)
         texture.compare_func = ""
         texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
@@ -207,12 +207,12 @@ class Device:
 
     @staticmethod
     def smooth(texture: moderngl.Texture | moderngl.Texture3D) -> None:
-        """Set a texture to linear filtering, clamped at its border."""
+        """Set a texture to linear filtering, clamped to its edge."""
         texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
         texture.repeat_x = texture.repeat_y = False
 
     def mipmapped(self, texels: np.ndarray) -> moderngl.Texture:
-        """Return a texture with mipmaps and trilinear filtering from a float16 array (height, width, channels)."""
+        """Return a texture with mipmaps and trilinear filtering from a float16 array, (height, width, channels)."""
         height, width, channels = texels.shape
         texture = self.context.texture((width, height), channels, texels.tobytes(), dtype="f2")
         texture.build_mipmaps()
@@ -220,12 +220,12 @@ class Device:
         return texture
 
     def picture(self, texels: np.ndarray, is_srgb: bool, repeats: tuple[bool, bool]) -> moderngl.Texture:
-        """Return a texture of texels of shape (height, width, 4): uint8 or uint16, in [0, 1] and with mipmaps, or
-        float32 without filtering.
+        """Return a texture of texels of shape (height, width, 4): uint8 or uint16, read in [0, 1] and with mipmaps,
+        or float32 without filtering.
 
         Args:
             is_srgb: whether the first three channels are on the sRGB curve; 8 bits only.
-            repeats: whether it repeats along x and along y; otherwise its edge is extended.
+            repeats: whether the texture repeats along x and along y; otherwise its edge is extended.
         """
         height, width, _ = texels.shape
         data, dtype = np.ascontiguousarray(texels).tobytes(), PICTURES[texels.dtype.name]
@@ -240,7 +240,7 @@ class Device:
         return texture
 
     def layers(self, pixels: np.ndarray) -> moderngl.TextureArray:
-        """Return a float32 texture array, unfiltered, from an array (layers, height, width, channels)."""
+        """Return a float32 texture array, unfiltered, from an array, (layers, height, width, channels)."""
         count, height, width, channels = pixels.shape
         data = np.ascontiguousarray(pixels, np.float32).tobytes()
         texture = self.context.texture_array((width, height, count), channels, data, dtype="f4")
@@ -253,21 +253,21 @@ class Device:
         key: Hashable,
         make: Callable[[], Sequence[moderngl.Texture | moderngl.TextureArray]],
     ) -> list[Any]:
-        """Return the textures of a key, from `make` unless the device still has them. They are in use until the stack
-        closes, and kept for later requests of the key."""
+        """Return the textures for a key, from `make` unless the device still has them. The textures are in use until
+        the stack closes, and are kept for later requests."""
         return self._textures.used(stack, key, lambda: list(make()))
 
     @staticmethod
     def build_mips(texture: moderngl.Texture) -> None:
-        """Generate a target's mipmaps from its texels. Set linear filtering within the nearest level, clamped at the
-        border."""
+        """Generate a target's mipmaps from its texels. Set linear filtering within the nearest level, clamped to the
+        edge."""
         texture.build_mipmaps()
         texture.filter = (moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR)
         texture.repeat_x = texture.repeat_y = False
 
     def given_samples(self, asked: int) -> int:
         """Return the samples per pixel that a target gets for a requested number, 1 or more: rounded down to a power
-        of two and to the device's maximum, and up if the device lacks that power."""
+        of two and to the device's maximum, then up if the device does not support that number."""
         samples = 1 << (min(asked, self.max_samples).bit_length() - 1)
         if samples == 1:
             return 1
@@ -275,7 +275,7 @@ class Device:
             return samples_of(self.owned(stack, self.target((1, 1), STORAGES["rgba32f"], samples)))
 
     def upload(self, pixels: np.ndarray) -> moderngl.Texture:
-        """A float32 texture from an array of shape (height, width, channels)."""
+        """Return a float32 texture, unfiltered, from an array of shape (height, width, channels)."""
         height, width, channels = pixels.shape
         data = np.ascontiguousarray(pixels, np.float32)
         texture = self.context.texture((width, height), channels, data, dtype="f4")
@@ -293,7 +293,7 @@ class Device:
         """Run a fragment pass into targets; bind samplers by name, except those that the compiler dropped.
 
         Args:
-            depth: the buffer that the pass's `gl_FragDepth` is written to, without a depth test.
+            depth: the depth buffer to which `gl_FragDepth` is written, without a depth test.
 
         Raises:
             FormatError: the device cannot render to one of the targets.
@@ -323,8 +323,8 @@ class Device:
     def framebuffer(
         self, targets: Sequence[moderngl.Texture], depth: DepthBuffer | moderngl.Texture | None = None
     ) -> moderngl.Framebuffer:
-        """Return a framebuffer of colour textures and a depth, or of a depth alone. Raises FormatError if the device
-        cannot render to it."""
+        """Return a framebuffer with colour textures and a depth texture, or with a depth texture only. Raises
+        FormatError if the device cannot render to it."""
         try:
             if not isinstance(depth, DepthBuffer):
                 return self.context.framebuffer(list(targets), depth)
@@ -336,8 +336,8 @@ class Device:
         return framebuffer
 
     def slice_framebuffer(self, volumes: Sequence[moderngl.Texture3D], layer: int | None) -> moderngl.Framebuffer:
-        """Return a framebuffer of one slice of each volume, or of all slices by `gl_Layer`; moderngl needs flat
-        targets to make it, which the slices replace."""
+        """Return a framebuffer for slice `layer` of each volume, or for all slices, by `gl_Layer`, if None. moderngl
+        creates the framebuffer with flat targets, which the slices then replace."""
         width, height, _ = volumes[0].size
         with ExitStack() as stack:
             flat = [self.owned(stack, self.target((width, height), STORAGES["rgba8"])) for _ in volumes]
@@ -348,16 +348,16 @@ class Device:
         return framebuffer
 
     def blend(self, function: tuple[int, int] | None) -> None:
-        """Set blending by source and destination factor for the following draws, None for no blending; turn off the
+        """Set the source and destination blend factors for the following draws, None for no blending; turn off the
         depth test and culling."""
         self.state(None, function)
 
     def state(self, depth: str | None, blend: tuple[int, int] | None = None, cull: str | None = None) -> None:
-        """Set the depth test, blending and culling of the following draws.
+        """Set the depth test, blending and culling for the following draws.
 
         Args:
             depth: the comparison, such as "<"; None for no depth test.
-            blend: the source and the destination factor; None for no blending.
+            blend: the source and destination factors; None for no blending.
             cull: the faces to cull, "front" or "back"; None to draw both."""
         flags = moderngl.NOTHING
         if depth:
@@ -372,7 +372,7 @@ class Device:
         self.context.enable_only(flags)
 
     def cull(self, is_on: bool) -> None:
-        """Turn culling of the faces that `state` or `cull_face` names on or off."""
+        """Turn culling on or off for the faces set by `state` or `cull_face`."""
         (self.context.enable if is_on else self.context.disable)(moderngl.CULL_FACE)
 
     def resolve(self, samples: moderngl.Texture, pixels: moderngl.Texture) -> None:
@@ -384,7 +384,7 @@ class Device:
             self.idle.use()
 
     def through(self, values: np.ndarray, storage: Storage) -> np.ndarray:
-        """Return values, float32 of shape (height, width, 4), written to a target of the format and read back."""
+        """Write values, float32, (height, width, 4), to a target of the format; return the values read back."""
         height, width, _ = values.shape
         with ExitStack() as stack:
             source = self.owned(stack, self.upload(values))
@@ -413,7 +413,7 @@ class Device:
         return self.idle.read(components=4) == texel.tobytes()
 
     def native_rounding(self, storage: Storage) -> str:
-        """Return how the device's own conversion into the format rounds: "nearest", "truncate" or "other"."""
+        """Return how the device's own conversion to the format rounds: "nearest", "truncate" or "other"."""
         if storage.name not in self._native:
             self._native[storage.name] = self._probe_rounding(storage)
         return self._native[storage.name]
@@ -434,8 +434,8 @@ class Device:
 
 
 def bind(program: Any, textures: Mapping[str, moderngl.Texture | Sequence[moderngl.Texture]]) -> None:
-    """Bind textures to a program's samplers by name, and lists of textures to arrays of samplers; skip those that the
-    compiler dropped."""
+    """Bind textures to a program's samplers by name, and lists of textures to arrays of samplers; skip samplers that
+    the compiler dropped."""
     unit = 0
     for name, given in textures.items():
         if name not in program:
@@ -452,7 +452,7 @@ def bind(program: Any, textures: Mapping[str, moderngl.Texture | Sequence[modern
 
 @contextmanager
 def explained(source: Source) -> Iterator[None]:
-    """Run a block; raise a compiler's error in it as a ShaderError that names the source's files and lines."""
+    """Run a block; reraise a compiler error in it as a ShaderError that names the source's files and lines."""
     try:
         yield
     except moderngl.Error as error:
@@ -462,8 +462,8 @@ def explained(source: Source) -> Iterator[None]:
 def in_steps(texels: np.ndarray, storage: Storage, channel: int = 0) -> np.ndarray:
     """Return texels read back from a device as the integers that the format stores; float and sRGB texels unchanged.
 
-    A device divides an integer by the scale, as an H100 does, or multiplies it by the scale's reciprocal, as llvmpipe
-    does. The results may differ by a unit in the last place although the stored integers are the same.
+    To decode an integer, some devices divide by the scale (an H100) and others multiply by its reciprocal (llvmpipe).
+    The results may differ by a unit in the last place although the stored integers are the same.
     """
     # What comes back of the sRGB curve is light, whose steps are uneven.
     if storage.kind == "float" or storage.curved:
@@ -479,7 +479,7 @@ def read_pixels(texture: moderngl.Texture) -> np.ndarray:
 
 @cache
 def device() -> Device:
-    """Return the process's only GL device, opened at the first call. Raises NoDeviceError."""
+    """Return the process's only OpenGL device, opened by the first call. Raises NoDeviceError."""
     gl_device = Device()
     OPENED.append(gl_device)
     return gl_device

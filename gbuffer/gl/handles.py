@@ -1,4 +1,4 @@
-"""The types of objects on a device, for use elsewhere: only this folder imports moderngl."""
+"""The types of device objects, for use in other packages: only this one imports moderngl."""
 
 from moderngl import Buffer, Framebuffer, Program, Query, Texture, Texture3D, VertexArray
 

@@ -1,4 +1,4 @@
-"""Objects on a device that outlive the code that requested them."""
+"""Device objects that outlive the code that requested them."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Lasting(Generic[T]):
         self._users: dict[Hashable, int] = {}
 
     def used(self, stack: ExitStack, key: Hashable, make: Callable[[], T]) -> T:
-        """Return the object of a key, from `make` unless it is kept; it is in use until the stack closes. Raises what
-        `make` raises."""
+        """Return the object for a key, from `make` unless it is kept; it is in use until the stack closes. Raises
+        what `make` raises."""
         instance = self._held.pop(key) if key in self._held else make()
         self._held[key] = instance
         self._users[key] = self._users.get(key, 0) + 1

@@ -1,4 +1,4 @@
-"""The GL device that this process opened. Imports nothing: who asks need not open one."""
+"""The OpenGL device that this process opened. Imports no OpenGL code, so that checking it does not open a device."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Protocol
 
 
 class Opened(Protocol):
-    """The properties of the device that others may query."""
+    """The properties of the device that other modules may query."""
 
     renderer: str
 

@@ -1,5 +1,4 @@
-"""The few calls of OpenGL that moderngl does not have: depth with stencil, two-sided stencil, masks of the moment,
-programs of SPIR-V."""
+"""OpenGL calls that moderngl lacks: depth with stencil, two-sided stencil, write masks and SPIR-V programs."""
 
 from __future__ import annotations
 
@@ -65,8 +64,8 @@ _FINDERS = {
 
 @cache
 def _lookup() -> Callable[[bytes], int | None]:
-    """Return a function from the name of a GL function, in bytes, to its address in the current context, or None.
-    Raises OSError if no GL library can be loaded."""
+    """Return a function that maps the name of an OpenGL function, in bytes, to its address in the current context, or
+    to None. Raises OSError if no OpenGL library can be loaded."""
     for name, function in _FINDERS.items():
         try:
             library = ctypes.CDLL(name)
@@ -79,7 +78,7 @@ def _lookup() -> Callable[[bytes], int | None]:
 
 
 def _address(address: int | None) -> int | None:
-    """Return the result of a finder; None for one of the numbers that mean "not found" in WGL."""
+    """Return the address that a finder returned; None for the values that mean "not found" in WGL."""
     return None if address in (None, 1, 2, 3, ctypes.c_void_p(-1).value) else address
 
 
@@ -91,7 +90,7 @@ def _address_within(library: ctypes.CDLL, name: str) -> int | None:
 
 @cache
 def function(name: str) -> Callable[..., Any]:
-    """Return a GL function, with its C types, by a name in _SIGNATURES."""
+    """Return an OpenGL function, with its C types, by a name in _SIGNATURES."""
     address = _lookup()(name.encode())
     arguments = [_TYPES[letter] for letter in _SIGNATURES[name]]
     return ctypes.CFUNCTYPE(ctypes.c_uint, *arguments)(address or 0)
@@ -107,7 +106,7 @@ def samples_of(texture: moderngl.Texture) -> int:
 
 
 class DepthBuffer:
-    """A depth texture that passes test against or write to, and whose depth shaders can read.
+    """A depth texture that render passes can test against and write to, and that shaders can read.
 
     Args:
         context: the current OpenGL context.
@@ -141,8 +140,8 @@ class DepthBuffer:
             self.texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
 
     def attach(self, framebuffer: moderngl.Framebuffer) -> None:
-        """Attach the buffer to a framebuffer as its depth, and stencil if it has one; the framebuffer becomes
-        current. Raises moderngl.Error if the framebuffer is then incomplete."""
+        """Attach the buffer to a framebuffer as depth, and as stencil if it has one; the framebuffer becomes current.
+        Raises moderngl.Error if the framebuffer is then incomplete."""
         framebuffer.use()
         function("glFramebufferTexture2D")(FRAMEBUFFER, self._attachment, self._target, self._number, 0)
         status = function("glCheckFramebufferStatus")(FRAMEBUFFER)
@@ -155,8 +154,8 @@ class DepthBuffer:
 
 
 def compressed_texture(size: tuple[int, int], internal_format: int, blocks: bytes) -> int:
-    """Create a texture from compressed blocks, row by row, and return its GL number. An unknown format leaves a GL
-    error and a texture without texels."""
+    """Create a texture from compressed blocks, row by row, and return its OpenGL name. An unknown format leaves an
+    OpenGL error and a texture without texels."""
     number = ctypes.c_uint()
     function("glGenTextures")(1, ctypes.byref(number))
     function("glBindTexture")(TEXTURE_2D, number.value)
@@ -166,12 +165,12 @@ def compressed_texture(size: tuple[int, int], internal_format: int, blocks: byte
 
 
 def delete_texture(number: int) -> None:
-    """Free a texture by its GL number."""
+    """Free a texture by its OpenGL name, a number."""
     function("glDeleteTextures")(1, ctypes.byref(ctypes.c_uint(number)))
 
 
 def attach_slice(index: int, volume: int, layer: int | None) -> None:
-    """Attach slice `layer` of a volume, or all slices if None, as colour target `index` of the current framebuffer."""
+    """Attach a volume's slice `layer`, or all if None, as colour attachment `index` of the current framebuffer."""
     if layer is None:
         function("glFramebufferTexture")(FRAMEBUFFER, COLOR_ATTACHMENT + index, volume, 0)
     else:
@@ -179,7 +178,7 @@ def attach_slice(index: int, volume: int, layer: int | None) -> None:
 
 
 def depth_stencil(context: moderngl.Context, size: tuple[int, int], samples: int) -> DepthBuffer:
-    """Return a new buffer of depth and stencil, D32F S8."""
+    """Return a new depth buffer with stencil, D32F S8."""
     return DepthBuffer(context, size, samples, DEPTH32F_STENCIL8, DEPTH_STENCIL_ATTACHMENT)
 
 
@@ -204,8 +203,8 @@ def mark_volume() -> None:
 
 
 def shade_marked(again: bool = False) -> None:
-    """Make draws change colour only where the stencil is not 0, and set it to 0 there; keep the stencil if another
-    draw comes `again`."""
+    """Make draws change colour only where the stencil is not 0, and then set the stencil to 0; keep the stencil if
+    `again`, for another draw."""
     function("glColorMask")(1, 1, 1, 1)
     function("glStencilFunc")(NOTEQUAL, 0, 0xFF)
     after = KEEP if again else ZERO
@@ -213,7 +212,7 @@ def shade_marked(again: bool = False) -> None:
 
 
 def once_a_pixel(number: int) -> None:
-    """Make draws change each sample once: where the stencil is not `number` (1 to 255), and set it to `number`."""
+    """Make draws change a sample only if its stencil is not `number` (1 to 255), and then set it to `number`."""
     function("glStencilFunc")(NOTEQUAL, number, 0xFF)
     function("glStencilOpSeparate")(FRONT_AND_BACK, KEEP, KEEP, REPLACE)
 
@@ -229,8 +228,8 @@ def blend_by(alpha: float) -> None:
 
 
 def compute_program(code: bytes, entry: str) -> int:
-    """Return the GL number of a compute program made from a module of SPIR-V, whose main function is `entry`. The
-    device must support GL_ARB_gl_spirv. Raises moderngl.Error if the driver refuses the module.
+    """Return the OpenGL name of a compute program made from a SPIR-V module whose main function is `entry`. The
+    device must support GL_ARB_gl_spirv. Raises moderngl.Error if the driver rejects the module.
     """
     shader, program = ctypes.c_uint(function("glCreateShader")(COMPUTE)), function("glCreateProgram")()
     function("glShaderBinary")(1, ctypes.byref(shader), SPIRV, code, len(code))
@@ -246,7 +245,7 @@ def compute_program(code: bytes, entry: str) -> int:
 
 
 def dispatch(program: int, groups: int) -> None:
-    """Run groups of a compute program; a barrier makes its writes visible to all later commands."""
+    """Run groups of a compute program; a barrier makes the program's writes visible to all later commands."""
     function("glUseProgram")(program)
     function("glDispatchCompute")(groups, 1, 1)
     function("glMemoryBarrier")(ALL_BARRIERS)

@@ -1,4 +1,4 @@
-"""Loads shaders: includes once, and names the user's file and line in an error."""
+"""Shader loading: includes each file once, and names the user's file and line in an error."""
 
 from __future__ import annotations
 
@@ -49,11 +49,12 @@ class Source:
     number from some of its messages, and then names the wrong file.
 
     Args:
-        path: the shader: a name of `shaders`, or a path.
-        defines: macros set at its head; unused ones are left out, so that identical programs have identical text.
-        names: the file or the files that replace `#include NAME`.
-        may_read: function that returns whether a file outside this program may be included, given its path with links
-            resolved; other files are not opened. None if the files have been checked before.
+        path: the shader: a name in `shaders`, or a path.
+        defines: macros to define at the top; unused macros are left out, so that identical programs have identical
+            text.
+        names: the file or files that replace `#include NAME`, by name.
+        may_read: function that takes the path, with links resolved, of a file outside this program and returns
+            whether it may be included; other files are not opened. None if the files have been checked before.
     """
 
     def __init__(
@@ -76,11 +77,11 @@ class Source:
 
     @property
     def files(self) -> list[Path]:
-        """The file that each line of the text comes from."""
+        """The source file of each line of the text."""
         return [path for _, path, _ in self._lines]
 
     def explain(self, log: str) -> str:
-        """Return a compiler's message with its line numbers replaced by those of the files, and the files' names."""
+        """Return a compiler's message with its line numbers replaced by file names and their line numbers."""
 
         def place(match: re.Match[str]) -> str:
             index = int(match[1] or match[2] or match[3]) - 1
@@ -103,13 +104,13 @@ def _words(text: str) -> frozenset[str]:
 
 @cache
 def _is_own(path: Path) -> bool:
-    """Whether a file is in the folder `gbuffer` or `encodings`, by a path without `..`."""
+    """Whether a path is in the folder `gbuffer` or `encodings` and contains no `..`."""
     return ".." not in path.parts and any(path.is_relative_to(ROOM.parent / room) for room in (ROOM.name, "encodings"))
 
 
 def _once_of_own(function: Callable[..., T]) -> Callable[..., T]:
-    """Return a function of a path whose results are cached for the program's own files. These do not change, and
-    frames request the same shaders again and again."""
+    """Return the function with its results cached for the program's own files, which do not change and are requested
+    again and again. Its first argument is a path."""
     kept = cache(function)
 
     @wraps(function)
@@ -131,8 +132,8 @@ def _joined_text(lines: Iterable[Line]) -> str:
 def _expanded(
     main: Path, names: Sequence[tuple[str, tuple[Path, ...]]], may_read: Callable[[Path], bool] | None = None
 ) -> tuple[list[Line], str]:
-    """Return the lines of a shader and its includes, each file once and each line with its file and number, and the
-    text of all lines but the first. Raises ShaderError."""
+    """Return the lines of a shader and its includes, with the file and the number of each line, and the text of all
+    lines but the first. Each file is included once. Raises ShaderError."""
     stand_for, seen = dict(names), set()
 
     def expand(path: Path) -> list[Line]:
@@ -165,7 +166,7 @@ _expanded_of_own = lru_cache(maxsize=256)(_expanded)
 
 @_once_of_own
 def _lines(path: Path) -> list[Parsed]:
-    """Return each line of a shader's file as (text, path, number), with the match of its #include or None. Raises
+    """Return each line of a shader file as (text, path, number), with the match of its #include or None. Raises
     ShaderError."""
     lines: list[Parsed] = []
     for number, line in enumerate(read_shader(path).splitlines(), 1):
@@ -196,7 +197,7 @@ def read_shader(path: Path) -> str:
 
 def glsl_value(value) -> str:
     """Return a value as GLSL: a tuple as `int[n](...)` if all its numbers are ints, else as `float[n](...)`; numbers
-    and text as they are."""
+    and text unchanged."""
     if isinstance(value, tuple) and all(isinstance(v, int) for v in value):
         return f"int[{len(value)}]({', '.join(map(str, value))})"
     if isinstance(value, tuple):

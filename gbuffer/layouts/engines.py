@@ -1,7 +1,7 @@
-"""The normals of engines and SDKs, each from its own source. The other attributes are this renderer's.
+"""The normals of engines and SDKs, each from its own source, with the other attributes of this renderer.
 
-`shading_model`, this renderer's Deferred ID, is placed where the engine has a material's ID or nothing. `whole.py`
-has engines whose whole material is known.
+`shading_model`, this renderer's Deferred ID, is placed where the engine has a material ID or nothing. `whole.py` has
+the engines whose whole material is known.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def _layout(
 
 
 def _about_y(name: str) -> Encoding:
-    """Return an encoding of the catalogue, by name, with its pole at +y."""
+    """Return the named encoding of the catalogue, with its pole at +y."""
     return variant(ENCODINGS[name], {"axis": "y"})
 
 

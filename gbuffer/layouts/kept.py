@@ -1,4 +1,4 @@
-"""Encodings of material values in a layout: on a curve over a range, or light as the code of a whole texel."""
+"""Encodings of material values in a layout: curves over a range, or light packed into a whole texel."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ MOTION = "motion"
 
 
 def quantity_of(component: str) -> str:
-    """Return the quantity that a component of a layout belongs to: `base_color` for `base_color.r`, `f0.rgb` for
+    """Return the quantity to which a component of a layout belongs: `base_color` for `base_color.r`, `f0.rgb` for
     `f0.r`, `f0` for `f0`."""
     base, dot, _ = component.partition(".")
     return F0_COLOUR if dot and base == F0 else base
 
 
 def channels_of(colour: str) -> tuple[str, ...]:
-    """Return the three components of one of COLOURS: `f0.r`, `f0.g` and `f0.b` for `f0.rgb`."""
+    """Return the three components of a colour in COLOURS: `f0.r`, `f0.g` and `f0.b` for `f0.rgb`."""
     return tuple(f"{colour.removesuffix('.rgb')}.{channel}" for channel in "rgb")
 
 
@@ -42,8 +42,9 @@ class Kept:
     """The encoding of a quantity.
 
     Attributes:
-        encoding: of each of its numbers, or of all of them.
-        range: the largest value on a curve, for motion in screens per frame; 1 for light, which has its own.
+        encoding: the encoding of each of its numbers, or of all of them together.
+        range: the largest value on a curve; for motion, in screens per frame. 1 for light, whose encoding sets the
+            range.
     """
 
     encoding: CurveEncoding | LightEncoding | MotionEncoding
@@ -51,7 +52,7 @@ class Kept:
 
     @property
     def is_whole(self) -> bool:
-        """Whether the encoding stores light as one code of four numbers, which fill a texel."""
+        """Whether the encoding stores light as one code of four numbers that fill a texel."""
         return isinstance(self.encoding, LightEncoding)
 
 
@@ -60,7 +61,7 @@ def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
     `emissive`. A `limit` of None is the usual range.
 
     Raises:
-        ValueError: the name is unknown, it is not for that quantity, or the range is invalid; one line.
+        ValueError: the name is unknown or is not for that quantity, or the range is invalid; one line.
     """
     if quantity == MOTION:
         return _kept_motion(name, limit)
@@ -77,7 +78,7 @@ def kept_as(name: str, limit: str | None, quantity: str) -> Kept:
 
 
 def _kept_motion(name: str, limit: str | None) -> Kept:
-    """Return the encoding of motion of this name with the range `limit`, a number as text; None for 1. Raises
+    """Return the motion encoding of this name with the range `limit`, a number as text; None for 1. Raises
     ValueError."""
     if name not in MOTION_ENCODINGS:
         raise ValueError(f"unknown motion encoding {name!r}; known: {', '.join(MOTION_ENCODINGS)}")

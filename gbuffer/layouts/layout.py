@@ -1,4 +1,4 @@
-"""The layout of a G-buffer: its targets, their formats, and the assignment of attributes to their bits.
+"""The layout of a G-buffer: its targets, their formats and the assignment of attributes to their bits.
 
 Native depth and stencil, D32F S8, belong to every layout; a layout without a `depth` word reads the native depth,
 resolved to linear. `words.py` explains the words.
@@ -53,18 +53,19 @@ class Layout:
     Attributes:
         name, title, source: its name, its description and its source.
         targets: the targets in the order of their attachment.
-        encoding: the encoding of the normal. In world space an encoding of another hemisphere than z >= 0 keeps its
-            author's axes: its y is the world's.
+        encoding: the encoding of the normal. In world space, an encoding of a hemisphere other than z >= 0 keeps its
+            author's axes: its y is the world's y.
         space: "view" or "world", the space of the normal.
-        rounding: how the normal's own format rounds, one of ROUNDINGS; or DITHERED, if noise of one step, the same in
-            every frame, is added to the numbers of its code before.
-        packing: how words with bits round, a key of PACKINGS.
+        rounding: how the normal's own format rounds, one of ROUNDINGS; or DITHERED, which adds noise of one step, the
+            same in every frame, to the numbers of its code before rounding.
+        packing: how words with bit counts round, a key of PACKINGS.
         depth: the encoding of the depth; None for the first in the catalogue that suits the normal.
         engine, year: the engine or SDK, and the year in which its source was written or read; empty and 0 for a
-            layout of no engine.
-        is_whole: whether the targets are all that the engine keeps of an opaque material, and not only its normal.
-        light: the engine's light buffer, a key of LIGHT_BUFFERS; empty if unknown. Emission is added there if the
-            targets hold none.
+            layout that does not belong to an engine.
+        is_whole: whether the targets store everything that the engine keeps of an opaque material, not only its
+            normal.
+        light: the engine's light buffer, a key of LIGHT_BUFFERS; empty if unknown. Emission is added there if no
+            target stores it.
         decals: how the engine draws decals on it, in one sentence; empty if unknown.
 
     Raises:
@@ -111,7 +112,7 @@ class Layout:
         return self.codec.undithered
 
     def _check_normal_words(self, components: Collection[str]) -> None:
-        """Raise LayoutError if the words of the normal are not those that its encoding needs."""
+        """Raise LayoutError unless the normal's words are the words that its encoding needs."""
         encoding, name, carried = self.encoding, self.encoding.name, self.carried
         normal = {f"normal.{axis}" for axis in "xyz"[: encoding.components]}
         kept = {c for c in components if c.startswith("normal.")} | ({carried} if carried else set())
@@ -123,7 +124,7 @@ class Layout:
             raise LayoutError(f"layout {self.name}: {name} needs the depth's sign, but the layout has no depth")
 
     def _check_colours(self) -> None:
-        """Raise LayoutError if the channels of a colour are not stored alike."""
+        """Raise LayoutError if the channels of a colour, or of motion, are not stored in the same way."""
         for colour in (*COLOURS, MOTION):
             words = [word for word in self.words if quantity_of(word.component) == colour]
             if len({word.kept for word in words}) > 1:
@@ -140,7 +141,7 @@ class Layout:
 
     @property
     def kept(self) -> dict[str, Kept]:
-        """Curves and encodings of its words, by component; words that are stored unchanged are left out."""
+        """Curves and encodings of the layout's words, by component; words that are stored unchanged are left out."""
         return {word.component: word.kept for word in self.words if word.kept}
 
     @property
@@ -155,17 +156,17 @@ class Layout:
 
     @property
     def has_signed_depth(self) -> bool:
-        """Whether the depth is signed, for a sign bit of the encoding or for a number of the code."""
+        """Whether the depth is signed, to store a sign bit of the encoding or a number of the normal's code."""
         return self.encoding.sign_bits > 0 or (self.carrier is not None and self.carrier.component == "depth")
 
     @property
     def _suitable_depths(self) -> list[DepthEncoding]:
-        """Depth encodings that keep a sign if the normal needs one, and only then."""
+        """Depth encodings that suit the normal: with a sign if the depth must store one, otherwise without."""
         return [depth for depth in DEPTH_ENCODINGS.values() if depth.signed == self.has_signed_depth]
 
     @property
     def depth_encoding(self) -> DepthEncoding:
-        """The layout's encoding of depth: `depth`, or the first of the catalogue that suits the normal."""
+        """The layout's encoding of depth: `depth`, or the first in the catalogue that suits the normal."""
         return self.depth or self._suitable_depths[0]
 
     def _check_names(self) -> None:
@@ -188,7 +189,7 @@ class Layout:
         return tuple(words)
 
     def _check_word(self, word: Word) -> None:
-        """Raise LayoutError if a word cannot represent its component."""
+        """Raise LayoutError if a word cannot store its component."""
         target, component = self.targets[word.target], word.component
         place, storage = place_of(self.name, word.target, target), target.storage
         bits = word.bits or storage.bits[word.first]
@@ -202,7 +203,7 @@ class Layout:
             self._check_normal(place, component, storage, bits)
 
     def _check_normal(self, place: str, component: str, storage: Storage, bits: int) -> None:
-        """Raise LayoutError if a number of the normal's code is not stored as the encoding requires."""
+        """Raise LayoutError if a number of the normal's code is not stored as its encoding requires."""
         encoding = self.encoding
         if encoding.is_packed and storage != BITS_32:
             raise LayoutError(f"{place}: {encoding.name} packs 32 bits itself and needs the format {BITS_32.name}")
@@ -234,13 +235,13 @@ class Layout:
 
     @property
     def codec(self) -> Codec:
-        """The normal's encoding, its format, and how that rounds."""
+        """The normal's encoding, its format and the rounding."""
         home = next(word.target for word in self.words if word.component == "normal.x")
         return Codec(self.encoding, self.targets[home].storage, self.rounding)
 
     @property
     def normal_storage(self) -> str:
-        """Name of the normal's format, followed by the bits of each number if they are packed: "rgba8 12:12"."""
+        """Name of the normal's format, followed by the bit counts of packed numbers: "rgba8 12:12"."""
         packed = [str(word.bits) for word in self.words if "normal" in word.component and word.bits]
         return " ".join(filter(None, (self.codec.storage.name, ":".join(packed))))
 
@@ -263,12 +264,12 @@ class Layout:
 
     @property
     def bytes_per_pixel(self) -> int:
-        """Bytes of its targets, without native depth and stencil, at one sample."""
+        """Bytes per pixel of the targets, without native depth and stencil, at one sample."""
         return sum(sum(target.storage.bits) for target in self.targets) // 8
 
     @property
     def bytes_with_light(self) -> int | None:
-        """Bytes of its targets and the engine's light buffer, likewise; None if that buffer is not known."""
+        """Bytes per pixel of the targets plus the engine's light buffer, at one sample; None if it is unknown."""
         return self.bytes_per_pixel + LIGHT_BUFFERS[self.light].bytes_per_pixel if self.light else None
 
     @property
@@ -286,8 +287,8 @@ class Layout:
         """Return the layout with its normal in a separate target, encoded and stored as `codec` does.
 
         Raises:
-            LayoutError: the codec keeps a sign in a depth that the layout does not keep, truncates signed words, or
-                has a storage that is only for measurements.
+            LayoutError: the codec stores a sign in a depth that the layout does not store, truncates signed words, or
+                uses a storage that is only for measurements.
         """
         storage, components = codec.storage, "xyz"[: codec.encoding.components]
         if storage.only_measured:
@@ -309,7 +310,8 @@ class Layout:
     def with_depth(self, codec: DepthCodec) -> Layout:
         """Return the layout with its depth in a separate target, encoded and stored as `codec` does.
 
-        A shader stores a depth buffer's number: integers across 8-bit channels, floats in a 32-bit channel.
+        A shader writes the number that a depth buffer would store: an integer across 8-bit channels, or a float in
+        one channel.
 
         Raises:
             LayoutError: the depth encoding does not suit the normal's encoding, or does not fit its storage.
@@ -326,7 +328,7 @@ class Layout:
 def engine_layout(
     engine: str, year: int, name: str, title: str, encoding: Encoding, targets: str, source: str, **how: Any
 ) -> Layout:
-    """Return a layout of an engine, in world space by default; `targets` is text for `targets_of`."""
+    """Return an engine's layout, in world space by default; `targets` is text for `targets_of`."""
     how = {"space": WORLD, "engine": engine, "year": year, **how}
     return Layout(name, title, targets_of(targets), encoding, source, **how)
 
@@ -342,8 +344,8 @@ def _words_without_depth(holds: str) -> list[str]:
 
 
 def catalogue_encoding(word: str) -> Encoding:
-    """Return the encoding of the catalogue that a word names, with settings if it has any, as in octahedral:axis=y.
-    Raises LayoutError."""
+    """Return the catalogue encoding that a word names, with its settings if any, as in `octahedral:axis=y`. Raises
+    LayoutError."""
     name = word.partition(MARK)[0]
     if name not in ENCODINGS:
         raise LayoutError(f"unknown encoding {name!r}; known: {', '.join(ENCODINGS)}")
@@ -354,11 +356,12 @@ def catalogue_encoding(word: str) -> Encoding:
 
 
 def read_layout(path: Path, encoding_named: Callable[[str], Encoding] = catalogue_encoding) -> Layout:
-    """Return the layout in a TOML file: `encoding`, and `[[targets]]` with `format` and `holds`; optionally `title`,
-    `source`, `space`, `rounding`, `packing`, `depth` and `light`.
+    """Return the layout in a TOML file. The file has `encoding`, and `[[targets]]` with `format` and `holds`;
+    optional are `title`, `source`, `space`, `rounding`, `packing`, `depth` and `light`.
 
     Args:
-        encoding_named: function that returns the encoding that the file names.
+        path: the TOML file.
+        encoding_named: function that returns the encoding of the name in the file.
 
     Raises:
         LayoutError: the file cannot be read or is not a layout; the message is one line. Also raises what

@@ -1,4 +1,4 @@
-"""Other names for the attributes of a layout, as engines use them, and the curves that some of the names imply."""
+"""Engines' names for the attributes of a layout, and the curves that some of the names imply."""
 
 from __future__ import annotations
 
@@ -47,14 +47,14 @@ class RefusedWordError(ValueError):
 
 
 def named(word: str, has_curve: bool = False) -> str:
-    """Return an attribute's name in a layout for an engine's name: `base_color.r` for `albedo.r`, and with its curve
-    `inverted(roughness)` for `smoothness`. An unknown word is returned unchanged.
+    """Return the layout's name for an engine's attribute name: `base_color.r` for `albedo.r`, and with the implied
+    curve `inverted(roughness)` for `smoothness`. An unknown word is returned unchanged.
 
     Args:
         has_curve: whether the word is inside a curve's parentheses.
 
     Raises:
-        RefusedWordError: the word is ambiguous, or has its own curve inside another curve.
+        RefusedWordError: the word is ambiguous, or implies a curve inside another curve.
     """
     base, dot, channel = word.partition(".")
     plain = base.lower().replace("_", "")

@@ -1,4 +1,4 @@
-"""The layouts there are: from the articles, and from shipped engines."""
+"""The built-in layouts: from articles, and from shipped engines."""
 
 from __future__ import annotations
 

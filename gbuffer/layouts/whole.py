@@ -1,9 +1,10 @@
-"""Engines' layouts of a whole opaque metallic-roughness material: every field, format and curve, each from its source.
+"""Engines' layouts of a whole opaque metallic-roughness material: every field, format and curve, each from its
+source.
 
 `other` is a field that an engine keeps and this renderer does not use. `shading_model`, this renderer's Deferred
-ID, is placed where the engine has a shading model, flags or opacity. Emissive light that a target stores in a way
-that this renderer does not support is `other`, and is added to the light buffer here. Words of one integer target
-are written as channels of RGBA8 targets, which are the same bits.
+ID, is placed where the engine has a shading model, flags or opacity. If a target stores emissive light in a way that
+this renderer does not support, the field is `other` and emissive light is added to the light buffer here. The words
+of an integer target are written as channels of RGBA8 targets, which have the same bits.
 """
 
 from __future__ import annotations
@@ -278,6 +279,6 @@ WHOLE_ENGINES = (
         "rg16_snorm: normal.x normal.y; r8: roughness; rgb10a2: diffuse_color -; rgb10a2: f0.rgb -; "
         "rgba8: other other other:6 shading_model:2 other; rgba8: other other other other",
         "",
-        "NVIDIAGameWorks/dxvk-remix (574be6b), rtx_resources.cpp:1043; emissive, a colour and a half, is `other` here",
+        "NVIDIAGameWorks/dxvk-remix (574be6b), rtx_resources.cpp:1043; emissive, a colour and a half float, is `other`",
     ),
 )

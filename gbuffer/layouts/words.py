@@ -1,14 +1,14 @@
 """The words of a layout: the assignment of components to the bits of a render target.
 
-A target is a format and a line of words that fill its bits in order, the most significant first. A word without
-bits (`base_color.r`) takes one whole channel and is converted as the format converts. A word with a number of bits
-(`depth:16`) is an unsigned integer across the first channels of equal bits of a UNORM format, or of integers. `-`
-leaves a channel free.
+A target is a format and a line of words that fill its bits in order, the most significant first. A word without a bit
+count (`base_color.r`) takes one whole channel and is converted as the format converts. A word with a bit count
+(`depth:16`) is an unsigned integer across the first channels of equal size in a UNORM or integer format. `-` leaves a
+channel free.
 
-A quantity may store a number of the normal's code that is 1 or -1 as its own sign: `roughness*normal.z`. It may use
-a curve of the catalogue, over a range of its own: `squared(roughness)`, `linear:0.08(f0)`. A colour without a
-channel means all of its channels: `square_root(base_color)`, `f0.rgb`. A light may be stored as a code of four
-numbers, which fill a texel: `rgb9e5(emissive)`. The words of engines are accepted as well: see `names.py`.
+The sign of a quantity may store a number of the normal's code that is 1 or -1: `roughness*normal.z`. A quantity may
+also use a curve from the catalogue, over a range of its own: `squared(roughness)`, `linear:0.08(f0)`. A colour
+without a channel means all of its channels: `square_root(base_color)`, `f0.rgb`. Light may be stored as a code of
+four numbers that fill a texel: `rgb9e5(emissive)`. Engines' words are accepted as well (see `names.py`).
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ class LayoutError(Exception):
 
 @dataclass(frozen=True)
 class Word:
-    """One component in a target. `first` counts channels if `bits` is 0, and bits otherwise. `sign` is the number
-    of the normal's code that its sign stores, or empty; `kept` the curve or the encoding that it uses, or None;
-    `label` the name of an `other`, or empty."""
+    """One component in a target. `first` counts channels if `bits` is 0, and bits otherwise. `sign` is the number of
+    the normal's code that the component's sign stores, or empty. `kept` is the curve or the encoding of the
+    component, or None. `label` is the name of an `other` field, or empty."""
 
     component: str
     target: int
@@ -85,13 +85,13 @@ def targets_of(text: str) -> tuple[Target, ...]:
 
 
 def placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
-    """Yield the `Word` of each component of a target, without free bits and `other`. Arguments and errors as of
-    `all_placed`."""
+    """Yield the `Word` of each component of a target, without free bits and `other` fields. Takes the same arguments
+    and raises the same errors as `all_placed`."""
     return (word for word in all_placed(layout_name, index, target) if word.component != OTHER)
 
 
 def all_placed(layout_name: str, index: int, target: Target) -> Iterator[Word]:
-    """Yield the `Word` of each component of a target, and of each `other`, whose bits only engines use; skip free
+    """Yield the `Word` of each component of a target, and of each `other` field, which only engines use; skip free
     bits.
 
     Args:
@@ -132,8 +132,8 @@ def place_of(layout_name: str, index: int, target: Target) -> str:
 
 
 def spelt_out(place: str, target: Target) -> Iterator[str]:
-    """Yield the words of a target under the names of COMPONENTS; a colour without a channel becomes a word for each
-    of its channels. Raises LayoutError if a word is ambiguous, or light as a whole does not fill its target."""
+    """Yield the words of a target under the names in COMPONENTS; a colour without a channel becomes one word per
+    channel. Raises LayoutError if a word is ambiguous, or if a code of light does not fill its target."""
     for typed in target.holds.split():
         text, match = _by_its_name(place, typed)
         name = (match["curved"] or match["name"]) if match else ""
@@ -151,8 +151,8 @@ def spelt_out(place: str, target: Target) -> Iterator[str]:
 
 
 def _by_its_name(place: str, typed: str) -> tuple[str, re.Match[str] | None]:
-    """Return a word with its component's name in COMPONENTS, and the match of WORD; a malformed word unchanged, with
-    None. Raises LayoutError if the word is ambiguous."""
+    """Return a word with its component's name from COMPONENTS, and the match of WORD; a malformed word unchanged,
+    with None. Raises LayoutError if the word is ambiguous."""
     match = WORD.fullmatch(typed)
     name = (match["curved"] or match["name"]) if match else ""
     if not match or name == OTHER or name.startswith(f"{OTHER}."):
@@ -166,7 +166,7 @@ def _by_its_name(place: str, typed: str) -> tuple[str, re.Match[str] | None]:
 
 
 def _word_parts(place: str, text: str) -> tuple[str, str, int, Kept | None]:
-    """Return a word's component, the normal's component kept as its sign (or ""), its bit count (or 0) and its curve
+    """Return a word's component, the component of the normal in its sign (or ""), its bit count (or 0) and its curve
     (or None). Raises LayoutError."""
     match = WORD.fullmatch(text)
     name = (match["curved"] or match["name"]) if match else ""
@@ -206,7 +206,7 @@ def _ends(storage: Storage) -> list[int]:
 
 
 def least_carried(storage: Storage, bits: int) -> float:
-    """Return the smallest magnitude, as a share of [0, 1], with which a signed number is stored, so that rounding
+    """Return the smallest magnitude, as a share of [0, 1], at which a signed number may be stored so that rounding
     keeps its sign."""
     if storage.kind == "snorm":
         return 1.0 / (2 ** (bits - 1) - 1)
@@ -216,7 +216,7 @@ def least_carried(storage: Storage, bits: int) -> float:
 
 
 def without_normal(holds: str) -> list[str]:
-    """Return a target's words, given as one text, with the normal's words replaced by free bits and without the signs
+    """Return a target's words, given as one text, with the normal's words replaced by free bits and without signs
     that store the normal; other words keep their channels."""
     words = []
     for text in holds.split():

@@ -1,4 +1,4 @@
-"""Opaque surfaces, each under all lights at once, or under none of them."""
+"""Opaque surfaces, drawn once: lit by all lights at once, or by ambient light only."""
 
 from functools import partial
 
@@ -9,12 +9,12 @@ from .forward_surfaces import ForwardSurfaces
 
 
 def forward() -> Pass:
-    """Return the pass that draws all opaque surfaces under all lights."""
+    """Return the pass that draws all opaque surfaces, lit by all lights."""
     return Pass("forward", (SHADOW_MAP,), (FINAL, DEPTH), partial(_build, True))
 
 
 def ambient() -> Pass:
-    """Return the pass that draws all opaque surfaces under ambient light, to which lights are then added."""
+    """Return the pass that draws all opaque surfaces with ambient light only; later passes add the lights."""
     return Pass("ambient", (), (FINAL, DEPTH), partial(_build, False))
 
 

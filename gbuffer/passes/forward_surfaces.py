@@ -7,7 +7,7 @@ class ForwardSurfaces:
     """The scene's meshes, lit as they are drawn: with or without the sun, and by a range of lamps.
 
     Attributes:
-        lamps: index of the first lamp, and index of the last lamp plus one.
+        lamps: index of the first lamp, and index after the last lamp.
     """
 
     def __init__(self, canvas: Canvas, by_sun: bool):
@@ -16,11 +16,11 @@ class ForwardSurfaces:
         self.lamps = (buffers.first_lamp, len(buffers.lights))
 
     def prepare(self, base: float) -> None:
-        """Bind the program and its inputs; `base` is the factor of ambient and emitted light, 0 to leave them out."""
+        """Bind the program and its inputs; `base` is the factor on ambient and emitted light, 0 to leave them out."""
         self._canvas.prepare(self._surfaces.program)
         self._surfaces.program["base"] = base
 
     def draw(self, name: str | int, first: int, last: int) -> None:
-        """Draw one of the scene's lists under lamps `first` to `last` - 1."""
+        """Draw one of the scene's lists, lit by lamps `first` to `last` - 1."""
         self._surfaces.program["lit_by"] = (first, last)
         self._surfaces.draw(name)

@@ -1,4 +1,4 @@
-"""The first geometry pass: surfaces to the G-buffer."""
+"""The first geometry pass, which draws surfaces to the G-buffer."""
 
 from functools import partial
 
@@ -12,8 +12,8 @@ def geometry(light_holds: int, stipple: bool = False) -> Pass:
 
     Args:
         light_holds: the content of the light buffer: TERMS, COLOURS or BY_KIND.
-        stipple: whether G-buffer and light buffer have their own size, which later passes filter, and transparent
-            surfaces follow, each layer in one of four pixels; otherwise transparent surfaces are left out.
+        stipple: whether the G-buffer and the light buffer have their own size, which later passes filter, and
+            transparent surfaces are drawn as well, each layer in one of four pixels.
     """
     writes = (GBUFFER, DEPTH, *((LIGHT,) if light_holds != TERMS else ()))
     tells = {"LIGHT_HOLDS": light_holds, "FILTERS": int(stipple)}

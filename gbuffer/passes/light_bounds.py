@@ -1,4 +1,4 @@
-"""The bounds that lights are drawn as: closed, convex, and never smaller than the light."""
+"""Bounding meshes for drawing lights: closed, convex and never smaller than the light's reach."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lights on the surfaces in the G-buffer, each within its bounds, added up in the light buffer."""
+"""Lighting of the surfaces in the G-buffer: each light is drawn within its bounds and added to the light buffer."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from .light_bounds import ball, cone
 
 
 def lights(light_holds: int) -> Pass:
-    """Return the pass that adds all lights to the light buffer, which holds nothing for TERMS, else the geometry
-    pass's output."""
+    """Return the pass that adds all lights to the light buffer, which is empty before for TERMS and otherwise
+    contains the geometry pass's output."""
     begun = () if light_holds == TERMS else (LIGHT,)
     kinds = {"shading_model"} if light_holds == BY_KIND else set()
     return Pass(
@@ -39,7 +39,8 @@ class LightVolumes:
     added; a second draw over the same pixels copies it back.
 
     Attributes:
-        queries: the list to which the shading of each local light adds a query, without its marking; None for none.
+        queries: the list to which each local light adds a query for its shading, not for its stencil marking; None
+            for no queries.
     """
 
     def __init__(self, canvas: Canvas):

@@ -10,12 +10,12 @@ from ..gl.device import ADD, OVER
 
 
 def material(draws: str, filters: bool = False) -> Pass:
-    """Return the pass that shades surfaces with the light buffer's light.
+    """Return the pass that shades surfaces with the light in the light buffer.
 
     Args:
         draws: which of the scene's lists to draw: "opaque" begins the image, "special" is added to the image with its
-            ambient light, and "transparent" is blended over it.
-        filters: whether the light buffer has its own size, and is read through the discontinuity-sensitive filter.
+            ambient light, and "transparent" is blended over the image.
+        filters: whether the light buffer has its own size and is read through the discontinuity-sensitive filter.
     """
     depth = FINAL_DEPTH if filters else DEPTH
     begins = draws == "opaque"
@@ -33,7 +33,7 @@ def material(draws: str, filters: bool = False) -> Pass:
 
 
 def _guarded(draws: str, canvas: Canvas) -> Run:
-    """Return a run that shades each sample once, over the G-buffer's depth."""
+    """Return a function that shades each sample once, with the G-buffer's depth as the depth buffer."""
     target, surfaces = canvas.target(FINAL, depth=DEPTH), canvas.geometry("geometry.vert", "material.frag")
     context, blend = canvas.device.context, ADD if draws == "special" else None
 
@@ -51,7 +51,7 @@ def _guarded(draws: str, canvas: Canvas) -> Run:
 
 
 def _filtered(draws: str, canvas: Canvas) -> Run:
-    """Return a run that shades surfaces over the image's own depth; transparent surfaces are blended."""
+    """Return a function that shades surfaces with the image's own depth buffer; transparent surfaces are blended."""
     target, surfaces = canvas.target(FINAL, depth=FINAL_DEPTH), canvas.geometry("geometry.vert", "material.frag")
     blend = OVER if draws == "transparent" else None
 

@@ -6,7 +6,7 @@ from ..frame.resources import BY_KIND, COLOURS, DEPTH, FINAL, LIGHT, SHADING, SU
 
 
 def screen() -> Pass:
-    """Return the pass that draws the image of all surfaces; if the light buffer is BY_KIND, special materials receive
+    """Return the pass that draws the image of all surfaces. If the light buffer is BY_KIND, special materials receive
     only ambient light."""
     expects = {"LIGHT_HOLDS": (COLOURS, BY_KIND)}
     return Pass("screen", (*SURFACE, LIGHT, DEPTH), (FINAL,), _build, expects=expects, needs=SHADING)

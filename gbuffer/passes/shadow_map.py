@@ -1,4 +1,4 @@
-"""Depth as the sun sees it; nothing where the frame has no shadows."""
+"""Depth as seen from the sun; not drawn if the frame has no shadows."""
 
 from ..frame.canvas import NEAREST, Canvas
 from ..frame.contract import Pass, Run
@@ -12,8 +12,8 @@ THIN_SHADOW_OFFSET = (8.0, 16.0)
 
 
 def shadow_map() -> Pass:
-    """Return the pass that draws the depth of casters as the sun sees them: far sides of closed casters, both sides
-    of thin casters."""
+    """Return the pass that draws the depth of shadow casters as seen from the sun: back faces of closed casters, both
+    sides of thin casters."""
     return Pass("shadow_map", reads=(), writes=(SHADOW_MAP,), build=_build)
 
 

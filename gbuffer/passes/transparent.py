@@ -1,4 +1,4 @@
-"""Transparent surfaces, farthest first, each under all lights: no deferred pass holds more than one surface."""
+"""Transparent surfaces, drawn farthest first and lit by all lights: a G-buffer stores one surface per pixel."""
 
 from ..frame.canvas import NEAREST, Canvas
 from ..frame.contract import Pass, Run
@@ -8,7 +8,7 @@ from .forward_surfaces import ForwardSurfaces
 
 
 def transparent() -> Pass:
-    """Return the pass that draws transparent surfaces over the image, farthest first, each under all lights."""
+    """Return the pass that draws transparent surfaces over the image, farthest first and lit by all lights."""
     return Pass("transparent", (FINAL, DEPTH, SHADOW_MAP), (FINAL,), _build)
 
 

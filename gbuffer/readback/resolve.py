@@ -1,4 +1,4 @@
-"""The final image, each pixel the mean of its samples."""
+"""The final image; each pixel is the mean of its samples."""
 
 from ..frame.canvas import Canvas
 from ..frame.contract import Pass, Run

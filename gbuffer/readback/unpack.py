@@ -1,4 +1,4 @@
-"""The G-buffer unpacked as passes read it, at one sample per pixel; 0 on pixels that are not covered."""
+"""The G-buffer unpacked as passes read it, at one sample per pixel; 0 on pixels without a surface."""
 
 from ..frame.canvas import Canvas
 from ..frame.contract import Pass, Run

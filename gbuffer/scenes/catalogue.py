@@ -27,7 +27,7 @@ class SceneMaker:
         frames: number of moments over which a figure is averaged.
         exposure: exposure in stops; None to measure it, for a scene without a given exposure.
         is_metal_rough: whether its materials are metallic-roughness, which have no specular power.
-        sides: width and height of the image that the scene consists of; None if it can be drawn at any size.
+        sides: width and height of the image if the scene is an image; None if it can be drawn at any size.
     """
 
     name: str
@@ -44,8 +44,8 @@ class SceneMaker:
         return FILMIC if self.is_metal_rough else "none"
 
     def within(self, size: tuple[int, int]) -> tuple[int, int]:
-        """Return the size to draw at if `size` is requested: `size` itself, or for a scene that is an image its
-        aspect ratio, with no more pixels than `size` or the image has."""
+        """Return the size to draw at if `size` is requested: `size` itself or, for a scene that is an image, a size
+        with the image's aspect ratio and no more pixels than `size` or the image has."""
         if self.sides is None:
             return size
         share = min(1.0, (size[0] * size[1] / (self.sides[0] * self.sides[1])) ** 0.5)

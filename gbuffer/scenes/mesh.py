@@ -19,11 +19,11 @@ class Mesh:
     Attributes:
         positions: (vertices, 3), float64.
         normals: (vertices, 3), unit, pointing outward, float64.
-        triangles: (triangles, 3), vertex indices in any winding order; the normals tell which side is out.
-        uv: (vertices, 2), the place of each vertex on its surface; a normal map's tangents follow from it.
+        triangles: (triangles, 3), vertex indices in any winding order; the normals define the outer side.
+        uv: (vertices, 2), texture coordinates, which also define the tangents of a normal map.
         authored: (vertices, 4), tangents and the signs of their bitangents, as returned by `tangents`, that do not
-            follow from `uv`: a file's own, or those of its normal map's uv set.
-        second_uv: (vertices, 2), a second set of uv that maps may use; None if the mesh has only one.
+            follow from `uv`: those in a file, or those for the uv set of its normal map.
+        second_uv: (vertices, 2), a second uv set that maps may use; None if the mesh has only one.
     """
 
     positions: np.ndarray
@@ -45,7 +45,7 @@ class Mesh:
         return vertices.astype(np.float32), wound(self).astype(np.int32)
 
     def placed(self, linear: np.ndarray, translation) -> Mesh:
-        """Return the mesh under p' = p linear + translation (row vectors); normals use the inverse transpose."""
+        """Return the mesh after p' = p linear + translation (row vectors); normals use the inverse transpose."""
         normals = _unit(self.normals @ np.linalg.inv(linear).T)
         authored = None if self.authored is None else _tangents_placed(self.authored, linear)
         return Mesh(
@@ -59,13 +59,13 @@ class Mesh:
 
 
 def _tangents_placed(authored: np.ndarray, linear: np.ndarray) -> np.ndarray:
-    """Transform tangents as positions, because they are in the surface; a mirror flips the bitangent's sign."""
+    """Return tangents transformed like directions in the surface; a reflection flips the bitangent's sign."""
     sign = authored[:, 3:] * np.sign(np.linalg.det(linear))
     return np.concatenate([_unit(authored[:, :3] @ linear), sign], axis=1)
 
 
 def joined(meshes: Sequence[Mesh]) -> Mesh:
-    """Join meshes into one mesh, without authored tangents and second uv sets."""
+    """Join meshes into one mesh, without authored tangents or second uv sets."""
     starts = np.cumsum([0, *(len(m.positions) for m in meshes[:-1])])
     return Mesh(
         np.concatenate([m.positions for m in meshes]),
@@ -89,7 +89,7 @@ def rotation(yaw: float, pitch: float, roll: float) -> np.ndarray:
 
 
 def grid_triangles(rows: int, columns: int) -> np.ndarray:
-    """Return vertex indices, (triangles, 3), of two triangles for each cell of a grid of (rows + 1) x (columns + 1)
+    """Return vertex indices, (triangles, 3), of two triangles per cell in a grid of (rows + 1) x (columns + 1)
     vertices, row by row."""
     corner = np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)
     a, b, c, d = corner, corner + 1, corner + columns + 1, corner + columns + 2
@@ -108,8 +108,7 @@ def wound(mesh: Mesh) -> np.ndarray:
 
 
 def facing(mesh: Mesh) -> Mesh:
-    """Return a view-space mesh without its back faces: only the triangles whose normals point to the side of the
-    eye, the origin."""
+    """Return a view-space mesh without its back faces: only triangles that face the eye, at the origin."""
     triangles = wound(mesh)
     corners = mesh.positions[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -118,8 +117,8 @@ def facing(mesh: Mesh) -> Mesh:
 
 def smooth_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Return vertex normals for a mesh without normals, (vertices, 3): means over the adjacent triangles, weighted by
-    angle (Thuermer and Wuethrich 1998). Vertices in the same place, up to rounding, share a normal; it is zero if no
-    adjacent triangle has an area.
+    angle (Thuermer and Wuethrich 1998). Vertices at the same position, up to rounding, share a normal, which is zero
+    if all adjacent triangles have zero area.
 
     A triangle's corners run counter-clockwise when seen from outside.
     """
@@ -144,8 +143,8 @@ def smooth_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def grid_uv(rows: int, columns: int) -> np.ndarray:
-    """Return uv, (vertices, 2), of a grid of (rows + 1) x (columns + 1) vertices, row by row: u grows from 0 to 1
-    with the column, v with the row."""
+    """Return the uv, (vertices, 2), of a grid of (rows + 1) x (columns + 1) vertices, row by row: u grows from 0 to 1
+    along a row, v along a column."""
     v, u = np.meshgrid(np.linspace(0, 1, rows + 1), np.linspace(0, 1, columns + 1), indexing="ij")
     return np.stack([u.ravel(), v.ravel()], axis=1)
 
@@ -153,9 +152,9 @@ def grid_uv(rows: int, columns: int) -> np.ndarray:
 def tangents(mesh: Mesh, uv: np.ndarray | None = None) -> np.ndarray:
     """Return unit tangents perpendicular to the normals, in the direction of increasing u, and the bitangents' signs.
 
-    The shape is (vertices, 4). The bitangent is sign x (normal x tangent), the side to which v increases. Where u
-    does not increase, as at a pole, the tangent is any direction. Authored tangents are returned unchanged, unless
-    other uv are given.
+    The shape is (vertices, 4). The bitangent is sign x (normal x tangent), on the side towards which v increases.
+    Where u does not increase, as at a pole, the tangent is arbitrary. Authored tangents are returned unchanged,
+    unless `uv` is given.
     """
     if uv is None and mesh.authored is not None:
         return mesh.authored
@@ -176,8 +175,8 @@ def tangents(mesh: Mesh, uv: np.ndarray | None = None) -> np.ndarray:
 
 
 def _gradients(mesh: Mesh, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return for each triangle the directions in which u and v grow, (triangles, 3) each, times twice its signed area
-    in uv, and that area's sign, (triangles, 1)."""
+    """Return, for each triangle, the directions of increasing u and of increasing v, (triangles, 3) each, times twice
+    its signed area in uv, and the sign of that area, (triangles, 1)."""
     corners, uv = mesh.positions[mesh.triangles], uv[mesh.triangles]
     (e1, e2), (d1, d2) = (np.moveaxis(a[:, 1:] - a[:, :1], 1, 0) for a in (corners, uv))
     # e = du T + dv B for two edges, solved for T and B; the area in uv weighs each triangle.
@@ -189,7 +188,8 @@ def _gradients(mesh: Mesh, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
 def laid_by(mesh: Mesh, uv: np.ndarray) -> Mesh:
     """Return the mesh with the tangents of a map whose texture coordinates are `uv`, (vertices, 2).
 
-    Triangles on which the map is mirrored share no vertex with the others, as their bitangents have the other sign.
+    Triangles on which the map is mirrored share no vertices with other triangles, because their bitangents have the
+    opposite sign.
     """
     corners = mesh.positions[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -206,14 +206,14 @@ def laid_by(mesh: Mesh, uv: np.ndarray) -> Mesh:
 
 
 def plane(width: float, depth: float, repeat: float = 1.0) -> Mesh:
-    """A level rectangle around the origin that faces up (+y); its uv run from 0 to `repeat`."""
+    """Return a horizontal rectangle around the origin that faces up (+y); its uv run from 0 to `repeat`."""
     corners = np.array([(x, 0.0, z) for z in (0.5, -0.5) for x in (-0.5, 0.5)])
     up = np.tile([0.0, 1.0, 0.0], (4, 1))
     return Mesh(corners * (width, 1.0, depth), up, grid_triangles(1, 1), grid_uv(1, 1) * repeat)
 
 
 def sphere(radius: float, slices: int, stacks: int) -> Mesh:
-    """A sphere of slices around the z axis and stacks along it."""
+    """Return a sphere with `slices` slices around the z axis and `stacks` stacks along it."""
     polar = np.linspace(0.0, np.pi, stacks + 1)[:, None]
     # The last meridian is the first one to the bit, so that the seam neither gapes nor overlaps.
     around = (np.arange(slices + 1) % slices * (2 * np.pi / slices))[None, :]
@@ -224,7 +224,7 @@ def sphere(radius: float, slices: int, stacks: int) -> Mesh:
 
 
 def box(width: float, height: float, depth: float) -> Mesh:
-    """An axis-aligned box around the origin with flat faces."""
+    """Return an axis-aligned box with flat faces around the origin."""
     half = np.array([width, height, depth]) / 2
     positions, normals = [], []
     for axis in range(3):

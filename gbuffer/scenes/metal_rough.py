@@ -1,4 +1,4 @@
-"""Metal/rough materials, as glTF 2.0 has them (appendix B), and the pictures that vary them over a surface."""
+"""Metallic-roughness materials as in glTF 2.0 (appendix B), and the texture maps that vary them over a surface."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class Map:
 
     Attributes:
         texels: (height, width, 4), uint8 or uint16; or float32, which is not filtered; row 0 is at v = 0. A channel
-            that a file lacks has the largest integer. Maps of the same image share the array.
-        is_srgb: whether the first three channels are colours on the sRGB curve; 8 bits only.
+            that a file lacks is filled with the largest integer. Maps of the same image share the array.
+        is_srgb: whether the first three channels are sRGB colours; 8 bits only.
         wrap: wrap modes beyond [0, 1] along u and along v.
-        uv_set: which of a mesh's two uv sets it uses, 0 or 1.
-        placed: (2, 3), the map is sampled at placed @ (u, v, 1).
+        uv_set: the uv set of the mesh that it uses, 0 or 1.
+        placed: (2, 3), matrix of the texture coordinates: the map is sampled at placed @ (u, v, 1).
     """
 
     texels: np.ndarray
@@ -35,23 +35,23 @@ class Map:
 
 @dataclass(frozen=True, eq=False)
 class MetalRough:
-    """A metallic-roughness material: GGX's lobe over Lambert's.
+    """A metallic-roughness material: a GGX specular lobe over Lambertian diffuse reflection.
 
     Attributes:
         base: linear base colour, each channel in [0, 1].
         metalness: 0 for a dielectric, 1 for a metal.
-        roughness: perceptual, 0 for a mirror, 1 for the dullest surface; alpha is its square.
+        roughness: perceptual roughness, 0 for a mirror, 1 for the dullest surface; GGX's alpha is its square.
         reflectance: reflectance of a dielectric at normal incidence.
         emission: linear light that the surface emits, 0 or more.
-        alpha: below 1 the surface is transparent and drawn after all others.
+        alpha: opacity; below 1 the surface is transparent and drawn after all opaque surfaces.
         cutoff: points with a lower alpha are not drawn; 0 draws everything.
-        normal_scale: factor of the normal map's x and y.
+        normal_scale: factor on the normal map's x and y.
         occlusion_strength: strength of the occlusion map, 0 to 1.
         base_map: colour and alpha, times `base` and `alpha`.
         rough_metal_map: roughness in G and metalness in B, times `roughness` and `metalness`.
         normal_map: the normal in the tangent frame, x along u and y along -v: RGB are x, y, z by 2 c - 1.
         occlusion_map: R is the share of ambient light that arrives.
-        emission_map: times `emission`.
+        emission_map: emitted light, times `emission`.
     """
 
     base: Colour = (0.5, 0.5, 0.5)

@@ -1,4 +1,4 @@
-"""Pixels as a scene: each is a square with its G-buffer attributes that covers the pixel and faces the camera."""
+"""Pixels as a scene: each pixel becomes a square that faces the camera and has the pixel's G-buffer attributes."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ TANGENT = (1.0, 0.0, 0.0, -1.0)
 
 @dataclass(frozen=True, eq=False)
 class PixelSurfaces:
-    """The surfaces that the pixels of an image show, float32, row 0 at the top.
+    """The surfaces that are visible at the pixels of an image, float32, row 0 at the top.
 
     Attributes:
-        depth: (height, width), along the line of sight; 0 where there is no surface.
+        depth: (height, width), along the viewing direction; 0 without a surface.
         normal: (height, width, 3), unit, in view space.
         base_color, emissive: (height, width, 3), linear.
-        roughness, metallic, f0, ao: (height, width); f0 is that of a dielectric.
+        roughness, metallic, f0, ao: (height, width); `f0` is the reflectance of a dielectric.
     """
 
     depth: np.ndarray
@@ -42,7 +42,7 @@ class PixelSurfaces:
 def pixel_scene(pixels: PixelSurfaces, view: View) -> Scene:
     """Return a scene of the pixels as `view` sees them, without lights of its own, in an environment.
 
-    Each square looks its texel up at the texel's centre, so nothing is filtered, whatever size it is drawn at.
+    Each square samples its texel at the texel's centre, so that nothing is filtered, whatever the image size.
     """
     covered = pixels.depth > 0
     reflectances, level = _levels(pixels.f0, covered)
@@ -60,8 +60,8 @@ def pixel_scene(pixels: PixelSurfaces, view: View) -> Scene:
 
 
 def _levels(reflectance: np.ndarray, covered: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the different reflectances of covered pixels, rounded to REFLECTANCES steps if there are more, and the
-    index of each pixel's reflectance, (height, width); -1 where no surface covers the pixel."""
+    """Return the distinct reflectances of covered pixels, rounded to REFLECTANCES steps if there are more, and the
+    index of each pixel's reflectance, (height, width), which is -1 if no surface covers the pixel."""
     values, index = np.unique(reflectance[covered], return_inverse=True)
     if len(values) > REFLECTANCES:
         values = np.linspace(values[0], values[-1], REFLECTANCES)
@@ -73,7 +73,7 @@ def _levels(reflectance: np.ndarray, covered: np.ndarray) -> tuple[np.ndarray, n
 
 
 def _surface(pixels: PixelSurfaces) -> MetalRough:
-    """Return a material whose maps have one texel for each pixel, with all attributes except the reflectance."""
+    """Return a material whose maps have one texel per pixel, with all attributes except the reflectance."""
     ones = np.ones_like(pixels.roughness)
 
     def lying(*planes: np.ndarray) -> Map:
@@ -95,7 +95,7 @@ def _surface(pixels: PixelSurfaces) -> MetalRough:
 
 
 def _squares(depth: np.ndarray, chosen: np.ndarray, view: View) -> Mesh:
-    """Return a mesh of a square for each chosen pixel, in view space: the pixel's corners at its depth."""
+    """Return a view-space mesh with one square per chosen pixel: the pixel's corners at its depth."""
     height, width = depth.shape
     row, column = np.nonzero(chosen)
     across, up, _, _ = view.rays((width, height))

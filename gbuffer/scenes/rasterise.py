@@ -1,4 +1,4 @@
-"""A software rasteriser in NumPy: the same pixels on every machine, with or without a GL driver."""
+"""A software rasteriser in NumPy: the same pixels on every machine, with or without an OpenGL driver."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Camera:
     """A perspective camera at the origin of view space: x right, y up, looking down -z.
 
     Attributes:
-        width, height: pixels.
+        width, height: size of the image in pixels.
         fov: vertical field of view in degrees.
         near, far: distances along -z.
     """
@@ -47,8 +47,8 @@ class Rendered:
     Attributes:
         normals: interpolated and renormalised, view space, (height, width, 3), float32; zero on the background.
         positions: view-space positions, (height, width, 3), float32; (0, 0, -far) on the background.
-        covered: (height, width), bool. Row 0 is the top.
-        triangle: (height, width), int64, index of the mesh's triangle; any number where nothing is covered.
+        covered: whether a surface covers the pixel, (height, width), bool. Row 0 is at the top.
+        triangle: index of the mesh's triangle, (height, width), int64; arbitrary on the background.
     """
 
     normals: np.ndarray
@@ -58,7 +58,7 @@ class Rendered:
 
 
 def rasterise(mesh: Mesh, camera: Camera, is_drawn: IsDrawn | None = None) -> Rendered:
-    """Return the nearest surface at each pixel's centre of a mesh in view space; both sides of triangles are drawn.
+    """Return the nearest surface of a view-space mesh at each pixel's centre; both sides of triangles are drawn.
 
     Homogeneous rasterisation (Olano and Greer 1997): edge functions come from clip coordinates, so that triangles
     that reach behind the eye need no clipping.
@@ -81,7 +81,7 @@ def rasterise(mesh: Mesh, camera: Camera, is_drawn: IsDrawn | None = None) -> Re
 
 
 def to_clip(corners: np.ndarray, camera: Camera) -> np.ndarray:
-    """Points in view space, (..., 3), as clip coordinates x, y and w."""
+    """Return view-space points, (..., 3), in clip coordinates x, y and w."""
     half = np.tan(np.radians(camera.fov) / 2)
     return corners * (1 / (half * camera.width / camera.height), 1 / half, -1.0)
 
@@ -112,8 +112,8 @@ def _squares(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _is_met(inverse: np.ndarray, boxes: np.ndarray, camera: Camera) -> np.ndarray:
-    """Return for each box whether it has a pixel on the inner side of each of its triangle's edges, (boxes,). Edge
-    functions are linear, so they are largest in one of the box's four corners."""
+    """Return, for each box, whether every edge of its triangle has a pixel of the box on its inner side, (boxes,).
+    Edge functions are linear, so they are largest at one of the box's four corners."""
     columns, rows = boxes[:, (0, 2, 0, 2)] - (0, 1, 0, 1), boxes[:, (1, 1, 3, 3)] - (0, 0, 1, 1)
     edges = np.einsum("cjn,njk->nck", centres(columns.T, rows.T, camera), inverse)
     edges += EDGE * edges.sum(axis=2, keepdims=True)
@@ -129,7 +129,7 @@ def centres(column: np.ndarray, row: np.ndarray, camera: Camera) -> np.ndarray:
 
 
 def _candidates(triangle_of: np.ndarray, boxes: np.ndarray):
-    """Yield (triangle, column, row) arrays of all pixels of all boxes, at most CHUNK pixels at a time."""
+    """Yield (triangle, column, row) arrays for all pixels in all boxes, at most CHUNK pixels at a time."""
     widths, heights = (boxes[:, 2:] - boxes[:, :2]).T
     ends = np.cumsum(widths * heights)
     for start in range(0, int(ends[-1]) if len(ends) else 0, CHUNK):

@@ -1,4 +1,4 @@
-"""Maps without an OpenGL driver: normal maps, mipmapped and sampled for each pixel, and alpha cut-outs."""
+"""Texture maps without an OpenGL driver: mipmapped normal maps, sampled for each pixel, and alpha cut-outs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ COARSENED = 255 / COARSER
 
 
 class Pyramid:
-    """A map's first three channels as directions in [-1, 1], and means of them for every power of two."""
+    """Mipmaps of the first three channels of a map, as directions with components in [-1, 1]."""
 
     def __init__(self, lying: Map):
         self._lying = lying
@@ -38,14 +38,14 @@ class Pyramid:
         return levels
 
     def through(self, uv: np.ndarray, along_x: np.ndarray, along_y: np.ndarray) -> np.ndarray:
-        """Return the map as filtered for pixels, (pixels, 3).
+        """Return the map filtered over the footprints of pixels, (pixels, 3).
 
         Args:
             uv: (pixels, 2), texture coordinates of each pixel's centre.
             along_x, along_y: (pixels, 2), the change of `uv` to the next pixel.
 
-        The footprint is sampled in up to PROBES places along its longer side, each between the two levels whose
-        texels are nearest to the shorter side.
+        The footprint is sampled at up to PROBES points along its longer side. Each sample interpolates between the
+        two levels with the texel sizes nearest to the shorter side.
         """
         size = np.array(self.levels[0].shape[1::-1])
         sides = np.stack([along_x, along_y])
@@ -119,7 +119,7 @@ def mapped_normals(
     """Return the normals of a rendered image with its materials' normal maps applied, (height, width, 3), float32.
 
     Args:
-        rendered: the meshes drawn as one, in their order.
+        rendered: the image of all meshes of `drawn`, joined in this order.
         drawn: meshes in view space and their materials.
     """
     normals = rendered.normals.copy()
@@ -160,7 +160,7 @@ def coarser(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> list[tuple[M
 def cut_out(drawn: Sequence[tuple[Mesh, Material | MetalRough]]) -> IsDrawn | None:
     """Return the test for `rasterise` on joined meshes: a point's alpha is not below its material's threshold.
 
-    Alpha is sampled without mips. Returns None if no material cuts anything out.
+    Alpha is sampled without mipmaps. The function returns None if no material has a cut-out.
     """
     ends = np.cumsum([len(mesh.triangles) for mesh, _ in drawn])
     cut = {n: (mesh, m) for n, (mesh, m) in enumerate(drawn) if isinstance(m, MetalRough) and m.cutoff > 0}
@@ -186,14 +186,15 @@ def _alpha(mesh: Mesh, lying: Map | None, corners: np.ndarray, weights: np.ndarr
 
 
 def placed_uv(mesh: Mesh, lying: Map) -> np.ndarray:
-    """Return the uv of a map at a mesh's vertices, (vertices, 2): the first set if the mesh lacks a second."""
+    """Return the texture coordinates of a map at a mesh's vertices, (vertices, 2), from the first uv set if the mesh
+    lacks a second."""
     uv = mesh.second_uv if lying.uv_set and mesh.second_uv is not None else mesh.uv
     return uv @ lying.placed[:, :2].T + lying.placed[:, 2]
 
 
 def _weights(corners: np.ndarray, column: np.ndarray, row: np.ndarray, camera: Camera) -> tuple[np.ndarray, ...]:
-    """The corners' weights at pixels' centres, and how they change to the next column and the next row, (pixels, 3)
-    each: (e / s)' = (e' - e / s s') / s of the edge functions e, s their sum."""
+    """Return the corners' weights at pixel centres, and their changes to the next column and to the next row,
+    (pixels, 3) each: (e / s)' = (e' - e / s s') / s for the edge functions e and their sum s."""
     inverse = np.linalg.inv(to_clip(corners, camera))
     edges = np.einsum("jp,pjk->pk", centres(column, row, camera), inverse)
     total = edges.sum(axis=1, keepdims=True)
@@ -204,8 +205,8 @@ def _weights(corners: np.ndarray, column: np.ndarray, row: np.ndarray, camera: C
 
 
 def _turned(n: np.ndarray, tangent: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """Return unit normals after a normal map's texels: x along the tangent, y against the bitangent, because an
-    image's v grows downwards, z along the normal. A normal of no length is replaced with `n`."""
+    """Return unit normals perturbed by the texels of a normal map: x along the tangent, y against the bitangent,
+    because an image's v grows downwards, and z along the normal. A normal of zero length is replaced with `n`."""
     t = tangent[:, :3] - n * np.sum(n * tangent[:, :3], axis=1, keepdims=True)
     t /= np.maximum(np.linalg.norm(t, axis=1, keepdims=True), 1e-12)
     b = np.where(tangent[:, 3:] < 0, -1.0, 1.0) * np.cross(n, t)

@@ -1,4 +1,4 @@
-"""Scenes: meshes in many places, materials, lights and a camera."""
+"""Scenes: instances of meshes, materials, lights and a camera."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class Material:
         power: specular power, 1 to 2048.
         emissive: linear colour, added unchanged.
         bump: strength of the normal map, 0 for none; 1 tilts normals by up to about 35 degrees.
-        bump_repeat: how often the map repeats over a mesh's uv.
-        alpha: below 1 the surface is transparent and drawn after all others.
+        bump_repeat: how often the normal map repeats over a mesh's uv.
+        alpha: opacity; below 1 the surface is transparent and drawn after all opaque surfaces.
     """
 
     kind: Literal["general", "skin", "hair", "glossy"] = "general"
@@ -51,7 +51,7 @@ class Light:
     Attributes:
         kind: "point", "spot" or "sun".
         colour: linear, at a distance of 0.
-        position, radius: for point and spot lights; nothing is lit at `radius` and beyond.
+        position, radius: for point and spot lights; nothing is lit at a distance of `radius` or more.
         direction: the direction in which light travels, unit; for spot lights and the sun.
         inner, outer: half angles of a spot's cone in degrees: full light inside `inner`, none outside `outer`.
     """
@@ -67,10 +67,10 @@ class Light:
 
 @dataclass(frozen=True)
 class ScenePart:
-    """One mesh in many places.
+    """One mesh and its instances.
 
     Attributes:
-        mesh: in its own space.
+        mesh: the mesh in its own space.
         models: (instances, 4, 4), matrices to world space for column vectors: rotation, uniform scale, translation.
         materials: (instances,), indices into the scene's materials.
         casts: whether it casts shadows; the shadow map is fitted around the parts that do.
@@ -103,7 +103,7 @@ class View:
     up: Colour = (0.0, 1.0, 0.0)
 
     def matrix(self) -> np.ndarray:
-        """World to view space, (4, 4), for column vectors: x right, y up, looking down -z."""
+        """Return the matrix from world to view space, (4, 4), for column vectors: x right, y up, looking down -z."""
         back = np.subtract(self.eye, self.target)
         back = back / np.linalg.norm(back)
         right = np.cross(self.up, back)
@@ -130,7 +130,7 @@ class View:
         return replace(self, target=_float_triple(target), up=_float_triple(up))
 
     def projection(self, aspect: float) -> np.ndarray:
-        """View to clip space, (4, 4), for column vectors: GL's, depth from -w to w."""
+        """Return the matrix from view to clip space, (4, 4), for column vectors, as in OpenGL: depth from -w to w."""
         f = 1 / np.tan(np.radians(self.fov) / 2)
         near, far = self.near, self.far
         matrix = np.zeros((4, 4))
@@ -151,13 +151,13 @@ class Water:
     Attributes:
         level: its height when still, in metres.
         deep: its colour where no ground is visible through it, as an albedo.
-        extinction: for red, green and blue light in the water, 1 / m.
+        extinction: extinction coefficients for red, green and blue light in the water, in 1 / m.
         crests: colour of light that comes through a crest, as an albedo.
-        patch: metres after which the waves repeat along x and z.
+        patch: distance in metres after which the waves repeat along x and z.
         slope: root mean square slope of the waves.
         heading: direction in which the waves travel, in degrees from x towards z.
-        period: seconds after which the waves repeat.
-        time: seconds.
+        period: time in seconds after which the waves repeat.
+        time: the moment, in seconds.
     """
 
     level: float = 0.0
@@ -173,15 +173,16 @@ class Water:
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything that a frame is drawn from.
+    """Everything from which a frame is drawn.
 
     Attributes:
         parts, materials, lights: the contents; at most one light is a sun. All materials use the same model.
         ambient: linear colour, which is multiplied by the albedo.
         view: the camera.
-        previous: the camera one frame earlier; the motion that a G-buffer may store is between the two cameras.
+        previous: the camera one frame earlier; motion vectors, if a G-buffer stores them, are between the two
+            cameras.
         water: the water; None for a scene without water.
-        environment: the surroundings, at every distance; only for metallic-roughness scenes.
+        environment: the distant surroundings; only for metallic-roughness scenes.
     """
 
     parts: tuple[ScenePart, ...]
@@ -194,7 +195,7 @@ class Scene:
     environment: Environment | None = None
 
     def under(self, environment: Environment) -> Scene:
-        """Return the scene with these surroundings; a sun removed from their image replaces the scene's own."""
+        """Return the scene in this environment; a sun removed from the environment replaces the scene's own sun."""
         if environment.sun is None:
             return replace(self, environment=environment)
         way, irradiance = environment.sun
@@ -206,7 +207,7 @@ class Scene:
 
     @property
     def is_metal_rough(self) -> bool:
-        """Whether its materials are metal/rough, and not Blinn-Phong."""
+        """Whether the scene's materials are metallic-roughness and not Blinn-Phong."""
         return isinstance(self.materials[0], MetalRough)
 
     @property
@@ -224,7 +225,7 @@ class Scene:
         return next((light for light in self.lights if light.kind == "sun"), None)
 
     def with_power(self, power: float) -> Scene:
-        """The scene with another specular power, 1 to 2048, of all Blinn-Phong materials."""
+        """Return the scene with a different specular power, 1 to 2048, for all Blinn-Phong materials."""
         changed = [replace(m, power=power) if isinstance(m, Material) else m for m in self.materials]
         return replace(self, materials=tuple(changed))
 
@@ -234,7 +235,8 @@ def _float_triple(v: np.ndarray) -> Colour:
 
 
 def placed(positions: ArrayLike, scales: ArrayLike = 1.0, turns: ArrayLike = 0.0) -> np.ndarray:
-    """Model matrices, (instances, 4, 4): uniform scales, turned about y by `turns` radians, moved to `positions`."""
+    """Return model matrices, (instances, 4, 4), with uniform scales, turned about y by `turns` radians and moved to
+    `positions`."""
     positions = np.atleast_2d(np.asarray(positions, float))
     scales, turns = (np.broadcast_to(np.asarray(a, float), len(positions)) for a in (scales, turns))
     models = np.tile(np.eye(4), (len(positions), 1, 1))

@@ -13,8 +13,8 @@ class Setting:
 
     Attributes:
         objects, lights: number of objects and of lights, in scenes that use them.
-        seed: seed of its random numbers.
-        time: position of moving lights on their way around, 0 to 1.
+        seed: seed of the random numbers.
+        time: position of moving lights on their orbits, 0 to 1.
     """
 
     objects: int = 200

@@ -1,6 +1,6 @@
-"""A chart as one frozen value, which `draw.py` writes as files and `wire.py` gives to the page.
+"""A chart as one immutable value, which `draw.py` writes as files and `wire.py` sends to the page.
 
-Rows are mappings of plain values. A row that has a codec names it in `codec`, as tables and pictures do.
+Rows are mappings of plain values. A row on a codec names it in `codec`, as in tables and pictures.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Scale(StrEnum):
 
 
 class Kind(StrEnum):
-    """The kind of mark that is drawn for rows."""
+    """The kinds of mark that can be drawn for rows."""
 
     POINTS = "points"
     LINES = "lines"
@@ -66,15 +66,15 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Axis:
-    """One direction of a chart.
+    """An axis of a chart.
 
     Attributes:
-        title: what it measures, with its unit; empty for names that need none.
-        scale: how it places values.
-        domain: the values at its ends; None to fit the rows, with a margin.
-        ticks: positions and texts of its ticks; empty for the renderer's choice.
-        names: for a scale of names, all of them in order.
-        is_shared: whether all panels have the same values at its ends.
+        title: what the axis measures, with the unit; empty for self-explanatory names.
+        scale: how values are mapped to positions.
+        domain: the values at the ends of the axis; None to fit the rows, with a margin.
+        ticks: positions and texts of the ticks; empty to let the renderer choose.
+        names: all names in order, for a scale of names.
+        is_shared: whether all panels have the same domain.
     """
 
     title: str
@@ -86,37 +86,38 @@ class Axis:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """The ticks of a scale of counts, within its domain; empty for others."""
+        """The ticks for a scale of counts, within its domain; empty for other scales."""
         low, high = self.domain or (0.0, 0.0)
         return tuple(count for count in COUNTS if low <= count <= high) if self.scale == Scale.COUNT else ()
 
     def along(self, value: float) -> float:
-        """Return the position of a value on a scale where equal steps have equal lengths, such as its logarithm."""
+        """Return the position of a value on a uniform scale, such as its logarithm for a logarithmic axis."""
         if self.scale == Scale.LOG:
             return math.log(value)
         return math.copysign(math.log1p(abs(value) / LINEAR_TO), value) if self.scale == Scale.COUNT else value
 
     def back(self, along: float) -> float:
-        """Return the value for which `along` returns this position."""
+        """Return the value for a transformed value: the inverse of `along`."""
         if self.scale == Scale.LOG:
             return math.exp(along)
         is_count = self.scale == Scale.COUNT
         return math.copysign(math.expm1(abs(along)) * LINEAR_TO, along) if is_count else along
 
     def share(self, value: float) -> float:
-        """Return the position of a value between the first end of the domain and the other: 0 to 1."""
+        """Return the position of a value on the axis: 0 at the first end of the domain, 1 at the other."""
         assert self.domain
         low, high = map(self.along, self.domain)
         return (self.along(value) - low) / (high - low)
 
     def at(self, share: float) -> float:
-        """Return the value at a share of the axis: 0 is the first end of the domain, 1 the other."""
+        """Return the value at a position on the axis: 0 is the first end of the domain, 1 the other."""
         assert self.domain
         low, high = map(self.along, self.domain)
         return self.back(low + share * (high - low))
 
     def places(self, value: Any) -> bool:
-        """Whether the axis can place a value: a known name, or a finite number, above 0 for logarithms."""
+        """Whether the axis can place a value: a known name, or a finite number, which must be above 0 for a
+        logarithmic scale."""
         if self.scale == Scale.NAMES:
             return value in self.names
         return is_number(value) and math.isfinite(value) and (self.scale != Scale.LOG or value > 0)
@@ -124,14 +125,14 @@ class Axis:
 
 @dataclass(frozen=True)
 class Names:
-    """Names told apart by colours, shapes, dashes or panels.
+    """Names that are distinguished by colours, shapes, dashes or panels.
 
     Attributes:
-        field: the field of rows that has them.
-        values: all of them, in order.
+        field: the field of rows that contains the names.
+        values: all names, in order.
         title: what the names are: the heading of the page's legend. In files it follows each name, as a unit does.
-        looks: the shapes or dashes of the values; empty for the usual ones in turn.
-        is_ordered: whether the values go up, as bits do: their colours then go from light to dark.
+        looks: shapes or dashes for the values; empty to use the usual ones in turn.
+        is_ordered: whether the values increase, as bits do; their colours then go from light to dark.
     """
 
     field: str
@@ -141,19 +142,19 @@ class Names:
     is_ordered: bool = False
 
     def colours(self, is_dark: bool = False) -> list[str]:
-        """Return the colour of each value, on white or on dark paper, as #RRGGBB."""
+        """Return the colour for each value, on a white or a dark background, as #RRGGBB."""
         if self.is_ordered:
             return _between(ORDERED_DARK if is_dark else ORDERED, len(self.values))
         return self.of(DARK if is_dark else COLOURS)
 
     def of(self, looks: Sequence[Any]) -> list[Any]:
-        """Return the look of each value, taken in turn from its own looks, else from the usual `looks`."""
+        """Return the look for each value, taken in turn from the names' own looks or otherwise from `looks`."""
         return [(self.looks or looks)[i % len(self.looks or looks)] for i in range(len(self.values))]
 
 
 @dataclass(frozen=True)
 class Shades:
-    """Colours of numbers from `low` to `high`, on a scale of logarithms; the title has their unit."""
+    """Colours for numbers from `low` to `high`, on a logarithmic scale; the title includes the unit."""
 
     field: str
     title: str
@@ -163,14 +164,14 @@ class Shades:
 
 @dataclass(frozen=True)
 class Switch:
-    """A choice for the reader of the page, in a control for all charts of a figure.
+    """A choice that the reader of the page makes, with one control for all charts of a figure.
 
     Attributes:
-        field: the field of rows by which it chooses.
+        field: the field of rows by which the reader chooses.
         label: label of the control.
         values: the choices; ALL shows all rows.
         usual: the initial choice, which files show too.
-        has_panels: whether a file shows all choices instead, one panel for each.
+        has_panels: whether files show all choices instead, with a panel for each.
     """
 
     field: str
@@ -186,16 +187,16 @@ class Mark:
 
     Attributes:
         kind: points, lines and so on.
-        rows: None for the chart's rows.
-        x, y, x2, y2: the fields with its positions.
-        text: for texts, labels and ends, the field with the text.
-        colour: INK, MUTED, FAINT, the field of the chart's colours, or a field with colours.
+        rows: the mark's own rows; None for the chart's rows.
+        x, y, x2, y2: the fields that contain its positions.
+        text: the field that contains the text of texts, labels and line ends.
+        colour: INK, MUTED, FAINT, the field of the chart's colours, or a field that contains colours.
         shape: for points, one of SHAPES or the field of the chart's shapes.
         dash: for lines, "solid", "dashed", "dotted" or the field of the chart's dashes.
-        by: for lines, areas and ends, the fields that distinguish them.
-        rest: a field that is true in less important rows: their points and labels are FAINT.
-        is_stepped: whether lines and areas go across and then up or down.
-        tips: fields that the pointer shows, and their labels.
+        by: the fields that distinguish lines, areas and line ends.
+        rest: a field that is true in less important rows, whose points and labels are FAINT.
+        is_stepped: whether lines and areas are drawn as steps, first horizontally and then vertically.
+        tips: fields shown at the pointer, with their labels.
     """
 
     kind: Kind
@@ -220,7 +221,7 @@ class Mark:
         return {*named, *self.by, *(field for field, _ in self.tips)}
 
     def groups(self, rows: Sequence[Row]) -> list[list[Row]]:
-        """Return the rows of each line, area or line end: grouped by the fields `by`."""
+        """Return the rows grouped by the fields in `by`: a group for each line, area or line end."""
         groups: dict[Hashable, list[Row]] = {}
         for row in rows:
             groups.setdefault(tuple(row.get(name) for name in self.by), []).append(row)
@@ -233,16 +234,16 @@ class Chart:
 
     Attributes:
         name: name of its files, without an extension.
-        title: the finding that a reader sees in it.
-        subtitle: what it shows, under what conditions.
-        description: what is drawn, for readers who cannot see it.
+        title: the finding that the chart shows.
+        subtitle: what is plotted, and under what conditions.
+        description: text for readers who cannot see the chart.
         x, y: its axes.
         marks: its marks, from back to front.
         rows: rows for marks without rows of their own.
         colour, shape, dash: the names that colours, shapes and dashes distinguish.
-        panels: the names that have a panel each, all with the same marks; rows without the field are in every panel.
-        switch: the choice for a reader of the page.
-        height: height of its panels on the page, in pixels; 0 for the usual height.
+        panels: names that each have a panel, with the same marks; rows without the field are in every panel.
+        switch: a choice for the reader of the page.
+        height: height of a panel on the page, in pixels; 0 for the usual height.
     """
 
     name: str
@@ -262,17 +263,20 @@ class Chart:
 
     @property
     def pixels(self) -> int:
-        """The height of a panel on the page."""
+        """The height of a panel on the page, in pixels."""
         return self.height or LINE_HEIGHT * len(self.y.names or self.y.ticks) or HEIGHT
 
     def named(self, look: str, mark: Mark) -> Names | None:
-        """Return the names that the colour, shape or dash of a mark distinguishes; None if it shows no names."""
+        """Return the names that a mark's colour, shape or dash distinguishes; None if it distinguishes none.
+
+        Args:
+            look: "colour", "shape" or "dash"."""
         names = getattr(self, look)
         return names if isinstance(names, Names) and names.field == getattr(mark, look) else None
 
     @property
     def legends(self) -> list[dict[str, Names]]:
-        """The entries of a legend: for each field that looks distinguish, its names by colour, shape and dash."""
+        """The entries of the legend: for each field that is distinguished, its names by colour, shape and dash."""
         fields: dict[str, dict[str, Names]] = {}
         for name in ("colour", "shape", "dash"):
             if isinstance(names := getattr(self, name), Names):
@@ -280,19 +284,19 @@ class Chart:
         return list(fields.values())
 
     def rows_of(self, mark: Mark) -> tuple[Row, ...]:
-        """Return the rows of a mark that the axes can place."""
+        """Return the rows for a mark whose values the axes can place."""
         axes = ((self.x, mark.x), (self.x, mark.x2), (self.y, mark.y), (self.y, mark.y2))
         used = [(axis, name) for axis, name in axes if name]
         rows = self.rows if mark.rows is None else mark.rows
         return tuple(row for row in rows if all(axis.places(row.get(name)) for axis, name in used))
 
     def lasts(self, mark: Mark) -> list[Row]:
-        """Return the last row of each line of a mark, next to which its name is written."""
+        """Return the last row of each line of a mark, next to which the line's name is written."""
         return [line[-1] for line in mark.groups(self.rows_of(mark))]
 
     def still(self) -> list[tuple[str, Chart]]:
-        """Return the named panels for a file, in which a reader cannot use a switch: the usual value is shown, or
-        each value in a panel."""
+        """Return the named panels for a file, where there is no switch: with the usual choice, or with a panel for
+        each choice."""
         switch = self.switch
         if not switch or switch.usual == ALL:
             return self.parts()
@@ -301,7 +305,7 @@ class Chart:
         return [(name, part._only(switch.field, switch.usual)) for name, part in self.parts()]
 
     def parts(self) -> list[tuple[str, Chart]]:
-        """Return pairs of a panel's name, empty without panels, and its chart, whose axes have domains."""
+        """Return pairs of a panel's name, empty without panels, and the panel as a chart; its axes have domains."""
         whole = replace(self, x=self._measured("x"), y=self._measured("y"), panels=None)
         if not self.panels:
             return [("", whole)]
@@ -314,7 +318,7 @@ class Chart:
         return replace(part, x=part._measured("x"), y=part._measured("y"))
 
     def _only(self, field: str, value: Any) -> Chart:
-        """Return the chart with only the rows that have this value in a field, or do not have the field."""
+        """Return the chart with only the rows that have this value in a field or lack the field."""
 
         def kept(rows: Sequence[Row]) -> tuple[Row, ...]:
             return tuple(row for row in rows if row.get(field, value) == value)
@@ -323,7 +327,7 @@ class Chart:
         return replace(self, rows=kept(self.rows), marks=tuple(marks))
 
     def _measured(self, name: str) -> Axis:
-        """Return the axis `x` or `y` with a domain that holds the values of its rows."""
+        """Return the axis `x` or `y` with a domain that contains the values in its rows."""
         axis: Axis = getattr(self, name)
         if axis.domain or axis.scale == Scale.NAMES:
             return axis
@@ -339,10 +343,10 @@ class Chart:
 
 
 def apart(wanted: Sequence[float], least: float) -> list[float]:
-    """Return the places nearest to the wanted places, in their order, no two of which are less than `least` apart.
+    """Return the positions closest to the wanted ones, in the same order, with at least `least` between neighbours.
 
-    Neighbours that are too near are moved apart together (pool adjacent violators, the least squares under an
-    order: Barlow et al. 1972, Statistical Inference under Order Restrictions).
+    Neighbours that are too close are moved apart together (pool adjacent violators, the least-squares solution under
+    an order: Barlow et al. 1972, Statistical Inference under Order Restrictions).
     """
     groups: list[tuple[float, int]] = []  # the mean of wanted less what stands before, and of how many
     for index, place in enumerate(wanted):
@@ -355,15 +359,16 @@ def apart(wanted: Sequence[float], least: float) -> list[float]:
 
 
 def lines_apart(axis: Axis, values: Sequence[float], height: float, least: float) -> list[float]:
-    """Return the positions of the labels of values on a vertical axis, each on its own line, near its value.
+    """Return the positions of the labels for values on a vertical axis, each on its own line and near its value.
 
     Args:
         axis: an axis with a domain.
+        values: the values to label.
         height: height of the axis.
-        least: smallest distance from one label's line to the next, in the height's unit.
+        least: smallest distance between the lines of two labels, in the unit of `height`.
 
     Returns:
-        shares of the axis, in the order of the values.
+        positions as shares of the axis, in the order of the values.
     """
     order = sorted(range(len(values)), key=lambda index: axis.share(values[index]))
     placed = apart([axis.share(values[i]) * height for i in order], least)
@@ -372,18 +377,18 @@ def lines_apart(axis: Axis, values: Sequence[float], height: float, least: float
 
 
 def distinct(rows: Sequence[Row], field: str) -> tuple[Any, ...]:
-    """Return the different values of a field, in the order of the rows."""
+    """Return the distinct values of a field, in order of first occurrence."""
     return tuple(dict.fromkeys(row[field] for row in rows))
 
 
 def _between(colours: Sequence[str], count: int) -> list[str]:
-    """Return this many colours, evenly spaced along a sequence of colours; for a count of 1 the middle colour."""
+    """Return this many colours, evenly spaced along a gradient; a single colour is the middle one."""
     last = len(colours) - 1
     return [_mixed(colours, i / (count - 1) * last if count > 1 else last / 2) for i in range(count)]
 
 
 def _mixed(colours: Sequence[str], place: float) -> str:
-    """Return the colour at a position in a sequence of colours: 2.5 is midway between the third and the fourth."""
+    """Return the colour at a position in a gradient: 2.5 is midway between the third and the fourth colour."""
     index = min(int(place), len(colours) - 2)
     pairs = ((int(colour[i : i + 2], 16) for colour in colours[index : index + 2]) for i in (1, 3, 5))
     return "#" + "".join(f"{round(a + (b - a) * (place - index)):02X}" for a, b in pairs)

@@ -26,17 +26,17 @@ LEGEND = MappingProxyType({"fontsize": 8, "frameon": False})
 
 
 def write(charts: Sequence[Chart], *files: tuple[Path, str]) -> None:
-    """Write charts, one below the other, to each path as its format, one of plots.FORMATS. Raises OSError."""
+    """Write charts, one below the other, to each path in the given format, one of plots.FORMATS. Raises OSError."""
     with settings(charts[0].name if charts else ""):
         save(figure(charts), *files)
 
 
 @contextmanager
 def settings(name: str) -> Iterator[None]:
-    """Set up matplotlib within a `with` block: text stays text, names in the file are the same each time, and a
-    letter that a font lacks gives no warning.
+    """Configure matplotlib within a `with` block: text remains text, identifiers in the file are reproducible, and
+    letters that a font lacks cause no warning.
 
-    No matplotlibrc is used: a file in the current folder may be a stranger's, and could start LaTeX."""
+    No matplotlibrc is read: a file in the current folder may be a stranger's, and could start LaTeX."""
     import matplotlib
 
     # Without a height for titles matplotlib lays out all labels anew at each drawing, to see what is in the way.
@@ -50,7 +50,7 @@ def settings(name: str) -> Iterator[None]:
 
 
 def figure(charts: Sequence[Chart]) -> Any:
-    """Return charts as a matplotlib figure, one chart below the other."""
+    """Return a matplotlib figure of charts, one below the other."""
     sizes = [_size(chart) for chart in charts] or [(ALONE, AROUND)]
     whole = drawn_off_screen().figure(
         figsize=(max(across for across, _ in sizes), sum(down for _, down in sizes)), layout="constrained"
@@ -81,7 +81,7 @@ def _size(chart: Chart) -> tuple[float, float]:
 
 
 def _draw(place: Any, chart: Chart) -> list[tuple[Chart, Any]]:
-    """Draw a chart into a figure or a part of a figure. Return its panels with their axes."""
+    """Draw a chart into a figure or a subfigure, and return its panels with their axes."""
     parts, across = chart.still(), _column_count(chart)
     grid = place.subplots(-(-len(parts) // across), across, squeeze=False)
     drawn = [(part, axes) for (_, part), axes in zip(parts, grid.flat, strict=False)]
@@ -121,7 +121,11 @@ def _panel(axes: Any, part: Chart) -> None:
 
 
 def _axis(axis: Any, limit: Any, chart_axis: Axis) -> None:
-    """Set up one of matplotlib's axes as `chart_axis` describes it."""
+    """Configure a matplotlib axis as `chart_axis` describes.
+
+    Args:
+        axis: the matplotlib axis.
+        limit: function that sets its limits."""
     axis.set_label_text(plain(chart_axis.title), size=9)
     if chart_axis.scale == Scale.NAMES:
         axis.set_ticks(range(len(chart_axis.names)), [as_text(name) for name in chart_axis.names], size=8)
@@ -138,7 +142,7 @@ def _axis(axis: Any, limit: Any, chart_axis: Axis) -> None:
 
 
 def _functions(chart_axis: Axis) -> tuple[Any, Any]:
-    """Return an axis's scale and its inverse as functions of arrays, for matplotlib."""
+    """Return an axis's scale and the inverse, as functions of arrays for matplotlib."""
     import numpy as np
 
     return np.vectorize(chart_axis.along, otypes=[float]), np.vectorize(chart_axis.back, otypes=[float])
@@ -233,7 +237,8 @@ DRAWN = MappingProxyType(
 
 
 def _legend(place: Any, chart: Chart) -> None:
-    """Draw the legend of colours, shapes and dashes, combined by field; do nothing if line ends are labelled."""
+    """Draw the legend of colours, shapes and dashes, with one entry per name for each field; draw none if line ends
+    are labelled."""
     from matplotlib.lines import Line2D
 
     if any(mark.kind == Kind.ENDS for mark in chart.marks):
@@ -251,7 +256,7 @@ def _legend(place: Any, chart: Chart) -> None:
 
 
 def _look(chart: Chart, named: Mapping[str, Names], index: int) -> dict[str, Any]:
-    """Return matplotlib's properties of a line of the legend: its colour, shape or dash, or several of them."""
+    """Return matplotlib's properties for a legend entry: its colour, with a marker or a line style if needed."""
     kinds = {mark.kind for mark in chart.marks if mark.colour in {names.field for names in named.values()}}
     colour = named["colour"].colours()[index] if "colour" in named else "#555555"
     if "shape" in named:

@@ -1,4 +1,4 @@
-"""Charts, as files and as drawings on a page."""
+"""Charts for files and for a page."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ class Drawing:
 
     Attributes:
         name: name of its files, without an extension.
-        title: its title.
-        description: what it shows, for readers who cannot see it.
+        title: title of the chart.
+        description: text for readers who cannot see the chart.
         draw: function that returns a figure for `plots.save`.
-        spec: function that returns the chart as the page draws it; None if the page has an image instead.
+        spec: function that returns the chart as data for the page; None if the page has an image instead.
     """
 
     name: str
@@ -34,12 +34,12 @@ class Drawing:
 
 
 def of(chart: Chart) -> Drawing:
-    """Return a chart as a `Drawing`, which is drawn only when it is needed."""
+    """Return a `Drawing` of a chart; nothing is drawn until needed."""
     description = f"{chart.subtitle}. {chart.description}"
     return Drawing(chart.name, chart.title, description, partial(figure, (chart,)), partial(spec, chart))
 
 
 def write(drawing: Drawing, *files: tuple[Path, str]) -> None:
-    """Write a drawing to each path as its format, one of plots.FORMATS. Raises OSError."""
+    """Write a drawing to each path in the given format, one of plots.FORMATS. Raises OSError."""
     with settings(drawing.name):
         save(drawing.draw(), *files)

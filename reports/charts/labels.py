@@ -1,4 +1,4 @@
-"""Labels of a file's charts, placed so that they cover nothing."""
+"""Labels for charts in files, placed so that they cover nothing if possible."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LEADER = {"arrowstyle": "-", "linewidth": 0.6}
 
 
 def write_ends(axes: Any, part: Chart) -> list[Any]:
-    """Write the names of lines to the right of a panel, where the layout makes room for them; return the texts."""
+    """Write the names of lines to the right of a panel, so that the layout reserves room; return the text objects."""
     texts = []
     for mark, row in _lasts(part):
         name, colour, (x, y) = as_text(str(row[mark.text])), colour_of(part, mark, row), (row[mark.x], row[mark.y])
@@ -32,7 +32,7 @@ def write_ends(axes: Any, part: Chart) -> list[Any]:
 
 
 def _lasts(part: Chart) -> list[tuple[Mark, Row]]:
-    """Return the last point of each line that is named at its end, with its mark."""
+    """Return the last row of each line that is named at its end, paired with its mark."""
     ends = [mark for mark in part.marks if mark.kind == Kind.ENDS]
     return [(mark, row) for mark in ends for row in part.lasts(mark)]
 
@@ -50,7 +50,7 @@ def label_ends(axes: Any, part: Chart, texts: Sequence[Any]) -> None:
 
 
 def label_points(axes: Any, part: Chart) -> None:
-    """Write each point's name where it covers no point, line or other name, if possible."""
+    """Write a label for each point where it covers no point, line or other label, if possible."""
     marks = [mark for mark in part.marks if mark.kind == Kind.LABELS]
     taken = list(_covered(axes, part, axes.figure.dpi / 72)) if marks else []
     for mark in marks:
@@ -89,14 +89,15 @@ def _covered(axes: Any, part: Chart, pixels: float) -> Iterator[Any]:
 
 
 def _corners(mark: Mark, line: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return the corners of a stepped line, which goes across and then up or down, or the points of another line."""
+    """Return the corners of a stepped line, which runs across and then up or down; the points of any other line."""
     if not mark.is_stepped:
         return list(line)
     return [line[0], *(corner for (_, y), b in pairwise(line) for corner in ((b[0], y), b))]
 
 
 def along(a: Any, b: Any, pixels: float) -> Iterator[Any]:
-    """Yield the boxes of a straight line, in pixels: one if it is vertical or horizontal, else many small boxes."""
+    """Yield boxes that cover a straight line, in pixels: one if the line is vertical or horizontal, otherwise many
+    small boxes."""
     steps = 1 if min(abs(b[0] - a[0]), abs(b[1] - a[1])) < 1 else int(max(abs(b[0] - a[0]), abs(b[1] - a[1])) / 8) + 1
     for (x0, y0), (x1, y1) in pairwise(np.linspace(a, b, steps + 1).tolist()):
         yield _box(x0, y0, x1, y1, pixels)
@@ -109,7 +110,7 @@ def _box(x0: float, y0: float, x1: float, y1: float, padding: float) -> Any:
 
 
 def _placed(written: Any, taken: Sequence[Any], within: Any) -> Any:
-    """Move a label to the nearest free place, or else to the place with the fewest overlaps, and return its box."""
+    """Move a label to the nearest free position, otherwise to the least crowded one, and return its box."""
     candidates, pixels, boxes = [], written.figure.dpi / 72, np.array([box.extents for box in taken])
     # Laying text out takes a hundred times as long as moving its box.
     at_point: dict[tuple[str, str], Any] = {}
@@ -130,13 +131,16 @@ def _placed(written: Any, taken: Sequence[Any], within: Any) -> Any:
 
 
 def _overlaps(box: Any, others: np.ndarray) -> int:
-    """Return how many boxes, (count, 4) of left, bottom, right and top, a box overlaps."""
+    """Return the number of boxes that a box overlaps.
+
+    Args:
+        others: boxes as left, bottom, right and top, (count, 4)."""
     left, bottom, right, top = others.T
     return int(np.count_nonzero((left <= box.x1) & (box.x0 <= right) & (bottom <= box.y1) & (box.y0 <= top)))
 
 
 def extent(written: Any) -> Any:
-    """Return the box of only the text of an annotation, in pixels, without the line that leads to it."""
+    """Return the box of an annotation's text, in pixels, without its leader line."""
     from matplotlib.text import Text
 
     written.update_positions(written.figure.canvas.get_renderer())

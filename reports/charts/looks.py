@@ -18,17 +18,17 @@ SHADES = "viridis"
 
 
 def as_text(text: str) -> str:
-    """Return text shortened to LONGEST characters, with dollar signs escaped, which would begin mathematics."""
+    """Return text shortened to LONGEST characters, with dollar signs escaped, which would start mathematics."""
     return plain(text if len(text) <= LONGEST else text[: LONGEST - 3] + "...")
 
 
 def plain(text: str) -> str:
-    """Return text of any length with dollar signs escaped, which matplotlib would read as mathematics."""
+    """Return text with dollar signs escaped, which matplotlib would read as mathematics."""
     return text.replace("$", r"\$")
 
 
 def places(part: Chart, mark: Mark, rows: Sequence[Row]) -> tuple[list[Any], list[Any]]:
-    """Return the positions of a mark's rows, in matplotlib's own numbers."""
+    """Return the x and the y positions of a mark's rows, as matplotlib's axes count them."""
     return [_axis_position(part.x, row[mark.x]) for row in rows], [_axis_position(part.y, row[mark.y]) for row in rows]
 
 
@@ -47,29 +47,29 @@ def colour_of(part: Chart, mark: Mark, row: Row) -> str:
 
 
 def marker_of(part: Chart, mark: Mark, row: Row) -> str:
-    """Return matplotlib's marker of a row's point."""
+    """Return the matplotlib marker for a row's point."""
     names = part.named("shape", mark)
     return MARKERS[look(names, SHAPES, row) if names else mark.shape]
 
 
 def stroke_of(part: Chart, mark: Mark, row: Row) -> Any:
-    """Return matplotlib's line style of a row's line."""
+    """Return the matplotlib line style for a row's line."""
     names = part.named("dash", mark)
     return stroke(look(names, DASHES, row)) if names else STROKES[mark.dash]
 
 
 def stroke(lengths: Sequence[float]) -> Any:
-    """Return lengths of strokes and gaps as matplotlib's line style; a solid line without lengths."""
+    """Return a matplotlib line style for lengths of strokes and gaps; a solid line if there are no lengths."""
     return (0, tuple(lengths)) if lengths else "-"
 
 
 def look(names: Names, looks: Sequence[Any], row: Row) -> Any:
-    """Return the look of the name that a row has: a colour, shape or dash out of `looks`."""
+    """Return the look for a row's name: a colour, shape or dash, from the names' own looks or from `looks`."""
     return names.of(looks)[names.values.index(row[names.field])]
 
 
 def shade(shades: Shades) -> Any:
-    """Return matplotlib's colour scale of numbers: logarithmic, between the ends of `shades`."""
+    """Return the matplotlib colour scale for numbers: logarithmic, between the ends of `shades`."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
 
@@ -77,8 +77,8 @@ def shade(shades: Shades) -> Any:
 
 
 def colour_map(count: int = 33) -> list[str]:
-    """Return `count` colours of Viridis, #rrggbb, evenly spaced from dark to bright. Steps look equal, also to people
-    who do not see all colours."""
+    """Return `count` colours from Viridis, #rrggbb, evenly spaced from dark to bright. The steps look equal, also to
+    people with colour vision deficiency."""
     import matplotlib
     import numpy as np
     from matplotlib.colors import to_hex

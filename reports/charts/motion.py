@@ -1,4 +1,4 @@
-"""An animation of how a highlight wobbles."""
+"""An animation of a wobbling highlight."""
 
 from __future__ import annotations
 
@@ -20,12 +20,13 @@ MILLISECONDS = 80
 
 
 def beside(image: np.ndarray, other: np.ndarray, title: str) -> Image.Image:
-    """Return a frame of an animation: decoded normals, exact normals, and GAIN times their difference around grey,
+    """Return a frame of the animation: decoded normals, exact normals, and GAIN times their difference around grey,
     side by side.
 
     Args:
-        image, other: displayed images, (height, width, 3), 0 to 1.
-        title: text above all of them.
+        image: displayed image with decoded normals, (height, width, 3), 0 to 1.
+        other: the same with exact normals.
+        title: text above the images.
     """
     apart = 0.5 + GAIN * (np.nan_to_num(image, nan=1.0) - other)
     height, width = (size * ENLARGED for size in image.shape[:2])
@@ -43,7 +44,7 @@ def beside(image: np.ndarray, other: np.ndarray, title: str) -> Image.Image:
 
 
 def write_animation(path: Path, frames: Sequence[Image.Image]) -> None:
-    """Write an animated PNG that loops forever. Raises OSError."""
+    """Write an animated PNG file that loops forever. Raises OSError."""
     first, *others = frames
     first.save(
         path, format="png", save_all=True, append_images=others, duration=MILLISECONDS, loop=0, pnginfo=made_by()

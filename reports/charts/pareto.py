@@ -1,4 +1,4 @@
-"""The cost of codecs against their error, and the Pareto-optimal codecs."""
+"""The cost of codecs against their error, and the Pareto front."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from ..ties import TIE_DB
 
 @dataclass(frozen=True)
 class Point:
-    """A codec.
+    """A codec as a point in a chart.
 
     Attributes:
-        name: its label.
-        cost: in instructions.
-        psnr: in dB.
-        bits: bits that it uses.
+        name: label of the point.
+        cost: cost in instructions.
+        psnr: PSNR in dB.
+        bits: bits that the codec uses.
         is_starred: whether the cost counts both sides of a branch.
         codec: the encoding with its storage.
     """
@@ -31,13 +31,13 @@ class Point:
 
 @dataclass(frozen=True)
 class Panel:
-    """Points of one kind and machine.
+    """Points for one kind of cost on one machine.
 
     Attributes:
-        kind: what the costs are for; panels of the same kind are one panel of a chart.
-        points: at least one.
-        machine: the machine to which the costs apply; a chart with several has a switch between them.
-        is_usual: whether a switch shows it first.
+        kind: what the costs are for, such as decoding; panels of the same kind share a panel of the chart.
+        points: the points, at least one.
+        machine: the machine to which the costs apply; a chart with several machines has a switch between them.
+        is_usual: whether the switch shows the machine first.
     """
 
     kind: str
@@ -47,8 +47,8 @@ class Panel:
 
 
 def pareto_front(points: Sequence[Point]) -> list[Point]:
-    """Return the points that no other beats, sorted by cost. A point beats another if it is no worse in any
-    respect, and better in one; differences in decibels of up to TIE_DB do not count."""
+    """Return the points that no other point beats, sorted by cost. A point beats another if it is no worse in any
+    respect and better in at least one; PSNR differences of up to TIE_DB do not count."""
     front = [point for point in points if not any(_beats(other, point) for other in points)]
     return sorted(front, key=lambda p: (p.cost, -p.psnr, p.bits))
 

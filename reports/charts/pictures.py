@@ -1,4 +1,4 @@
-"""Images of codecs: the stored numbers, the decoded values and their errors."""
+"""Images for codecs: the stored numbers, the decoded values and their errors."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _byte_pixels(values: np.ndarray) -> np.ndarray:
 def codec_pictures(
     normals: np.ndarray, encoded: np.ndarray, decoded: np.ndarray, covered: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Return the images `encoded`, `decoded`, `error` and `power`, uint8 of shape (height, width, 3), black on the
+    """Return the images `encoded`, `decoded`, `error` and `power`, uint8 of shape (height, width, 3), with a black
     background.
 
     Args:
@@ -48,7 +48,8 @@ def codec_pictures(
 
 
 def normals_picture(normals: np.ndarray, covered: np.ndarray) -> np.ndarray:
-    """Return normals as bytes: [-1, 1] as [0, 255], black on the background; shapes as for `codec_pictures`."""
+    """Return normals as bytes, [-1, 1] mapped to [0, 255], with a black background; shapes as for
+    `codec_pictures`."""
     return _byte_pixels((normals * 0.5 + 0.5) * covered[..., None])
 
 
@@ -63,23 +64,23 @@ def grey(values: np.ndarray) -> np.ndarray:
 
 
 def difference(image: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """Return the difference of two displayed images, times RENDER_GAIN, in bytes; NaN in `image` counts as 1."""
+    """Return the absolute difference between two displayed images, times RENDER_GAIN, as bytes; NaN in `image` counts
+    as 1."""
     return _byte_pixels(np.abs(np.nan_to_num(image, nan=1.0) - reference) * RENDER_GAIN)
 
 
 def strips(lines: Sequence[np.ndarray], height: int) -> np.ndarray:
-    """Return lines of colours as displayed, (width, 3) each, stacked, each `height` pixels high; in bytes."""
+    """Return lines of displayed colours, (width, 3) each, as an image of strips, `height` pixels each; in bytes."""
     return np.concatenate([np.repeat(_byte_pixels(line)[None], height, axis=0) for line in lines])
 
 
 def depth_pictures(errors: np.ndarray, positions: np.ndarray, covered: np.ndarray) -> dict[str, np.ndarray]:
-    """Return as `position_error` the errors of rebuilt positions in colour, with a scale of powers of ten, and as
-    `shaded` the surface that the positions make, lit by its own slope, where depth steps show as terraces. Both are
-    uint8 images with a strip for a scale or caption.
+    """Return two uint8 images: `position_error`, the errors of rebuilt positions in colour below a scale of powers of
+    ten; and `shaded`, the rebuilt surface lit by its own slope below a caption, where depth steps show as terraces.
 
     Args:
         errors: distances between true and rebuilt positions, (height, width).
-        positions: rebuilt, view space, row 0 at the top, (height, width, 3).
+        positions: rebuilt positions in view space, row 0 at the top, (height, width, 3).
         covered: bool of shape (height, width).
     """
     with np.errstate(divide="ignore"):
@@ -94,7 +95,8 @@ def depth_pictures(errors: np.ndarray, positions: np.ndarray, covered: np.ndarra
 
 
 def _coloured(powers: np.ndarray) -> np.ndarray:
-    """Return powers of ten as colours, uint8; powers outside DECADES have the colour of its nearest end."""
+    """Return colours, uint8, for the exponents of powers of ten; exponents outside DECADES get the colour of the
+    nearer end."""
     import matplotlib
 
     low, high = DECADES
@@ -103,7 +105,7 @@ def _coloured(powers: np.ndarray) -> np.ndarray:
 
 
 def _scale_of_colours(width: int, height: int = SCALE_HEIGHT) -> np.ndarray:
-    """Return the key of the colours as a uint8 image: all colours, with their powers of ten."""
+    """Return the colour scale as a uint8 image, labelled with powers of ten."""
     low, high = DECADES
     strip = _coloured(np.broadcast_to(np.linspace(low, high, width), (height // 3, width)))
     image = Image.new("RGB", (width, height), "white")
@@ -118,8 +120,8 @@ def _scale_of_colours(width: int, height: int = SCALE_HEIGHT) -> np.ndarray:
 
 
 def _lit(positions: np.ndarray) -> np.ndarray:
-    """Return the shading of the surface between neighbouring positions, 0 to 1; the last row and column repeat
-    those before."""
+    """Return the shading, 0 to 1, of the surface through neighbouring positions; the last row and column are repeated
+    to keep the size."""
     right, down = np.diff(positions, axis=1)[:-1], np.diff(positions, axis=0)[:, :-1]
     normals = np.cross(down, right)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -128,14 +130,14 @@ def _lit(positions: np.ndarray) -> np.ndarray:
 
 
 def made_by() -> PngInfo:
-    """Return the metadata that marks a PNG file as made by normalbench: such a file may be replaced."""
+    """Return the PNG metadata that marks a file as made by normalbench, so that it may be replaced."""
     info = PngInfo()
     info.add_text("Software", "normalbench")
     return info
 
 
 def write_png(path: Path, pixels: np.ndarray) -> None:
-    """Write uint8 pixels of shape (height, width, 3). Raises OSError."""
+    """Write uint8 pixels of shape (height, width, 3) as a PNG file. Raises OSError."""
     # Runs alone: a quarter of the time, for files that are a twelfth larger.
     Image.fromarray(pixels).save(path, format="png", compress_type=zlib.Z_RLE, pnginfo=made_by())
 

@@ -12,17 +12,17 @@ DPI = 120
 
 
 class PlotError(Exception):
-    """A plot that cannot be drawn; one line."""
+    """An error with a one-line message: a plot cannot be drawn."""
 
 
 def check_format(path: Path) -> None:
-    """Raise PlotError if a file's name does not end in one of FORMATS."""
+    """Raise PlotError unless the extension of a file name is one of FORMATS."""
     if path.suffix.lower()[1:] not in FORMATS:
         raise PlotError(f"{path}: unsupported plot format; use one of {', '.join('.' + name for name in FORMATS)}")
 
 
 def drawn_off_screen() -> Any:
-    """Return matplotlib's pyplot, set up to need no display."""
+    """Return matplotlib's pyplot module, with a backend that needs no display."""
     import matplotlib
 
     matplotlib.use("agg")
@@ -32,7 +32,7 @@ def drawn_off_screen() -> Any:
 
 
 def save(figure: Any, *files: tuple[Path, str]) -> None:
-    """Write a figure to each path as its format, one of FORMATS, and close it. Raises OSError."""
+    """Write a figure to each path in the given format, one of FORMATS, and close it. Raises OSError."""
     from matplotlib import pyplot
     from matplotlib.backend_bases import get_registered_canvas_class
 

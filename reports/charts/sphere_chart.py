@@ -1,4 +1,4 @@
-"""Maps of angles over the sphere, which are pictures and no marks."""
+"""Maps of angles over the sphere, which are drawn as images instead of marks."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ Maps = Mapping[str, np.ndarray]
 
 
 def sphere_range(maps: Maps) -> tuple[float, float]:
-    """Return the smallest and the largest angle of a common logarithmic scale, in degrees; zero error is below it."""
+    """Return the smallest and the largest angle, in degrees, of a common logarithmic scale for maps; a zero error is
+    below the scale."""
     angles = np.concatenate([plane[np.isfinite(plane)] for plane in maps.values()])
     largest = float(angles.max(initial=LEAST_DEG))
     above = angles[angles > largest * 1e-4]
@@ -32,7 +33,11 @@ def sphere_range(maps: Maps) -> tuple[float, float]:
 
 
 def coloured(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
-    """Return angles as colours on a logarithmic scale, uint8 of shape (..., 4); transparent where there is no angle."""
+    """Return colours for angles on a logarithmic scale, uint8 of shape (..., 4); transparent where there is no angle.
+
+    Args:
+        plane: angles in degrees, NaN for none.
+        limits: smallest and largest angle of the scale."""
     import matplotlib
 
     low, high = np.log(limits)
@@ -44,7 +49,12 @@ def coloured(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
 
 
 def _mark(axis: Any, n: np.ndarray, cells: int) -> None:
-    """Draw a red ring around each direction, on the disc of its half."""
+    """Draw a red ring around each direction, on the disc of its half.
+
+    Args:
+        axis: the matplotlib axes with both discs.
+        n: directions, (count, 3).
+        cells: width of a disc in cells."""
     is_behind = n[:, 2] < 0
     # Lambert (1772): a distance r from the middle has |z| = 1 - r^2, and the rim is at 1.
     across = n[:, :2] / np.sqrt(1 + np.abs(n[:, 2:]))
@@ -58,12 +68,12 @@ def _marked_title(name: str, marks: Maps | None) -> str:
 
 
 def sphere_chart(maps: Maps, marks: Maps | None = None, halves: tuple[str, str] = ("", "")) -> Any:
-    """Return a matplotlib figure of angles over the sphere, two discs for each codec, on one scale of colours.
+    """Return a matplotlib figure of angles over the sphere, with two discs for each codec and a common colour scale.
 
     Args:
-        maps: by codec, degrees of shape (2, cells, cells): the half that faces the viewer and the other, in Lambert's
-            azimuthal equal-area projection; NaN where there is no angle.
-        marks: by codec, directions of shape (count, 3), each of which is marked.
+        maps: degrees of shape (2, cells, cells) by codec: the half that faces the viewer and the other half, in
+            Lambert's azimuthal equal-area projection; NaN where there is no angle.
+        marks: directions to mark, (count, 3), by codec.
         halves: captions below the two discs.
     """
     from matplotlib.cm import ScalarMappable

@@ -1,4 +1,4 @@
-"""Maps of the sphere for a page and for files."""
+"""Maps of errors over the sphere, for a page and for files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MOST = 64
 
 @dataclass(frozen=True)
 class Globe:
-    """A codec's errors over the sphere as pictures."""
+    """Images of a codec's errors over the sphere, with the codec's name and its errors in words."""
 
     label: str
     mean: str
@@ -35,7 +35,7 @@ class Globe:
 
 @dataclass(frozen=True)
 class Globes:
-    """The codecs with the same number of bits, on one scale of colours."""
+    """The images of all codecs with the same number of bits, on a common colour scale."""
 
     bits: int
     globes: Sequence[Globe]
@@ -45,7 +45,7 @@ class Globes:
 
 
 def _groups(maps: Sequence[SphereMap]) -> dict[int, list[SphereMap]]:
-    """Return the maps by the number of bits of their codes, the number with the most codecs first."""
+    """Return the maps grouped by the number of bits, beginning with the number that has the most codecs."""
     groups: dict[int, list[SphereMap]] = {}
     for sphere_map in maps:
         groups.setdefault(sphere_map.bits, []).append(sphere_map)
@@ -53,8 +53,8 @@ def _groups(maps: Sequence[SphereMap]) -> dict[int, list[SphereMap]]:
 
 
 def shown(maps: Sequence[SphereMap], most: int = MOST) -> list[SphereMap]:
-    """Return at most `most` maps for a page, in the given order: the most accurate for each number of bits is chosen
-    first, then the second, and so on."""
+    """Return at most `most` maps for a page, in the given order. The most accurate codec for each number of bits is
+    chosen first, then the second most accurate, and so on."""
     ranked = [sorted(group, key=lambda sphere: float(np.nanmean(sphere.mean_deg))) for group in _groups(maps).values()]
     turns = (sphere_map for turn in zip_longest(*ranked) for sphere_map in turn if sphere_map is not None)
     kept = {sphere_map.key.label for sphere_map in islice(turns, most)}
@@ -62,7 +62,7 @@ def shown(maps: Sequence[SphereMap], most: int = MOST) -> list[SphereMap]:
 
 
 def globes(maps: Sequence[SphereMap]) -> list[Globes]:
-    """Return the maps as images for a page, grouped by the number of bits, with a common scale in each group."""
+    """Return the maps as images for a page, grouped by number of bits, with one colour scale per group."""
     return [_globes(bits, group) for bits, group in _groups(maps).items()]
 
 
@@ -83,7 +83,7 @@ def _globes(bits: int, maps: Sequence[SphereMap]) -> Globes:
 
 
 def _mean(half: np.ndarray) -> float:
-    """Return the mean over a disc's cells, each weighted by its part on the sphere."""
+    """Return the mean over a disc's cells, each weighted by the part of it inside the disc."""
     side = (np.arange(len(half) * FINE) + 0.5) / (len(half) * FINE) * 2 - 1
     inside = (side[:, None] ** 2 + side**2 <= 1).reshape(len(half), FINE, len(half), FINE).sum(axis=(1, 3))
     held = np.isfinite(half)
@@ -99,13 +99,13 @@ def _disc_pixels(plane: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
 
 
 def colour_strip() -> str:
-    """Return the scale's colours from the smallest to the largest value, as an image in a data URI."""
+    """Return the colour scale, from the smallest to the largest value, as an image in a data URI."""
     steps = np.exp(np.linspace(0, 1, 256))[None]
     return small_uri(sphere_chart.coloured(steps, (1.0, math.e)))
 
 
 def drawings(maps: Sequence[SphereMap]) -> list[Drawing]:
-    """Return the maps as charts for files, a chart for each number of bits."""
+    """Return the maps as charts for files, one chart for each number of bits."""
     description = "Mean angular error in degrees in each direction."
     return [
         Drawing(

@@ -1,8 +1,8 @@
-"""Charts as the page draws them: plain data that charts.js, next to page.css, turns into SVG with d3.
+"""Charts as data for the page: charts.js, next to page.css, turns it into SVG with d3.
 
-d3 was chosen because it is a library of parts, not of charts: the chart remains a value of this program, and the
-page draws exactly what a file shows. Packed, d3 takes 0.1 MB. It is part of the package mpld3, which is not
-imported for it.
+d3 was chosen because it provides building blocks rather than finished charts: the chart remains a value of this
+program, and the page draws exactly what a file shows. Packed, d3 takes 0.1 MB. It is part of the package mpld3, which
+is not imported for it.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ STOPS = 17
 
 
 def library() -> str:
-    """Return the text of d3's script. Raises PlotError if its package is missing or lacks the script."""
+    """Return the text of d3's script. Raises PlotError if the package is missing or lacks the script."""
     module_spec = find_spec(PACKAGE)
     path = (
         Path(module_spec.submodule_search_locations[0]) / LIBRARY
@@ -84,7 +84,7 @@ def library() -> str:
 
 
 def spec(chart: Chart) -> Spec:
-    """Return a chart as data for JSON: what all its panels share, and each panel with its marks and rows."""
+    """Return a chart as JSON data: the properties that its panels share, and each panel with its marks and rows."""
     parts = chart.parts()
     has_names = any(name for name, _ in parts) or (chart.switch is not None and chart.switch.usual != ALL)
     chart_spec: Spec = {"label": f"{chart.title}. {chart.description}", "height": chart.pixels}
@@ -104,13 +104,13 @@ def spec(chart: Chart) -> Spec:
 
 
 def codecs(chart_spec: Spec) -> set[str]:
-    """Return the names of the codecs that a chart draws, from its data."""
+    """Return the names of the codecs in a chart's data."""
     columns = [table["codec"] for panel in chart_spec["panels"] for table in panel["tables"] if "codec" in table]
     return {name for column in columns for name in (column["names"] if isinstance(column, dict) else column) if name}
 
 
 def rounded(value: Any) -> float | None:
-    """Return a number with four digits; None if it is not a finite number."""
+    """Return a number rounded to four digits; None if it is not a finite number."""
     return float(f"{value:.4g}") if is_number(value) and math.isfinite(value) else None
 
 
@@ -120,7 +120,7 @@ def _switch(switch: Switch) -> Spec:
 
 
 def _zooms(chart: Chart) -> bool:
-    """Whether a reader may look closer: at points between two axes of numbers."""
+    """Whether a reader may zoom in: the chart has points, no labels at line ends and numbers on both axes."""
     kinds = {mark.kind for mark in chart.marks}
     return Kind.POINTS in kinds and Kind.ENDS not in kinds and not any(map(_has_words, (chart.x, chart.y)))
 
@@ -130,14 +130,14 @@ def _has_words(axis: Axis) -> bool:
 
 
 def _bottom(axis: Axis) -> int:
-    """Return the pixels below a panel: for marks or slanted names, and for the title."""
+    """Return the height of the margin below a panel in pixels: tick labels or slanted names, and the title."""
     longest = min(MOST_DOWN, max(map(len, axis.names), default=0))
     marks = MARKS + int(DOWN * longest) if axis.scale == Scale.NAMES else MARKS
     return marks + (TITLED - MARKS if axis.title else 0)
 
 
 def _colours(names: Names) -> list[str]:
-    """Return the colours of names for a light and a dark page, as CSS."""
+    """Return CSS colours for names, each for a light and a dark page."""
     return [f"light-dark({light}, {other})" for light, other in zip(names.colours(), names.colours(True), strict=True)]
 
 
@@ -157,7 +157,7 @@ LOOKS = MappingProxyType({"colour": _colours, "shape": _paths, "dash": _dashes})
 
 
 def _legend(chart: Chart, named: Mapping[str, Names]) -> Spec:
-    """Return the legend of a field: its title, and for each name the colour, shape and dash."""
+    """Return the legend for a field: its title, and an entry for each name with its colour, shape and dash."""
     names = next(iter(named.values()))
     kinds = {mark.kind for mark in chart.marks if mark.colour in {look_names.field for look_names in named.values()}}
     looks = {look: LOOKS[look](look_names) for look, look_names in named.items()}
@@ -176,7 +176,7 @@ def _legend(chart: Chart, named: Mapping[str, Names]) -> Spec:
 
 
 def _shades(shades: Shades) -> Spec:
-    """Return the colours of numbers and the ticks of their legend: shares of its length, and texts."""
+    """Return the colours for numbers, and the ticks of their legend: texts and positions in percent of its length."""
     low, high = math.log10(shades.low), math.log10(shades.high)
     values = [shades.low, *(10.0**power for power in range(math.floor(low) + 1, math.ceil(high))), shades.high]
     ticks = [(round(100 * (math.log10(v) - low) / (high - low), 2), f"{v:g}") for v in values]
@@ -187,7 +187,7 @@ def _shades(shades: Shades) -> Spec:
 
 
 def _panel(name: str, part: Chart) -> Spec:
-    """Return a panel as data. Rows that several marks draw are stored once, as columns."""
+    """Return a panel as data. Rows that several marks share are stored once, as columns."""
     tables: list[tuple[Sequence[Row], set[str]]] = []
     marks = []
     for mark in part.marks:
@@ -202,7 +202,7 @@ def _panel(name: str, part: Chart) -> Spec:
 
 
 def _drawn(part: Chart, mark: Mark) -> Sequence[Row]:
-    """Return the rows of a mark: for names at line ends the last rows, with their places as shares of the height."""
+    """Return the rows that a mark draws; for line ends the last rows, with positions as shares of the height."""
     if mark.kind != Kind.ENDS:
         return part.rows_of(mark)
     all_ends = [row for other in part.marks if other.kind == Kind.ENDS for row in part.lasts(other)]
@@ -217,7 +217,7 @@ def _fields(part: Chart, mark: Mark) -> set[str]:
 
 
 def _mark(part: Chart, mark: Mark) -> Spec:
-    """Return a mark without its default values; `named` lists the looks by which it distinguishes names."""
+    """Return a mark as data without default values; `named` lists the looks with which it distinguishes names."""
     mark_spec = {name: value for name in ("x", "y", "x2", "y2", "text", "rest") if (value := getattr(mark, name))}
     mark_spec |= {"kind": mark.kind, "colour": mark.colour} | (
         {"css": ROLES[mark.colour]} if mark.colour in ROLES else {}
@@ -244,7 +244,7 @@ def _axis(axis: Axis) -> Spec:
 
 
 def _columns(rows: Sequence[Row], fields: set[str]) -> Spec:
-    """Return rows as columns, without empty columns; a column of words has each word once, and indices."""
+    """Return rows as columns, without empty columns; a column of text stores each text once, with indices."""
     columns = {name: [_plain(row.get(name)) for row in rows] for name in sorted(fields)}
     return {name: _words(values) for name, values in columns.items() if any(value is not None for value in values)}
 
@@ -258,5 +258,5 @@ def _words(values: list[Any]) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value as a browser reads it: floats with four digits, and None if they are not finite."""
+    """Return a value for a browser: floats rounded to four digits, and None for floats that are not finite."""
     return rounded(value) if isinstance(value, float) else value

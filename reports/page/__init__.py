@@ -1,1 +1,1 @@
-"""The HTML page and the text for a pull request."""
+"""The HTML page of a run, and the text for a pull request."""

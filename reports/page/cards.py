@@ -1,4 +1,4 @@
-"""The data from which the page builds its cards of codecs: facts about each codec, and the columns of its figures."""
+"""The data for the page's cards of codecs: facts about each codec, and the columns with its figures."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def sections_of(run: Found) -> list[TableSection]:
 
 
 def codecs_of(run: Found, names: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Return the facts about each codec: its storage, and the figures by which codecs are compared."""
+    """Return the facts about each codec by name: its storage, and the figures by which codecs are compared."""
     known = run.cards["codecs"]
     first = _first_rows(sections_of(run), known)
     return {name: first.get(name, {}) | known.get(name, {}) for name in names}
@@ -58,8 +58,8 @@ def of_encoding(codec: str) -> str:
 
 
 def _table(section: TableSection, takes: Sequence[str]) -> dict[str, Any]:
-    """Return a table as a card shows it: the columns that distinguish its rows, its figures with the most important
-    first, the figures that depend on the whole texel, and the reasons for missing figures."""
+    """Return the facts about a table that a card needs: the columns that distinguish its rows, its figures with the
+    most important first, the figures that depend on the whole texel, and the columns of reasons."""
     columns = [section.column(name) for name in whole(section.rows)[0]]
     keys = [column.name for column in columns if column.role is Role.KEY and column.name not in OWN]
     figures = sorted(filter(is_figure, columns), key=lambda column: column.drops > 0)
@@ -70,13 +70,14 @@ def _table(section: TableSection, takes: Sequence[str]) -> dict[str, Any]:
 
 
 def is_figure(column: Column) -> bool:
-    """Whether codecs are compared by a column: it is a figure that is shown, and more or less is better."""
+    """Whether codecs are compared by a column: it is a displayed figure, and either more or less is better."""
     return bool(column.better) and column.shown and column.role is Role.FIGURE
 
 
 def _first_rows(sections: Sequence[TableSection], known: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return the list's figures of each codec, from its own row or from a codec that stores the same numbers. Rows of
-    normals for which it is made come first, then rows of an answer, then its own. `of` is the normal set."""
+    """Return the headline figures of each codec by name, from its own row or the row of a codec that stores the same
+    numbers. Rows on normals that the encoding can represent come first, then rows of an answer, then the codec's own.
+    `of` is the set of normals."""
     rows: dict[tuple[str, str], list[tuple[bool, bool, str, Row]]] = {}
     labels: dict[str, None] = {}
     for section in sections:
@@ -94,8 +95,8 @@ def _best_row(label: str, rows: Sequence[tuple[bool, bool, str, Row]]) -> Row:
 
 
 def _stored(label: str, known: Mapping[str, Any]) -> tuple[str, str]:
-    """Return a key that codecs share if they store the same numbers: the encoding, with those numbers or, if they are
-    not known, the codec's own name."""
+    """Return a key that codecs share if they store the same numbers: the encoding, and the stored numbers or, if
+    these are not known, the codec's name."""
     return of_encoding(label), known[label]["numbers"] if label in known else label
 
 
@@ -111,8 +112,8 @@ def _first(row: Row, names: Sequence[str]) -> float | None:
 
 
 def _code(run: Found, names: Sequence[str]) -> dict[str, Any]:
-    """Return the shader code that the run keeps of these codecs, with only the pieces of text that it needs; empty
-    collections if the run keeps no code."""
+    """Return the run's shader code for these codecs, with only the pieces of text that it needs; empty collections if
+    the run has no code."""
     kept = run.code
     if not kept:
         return {"languages": {}, "pieces": [], "codecs": {}}

@@ -1,4 +1,4 @@
-"""A page for each encoding of a run, whose text and tables need no scripts, and the list of them."""
+"""A page for each encoding in a run, readable without scripts, and an index of these pages."""
 
 from __future__ import annotations
 
@@ -47,12 +47,14 @@ class CodecPage:
 
 
 def codec_pages(run: Found, names: Sequence[str], site: Site, run_page: str) -> dict[str, str]:
-    """Return the HTML of a page for each encoding, and of an index, by their paths in the site's folder; empty if the
+    """Return the HTML of a page for each encoding and of an index, by their paths in the site's folder; empty if the
     run has no codecs.
 
     Args:
+        run: the run.
         names: names of the codecs that the run's page shows.
-        run_page: the path of that page.
+        site: the site to which the pages belong.
+        run_page: path of the run's page.
     """
     codecs = cards.codecs_of(run, names)
     groups = {name: list(labels) for name, labels in groupby(names, cards.of_encoding)}
@@ -88,7 +90,7 @@ def _page(run: Found, name: str, codecs: Mapping[str, Row]) -> CodecPage:
 
 
 def _description(name: str, known: Mapping[str, Any], codecs: Mapping[str, Row]) -> str:
-    """Return the text for search results: a description of the encoding, and its figures with the fewest bits."""
+    """Return the text for search results: a description of the encoding, and its figures at the lowest bit count."""
     says = known.get("says") or f"{name}, an encoding of normals."
     measured = [(label, row) for label, row in codecs.items() if "mean" in row]
     if not measured:
@@ -99,7 +101,7 @@ def _description(name: str, known: Mapping[str, Any], codecs: Mapping[str, Row])
 
 
 def _facts(known: Mapping[str, Any]) -> Iterator[tuple[str, Lines]]:
-    """Yield titles and lines of the facts about an encoding of the catalogue; nothing for any other encoding."""
+    """Yield titles and lines with facts about an encoding in the catalogue; nothing for any other encoding."""
     for what in ("encode", "decode"):
         if known.get(what):
             says, *formulas = known[what]
@@ -112,7 +114,7 @@ def _facts(known: Mapping[str, Any]) -> Iterator[tuple[str, Lines]]:
 
 
 def _users(used: Sequence[tuple[str, int, str]]) -> str:
-    """Return engines with the storages in which they keep normals, as text."""
+    """Return text on the engines that use an encoding, with the storages of their normals."""
     storages: dict[str, dict[str, None]] = {}
     for engine, _, storage in used:
         storages.setdefault(engine, {})[storage] = None
@@ -120,7 +122,7 @@ def _users(used: Sequence[tuple[str, int, str]]) -> str:
 
 
 def _codec_table(title: str, codecs: Mapping[str, Row]) -> PageTable:
-    """Return the table of the codecs' figures; codecs without figures are left out unless no codec has any."""
+    """Return the table of figures for codecs; codecs without figures are left out unless all lack figures."""
     rows = [
         {"codec": label, "storage": row.get("storage"), **{name: row.get(key) for name, key in FIGURES.items()}}
         for label, row in _measured(codecs).items()
@@ -133,7 +135,7 @@ def _measured(codecs: Mapping[str, Row]) -> Mapping[str, Row]:
 
 
 def _rows(section: TableSection, name: str) -> tuple[str, str, PageTable] | None:
-    """Return a table's key and title and an encoding's rows in it; None if these have no figures."""
+    """Return a table's key, its title and its rows on an encoding; None if these have no figures."""
     rows = [row for row in whole(section.rows) if row.get("encoding") == name]
     known = {column for row in rows for column, value in row.items() if value is not None and column != "encoding"}
     columns = [section.column(column) for column in (rows[0] if rows else ()) if column in known]
@@ -147,8 +149,8 @@ def _rows(section: TableSection, name: str) -> tuple[str, str, PageTable] | None
 
 
 def _code(run: Found, codecs: Mapping[str, Row]) -> Iterator[tuple[str, Sequence[tuple[str, str]]]]:
-    """Yield each codec of an encoding with the shader code that the run keeps of it, as pairs of a language and a
-    text; codecs without code are left out."""
+    """Yield each codec of an encoding with the run's shader code for it, as pairs of a language and a text; codecs
+    without code are left out."""
     kept = run.code or {"codecs": {}}
     for label in codecs:
         if label in kept["codecs"]:

@@ -1,4 +1,4 @@
-"""A run's rows inside a page: of each table one packed block of columns."""
+"""A run's rows inside a page: one packed block of columns for each table."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MANY_ROWS, DIGITS = 2_000, 5
 
 
 def block(rows: Sequence[Row], columns: Iterable[Column]) -> str:
-    """Return every row of a table as base64 of packed JSON. From it data.js reproduces the table's CSV file to the
+    """Return all rows of a table as base64 of packed JSON. From it, data.js reproduces the table's CSV file to the
     byte or, with more than MANY_ROWS rows, to DIGITS digits.
 
     Args:
@@ -37,14 +37,14 @@ def block(rows: Sequence[Row], columns: Iterable[Column]) -> str:
 
 
 def _about(column: Column, name: str) -> dict[str, Any]:
-    """Return the facts about a column, without empty ones."""
+    """Return the facts about a column, without empty values."""
     facts = {"says": column.definition, "better": column.better, "role": column.role.value, "unit": column.unit}
     facts |= {"hidden": not column.shown}
     return {"name": name, "title": title_of(name), **{key: value for key, value in facts.items() if value}}
 
 
 def _values(name: str, rows: Sequence[Row], digits: int | None) -> dict[str, Any]:
-    """Return a column's values: numbers unchanged, all else as the texts of a CSV file, each once, with indices."""
+    """Return a column's values: numbers unchanged, others as texts of a CSV file, each stored once, with indices."""
     values = [row.get(name) for row in rows]
     known = [value for value in values if value is not None]
     if known and all(type(value) is float for value in known):
@@ -61,7 +61,7 @@ def _is_nothing(value: Any) -> bool:
 
 
 def _number(value: float | None, digits: int | None) -> float | str | None:
-    """Return a float for JSON: infinity as text, NaN as None, and with all its digits unless `digits` is given."""
+    """Return a float for JSON: infinity as text, NaN as None, others with all digits unless `digits` is given."""
     if value is None or _is_nothing(value):
         return None
     if not math.isfinite(value):

@@ -1,4 +1,4 @@
-"""Images in a page: every pixel unchanged, with lossless compression."""
+"""Images embedded in a page, with lossless compression."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True)
 class Gallery:
-    """A page's pictures.
+    """The pictures of a page.
 
     Attributes:
-        subjects: what is shown, as pictures.js reads it.
-        left_out: names of codecs whose pictures are left out, so that the page stays small.
+        subjects: subjects with their pictures, as pictures.js reads them.
+        left_out: names of codecs whose pictures are left out to keep the page small.
         damaged: names of codecs whose files cannot be read.
-        files: scripts next to the page, text by name.
+        files: texts of scripts next to the page, by file name.
     """
 
     subjects: Sequence[Record] = ()
@@ -59,7 +59,7 @@ class Gallery:
 
 
 def data_uri(pixels: Image.Image) -> str:
-    """Return an image as lossless WebP in a data URI."""
+    """Return an image as a data URI with lossless WebP."""
     data = BytesIO()
     # Colours of transparent pixels are kept as well.
     pixels.save(data, format="webp", lossless=True, exact=True, method=EFFORT)
@@ -67,7 +67,7 @@ def data_uri(pixels: Image.Image) -> str:
 
 
 def small_uri(pixels: np.ndarray) -> str:
-    """Return uint8 pixels of shape (height, width, channels) as an image in a data URI."""
+    """Return uint8 pixels of shape (height, width, channels) as an image in a data URI, with lossless WebP."""
     return data_uri(Image.fromarray(pixels))
 
 
@@ -78,8 +78,8 @@ def _bytes_uri(planes: Sequence[np.ndarray]) -> str:
 
 
 def _code_uris(codes: np.ndarray, bits: Sequence[int]) -> list[str]:
-    """Return codes as images in data URIs. Each component is shifted up to whole bytes; the bytes follow each other,
-    the highest of every component first, three to an image."""
+    """Return codes as images in data URIs. Each component is shifted up to whole bytes; each image holds three bytes,
+    in the order of the highest byte of every component, then the next byte and so on."""
     planes: list[np.ndarray] = []
     sizes = [-(-count // 8) for count in bits]
     for level in range(max(sizes)):
@@ -91,7 +91,7 @@ def _code_uris(codes: np.ndarray, bits: Sequence[int]) -> list[str]:
 
 
 def _planes(pixels: NormalPixels | ImagePixels, original: np.ndarray, step: int) -> Record:
-    """Return every `step`-th pixel of a codec, in both directions, as images in data URIs for pictures.js."""
+    """Return every `step`-th pixel of a codec in both directions, as images in data URIs for pictures.js."""
     if isinstance(pixels, NormalPixels):
         angle, codes, decoded = (plane[::step, ::step] for plane in (pixels.angle, pixels.codes, pixels.decoded))
         coded = {"codes": _code_uris(codes, pixels.bits), "bits": list(pixels.bits)}
@@ -121,7 +121,7 @@ class _Packer:
         self.has_flip, self.is_full = True, False
 
     def planes(self, pictured: Pictured) -> Record | None:
-        """Return a codec's pixels, empty if there is no more room; None if they cannot be read."""
+        """Return a codec's pixels, empty if there is no more room; None if unreadable or of the wrong size."""
         pixels = pictured.load()
         self.has_flip = self.has_flip and isinstance(pixels, ImagePixels) and pixels.flip is not None
         if not pixels or pixels.shape != self.original.shape:
@@ -129,11 +129,11 @@ class _Packer:
         return {} if self.is_full else _planes(pixels, self.original, self.step)
 
     def size_with(self, planes: Record) -> int:
-        """Return the size that another codec adds to the page; the first codec brings the original with it."""
+        """Return the size that a codec's pixels add to the page; the first codec also adds the original."""
         return len(json.dumps(planes)) + (0 if self.taken else len(self.record["original"]))
 
     def take(self, pictured: Pictured, what: Record) -> None:
-        """Add a codec, with its pixels, to those that the page shows of the subject."""
+        """Add a codec and its pixels to the subject's pictures on the page."""
         self.taken[pictured.label] = {"label": pictured.label, "codec": pictured.codec} | what
 
     @property
@@ -148,8 +148,9 @@ def gallery(subjects: Sequence[Subject], beside: str = "", budget: int = BUDGET)
 
     Args:
         subjects: the available subjects.
-        beside: the folder, as the page names it, of scripts that hold all pictures in full size. If it is empty,
-            the page holds them: for each subject the first codecs that fit, all pictures of a codec or none.
+        beside: folder, as the page names it, of scripts with all pictures in full size. If it is empty, the page
+            itself
+            holds the pictures: for each subject those of the first codecs that fit.
         budget: maximum size of the pictures inside the page.
     """
     originals = [(subject, subject.original()) for subject in subjects]
@@ -176,7 +177,8 @@ def gallery(subjects: Sequence[Subject], beside: str = "", budget: int = BUDGET)
 
 
 def _packed(pool: ThreadPoolExecutor, packers: Sequence[_Packer]) -> Iterator[tuple[_Packer, Pictured, Record | None]]:
-    """Yield each codec's pixels, a few at a time, so that full subjects are known before the next are packed."""
+    """Yield each codec's pixels. A few codecs are packed at a time, so that codecs of a subject that turns out to be
+    full are not packed."""
     wanted = list(_in_turn(packers))
     for start in range(0, len(wanted), WORKERS):
         few = wanted[start : start + WORKERS]
@@ -185,7 +187,8 @@ def _packed(pool: ThreadPoolExecutor, packers: Sequence[_Packer]) -> Iterator[tu
 
 
 def _in_turn(packers: Sequence[_Packer]) -> Iterator[tuple[_Packer, Pictured]]:
-    """Yield codecs that precede all others, then by rank the first codec of each subject, the second and so on."""
+    """Yield codecs in the order in which they get room: first those that each subject puts first, then, by rank, the
+    next codec of each subject in turn."""
     ranked = [
         [(packer, codec) for codec in sorted(packer.subject.codecs, key=lambda shown: shown.rank)] for packer in packers
     ]

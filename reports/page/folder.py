@@ -1,4 +1,4 @@
-"""The page of a folder's codes of normals."""
+"""The page on the encodings of normals that were found in a folder."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Head(NamedTuple):
 
 
 def folder_html(folder: str, lead: str, rows: Sequence[Mapping[str, Any]], lines: Sequence[str], patch: str) -> str:
-    """Return the HTML of a page with a sentence, a table of rows, findings, and a patch; any of them may be empty."""
+    """Return the HTML of a page with a sentence, a table of rows, findings and a patch, each possibly empty."""
     shown = [dict(row) for row in rows]
     heads = [Head(tables.title_of(name), tables.is_numeric(shown, name)) for name in (shown[0] if shown else ())]
     cells = [[tables.text_of(value) for value in row.values()] for row in shown]

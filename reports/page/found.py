@@ -1,4 +1,4 @@
-"""The data of a page: everything that a run left, gathered by any caller that can read runs."""
+"""The data for a page: everything that a run left, gathered by a caller that can read runs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Front:
 
 @dataclass(frozen=True)
 class Listing:
-    """A kernel's disassembly, and its encoding's GLSL, which may be empty."""
+    """A kernel's disassembly, and the GLSL of its encoding, which may be empty."""
 
     text: str
     source: str = ""
@@ -45,25 +45,25 @@ class Listing:
 
 @dataclass(frozen=True)
 class Found:
-    """A run.
+    """The results of a run.
 
     Attributes:
-        name: the folder's name.
+        name: name of the run's folder.
         facts: the contents of run.json.
         tables: rows by table, as they were stored.
-        sections: the tables as the page shows them, in its order.
+        sections: the tables as sections of the page, in its order.
         steps: number of steps that have their rows.
         finished: whether all requested steps have their rows.
         encodings: names of encodings of normals: the catalogue's, and those in users' files.
-        subjects: the normals and images that codecs were tested on, and their pixels.
+        subjects: the normals and images on which codecs were tested, and their pixels.
         maps: errors over the sphere.
         agreement: how far the figures of the two backends differ, in a sentence; empty if no codec has both.
         fronts: cost against error.
         listings: disassemblies, by name.
-        choices: the questions whose conditions a reader may change; empty if a run answers none.
+        choices: the questions whose conditions a reader may change; empty if the run answers none.
         cards: facts about codecs and encodings; may be empty.
-        code: source code of codecs that the run stores; empty if it stores none.
-        live: the data of its laboratory; None if the run has no laboratory.
+        code: source code for codecs that the run stores; empty if it stores none.
+        live: data for the laboratory; None if the run has no laboratory.
         remarks: problems with the run, in sentences.
     """
 
@@ -91,13 +91,13 @@ class Found:
 
     @property
     def machine(self) -> Row:
-        """Names and versions of the hardware and software that measured, by component; empty if unknown."""
+        """Names and versions of the hardware and software of the measurement, by component; empty if unknown."""
         machine = self.facts.get("machine")
         return machine if isinstance(machine, dict) else {}
 
     @property
     def begun(self) -> str:
-        """Time at which the run began; empty if unknown."""
+        """The time at which the run began; empty if unknown."""
         return str(self.facts.get("time") or "")
 
     @property
@@ -107,7 +107,7 @@ class Found:
 
     @property
     def request(self) -> Row:
-        """The request of the run, by option."""
+        """The options with which the run was requested; empty if unknown."""
         request = self.facts.get("request")
         return request if isinstance(request, dict) else {}
 
@@ -119,8 +119,8 @@ class Found:
 
 
 def plain_text(value: Any) -> Any:
-    """Return a value with the texts in it, at any depth, made safe: control characters and line breaks become spaces,
-    lone surrogates question marks."""
+    """Return a value with all texts in it, at any depth, made safe: control characters and line breaks become spaces,
+    and lone surrogates become question marks."""
     if isinstance(value, dict):
         return {str(plain_text(str(name))): plain_text(inner) for name, inner in value.items()}
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""The laboratory of a page: codecs as GLSL ES that the reader's browser runs, unpacked when it is opened."""
+"""The laboratory of a page: codecs in GLSL ES that the reader's browser runs, unpacked when it is opened."""
 
 from __future__ import annotations
 
@@ -43,17 +43,17 @@ SCENES = 200_000
 
 @dataclass(frozen=True)
 class Live:
-    """The data of a run for the laboratory.
+    """A run's data for the laboratory.
 
     Attributes:
         codecs: the codecs, as `bench.measures.live.programs` returns them.
         storages: the functions of storages, in the same form, for an encoder that the reader types.
         left_out: the reason why a browser cannot run a codec, by codec.
-        scenes: sets of normals that are images: names, pixels as uint8 of shape (height, width, 4), slopes of the
-            rays through the right and the upper edge.
-        unpacking: how pixels become normals.
+        scenes: image sets of normals: names, pixels as uint8 of shape (height, width, 4), and the slopes of the rays
+            through the right and the upper edge.
+        unpacking: data for converting pixels to normals.
         helpers: GLSL ES of the functions that users' encoders may call.
-        checks: what browsers need to make the normals for the `checks` of each codec.
+        checks: data from which browsers make the normals for the `checks` of each codec.
     """
 
     codecs: Sequence[Record]
@@ -85,7 +85,7 @@ class Live:
         return json.dumps(content, sort_keys=True)
 
     def _scenes(self) -> Iterator[Record]:
-        """Yield the first scenes, as many as fit in SCENES bytes."""
+        """Yield the scenes that fit, in order, in a total of SCENES bytes."""
         left = SCENES
         for name, pixels, slope in self.scenes:
             uri = small_uri(pixels)
@@ -102,14 +102,14 @@ def _named(codec: Record) -> Record:
 
 
 def _shader(path: Path) -> str:
-    """Return a shader's text, without comments unless it is the example, which a reader sees."""
+    """Return a shader's text without comments, except that the example, which a reader sees, keeps them."""
     text = path.read_text(encoding="utf-8")
     return text if path.name == EXAMPLE else _bare(re.sub(r" +//.*", "", text))
 
 
 def script() -> str:
-    """Return the laboratory's scripts as one script, without indentation and comment lines. No string literal in them
-    may have several lines."""
+    """Return the laboratory's scripts joined into one, without indentation and comment lines. No string literal in
+    them may span several lines."""
     return _bare("\n".join((FOLDER / name).read_text(encoding="utf-8") for name in SCRIPTS))
 
 

@@ -1,4 +1,4 @@
-"""A run's report for a pull request: the answer, or shortened tables if the run has no answer, without a link."""
+"""A run's report for a pull request, without links: the answer, or shortened tables if the run has no answer."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CUT = "The tables do not fit in a comment; `normalbench report` shows them all.\
 
 
 def markdown(run: Found) -> str:
-    """Return a run as Markdown, cut after whole blocks to at most LONGEST characters."""
+    """Return a run's report as Markdown, cut between blocks to at most LONGEST characters."""
     safe = replace(
         run,
         name=_plain(run.name),

@@ -1,4 +1,4 @@
-"""A run's report: one HTML page that holds everything it shows, or a text for a pull request."""
+"""A run's report as one HTML page, self-contained unless its pictures are stored next to it."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ MOST_REMARKS = 2
 
 @dataclass(frozen=True)
 class Cell:
-    """A table's cell: its text, the value that it is sorted by if different, and its classes in page.css."""
+    """A cell of a table: its text, the value by which it is sorted if that differs, and its classes in page.css."""
 
     text: str
     value: str
@@ -59,7 +59,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Heading:
-    """A column's heading: its text, and whether its cells are numbers."""
+    """The heading of a column: the column, the heading's text, and whether the cells are numbers."""
 
     column: Column
     title: str
@@ -68,7 +68,7 @@ class Heading:
 
 @dataclass(frozen=True)
 class Line:
-    """A table's row: its cells, and the codec that it is of, empty for none."""
+    """A row of a table: its cells, and the name of its codec, empty if it has none."""
 
     cells: Sequence[Cell]
     codec: str
@@ -76,8 +76,8 @@ class Line:
 
 @dataclass(frozen=True)
 class PageTable:
-    """A table as the template shows it; `constants` states the values that all rows share, and `data` has its rows
-    packed if the page builds the table only when it is opened."""
+    """A table for the template; `constants` states the values that all rows share, and `data` contains its packed
+    rows if the page builds the table only when it is opened."""
 
     title: str
     columns: Sequence[Heading]
@@ -90,22 +90,27 @@ class PageTable:
 
 
 def definitions(shown: Iterable[PageTable]) -> list[tuple[str, str]]:
-    """Return the titles and definitions of the columns of tables, each once."""
+    """Return the titles and definitions of the columns in tables, each once."""
     heads = (head for page_table in shown for head in page_table.columns)
     return list(dict.fromkeys((head.title, head.column.definition) for head in heads if head.column.definition))
 
 
 def table(title: str, rows: Sequence[Row], says: Callable[[str], str]) -> PageTable:
-    """Return rows as a table to show; columns with the same value in each row are stated once."""
+    """Return rows as a page table; a column with the same value in all rows is stated once.
+
+    Args:
+        title: title of the table.
+        rows: the rows.
+        says: function that returns the definition of a column by name."""
     return sheet_table(Sheet(title, rows), lambda name: Column(name, says(name)))
 
 
 def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Container[str] = ()) -> PageTable:
-    """Return a sheet as a table to show.
+    """Return a sheet as a page table.
 
     Args:
-        column: function that returns the column of a name.
-        encodings: names of encodings; their rows say which codec they are of.
+        column: function that returns the column for a name.
+        encodings: names of encodings whose rows are labelled with their codec.
     """
     rows = whole(sheet.rows)
     shown, constants = tables.without_constants(rows)
@@ -124,8 +129,8 @@ def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Contai
 
 
 def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator[tuple[int, str]]:
-    """Yield the places of a column's best figures, among those with the same bits and operation; none if all are
-    the same or several are infinite, because the column then cannot tell which is the best."""
+    """Yield the positions, row and column, of a column's best figures among rows with the same bits and operation;
+    none if all figures are equal or several are infinite, because they then do not show which is the best."""
     groups: dict[Any, list[int]] = {}
     for index, row in enumerate(rows):
         if is_number(row[column.name]):
@@ -147,8 +152,8 @@ def _cell(value: Any, numeric: bool, is_best: bool) -> Cell:
 
 
 def _codec(row: Mapping[str, Any], encodings: Container[str]) -> str:
-    """Return the label of a row's codec, or only the encoding's name if the row has no storage; empty if the row's
-    encoding is not among `encodings`."""
+    """Return the label of a row's codec, or only the encoding's name if the row has no storage; empty unless the
+    encoding is among `encodings`."""
     encoding = row.get("encoding")
     if not isinstance(encoding, str) or encoding not in encodings:
         return ""
@@ -157,8 +162,8 @@ def _codec(row: Mapping[str, Any], encodings: Container[str]) -> str:
 
 
 def remarks(run: Found) -> list[str]:
-    """Return the sentences that a reader should know before the figures of a run: remarks, skipped parts, and whether
-    the run is unfinished."""
+    """Return sentences that a reader should see before the figures: whether the run is unfinished, remarks, and parts
+    that were skipped."""
     sentences = list(run.remarks)
     left_out = run.facts.get("left_out")
     sentences += [f"Skipped in this run: {line}." for line in left_out] if isinstance(left_out, list) else []
@@ -169,7 +174,7 @@ def remarks(run: Found) -> list[str]:
 
 @dataclass(frozen=True)
 class Chart:
-    """A drawing in the page, and its description for charts.js."""
+    """A chart on the page: the drawing, and its data for charts.js."""
 
     drawing: Drawing
     spec: Spec
@@ -177,7 +182,7 @@ class Chart:
 
 @dataclass(frozen=True)
 class PageSection:
-    """A section as the template shows it."""
+    """A section for the template: the table's section, its charts and tables, and the conditions of measurement."""
 
     section: TableSection
     charts: Sequence[Chart]
@@ -192,7 +197,7 @@ class PageSection:
 
 @dataclass(frozen=True)
 class Shown:
-    """A view that the page has something for: its name, and the anchors and names of its parts."""
+    """A view that has contents: the view, its title, and the anchors and names of its parts."""
 
     view: View
     title: str
@@ -201,8 +206,8 @@ class Shown:
 
 @dataclass(frozen=True)
 class Home:
-    """The text of the page as the first page of a site: its description in search results, and links to the other
-    pages, each a path and a title."""
+    """The text of the page as the home page of a site: its title, its description in search results, and links to the
+    other pages, each a path and a title."""
 
     title: str
     description: str
@@ -226,9 +231,9 @@ def views(run: Found, has_codecs: bool, has_pictures: bool) -> list[Shown]:
 def beginning(
     parts: Sequence[PageSection], names: Sequence[str], own: Sequence[str] = (), is_laboratory: bool = False
 ) -> dict[str, Any]:
-    """Return the state with which the script begins: every codec, the first A and B, and the view. A and B are the
-    answer and its neighbour in the table, or a user's own codec and the answer. The view is the laboratory if the
-    page is a laboratory, else the view of the first measured section, answers before all others."""
+    """Return the initial state of the page's script: all codecs, codecs A and B, and the view. A and B are the answer
+    and the next codec in its table, or a user's own codec and the answer. The view is the laboratory if the page is a
+    laboratory, otherwise the view of the first measured section, with answers before all others."""
     measured = sorted((part for part in parts if part.is_there), key=lambda part: not part.section.about.leads)
     leading = [part for part in measured if part.section.about.leads]
     answers = (table for part in leading for table in part.tables if table.said)
@@ -244,7 +249,7 @@ def beginning(
 
 
 def _own(run: Found, names: Sequence[str]) -> list[str]:
-    """Return the names of codecs whose encoding is a user's own, not in the catalogue."""
+    """Return the names of codecs whose encoding is not in the catalogue but a user's own."""
     known = run.cards.get("encodings")
     return [name for name in names if known and cards.of_encoding(name) not in known]
 
@@ -257,7 +262,7 @@ def drawings(run: Found) -> list[Drawing]:
 
 @cache
 def template(name: str) -> Any:
-    """Return a Jinja template of the folder `web`, by its file name."""
+    """Return a Jinja template from the folder `web`, by its file name."""
     import jinja2
 
     environment = jinja2.Environment(
@@ -289,15 +294,15 @@ def html(
     files: Container[str] = (),
     home: Home | None = None,
 ) -> str:
-    """Return the page.
+    """Return the page as HTML.
 
     Args:
         run: the run.
-        gallery: its pictures.
-        specs: its charts, by the names of their drawings; a chart that is missing is not shown.
-        library_script: the script that draws them.
+        gallery: the run's pictures.
+        specs: charts as data, by the names of their drawings; a chart without data is not shown.
+        library_script: the script that draws the charts.
         files: names of the files next to the page.
-        home: its text as the first page of a site, which begins with the laboratory; None for a page alone.
+        home: text for the home page of a site, which begins with the laboratory; None for a page on its own.
     """
     laboratory = live.script() if run.live else ""
     names = codecs(run, specs)
@@ -344,7 +349,7 @@ def html(
 
 
 def _listings(run: Found) -> str:
-    """Return the disassemblies as JSON text for data.js."""
+    """Return the run's disassemblies as JSON text for data.js."""
     listings = run.listings
     return json.dumps({name: {"text": listing.text, "source": listing.source} for name, listing in listings.items()})
 
@@ -353,9 +358,9 @@ def base(names: Sequence[str], unpacked: Sequence[str] = (), is_beside: bool = F
     """Return the variables that base.html.j2 needs for every page.
 
     Args:
-        names: the page's scripts, files of the folder web.
+        names: file names of the page's scripts in the folder `web`.
         unpacked: texts of scripts that the page unpacks later.
-        is_beside: whether images are stored next to the page.
+        is_beside: whether pictures are stored in scripts next to the page.
     """
     scripts = [(WEB / name).read_text(encoding="utf-8") for name in names]
     style = (WEB / "page.css").read_text(encoding="utf-8")
@@ -363,7 +368,7 @@ def base(names: Sequence[str], unpacked: Sequence[str] = (), is_beside: bool = F
 
 
 def about(run: Found) -> dict[str, str]:
-    """Return the facts about a run that the laboratory shows: its name, sources and program version."""
+    """Return the facts about a run that the laboratory needs: its name, fingerprint and program version."""
     return {"run": run.name, "sources": run.sources, "program": str(run.machine.get("normalbench", ""))}
 
 
@@ -373,15 +378,15 @@ def data_block(data: Any) -> str:
 
 
 def sources_of(scripts: Sequence[str], is_beside: bool = False) -> str:
-    """Return the sources from which the page may run scripts, for its Content-Security-Policy: hashes of its own
-    scripts, and files next to it if `is_beside`."""
+    """Return the script sources that the page allows, for its Content-Security-Policy: hashes of its own scripts and,
+    if `is_beside`, files next to it."""
     digests = (base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii") for script in scripts)
     return " ".join([*(f"'sha256-{digest}'" for digest in digests), *(["'self'", "file:"] if is_beside else [])])
 
 
 def part_of(run: Found, section: TableSection, specs: Mapping[str, Spec], most_cells: float) -> PageSection:
-    """Return the PageSection of a table: its charts, and its tables, as blocks of data once they have more than
-    `most_cells` cells."""
+    """Return the page section for a table: its charts, and its sheets as tables. Once the tables exceed `most_cells`
+    cells in total, the rest are packed as data."""
     encodings = run.encodings
     sheets = list(section.sheets)
     shown = [sheet_table(sheet, section.column, encodings) for sheet in sheets]

@@ -1,4 +1,4 @@
-"""Pixels that a page can show: how a run's files store them, and how angles become bytes."""
+"""The pixels that a page can show: how a run's files store them, and how angles are stored as bytes."""
 
 from __future__ import annotations
 
@@ -23,12 +23,11 @@ NOT_A_NUMBER = 255
 
 
 def angle_bytes(degrees: np.ndarray, covered: np.ndarray) -> np.ndarray:
-    """Return angles as bytes, uint8 of the same shape: within 4.5% of the angle, NOT_A_NUMBER for NaN, 0 for
-    background.
+    """Return angles as bytes, uint8 of the same shape: accurate to 4.5%, NOT_A_NUMBER for NaN, 0 for the background.
 
     Args:
-        degrees: any shape.
-        covered: bool of the same shape; false for background.
+        degrees: angles, of any shape.
+        covered: bool of the same shape; false for the background.
     """
     known = np.maximum(np.nan_to_num(degrees), 2.0**LEAST_LOG2)
     steps = np.rint((np.log2(known) - LEAST_LOG2) * STEPS_PER_OCTAVE) + 1
@@ -37,13 +36,14 @@ def angle_bytes(degrees: np.ndarray, covered: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class NormalPixels:
-    """An image of normals after a codec.
+    """An image of normals after a codec's round trip.
 
     Attributes:
-        angle: `angle_bytes` of shape (height, width).
+        angle: result of `angle_bytes`, of shape (height, width).
         codes: the stored bits, unsigned integers of shape (height, width, components).
         bits: bits of each component.
-        decoded: [-1, 1] as [0, 255], black on the background, uint8 of shape (height, width, 3).
+        decoded: decoded normals, [-1, 1] mapped to [0, 255], black on the background, uint8 of shape (height, width,
+            3).
     """
 
     angle: np.ndarray
@@ -72,14 +72,14 @@ class ImagePixels:
 
 @dataclass(frozen=True)
 class Pictured:
-    """The pixels of a codec.
+    """A codec with its pixels.
 
     Attributes:
         key: the codec.
-        label: human-readable name.
+        label: display name.
         codec: the codec's name in tables and charts; empty if it is not a codec.
         load: function that returns its pixels; None if its files are damaged.
-        rank: codecs of a lower rank are shown if there is not room for all.
+        rank: if there is not room for all codecs, those of lower rank are shown.
     """
 
     key: CodecKey
@@ -94,12 +94,13 @@ class Subject:
     """A subject on which several codecs were tested.
 
     Attributes:
-        title: human-readable name.
+        title: display name.
         of: "normals" or "image".
-        original: returns the exact normals, or the image in 32-bit floats: uint8 of shape (height, width, 3); None
-            if its file is damaged.
-        codecs: codecs that have pixels, the best of the fewest bits first.
-        first: number of these for which a page makes room before it takes any of other subjects.
+        original: function that returns the exact normals, or the image in 32-bit floats: uint8 of shape (height,
+            width,
+            3); None if the file is damaged.
+        codecs: codecs with pixels, by bits, the best first.
+        first: number of codecs that get room on a page before any other subject does.
     """
 
     title: str
@@ -111,7 +112,7 @@ class Subject:
 
 @dataclass(frozen=True)
 class Film:
-    """An animation: its description, in a sentence, and its file."""
+    """An animation: a sentence that describes it, and its file."""
 
     said: str
     path: Path
@@ -129,7 +130,7 @@ def film_uri(path: Path) -> str:
 
 
 def read_png(path: Path) -> np.ndarray | None:
-    """Return a PNG file's pixels, uint8 of shape (height, width, 3); None if damaged or too large for a page."""
+    """Return the pixels of a PNG file, uint8 of shape (height, width, 3); None if damaged or too large for a page."""
     try:
         with Image.open(path, formats=["PNG"]) as image:
             return None if image.width * image.height > MAX_PIXELS else np.asarray(image.convert("RGB"))

@@ -15,17 +15,17 @@ SAID = ("normals", "scene", "aim")
 
 @dataclass(frozen=True)
 class TableSection:
-    """A table's part of a page.
+    """The section of a page about a table.
 
     Attributes:
-        key: its anchor, and the name of the run's table.
-        about: the page's text about the table, whatever was measured.
+        key: anchor of the section, and the name of the run's table.
+        about: the page's text about the table, which does not depend on the results.
         columns: columns of its rows.
         also: columns that only its summary has.
-        rows: every row.
-        summary: the sheets that people look at first.
+        rows: all rows.
+        summary: the sheets to read first.
         drawings: its charts.
-        asked: whether the run requested it.
+        asked: whether the run requested the table.
         films: its animations, each a sentence and a data URI.
     """
 
@@ -46,23 +46,23 @@ class TableSection:
 
     @property
     def sheets(self) -> Iterator[Sheet]:
-        """The sheets that people look at first, without empty sheets."""
+        """The sheets to read first, without empty sheets; all rows of a sheet have the same columns."""
         return (replace(sheet, rows=whole(sheet.rows)) for sheet in self.summary if sheet.rows)
 
     @property
     def data(self) -> str:
-        """Every row of the table, packed as text for data.js."""
+        """All rows of the table, packed as text for data.js."""
         return block(whole(self.rows), self.columns)
 
     def measured(self) -> list[tuple[str, str]]:
-        """Return pairs of name and values, as text, of the columns SAID: the conditions of the answer. Columns
-        without values are left out."""
+        """Return pairs of a name and its values, as text, for the columns SAID: the conditions of the measurement.
+        Columns without values are left out."""
         conditions = [(name, dict.fromkeys(str(row[name]) for row in self.rows if row.get(name))) for name in SAID]
         return [(name, ", ".join(values)) for name, values in conditions if values]
 
 
 def answered_first(sections: Sequence[TableSection]) -> list[TableSection]:
-    """Return the sections, with the sheets first whose storage and normals are those of the page's answers."""
+    """Return the sections; in each, sheets with the storage and normals of the page's answers come first."""
     answers = [sheet.keys for section in sections if section.about.leads for sheet in section.summary]
 
     def is_other(sheet: Sheet) -> tuple[bool, ...]:
@@ -72,6 +72,6 @@ def answered_first(sections: Sequence[TableSection]) -> list[TableSection]:
 
 
 def whole(rows: Sequence[Row]) -> list[Row]:
-    """Return rows that all have the same columns, in the order of first appearance; missing values are None."""
+    """Return rows that all have the same columns, in order of first appearance; missing values become None."""
     columns = dict.fromkeys(column for row in rows for column in row)
     return [{column: row.get(column) for column in columns} for row in rows]

@@ -1,5 +1,5 @@
 """The pages of a site other than the laboratory: searchable lists, devices, encodings, and a run's results without
-scripts. Nothing here knows how anything is measured."""
+scripts. This module does not depend on how anything is measured."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LONGEST = 60
 
 @dataclass(frozen=True)
 class Site:
-    """The links of a site's pages.
+    """The links between a site's pages.
 
     Attributes:
         pages: titles by path; every page links to these.
@@ -32,23 +32,25 @@ class Site:
     laboratory: str = ""
 
     def leads(self, path: str) -> dict[str, Any]:
-        """Return the links that base pages need from a path to the other pages."""
+        """Return the template variables for the links from the page at a path to the other pages."""
         links = [(linked(to, path), title, to == path) for to, title in self.pages.items()]
         about = {"links": links if len(links) > 1 else [link for link in links if not link[2]]}
         return about | {"laboratory": linked(self.laboratory, path) if self.laboratory else ""}
 
 
 def linked(to: str, path: str) -> str:
-    """Return the relative link from the page `path` to another path of the site, which may have a fragment."""
+    """Return the relative link from the page at `path` to another path of the site, which may have a fragment."""
     file, mark, fragment = to.partition("#")
     return posixpath.relpath(file, posixpath.dirname(path) or ".") + mark + fragment
 
 
 def plain_names(names: Iterable[str], other: str) -> Iterator[str]:
-    """Yield a unique name for each name, in letters that every file system and URL allows; never "index".
+    """Yield a unique name for each name, with only letters, digits and marks that every file system and URL allows;
+    never "index".
 
     Args:
-        other: name to use in place of a name without such letters.
+        names: the names.
+        other: replacement for a name without such characters.
     """
     taken = {"index"}
     for name in names:
@@ -69,15 +71,15 @@ class Answer:
 
 @dataclass(frozen=True)
 class DeviceSection:
-    """A device on the page of devices.
+    """A section on the page of devices.
 
     Attributes:
         name: the device and its browser.
-        key: the section's anchor.
-        said: how it agrees with the run, in a sentence.
-        about: what the browser reports about it, by name.
+        key: anchor of the section.
+        said: how the device agrees with the run, in a sentence.
+        about: what the browser reports about the device, by name.
         answers: the recommended encodings.
-        tables: tables of every codec and of the facts.
+        tables: tables of all codecs and of the facts.
     """
 
     name: str
@@ -90,7 +92,7 @@ class DeviceSection:
 
 @dataclass(frozen=True)
 class Searched:
-    """A searchable table of the index: for each row, more words that find it and its link, empty for none."""
+    """A searchable table of the index; each row may have more search terms and a link."""
 
     key: str
     title: str
@@ -101,7 +103,7 @@ class Searched:
 
 
 def words_table(title: str, rows: Sequence[Mapping[str, str | None]]) -> PageTable:
-    """Return rows of words as a table to show; every column stays, even if all rows have the same value."""
+    """Return rows of text as a page table; columns are kept even if all rows have the same value."""
     heads = [Heading(undefined(name), name, numeric=False) for name in rows[0]]
     lines = [Line([Cell(tables.text_of(row[head.title]), "", "") for head in heads], "") for row in rows]
     return PageTable(title, heads, lines, "")
@@ -112,10 +114,10 @@ class Headed:
     """A page that answers a question.
 
     Attributes:
-        path: path of the page, from the site's folder.
+        path: path of the page in the site's folder.
         title: subject of the page.
         description: text for search results.
-        question: its heading.
+        question: heading of the page.
     """
 
     path: str
@@ -126,14 +128,14 @@ class Headed:
 
 @dataclass(frozen=True)
 class Index(Headed):
-    """A searchable list.
+    """A page of searchable lists.
 
     Attributes:
         said: the findings from all rows together, in sentences.
         label: label of the search field.
         searched: its tables.
         devices: sections on the devices in its tables.
-        measures: whether it says how a reader's device is measured and added.
+        measures: whether the page explains how a reader's device is measured and added.
     """
 
     said: Sequence[str]
@@ -145,11 +147,11 @@ class Index(Headed):
 
 @dataclass(frozen=True)
 class ViewPage(Headed):
-    """The text of a view of the run's page, without scripts.
+    """A page with the text of a view of the run's page, without scripts.
 
     Attributes:
-        said: the answer in a sentence; empty for none.
-        view: the path of the view in the run's page, and what a reader does there.
+        said: the answer in a sentence; empty if there is none.
+        view: the link to the view on the run's page, and what a reader can do there.
         parts: its sections.
     """
 
@@ -159,12 +161,12 @@ class ViewPage(Headed):
 
 
 def index_html(index: Index, site: Site) -> str:
-    """Return the HTML of a page with searchable lists."""
+    """Return the HTML of an index page with searchable lists."""
     return template("site.html.j2").render(index=index, **_around(index.path, site))
 
 
 def view_html(shown: ViewPage, site: Site) -> str:
-    """Return the HTML of the page with the text of a view."""
+    """Return the HTML of a page with the text of a view."""
     view = linked(shown.view[0], shown.path)
     return template("view.html.j2").render(shown=shown, view=view, choices=None, **_around(shown.path, site))
 

@@ -1,4 +1,4 @@
-"""Wording for rows of several sections: domains in words, and how far backends agree."""
+"""Helpers for rows of several sections: tests of values, the names of sets, and the agreement of backends."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ LEAST_DB = 0.001
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value is a number, which may be infinite: neither text nor Boolean nor NaN."""
+    """Whether a value is a number other than NaN, possibly infinite; text and Booleans are not numbers."""
     return isinstance(value, int | float) and not isinstance(value, bool) and value == value
 
 
 def is_count(value: Any) -> bool:
-    """Whether a value is an integer, not a Boolean."""
+    """Whether a value is an integer; a Boolean is not."""
     return isinstance(value, int) and not isinstance(value, bool)
 
 
 def counted_set(row: Row, rows: Sequence[Row]) -> str:
-    """Return the name of a row's set of normals, with their number if rows have sets of this name and other sizes,
-    which are not compared."""
+    """Return the name of a row's set of normals, with the number of normals if rows have sets of this name and
+    different sizes, which are not compared."""
     name, counts = (
         str(row.get("normals")),
         {other.get("count") for other in rows if other.get("normals") == row.get("normals")},
@@ -36,7 +36,7 @@ def counted_set(row: Row, rows: Sequence[Row]) -> str:
 
 
 def agreement(quality: Sequence[Row]) -> str:
-    """Return how far the figures of the two backends differ, in a sentence; empty if no codec has both.
+    """Return a sentence on how far the figures of two backends differ; empty if no codec was measured with both.
 
     Args:
         quality: rows of the quality table.
@@ -58,6 +58,6 @@ def agreement(quality: Sequence[Row]) -> str:
 
 
 def _apart(by_backend: Mapping[Any, float]) -> float:
-    """Return the difference of the largest and the smallest of one codec's figures; 0 if both are infinite."""
+    """Return the difference between the largest and the smallest of a codec's figures; 0 if both are infinite."""
     most, least = max(by_backend.values()), min(by_backend.values())
     return 0.0 if most == least else most - least

@@ -200,7 +200,7 @@ def every_float(form) -> np.ndarray:
 
 @pytest.mark.parametrize("rounding", FLOAT_ROUNDINGS)
 @pytest.mark.parametrize("storage", [s for s in FORMS_SAID if s.form.bits <= 16], ids=lambda s: s.name)
-def test_floats_of_any_form_are_the_nearest_or_the_next_below(storage, rounding):
+def test_floats_of_any_form_round_to_nearest_or_toward_zero(storage, rounding):
     """Compared with a search among all floats of the form, in float64."""
     form = storage.form
     every = every_float(form).astype(np.float64)

@@ -47,10 +47,10 @@ def test_a_and_b_appear_in_every_figure_that_both_have(opened, results):
     assert turned["angle mean degrees", TITLE]["best"] == 2
 
 
-def test_errors_lead_the_comparison_and_other_conditions_unfold(opened):
+def test_the_leading_figure_comes_first_and_other_conditions_unfold(opened):
     compared(opened, A, B)
     first = opened.page.locator("[data-compare] [data-group] tbody th").first.text_content()
-    assert first == "angle mean degrees"
+    assert first == "PSNR dB"
     button = opened.page.locator("[data-compare] [aria-expanded]").first
     count = int(button.text_content().split()[1])
     rows = opened.page.locator("[data-compare] [data-group] tbody tr")

@@ -207,7 +207,7 @@ def test_images_of_an_answer_open_the_viewer_at_its_own_scene(browser, run, tmp_
     captions = page.texts(".proof button span")
     assert captions == [
         *("A fine rg8: image", "B xy rg8: image"),
-        *(f"{side}: largest difference 2 of 255, above 2 in 0 % of the pixels" for side in ("A fine rg8", "B xy rg8")),
+        *(f"{side}: largest difference 2 of 255, above 2 in 0% of the pixels" for side in ("A fine rg8", "B xy rg8")),
     ]
     page.page.locator(".proof").first.locator("button").first.click()
     page.page.wait_for_selector(VIEWED)

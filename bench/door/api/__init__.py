@@ -1,4 +1,4 @@
-"""normalbench in Python: every table as a function, and codecs on arrays.
+"""normalbench in Python: every table as a function, and codecs for arrays.
 
     import normalbench as nb
 
@@ -8,8 +8,8 @@
     nb.pack("granite", surface)                                     # the contents of a layout's targets
     nb.unpack("granite", targets)                                   # the unpacked surfaces
 
-Each table of the command line is a function with the same name and options; `help(nb.quality)` lists them. Heavy
-modules are imported only when they are needed.
+Each table of the command line is a function with the same name and options; `help(nb.quality)` lists the options.
+Heavy modules are imported only when they are needed.
 """
 
 from __future__ import annotations

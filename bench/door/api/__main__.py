@@ -1,4 +1,4 @@
-"""`python -m normalbench` is `normalbench`, also where the folder of scripts is not on the path."""
+"""Entry point of `python -m normalbench`: works like `normalbench`, even if the scripts folder is not on the path."""
 
 from importlib import import_module
 

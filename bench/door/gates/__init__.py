@@ -1,1 +1,1 @@
-"""Thresholds and baselines that rows are held to."""
+"""Thresholds and baselines that rows are checked against."""

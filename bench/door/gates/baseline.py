@@ -1,4 +1,4 @@
-"""Baselines: rows of an earlier measurement, in a file that later rows are compared with. It is written only on
+"""Baselines: files with the rows of earlier measurements, for comparison with later rows. They are written only on
 request."""
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ HOW = ("device", "rounded_by", "clock")
 def entry(table: Table, asked: Mapping[str, Any], row: Row, listing: str = "") -> Entry:
     """Return a row and its request as a dict for JSON: "table", "key", "row" and, if given, "listing".
 
-    Names in the key are as in the row, and numbers as they were requested. Times, and columns that only programs
+    Names in the key are spelled as in the row, and numbers as in the request. Times, and columns that only programs
     read, are left out.
 
     Args:
@@ -50,7 +50,7 @@ def _is_kept(table: Table, name: str) -> bool:
 
 
 def read_baseline(path: Path) -> dict[str, Entry]:
-    """Return the entries of a file, by table and key as text. Raises UsageError if the file is not a baseline."""
+    """Return the entries of a baseline, by table and key as text. Raises UsageError if the file is not a baseline."""
     try:
         entries = file_json(path)
         if not isinstance(entries, list):
@@ -69,10 +69,11 @@ def _text(row_entry: Entry) -> str:
 
 
 def write_baseline(path: Path, dumped: Sequence[str]) -> None:
-    """Write rows, given as texts from `Baseline.dumped`, in place of their entries in a file. Other entries stay.
+    """Write rows, given as texts from `Baseline.dumped`, to a baseline. Each row replaces the entry with the same
+    key; other entries are kept.
 
     Raises:
-        UsageError: the file holds something else or cannot be written, or two rows have the same key.
+        UsageError: the file is not a baseline or cannot be written, or two rows with the same key differ.
     """
     kept = Baseline(path, True)
     for record in (new_entry for text in dumped for new_entry in json.loads(text)):
@@ -84,7 +85,7 @@ def write_baseline(path: Path, dumped: Sequence[str]) -> None:
 
 
 class NoRowError(AssertionError):
-    """A baseline has no such row.
+    """A baseline lacks a row.
 
     Attributes:
         said: the name of the row.
@@ -97,7 +98,7 @@ class NoRowError(AssertionError):
 
 @dataclass
 class Baseline:
-    """A file of entries; `write_baseline` writes the recorded rows, once.
+    """A baseline file, and the rows recorded for it, which `write_baseline` writes.
 
     Attributes:
         writes: whether rows are recorded.
@@ -111,15 +112,16 @@ class Baseline:
     _read: dict[str, Entry] | None = None
 
     def record(self, row_entry: Entry) -> None:
-        """Keep an entry for writing. Raises UsageError if a kept entry has the same key and other figures."""
+        """Record an entry for writing. Raises UsageError if a recorded entry has the same key but different
+        figures."""
         before = self.recorded.setdefault(_text(row_entry), row_entry)
         if list(changes(before["row"], row_entry["row"], {})):
             raise UsageError(f"two rows of the baseline have the same name: {_name(row_entry)}; rename one")
 
     def differences(self, row_entry: Entry, tolerances: Mapping[str, float]) -> list[str]:
-        """Return the differences between a row and its entry, a line for each column; empty if they agree.
+        """Return the differences between a row and its entry, one line per column; empty if they agree.
 
-        If a column differs, changed instructions and another device add a line each.
+        If a column differs, changed instructions and a different device add a line each.
 
         Raises:
             NoRowError: the file has no such row.
@@ -141,8 +143,8 @@ class Baseline:
         return lines
 
     def _other_compilers(self, row_entry: Entry) -> str:
-        """Return text such as " by A; it has one by B", which names this row's compiler and those of similar
-        rows in the file; empty if the file has no similar row."""
+        """Return text such as " for A, only for B", which names this row's compiler and the compilers of similar rows
+        in the file; empty if the file has no similar row."""
         table = TABLES.get(row_entry["table"])
         names = table.compilers if table else ()
         alike = [e["key"] for e in (self._read or {}).values() if _less(e, names) == _less(row_entry, names)]
@@ -153,7 +155,7 @@ class Baseline:
         return f" for {mine}, only for {' and for '.join(dict.fromkeys(others))}"
 
     def dumped(self) -> str:
-        """Return the recorded entries as the JSON text of a list; an empty text if there are none."""
+        """Return the recorded entries as a JSON list in text form; an empty text if no entry is recorded."""
         return json.dumps(list(self.recorded.values())) if self.recorded else ""
 
 

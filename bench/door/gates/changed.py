@@ -1,4 +1,4 @@
-"""Gates that read a file: a pre-commit hook checks only those."""
+"""Selection of the gates that read certain files, so that a pre-commit hook checks only these gates."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from .gates import Gate
 
 
 def gates_that_read(files: Sequence[Path], gates: Iterable[Gate], path: Path) -> list[Gate]:
-    """Return the gates that read one of some files: the file of the gates, their baseline, a file that an option
-    names, its Python twin, or a file that it includes.
+    """Return the gates that read any of `files`. A gate reads its gates file, its baseline, the files that its
+    options name, their Python twins and the files that shaders include.
 
     Args:
-        path: the file of the gates.
+        path: the gates file.
 
     Raises:
-        UsageError: a gate names a file that is in the working directory instead of the folder of the gates.
+        UsageError: a gate names a file that is in the working directory instead of the folder of the gates file.
     """
     changed = {file.resolve() for file in files}
     return [gate for gate in gates if changed & {file.resolve() for file in _read_by(gate, path)}]
@@ -39,8 +39,8 @@ def _read_by(gate: Gate, path: Path) -> Iterator[Path]:
 
 
 def _with_includes(word: str) -> Iterator[Path]:
-    """Yield the files of a shader, includes too, each followed by its path with the ending .py, whether or not
-    that exists. Stop without an error if the shader cannot be read: errors are reported when it is measured."""
+    """Yield a shader's files, including the files that it includes, each followed by its path with the extension .py,
+    whether or not that file exists. Yield nothing if the shader cannot be read: measuring it reports the error."""
     with suppress(UsageError):
         for file in Source(UserFile(word)).files:
             yield from (file, file.with_suffix(".py"))

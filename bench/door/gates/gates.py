@@ -28,14 +28,14 @@ COLUMNS = ("gate", "table", "row", "column", "figure", "limit", "holds", "worst_
 
 @dataclass(frozen=True)
 class Gate:
-    """Rows of a table, and the limits that they must keep.
+    """Rows of a table, and the limits that they must meet.
 
     Attributes:
         table: the table of the rows.
-        options: the table's options to measure with; for rows of a run, the column values that select them.
-        limits: the limits, at most one for each column.
+        options: the options to measure the table with; for rows of a run, the column values that select the rows.
+        limits: the limits, at most one per column.
         place: the file and the gate's number, for messages.
-        folder: the folder of the gates file, where the files that options name are looked for.
+        folder: the folder of the gates file, which file names in options are relative to.
         baseline: the file that every row is compared with, with or without limits; None for no baseline.
     """
 
@@ -47,10 +47,10 @@ class Gate:
     baseline: Path | None = None
 
     def located(self) -> dict[str, Any]:
-        """Return the options by name; words that name files in the folder become paths from the working directory.
+        """Return the options by name; names of files in the folder become paths relative to the working directory.
 
         Raises:
-            UsageError: a file is in the working directory and not in the folder of the gates.
+            UsageError: a file is in the working directory but not in the folder of the gates file.
         """
         for name, words in self.files().items():
             for word in map(str, words):
@@ -63,18 +63,17 @@ class Gate:
         return located(self.table, self.options, self.folder)
 
     def files(self) -> dict[str, Names]:
-        """Return the options whose words may name files: by name, the words as the gates file has them."""
+        """Return the options whose words may name files, by name; the words are spelled as in the gates file."""
         known = fields_of(self.table.options)
         may_be = (name for name in self.options if name in known and known[name].option.files)
         return {name: words_in(self.options[name]) for name in may_be}
 
 
 def read_gates(path: Path) -> list[Gate]:
-    """Return the gates of a TOML file: `[[gate]]` tables with options and, for columns, limits such as "at least 47.5"
-    or "at most 0.95".
+    """Return the gates of a TOML file: `[[gate]]` tables with options and limits on columns, such as "at most 0.95".
 
     Raises:
-        UsageError: the file cannot be read or holds something else; one line with the place.
+        UsageError: the file cannot be read or is not a gates file; the message is one line that names the place.
     """
     try:
         data = file_toml(path)
@@ -115,10 +114,10 @@ Measure = Callable[[Gate], list[Found]]
 
 
 def measured_for(gate: Gate) -> list[Found]:
-    """Return the rows of a gate, each with its request, measured now.
+    """Measure a gate's rows, and return each row with its request.
 
     Raises:
-        UsageError: a table, an option or a name is unknown; one line with the gate's place.
+        UsageError: a table, an option or a name is unknown; the message is one line that names the gate's place.
         MissingError: this machine lacks something that the rows need.
     """
     try:
@@ -159,7 +158,7 @@ def _rows_of_run(run: Path) -> Measure:
 
 
 def _finished(done: Done, gate: Gate, run: Path) -> list[Row]:
-    """Return a run's finished rows of a gate's table. Raises UsageError if they do not match this version."""
+    """Return a run's finished rows for a gate's table. Raises UsageError if they do not match this version."""
     name = gate.table.name
     try:
         return done.finished_rows(name)
@@ -178,15 +177,15 @@ def _check_was_measured(gate: Gate, limit: Limit, rows: list[Row], run: Path) ->
 
 
 def _is(value: Any, asked: Any) -> bool:
-    """Whether a row's value is the requested value, or one of several."""
+    """Whether a row's value is the requested value, or one of several requested values."""
     return value in asked if isinstance(asked, tuple) else value == asked
 
 
 def checked(
     gates: list[Gate], run: Path | None, tick: Callable[[str], None], baselines: Baselines | None = None
 ) -> Iterator[Row]:
-    """Yield a row for each limit on each row of each gate, and for its baseline: the figure, the limit, whether it
-    holds, the worst normal, and the differences from the baseline.
+    """Check each row of each gate against the gate's limits and its baseline. Yield a row per check: the figure, the
+    limit, whether the row passes, the worst normal, and the differences from the baseline.
 
     Args:
         run: a results folder to take the figures from; None to measure them.
@@ -214,7 +213,7 @@ class Baselines:
     """The baselines that gates name, each read once.
 
     Args:
-        writes: whether rows are written into them instead of being compared.
+        writes: whether rows are written to the baselines instead of being compared with them.
     """
 
     def __init__(self, writes: bool):
@@ -226,8 +225,8 @@ class Baselines:
         return self._by_path.setdefault(path, Baseline(path, self.writes, WRITER))
 
     def write(self) -> Iterator[Path]:
-        """Write the recorded rows into their baselines, and yield the paths of the files written. Do nothing if
-        rows are only compared. Raises UsageError."""
+        """Write the recorded rows to their baselines, and yield the paths of the files written. Do nothing if rows
+        are only compared. Raises UsageError if a baseline cannot be written."""
         for path, baseline in self._by_path.items():
             if self.writes and (dumped := baseline.dumped()):
                 write_baseline(path, [dumped])

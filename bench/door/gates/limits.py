@@ -1,4 +1,4 @@
-"""Limits that figures must keep. Imports nothing heavy."""
+"""Limits that figures must meet. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Limit:
     value: float
 
     def holds(self, figure: Any) -> bool:
-        """Whether a figure keeps the limit; False for a value that is not a number."""
+        """Whether a figure meets the limit; False for a value that is not a number."""
         if isinstance(figure, bool) or not isinstance(figure, int | float) or math.isnan(figure):
             return False
         return figure >= self.value if self.side == "at least" else figure <= self.value
@@ -51,7 +51,7 @@ class Limit:
         return column.option if column and column.option in fields_of(table.options) else ""
 
     def broken_by(self, table: Table, row: Mapping[str, Any]) -> str | None:
-        """Return the message for a row that breaks the limit; None if the row keeps it.
+        """Return the message for a row that breaks the limit; None if the row meets it.
 
         Raises:
             UsageError: the row has no such column.
@@ -104,8 +104,8 @@ def not_a_limit(column: str, value: Any) -> UsageError:
 def split_limits(
     values: Mapping[str, Any], table: Table, may_lack: bool = False
 ) -> tuple[dict[str, Any], tuple[Limit, ...]]:
-    """Return the options, and the limits on columns, from values that mix both. Raises UsageError if limits are
-    required but missing."""
+    """Split values that mix options and limits on columns, and return the options and the limits. Raises UsageError
+    if limits are required but missing."""
     bounds = {name: limit(name, value) for name, value in values.items()}
     options = {name: value for name, value in values.items() if bounds[name] is None}
     limits = tuple(bound for bound in bounds.values() if bound)

@@ -1,4 +1,4 @@
-"""Differences between two listings of instructions, line by line."""
+"""Differences between two instruction listings, line by line."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def lines_of(listing: str) -> list[str]:
 
 
 def differences(before: Sequence[str], after: Sequence[str]) -> Iterator[str]:
-    """Yield the added lines, marked +, and the removed lines, marked -; beyond MOST_LINES, only their number."""
+    """Yield the added lines, marked +, and the removed lines, marked -. After MOST_LINES lines, yield only a
+    count."""
     lines = list(_changed(before, after))
     yield from lines[:MOST_LINES]
     if len(lines) > MOST_LINES:

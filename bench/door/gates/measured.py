@@ -1,4 +1,4 @@
-"""Rows as a gate or a test asks for them: a table, and its options by name."""
+"""Measured rows for a gate or a test, which names a table and its options."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Found:
 
 
 def table_named(name: Any) -> Table:
-    """Return the table of a name, however the name is spelled. Raises UsageError for an unknown name."""
+    """Return the table with a name, in any accepted spelling. Raises UsageError for an unknown name."""
     if not isinstance(name, str):
         raise UsageError(f"unknown table {name!r}; known: {', '.join(TABLES)}")
     known = spelled("table", name, TABLES)
@@ -88,10 +88,10 @@ def measured(table: Table, values: Mapping[str, Any], usual: Mapping[str, Any] |
 
 
 def named_rows(table: Table, given: Mapping[str, Any], rows: Sequence[Row]) -> list[Row]:
-    """Return the rows that options name by the values of key columns, if a table returns others as well.
+    """Return the rows whose key columns have the values that options name, because a table may return other rows too.
 
-    `cost` measures the packing of a storage next to an encoding, and `depth` the whole range next to a distance. If
-    no row has every value that is named, the rows that have no other value in its place are returned.
+    `cost` also measures the packing of a storage, and `depth` the whole range as well as a distance. If no row has
+    all named values, return the rows in which the missing values are empty.
     """
     keys = {column.name for column in table.of_role(Role.KEY)}
     words = {name: words for name, value in given.items() if name in keys and (words := _words(value))}
@@ -116,8 +116,8 @@ def _word(value: Any) -> str:
 
 
 def located(table: Table, options: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the options by name; words that name files in a folder become paths from the working directory.
-    Options that take files become a tuple if they take several names, else text."""
+    """Return the options by name; names of files in `folder` become paths relative to the working directory. The
+    value of an option for files becomes a tuple if the option takes several names, else text."""
     known = fields_of(table.options)
     placed: Mapping[str, Callable[[Path, str], str]] = {INCLUDE: _root_in}
     files = {name for name in options if name in known and known[name].option.files}
@@ -128,14 +128,14 @@ def located(table: Table, options: Mapping[str, Any], folder: Path) -> dict[str,
 
 
 def _root_in(folder: Path, word: str) -> str:
-    """Return FOLDER or NAME=FOLDER, relative to another folder, with its path from the working directory."""
+    """Return FOLDER or NAME=FOLDER, given relative to `folder`, with the path relative to the working directory."""
     name, mark, root = word.rpartition("=")
     return f"{name}{mark}{os.path.relpath(folder / root)}"
 
 
 def path_in(folder: Path, word: str) -> str:
-    """Return a word in which each file that it names in a folder has its path from the working directory. Absolute
-    paths stay as they are."""
+    """Return a word in which the paths of files, given relative to `folder`, are relative to the working directory.
+    Absolute paths stay unchanged."""
     paths = (path for path in files_in(word, folder) if not Path(path).is_absolute())
     return with_files(word, {path: os.path.relpath(folder / path) for path in paths})
 
@@ -145,7 +145,8 @@ def _found(table: Table, row: Row, step: Step, options: Mapping[str, Any]) -> Fo
 
 
 def single(table: Table, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options that a gate measures with: its own, and for the others values that give one row.
+    """Return the options that a gate measures with: its own options, and for other options the values that give one
+    row.
 
     A layout is measured as it is. A shader without a Python twin is measured in GLSL.
     """

@@ -1,6 +1,7 @@
 """Save the G-buffer of a RenderDoc capture for normalbench: every target and the depth as EXR, matrices as text.
 
-In RenderDoc, open the capture, then Window > Python Shell > Run Scripts. The folder `gbuffer` is made next to it. Or:
+In RenderDoc, open the capture, then Window > Python Shell > Run Scripts. The folder `gbuffer` is created next to the
+capture. Or:
 
     python3 save_gbuffer.py FRAME.rdc [FOLDER] [EVENT]
 
@@ -9,8 +10,8 @@ which targets are read. By default it is the last draw into the targets that mos
 write.
 
 At the end the script prints the commands that measure the saved files. `gbuffer.json` lists the contents of each
-file, for `normalbench budget --scene`. RenderDoc's own EXR files hold half floats; these have 32 bits.
-The script needs RenderDoc 1.18 or newer, Python 3.6, and nothing else.
+file, for `normalbench budget --scene`. RenderDoc's own EXR files hold half floats; the files saved here hold 32-bit
+floats. The script needs RenderDoc 1.18 or newer, Python 3.6, and nothing else.
 """
 
 import json
@@ -44,12 +45,12 @@ LOOKED_AT, MORE = 4096, 0.02
 
 
 def shares(data, code, largest):
-    """Return the integers in some bytes as a list of floats: shares of `largest`, never below -1."""
+    """Return integers in `data`, of array type `code`, as a list of floats: fractions of `largest`, not below -1."""
     return [max(value / largest, -1.0) for value in little(code, data)]
 
 
 def little(code, data):
-    """Return the little-endian numbers in some bytes as an array of a type code, such as "H" for 16 bits."""
+    """Return the little-endian numbers in `data` as an array of type `code`, such as "H" for 16-bit integers."""
     numbers = array(code)
     numbers.frombytes(bytes(data))
     if sys.byteorder == "big":
@@ -58,7 +59,7 @@ def little(code, data):
 
 
 def small_float(bits, mantissa):
-    """Return the float of an integer's bits: 5 bits of exponent above `mantissa` bits, without a sign."""
+    """Return the float that an integer's bits encode: a 5-bit exponent above `mantissa` bits, without a sign bit."""
     exponent, fraction = bits >> mantissa, bits & ((1 << mantissa) - 1)
     if exponent == 0:
         return fraction * 2.0 ** (-14 - mantissa)
@@ -68,7 +69,7 @@ def small_float(bits, mantissa):
 
 
 def regular(data, kind, width):
-    """Return the numbers of all channels, pixel by pixel: floats and integers unchanged, UNorm and SNorm as shares
+    """Return the numbers of all channels, pixel by pixel: floats and integers unchanged, UNorm and SNorm as fractions
     of the largest integer. Each channel has `width` bytes."""
     if kind == "Float":
         return struct.unpack(f"<{len(data) // width}{FLOATS[width]}", data)
@@ -85,7 +86,9 @@ def planes(data, layout, kind, width, count, bgra=False):
 
     Args:
         layout: Regular, R10G10B10A2 or R11G11B10, as RenderDoc names it.
-        kind: UNorm, Float and so on; `width` bytes for each of `count` channels.
+        kind: the component type, such as UNorm or Float.
+        width: the number of bytes per channel.
+        count: the number of channels.
     """
     if layout == "R10G10B10A2":
         words = little("I", data)
@@ -120,7 +123,7 @@ def depths(data, pixels, kind, is_opengl):
 
 
 def from_above(plane, width):
-    """Return the numbers of a plane with its rows in reverse order: OpenGL's first row is the lowest."""
+    """Return the numbers of a plane with its rows in reverse order, because OpenGL's first row is the bottom row."""
     rows = [plane[start : start + width] for start in range(0, len(plane), width)]
     return [value for row in reversed(rows) for value in row]
 
@@ -167,7 +170,8 @@ def write_text(path, text):
 
 
 def file_name(name, index, taken):
-    """Return a file name for a texture's name, with the index in front if another target or the depth has it."""
+    """Return a file name for a texture, with the index in front if another target or the depth already has the
+    name."""
     plain = f"{re.sub(r'[^A-Za-z0-9]+', '_', name).strip('_').lower() or 'target'}.exr"
     is_free = plain != DEPTH and plain not in [target["file"] for target in taken.values()]
     return plain if is_free else f"{index}_{plain}"
@@ -177,7 +181,7 @@ def file_name(name, index, taken):
 
 
 def covered(plane):
-    """Return a mask: 0.0 where a depth is the background's, which is 0 or 1, whichever is more common; else 1.0."""
+    """Return a mask of a depth plane: 0.0 at the background depth, 0 or 1, whichever is more common; else 1.0."""
     background = 1.0 if plane.count(1.0) >= plane.count(0.0) else 0.0
     return [0.0 if value == background else 1.0 for value in plane]
 
@@ -195,8 +199,8 @@ def normals_in(channels, mask):
 
 
 def facing(channels, option, mask, width, fov, turn):
-    """Return the share, 0 to 1, of a sample of the covered normals that face the camera after `turn`, a rotation
-    by rows to view space: x right, y up, z to the viewer."""
+    """Return the fraction, 0 to 1, of a sample of the covered normals that faces the camera after `turn`, the rows of
+    a rotation to view space: x right, y up, z towards the viewer."""
     height, up = len(mask) // width, math.tan(math.radians(fov) / 2)
     scale, bias = (2, -1) if option == "--unpack" else (1, 0)
     inside = [i for i, is_covered in enumerate(mask) if is_covered]
@@ -211,7 +215,7 @@ def facing(channels, option, mask, width, fov, turn):
 
 
 def space_of(channels, option, mask, width, fov, matrices):
-    """Return {"space": ..., "view_matrix": ...} of the first space in which about as many normals face the camera as
+    """Return {"space": ..., "view_matrix": ...} for the first space in which about as many normals face the camera as
     in the best space; without a matrix if the space has none."""
     same, into = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0], [0, 0, -1]]
     known = [({"space": "view"}, same), ({"space": "view-left-handed"}, into)]
@@ -229,7 +233,7 @@ def space_of(channels, option, mask, width, fov, matrices):
 
 
 def views(matrices):
-    """Return the names of the rotations that, by their names, turn world space into view space."""
+    """Return the names of the rotations that turn world space into view space, judging by the names."""
     return [
         name
         for name, rows in matrices.items()
@@ -238,8 +242,8 @@ def views(matrices):
 
 
 def camera_of(matrices, is_opengl):
-    """Return the vertical field of view in degrees and the near and far planes of the first perspective
-    projection; None if no matrix is one."""
+    """Return the vertical field of view in degrees and the near and far planes of the first perspective projection;
+    None if no matrix is a perspective projection."""
     for rows in matrices.values():
         ends = planes_of_projection(rows, -1.0 if is_opengl else 0.0)
         if ends:
@@ -274,7 +278,8 @@ def guessed(targets):
 
 
 def description(targets, camera, has_depth):
-    """Return the description for `normalbench budget --scene`: known facts of the frame, and null for the others."""
+    """Return the description for `normalbench budget --scene`: the known facts about the frame, and null for the
+    rest."""
     scene: dict = {"fov": None, "near": None, "far": None, "view_matrix": None}
     scene.update((name, None) for name in QUANTITIES)
     if camera:
@@ -302,8 +307,8 @@ def say(text):
 
 
 def say_description(folder, scene, targets):
-    """Print the quantities that were guessed and those that the user has to fill in. Return the `normalbench
-    budget` command as text, which is a comment if the command needs one of the missing quantities."""
+    """Print the quantities that were guessed and those that the user has to fill in. Return the `normalbench budget`
+    command as text, commented out if the command needs one of the missing quantities."""
     where = folder / "gbuffer.json"
     held = [
         f"{name} ({source['file']} {source.get('channel') or source['channels']})"
@@ -323,11 +328,11 @@ def say_description(folder, scene, targets):
 
 
 def planes_of_projection(rows, lowest):
-    """Return the distances of the near and the far plane of a projection matrix, by rows; None if it is not a
-    perspective. With reversed depth the first distance is the larger one.
+    """Return the distances of the near and far planes of a projection matrix, given by rows; None if the matrix is
+    not a perspective projection. With reversed depth, the first distance is the larger.
 
     Args:
-        lowest: the depth of the near plane after the division: -1 in OpenGL, else 0.
+        lowest: the depth of the near plane after the perspective division: -1 in OpenGL, else 0.
     """
     towards = rows[3][2]
     if abs(abs(towards) - 1) > 1e-5 or rows[3][3] or not rows[2][3] or not rows[1][1]:
@@ -338,7 +343,7 @@ def planes_of_projection(rows, lowest):
 
 
 def is_rotation(rows):
-    """Whether the upper left 3 x 3 of a matrix, by rows, is orthonormal and the matrix's last row is 0, 0, 0, 1."""
+    """Whether a matrix, given by rows, has an orthonormal upper left 3 x 3 block and the last row 0, 0, 0, 1."""
     turn = [row[:3] for row in rows[:3]]
     products = [sum(a * b for a, b in zip(row, other)) for row in turn for other in turn]
     return rows[3] == [0.0, 0.0, 0.0, 1.0] and all(abs(p - (i % 4 == 0)) < 1e-3 for i, p in enumerate(products))
@@ -356,8 +361,8 @@ def measuring(folder, targets, matrices, has_depth, is_opengl):
 
 
 def of_normals(folder, target, matrices, options):
-    """Return lines for a target of normals: the command, and a comment for each view matrix with the options to
-    add if the normals are in world space."""
+    """Return lines for a target with normals: the command, and a comment for each view matrix with the options to add
+    if the normals are in world space."""
     read = f"--normals {folder / target['file']} {target['normals']}{options}"
     lines = [f"normalbench quality {read} --storage rg8,rgb10a2 --encoding octahedral"]
     for name in views(matrices):
@@ -392,8 +397,8 @@ def targets_of(action, rd):
 
 
 def chosen(controller, rd, event):
-    """Return the draw after which targets are read: that of event number `event` or, for None, the last draw into
-    the targets that most draws write. Exit with a message if no draw qualifies."""
+    """Return the draw after which targets are read: the draw with event number `event` or, for None, the last draw
+    into the set of targets that most draws write. Exit with a message if no draw qualifies."""
     draws = [action for action in all_actions(controller.GetRootActions()) if action.flags & rd.ActionFlags.Drawcall]
     if event is not None:
         draws = [draw for draw in draws if draw.eventId == event]
@@ -409,7 +414,8 @@ def chosen(controller, rd, event):
 
 
 def constants(controller, rd):
-    """Return all 4 x 4 float matrices that the draw's vertex and pixel shaders are given, as rows, by name."""
+    """Return all 4 x 4 float matrices in the constant buffers of the draw's vertex and pixel shaders, as rows, by
+    name."""
     state, matrices = controller.GetPipelineState(), {}
     for stage in (rd.ShaderStage.Vertex, rd.ShaderStage.Pixel):
         reflection = state.GetShaderReflection(stage)
@@ -420,7 +426,7 @@ def constants(controller, rd):
 
 
 def block(controller, state, stage, index):
-    """Return RenderDoc's variables of a shader stage's constant buffer, given the buffer's index."""
+    """Return RenderDoc's variables for a shader stage's constant buffer, given the buffer's index."""
     if hasattr(state, "GetConstantBlock"):  # RenderDoc 1.32 and newer
         used = state.GetConstantBlock(stage, index, 0).descriptor
         place = (used.resource, used.byteOffset, used.byteSize)
@@ -441,7 +447,7 @@ def add_matrices(matrices, variable, rd):
 
 
 def name_of(kind, value):
-    """Return RenderDoc's name of a value of an enumeration, whose class is `kind`."""
+    """Return RenderDoc's name for a value of the enumeration class `kind`."""
     return next(name for name in dir(kind) if name[:1].isupper() and getattr(kind, name) == value)
 
 
@@ -471,7 +477,8 @@ class Saving:
         say(f"{name}: {self.names[int(texture.resourceId)]}, {texture.format.Name()}{says}")
 
     def depth(self):
-        """Write the depth and its mask of covered pixels to a file. Return the mask; None without a depth buffer."""
+        """Write the depth and a mask of the covered pixels to a file. Return the mask; None without a depth
+        buffer."""
         texture = self.textures.get(int(self.action.depthOut))
         if texture is None:
             return None
@@ -490,7 +497,7 @@ class Saving:
         return [self.upright(plane, texture) for plane in channels]
 
     def target(self, texture, name, mask):
-        """Write a target to a file of this name. Return the known facts about it: file, format, normals, channels
+        """Write a target to the file `name`. Return the known facts about the target: file, format, normals, channels
         and, for unit normals, space."""
         channel_planes = self.planes(texture)
         pixels = len(channel_planes[0])
@@ -511,8 +518,8 @@ class Saving:
         return kept
 
     def targets(self, mask):
-        """Write all targets, and return the facts about each, by its name in the capture. Targets of a format that
-        cannot be read are skipped with a message."""
+        """Write all targets, and return the facts about each target, by its name in the capture. Skip targets in
+        unsupported formats with a message."""
         kept = {}
         for index, number in enumerate(targets_of(self.action, self.rd)):
             name = self.names[number]
@@ -533,7 +540,7 @@ class Saving:
 
 def save(controller, rd, folder, event=None):
     """Save a draw's depth, targets and matrices, and a description of them, to a folder. Print the commands that
-    measure them. With `event` None, the draw is chosen by its targets."""
+    measure the saved files. If `event` is None, choose the draw by its targets."""
     saving = Saving(controller, rd, folder, event)
     mask = saving.depth()
     targets = saving.targets(mask)

@@ -18,7 +18,8 @@ SESSION = pytest.StashKey["Session"]()
 
 
 def mirrored() -> dict[str, list[Field]]:
-    """Return the options of all tables by name: a list for each, because several tables may have the same option."""
+    """Return the options of all tables: for each name a list of fields, because several tables may have the same
+    option."""
     options: dict[str, list[Field]] = {}
     for table in TABLES.values():
         for name, field in fields_of(table.options).items():
@@ -27,12 +28,13 @@ def mirrored() -> dict[str, list[Field]]:
 
 
 def flag(name: str) -> str:
-    """Return an option's flag on pytest's command line, --normalbench-write-baseline for `write_baseline`."""
+    """Return an option's flag on pytest's command line, such as --normalbench-write-baseline for `write_baseline`."""
     return f"--{destination(name)}".replace("_", "-")
 
 
 def destination(name: str) -> str:
-    """Return the name by which pytest keeps an option, normalbench_write_baseline for `write_baseline`."""
+    """Return the name under which pytest stores an option, such as normalbench_write_baseline for
+    `write_baseline`."""
     return f"normalbench_{name}"
 
 

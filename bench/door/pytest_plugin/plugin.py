@@ -4,8 +4,8 @@
         row = normalbench.quality(encoding="octahedral", storage="rgba8")
         row.assert_that(psnr_db="at least 49.5", angle_max_deg="at most 0.96")
 
-Nothing heavy is imported before something is measured, so a test run that does not use the plugin pays only for a
-few options. With xdist, every worker measures what its own tests ask for, at most once.
+Heavy modules are imported only when something is measured, so that the plugin only adds a few options to a test run
+that does not use it. With xdist, every worker measures what its own tests request, at most once.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def normalbench(request: pytest.FixtureRequest) -> Normalbench:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_call(item: pytest.Item) -> None:
-    """Check what the test's markers ask for, before the test itself runs, and fail the test if a check fails."""
+    """Run the checks that a test's markers request, before the test itself. Fail the test if any check fails."""
     messages = [messages for mark in item.iter_markers("normalbench") if (messages := _broken(item, mark))]
     if messages:
         pytest.fail("\n".join(messages), pytrace=False)
@@ -106,7 +106,8 @@ def _broken(item: pytest.Item, mark: pytest.Mark) -> str:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodedown(node: Any) -> None:
-    """Collect the baseline rows of a finished xdist worker, to be written once with the rows of the others."""
+    """Collect the baseline rows of a finished xdist worker, to be written together with the rows of the other
+    workers."""
     if text := getattr(node, "workeroutput", {}).get(KEPT):
         node.config.stash.setdefault(REPORTED, []).append(text)
 

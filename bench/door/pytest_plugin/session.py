@@ -28,7 +28,7 @@ T = TypeVar("T")
 
 
 def ends_here(method: Callable[P, T]) -> Callable[P, T]:
-    """Wrap a method that tests call: the traceback of a test's mistake, or of a broken limit, ends in the test."""
+    """Wrap a method that tests call, so that the traceback of a misuse or a broken limit ends in the test."""
 
     @functools.wraps(method)
     def call(*arguments: P.args, **named: P.kwargs) -> T:
@@ -45,10 +45,10 @@ def ends_here(method: Callable[P, T]) -> Callable[P, T]:
 
 @dataclass
 class Session:
-    """Everything that a session of tests has measured.
+    """The measurements of a test session.
 
     Attributes:
-        usual: options for tests that do not give their own, as typed in folder `typed_in`.
+        usual: default options for tests, as typed in the folder `typed_in`.
         require_gl: whether a missing OpenGL driver fails a test that needs one, instead of skipping it.
         baseline: the file to compare with; None if none was named.
     """
@@ -60,8 +60,8 @@ class Session:
     _found: dict[str, list[Found]] = field(default_factory=dict, repr=False)
 
     def measured(self, table: Table, values: Mapping[str, Any], folder: Path) -> Measured:
-        """Return the rows of a table with checks on them, measured now or earlier in this session. Files that
-        `values` names are looked for in a folder.
+        """Return the rows of a table with checks on them, measured now or earlier in this session. Files named in
+        `values` are relative to `folder`.
 
         Raises:
             UsageError, MissingError: see measured.measured.
@@ -77,8 +77,8 @@ class Session:
         return Measured(self, table, asked, self._found[key])
 
     def lacking(self, error: MissingError) -> NoReturn:
-        """Skip the test if this machine has no OpenGL device and the tests do not require one. Fail the test
-        otherwise, because anything else can be installed by pip."""
+        """Skip the test if this machine has no OpenGL device and the tests do not require one. Otherwise fail the
+        test, because anything else can be installed with pip."""
         if str(error) == found_device()[1] and not self.require_gl:
             pytest.skip(str(error))
         pytest.fail(str(error), pytrace=False)
@@ -86,7 +86,8 @@ class Session:
 
 @dataclass(frozen=True)
 class Measured:
-    """Rows, mostly of one codec, and checks on them. `measured["psnr_db"]` is the figure of a single row."""
+    """Rows, mostly of one codec, and checks on them. If there is only one row, `measured["psnr_db"]` is its
+    figure."""
 
     session: Session = field(repr=False)
     table: Table
@@ -107,7 +108,7 @@ class Measured:
 
     @ends_here
     def assert_that(self, **limits: str) -> None:
-        """Check that every row keeps a limit on each column: psnr_db="at least 49.5", angle_max_deg="at most 0.96".
+        """Check that every row meets limits on columns: psnr_db="at least 49.5", angle_max_deg="at most 0.96".
 
         Raises:
             AssertionError: a row breaks a limit; the message has the figure, the limit and the worst normal.
@@ -118,7 +119,7 @@ class Measured:
         self.hold(_checked_limit(column, text) for column, text in limits.items())
 
     def hold(self, limits: Iterable[Limit]) -> None:
-        """Check that every row keeps every limit; see `assert_that`."""
+        """Check that every row meets every limit; see `assert_that`."""
         limits = list(limits)
         for bound in limits:
             bound.check(self.table)
@@ -137,7 +138,7 @@ class Measured:
         With --normalbench-write-baseline, record the rows for the baseline instead.
 
         Raises:
-            AssertionError: a row differs, or the baseline does not have it.
+            AssertionError: a row differs, or is missing from the baseline.
             UsageError: no baseline is named, or the file is not a baseline.
         """
         baseline = self.session.baseline
@@ -162,11 +163,11 @@ class Measured:
         self._raise_for(wrong)
 
     def _request(self) -> dict[str, Any]:
-        """Return every option, with the usual value for each option that is not named."""
+        """Return the values of all options; options that were not given have their usual values."""
         return asdict(self.table.options(**single(self.table, self.asked)))
 
     def _measurable(self) -> list[Found]:
-        """Return the rows without those that lack figures because this machine has no OpenGL device."""
+        """Return the rows, except rows that lack figures because this machine has no OpenGL device."""
         missing = found_device()[1] if any(row.get("skipped") for row in self.rows) else ""
         return [measurement for measurement in self.found if not missing or measurement.row.get("skipped") != missing]
 
@@ -202,14 +203,14 @@ class Normalbench:
     folder: Path
 
     def __getattr__(self, name: str) -> Callable[..., Measured]:
-        """A table's method: it measures with the options of the table's command."""
+        """Return a table's method, which measures with the options of the table's command."""
         if name not in TABLES:
             raise AttributeError(f"no table {name!r}; known: {', '.join(TABLES)}")
         return functools.partial(self._measured, TABLES[name])
 
     @ends_here
     def hold(self, table: Table, options: Mapping[str, Any], limits: Iterable[Limit]) -> None:
-        """Measure with these options, and check that every row keeps the limits; see `Measured.assert_that`."""
+        """Measure with these options, and check that every row meets the limits; see `Measured.assert_that`."""
         limits = list(limits)
         for bound in limits:
             bound.check(table)
@@ -223,7 +224,8 @@ class Normalbench:
 
     @ends_here
     def hold_mark(self, positional: tuple[Any, ...], values: Mapping[str, Any]) -> None:
-        """Check what a marker asks for. Raises AssertionError if a row breaks a limit, UsageError if it is misused."""
+        """Run the checks that a marker requests. Raises AssertionError if a row breaks a limit, UsageError if the
+        marker is misused."""
         if positional:
             raise UsageError(f"the marker normalbench takes options and thresholds by name, not {positional[0]!r}")
         table = table_named(values.get("table", USUAL))
@@ -239,7 +241,7 @@ class Normalbench:
 
 
 def session_of(config: pytest.Config) -> Session:
-    """Return the session of this process; it is made on first use."""
+    """Return the session of this process, which is created on first use."""
     if SESSION not in config.stash:
         usual, path = {name: config.getoption(destination(name)) for name in mirrored()}, baseline_path(config)
         config.stash[SESSION] = Session(

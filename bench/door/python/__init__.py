@@ -1,1 +1,1 @@
-"""The contents of `import normalbench`: tables as functions, and codecs on arrays."""
+"""The contents of `import normalbench`: tables as functions, and codecs for arrays."""

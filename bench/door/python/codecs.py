@@ -1,6 +1,6 @@
-"""Codecs on arrays, NumPy's or JAX's, of shape (..., 3).
+"""Codecs for NumPy or JAX arrays of shape (..., 3).
 
-The functions can be jitted and, except for rounding, which has no slope, differentiated. The functions of a user's
+The functions can be jitted and, except for rounding, which has no gradient, differentiated. The functions of a user's
 shader file without a Python twin are run by OpenGL and can be neither jitted nor differentiated.
 """
 
@@ -36,8 +36,8 @@ class Codes(NamedTuple):
     """The stored codes of normals.
 
     Attributes:
-        values: the numbers that the texels stand for, float32 of shape (..., components). `decode` takes them.
-        integers: the stored integers, of the same shape; for floats, their bits.
+        values: the numbers that the texels represent, float32 of shape (..., components). `decode` takes them.
+        integers: the stored integers, of the same shape; for floating-point storages, the bits of the floats.
     """
 
     values: Any
@@ -52,15 +52,15 @@ def encoding(
     domain: str = "sphere",
     glsl: Path | None = None,
 ) -> Encoding:
-    """Return an encoding made of your own functions, for `Codec` and for every table.
+    """Return an encoding made from your own functions, for `Codec` and for every table.
 
     Args:
         name: the name in rows.
         encode: (n, view) -> Vec2 or Vec3 of numbers in [-1, 1]; `n` is a unit normal with n.x, n.y, n.z.
         decode: (code, view) -> Vec3.
         components: how many numbers are stored, 2 or 3.
-        domain: the normals it can hold: "sphere", "hemisphere" (z >= 0) or "view".
-        glsl: a file with its GLSL twin; without a file, rows by GLSL say that the twin is missing.
+        domain: the normals that the encoding can represent: "sphere", "hemisphere" (z >= 0) or "view".
+        glsl: the file with the encoding's GLSL twin; without a twin, rows measured in GLSL state that it is missing.
     """
     if not name.isidentifier() or components not in CODES:
         raise UsageError(f"encoding {name!r}: the name must be an identifier, and components must be 2 or 3")
@@ -71,7 +71,8 @@ def encoding(
 
 
 def codec_of(codec: Codec | str) -> Codec:
-    """Return a codec, or the one named "encoding/storage" or "encoding/storage/rounding"; an encoding may be a file.
+    """Return a given codec, or the codec with a name, "encoding/storage" or "encoding/storage/rounding". An encoding
+    may be a file.
 
     Raises:
         UsageError: no codec has this name.
@@ -124,13 +125,13 @@ def encode(codec: Codec | str, normals: Any, view: Any = None) -> Codes:
     Args:
         codec: a Codec, or its name, such as "octahedral/rg8".
         normals: unit vectors in view space (z towards the viewer), shape (..., 3).
-        view: view-space positions of the same shape, for encodings that need them; None for a viewer along -z.
+        view: view-space positions of the same shape, for encodings that need them; None for points on the -z axis.
 
     Returns:
         the stored numbers as `values` and the stored integers as `integers`, both of shape (..., components).
 
     Raises:
-        UsageError: no codec has this name, or an array has another shape.
+        UsageError: no codec has this name, or an array has the wrong shape.
     """
     chosen, n = codec_of(codec), _planes("normals", normals)
     stored = chosen.stored(n, _view_or_ahead(view, n))
@@ -149,7 +150,7 @@ def decode(codec: Codec | str, codes: Any, view: Any = None) -> Any:
         float32 array of shape (..., 3), as the decoder returns it: not normalised again.
 
     Raises:
-        UsageError: no codec has this name, or an array has another shape.
+        UsageError: no codec has this name, or an array has the wrong shape.
     """
     chosen = codec_of(codec)
     values = jnp.asarray(codes.values if isinstance(codes, Codes) else codes)
@@ -193,7 +194,7 @@ def _integer(codec: Codec, component: int, number: Any) -> Any:
 
 
 def _float_integer(form: FloatForm, number: Any) -> Any:
-    """Return the bits, uint32, that a storage's form of floats has for float32 numbers of any shape."""
+    """Return the bits, uint32, of float32 numbers of any shape in a storage's floating-point format."""
     magnitude = abs(number)
     word = jax.lax.bitcast_convert_type(magnitude, jnp.uint32)
     integer = (word >> (23 - form.mantissa)) - jnp.uint32((127 - form.one) << form.mantissa)

@@ -1,4 +1,4 @@
-"""Whole G-buffer layouts on arrays: surfaces packed into targets, and surfaces unpacked from targets.
+"""Whole G-buffer layouts for arrays: packing surfaces into targets, and unpacking surfaces from targets.
 
 The code that `normalbench code --of layout --to glsl` writes is run on the OpenGL device.
 """
@@ -102,7 +102,8 @@ def _check_names(what: str, given: Mapping[str, Any], wanted: Mapping[str, Any] 
 
 
 def _ran(code: GBufferCode, rows: np.ndarray, settings: Mapping[str, Any], shape: tuple[int, ...]) -> np.ndarray:
-    """Return the results of packing and unpacking rows: uint32 (count, numbers), the targets' numbers first."""
+    """Return the results of packing and unpacking rows: uint32 of shape (count, numbers), the targets' numbers
+    first."""
     _check_names("settings", settings, code.settings)
     besides = np.zeros((len(rows), max(place.stop for place in PLACES.values())), np.uint32)
     for name, value in settings.items():
@@ -112,7 +113,7 @@ def _ran(code: GBufferCode, rows: np.ndarray, settings: Mapping[str, Any], shape
 
 
 def _rows(value: Any, kind: str, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the bits of a value given per pixel: uint32 of shape (count, numbers), a row for each pixel."""
+    """Return the bits of a value given per pixel: uint32 of shape (count, numbers), one row per pixel."""
     size, array = size_of(kind), np.asarray(value, np.uint32 if scalar_of(kind) == "uint" else np.float32)
     whole = np.broadcast_to(array, (*shape, size) if size > 1 else shape)
     return np.ascontiguousarray(whole).view(np.uint32).reshape(-1, size)

@@ -1,4 +1,5 @@
-"""The stub of `import normalbench` for type checkers and editors, made from the registry when the package is built.
+"""The stub of `import normalbench` for type checkers and editors, generated from the registry when the package is
+built.
 
 setup.py writes it next to the package; for an editable install it is in the checkout.
 """
@@ -35,7 +36,7 @@ Names = Named | Sequence[Named | float] | Mapping[str, Any]
 
 
 def stub() -> str:
-    """Return the text of the stub file: its head, and a function for each table."""
+    """Return the text of the stub file: its header, and a function for each table."""
     return HEAD + "\n".join(map(_function, TABLES.values()))
 
 

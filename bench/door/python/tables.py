@@ -26,7 +26,7 @@ from ...tables.table import Measured, Table
 
 
 class Rows(pd.DataFrame):
-    """A table's rows, one to a line of the data frame. A notebook shows them with the table's charts.
+    """A table's rows, one per line of the data frame. A notebook shows them with the table's charts.
 
     `attrs` has the table's name, and each column's unit and definition.
     """
@@ -35,7 +35,7 @@ class Rows(pd.DataFrame):
 
     @property
     def _constructor(self) -> type[pd.DataFrame]:
-        """The type of anything cut out of these rows: a plain data frame."""
+        """The type of results that pandas derives from these rows: a plain data frame."""
         return pd.DataFrame
 
     def charts(self) -> list[Any]:
@@ -64,7 +64,8 @@ def _svg(drawing: Any) -> str:
 
 @cache
 def function_of(name: str) -> Callable[..., Rows]:
-    """Return the function of a table: options are keyword arguments, and lists stand for comma-separated names."""
+    """Return a table's function, which takes options as keyword arguments, and lists instead of comma-separated
+    names."""
     table = TABLES[name]
 
     def call(*, on: str | None = None, **options: Any) -> Rows:
@@ -97,8 +98,8 @@ def _framed(table: Table, done: Measured) -> Rows:
 
 
 def _typed(key: str, value: Any) -> Any:
-    """Return an argument in the form of its option: a list, a mapping, an encoding or a storage as a tuple of names
-    and Given values, a pair for `size` as "WxH", and other values unchanged."""
+    """Return an argument in the form that its option takes: a list, a mapping, an encoding or a storage as a tuple of
+    names and Given values, a pair for `size` as "WxH", and other values unchanged."""
     if isinstance(value, Mapping):
         return tuple(Given(name, _value(key, name, array)) for name, array in value.items())
     several = value if isinstance(value, list | tuple) else [value]
@@ -110,8 +111,8 @@ def _typed(key: str, value: Any) -> Any:
 
 
 def _check_unit(name: str, array: np.ndarray) -> None:
-    """Raise UsageError if an array is not of finite floats, or too many of its vectors are not of length 1. Zeros,
-    for background, do not count, but not all may be zero."""
+    """Raise UsageError if an array does not hold finite floats, or too many of its vectors do not have length 1. Zero
+    vectors, for the background, are ignored, but not all vectors may be zero."""
     if not np.issubdtype(array.dtype, np.floating):
         raise UsageError(f"normals: {name} has type {array.dtype}; give floats in [-1, 1]")
     if not np.isfinite(array).all():
@@ -130,8 +131,8 @@ def _depths(name: str, array: np.ndarray) -> np.ndarray:
 
 
 def _value(key: str, name: str, value: Any) -> Any:
-    """Return an array under a name: normals, (..., 3), as a set to measure on; depths, (height, width), unchanged.
-    Raises UsageError."""
+    """Return an option's value for a named array: for normals, (..., 3), a set to measure on; for depths, (height,
+    width), the array unchanged. Raises UsageError for any other array."""
     array = np.asarray(value)
     if key == "depths":
         return _depths(name, array)

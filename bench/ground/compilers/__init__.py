@@ -1,1 +1,1 @@
-"""The only way to a compiler: texts that are judged, and the compilers of this machine."""
+"""The only access to compilers: checked texts, and the compilers on this machine."""

@@ -1,4 +1,4 @@
-"""Lines of shaders before anything judges or compiles them: joined, without comments, with known directives alone."""
+"""Preparation of shader text for checks and compilers: joins lines and removes comments and unknown directives."""
 
 from __future__ import annotations
 
@@ -20,30 +20,31 @@ _LEFT_OUT = frozenset(["line", "pragma", "version", "extension"])
 
 
 def joined(text: str) -> str:
-    """Return a text with continued lines joined. Empty lines follow, so that the other lines keep their numbers."""
+    """Return a text with continued lines joined and followed by empty lines, so that the other lines keep their
+    numbers."""
     return _JOINED.sub(lambda match: _JOIN.sub("", match[0]) + "\n" * match[0].count("\n"), text)
 
 
 def blank(text: str) -> str:
-    """Return blanks in place of a text, in as many lines."""
+    """Return a text with spaces in place of all characters except line feeds."""
     return "\n".join(" " * len(line) for line in text.split("\n"))
 
 
 def without_comments(text: str) -> str:
-    """Return a text with blanks for its comments and odd spaces; every line and every column stays where it is.
+    """Return a text with spaces in place of comments and unusual whitespace. The rest keeps its lines and columns.
 
-    A comment without an end stays as it is.
+    An unterminated comment is unchanged.
     """
     return _COMMENT.sub(_blank, _FEEDS.sub(" ", text))
 
 
 def bare(text: str, is_wgsl: bool = False) -> str:
-    """Return a text as compilers get it: without comments and, except in WGSL, with continued lines joined."""
+    """Return a text as compilers receive it: without comments and, except in WGSL, with continued lines joined."""
     return _without_nested_comments(text) if is_wgsl else without_comments(joined(text))
 
 
 def _without_nested_comments(text: str) -> str:
-    """Return the same as `without_comments`, for WGSL, in which comments can be nested."""
+    """Return a WGSL text without comments, like `without_comments`; comments in WGSL can be nested."""
     pieces, place = [], 0
     while (match := _OF_WGSL.search(text, place)) and (end := _end_of_comment(text, match)):
         pieces += [text[place : match.start()], blank(text[match.start() : end])]
@@ -52,7 +53,7 @@ def _without_nested_comments(text: str) -> str:
 
 
 def _end_of_comment(text: str, match: re.Match[str]) -> int:
-    """Return the index behind the WGSL comment that a match begins; 0 if the comment does not end."""
+    """Return the index after the WGSL comment that a match begins; 0 if the comment does not end."""
     depth = 1
     for mark in _NESTED.finditer(text, match.end()) if match[0] == "/*" else ():
         depth += 1 if mark[0] == "/*" else -1
@@ -70,8 +71,8 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def with_known_directives(text: str, kept: re.Pattern[str] | None = None) -> str:
-    """Return a text without #line, #pragma, #version and #extension. Any other unknown directive becomes an #error,
-    which does no harm in a branch that is left out.
+    """Return a text without #line, #pragma, #version and #extension. Replace any other unknown directive by an
+    #error, which is harmless in a branch that is not compiled.
 
     Args:
         text: whole lines without comments.

@@ -1,7 +1,8 @@
 """Slang's compiler as a library: the results of compiling a text.
 
-Its C interface is that of slang.h, which every build has: the wheels `slangpy` and `slangtorch`, and the folders
-around a `slangc` on the path. A text that the compiler cannot handle ends the process, so call it in a child.
+The C interface is that of slang.h, which is the same in every build: in the wheels `slangpy` and `slangtorch`, and in
+the folders around a `slangc` on the path. A text that the compiler cannot handle ends the process, so call the
+compiler in a child process.
 """
 
 from __future__ import annotations
@@ -44,10 +45,10 @@ class _Description(c.Structure):
 
 @cache
 def path_of_library() -> Path:
-    """Return the path of the library.
+    """Return the path of Slang's library.
 
     Raises:
-        MissingError: one line that says what to install.
+        MissingError: the library is not found; the message is one line that says what to install.
     """
     for folder in _folders():
         for name in NAMES:
@@ -102,19 +103,20 @@ class Api:
         self.type_name = self.function("spReflectionType_GetName", text, pointer)
 
     def function(self, name: str, result: type | None, *given: type) -> Callable:
-        """Return a function of the library by its C name, with the ctypes of its result and its arguments."""
+        """Return a library function by its C name, given the ctypes of its result and its arguments."""
         return c.CFUNCTYPE(result, *given)((name, self._library))
 
 
 @cache
 def api() -> Api:
-    """Return the functions of Slang's library, loaded once per process. Raises MissingError."""
+    """Return the functions of Slang's library, loaded once per process. Raises MissingError without the library."""
     return Api()
 
 
 @cache
 def knows(word: str) -> bool:
-    """Whether the compiler may know a word: its library holds its keywords and functions as text."""
+    """Whether the compiler may know a word, judging by its library, which contains keywords and function names as
+    text."""
     with path_of_library().open("rb") as file, mmap(file.fileno(), 0, access=ACCESS_READ) as library:
         # Of a build that packs its text nothing is known.
         return library.find(word.encode()) >= 0 or library.find(b"__intrinsic_asm") < 0
@@ -124,8 +126,8 @@ class Compiled:
     """The compiler's result for a text. Its memory, 1 MB or more, is freed with the object.
 
     Attributes:
-        request: for reflection, see `Api`; anything obtained from it lives as long as the object.
-        failed: whether the compiler refused the text.
+        request: for reflection, see `Api`; anything obtained from the request is valid as long as the object exists.
+        failed: whether the compiler rejected the text.
         said: the compiler's messages.
     """
 
@@ -143,7 +145,7 @@ class Compiled:
 
 
 def compiled(text: str, options: Sequence[str], folder: Path) -> Compiled:
-    """Return the compiler's result for a text, also if the compiler refuses the text.
+    """Return the compiler's result for a text, even if the compiler rejects the text.
 
     Args:
         options: the compiler's options for the target, and macros.
@@ -175,11 +177,11 @@ class _NotExpandedError(Exception):
 
 
 def _expanded(words: Sequence[str]) -> str:
-    """Return the output of the preprocessor for a file, which the library prints.
+    """Return the preprocessor's output for a file, as printed by the library.
 
     Raises:
-        _NotExpandedError: the preprocessor refuses the file.
-        RefusedError: the output cannot be captured here, so nothing would be judged.
+        _NotExpandedError: the preprocessor rejects the file.
+        RefusedError: the output cannot be captured here, so that nothing would be checked.
     """
     if not _is_seen(Path(words[0]).with_name("seen.slang")):
         raise RefusedError(0, "Slang's compiler does not print the output of its preprocessor")
@@ -193,7 +195,8 @@ def _is_seen(probe: Path) -> bool:
 
 
 def _printed(words: Sequence[str]) -> str:
-    """Return the preprocessed text, which the library prints to descriptor 1. Raises _NotExpandedError."""
+    """Return the preprocessed text, which the library prints to descriptor 1. Raises _NotExpandedError if
+    preprocessing fails."""
     with tempfile.TemporaryFile() as file:
         own = os.dup(1)
         os.dup2(file.fileno(), 1)

@@ -1,7 +1,8 @@
-"""Texts that compilers may be given. Two functions make them: `judged`, if any part is a user's, and `own`.
+"""Texts that may be passed to compilers. Two functions create them: `judged`, if any part comes from a user, and
+`own`.
 
-The text that is judged is compiled byte for byte: no compiler joins its lines, skips comments in it, or reads
-another file for it. So nobody has to guess what a compiler makes of a text that was judged in another form.
+The checked text is compiled byte for byte: no compiler joins its lines, skips comments in it or reads another file
+for it. The check and the compiler therefore read the same text.
 """
 
 from __future__ import annotations
@@ -21,12 +22,12 @@ ROOMS = ("encodings", "gbuffer", "bench", "reports")
 
 
 class RefusedError(Exception):
-    """A text may not be given to a compiler.
+    """A text may not be passed to a compiler.
 
     Attributes:
         line: the line, counted from 1; 0 if unknown.
-        why: what is wrong there, in words.
-        word: the word that is wrong; empty if no word is.
+        why: the problem, in words.
+        word: the word that is not allowed; empty if the problem is not a word.
     """
 
     def __init__(self, line: int, why: str, word: str = ""):
@@ -36,11 +37,11 @@ class RefusedError(Exception):
 
 @dataclass(frozen=True)
 class Text:
-    """A text for a compiler. Only this module makes one.
+    """A text for a compiler. Only this module creates instances.
 
     Attributes:
-        content: it.
-        is_own: whether all of it is this program's.
+        content: the text itself.
+        is_own: whether all of the text is part of this program.
     """
 
     content: str
@@ -54,11 +55,11 @@ NOTHING = re.compile(r"(?!)")
 
 
 class Rules(NamedTuple):
-    """Rules for texts of one language, in addition to those for all texts.
+    """Rules for texts in one language, in addition to the rules for all texts.
 
     Attributes:
-        heads: a pattern for lines of a program's header; other unknown directives are refused.
-        words: words that may begin with two underscores; None if such words do no harm.
+        heads: a pattern for lines of a program's header; other unknown directives are rejected.
+        words: the allowed words that begin with two underscores; None if words are not checked.
         refused: words that read other files, or write text into the compiled program.
         marks: characters that a text may not contain.
         is_native: whether a text becomes machine code.
@@ -121,16 +122,16 @@ def judged(
     expanded: Callable[[Text], str] | None = None,
     knows: Callable[[str], bool] = lambda _: True,
 ) -> Text:
-    """Return a text, marked as checked, that compilers of a language may be given.
+    """Check a text, and return it as a text that compilers of a language may be given.
 
     Args:
-        text: all that the compiler is given: whole lines, without comments.
-        language: a name of RULES.
+        text: the complete input of the compiler: whole lines, without comments.
+        language: a key of RULES.
         expanded: returns the text as the compiler's own preprocessor expands it, for languages whose macros can
             spell a word that is not in the text. If None, the text itself is checked, and it may have no macro
             that joins words.
-        knows: whether the compiler may know a word that begins with two underscores. A word that it does not know
-            is a name of the user's.
+        knows: whether the compiler may know a word that begins with two underscores. Other such words are names
+            that the user defined.
 
     Raises:
         RefusedError: the text may not be given to the compiler.
@@ -148,7 +149,7 @@ def judged(
 
 
 def own(*files: Path, **numbers: int | str) -> Text:
-    """Return files of this program as one text, with macros in front.
+    """Return files of this program as one text that begins with macro definitions.
 
     Raises:
         ValueError: a file does not belong to this program, or a macro is neither a number nor a name.
@@ -162,7 +163,7 @@ def own(*files: Path, **numbers: int | str) -> Text:
 
 
 def is_own_file(path: Path) -> bool:
-    """Whether a file, after its links are resolved, is one of this program's."""
+    """Whether a file belongs to this program, after its links are resolved."""
     return any(path.resolve().is_relative_to(PACKAGE / room) for room in ROOMS)
 
 
@@ -200,8 +201,8 @@ def _check_words(text: str, words: Iterable[str], rules: Rules, knows: Callable[
 
 
 def _line_of(text: str, word: str) -> int:
-    """Return the number of the first line with a word, from 1; if a macro spells the word, of the first line with
-    a macro that joins words; else 0."""
+    """Return the number, from 1, of the first line that contains a word; if a macro spells the word, of the first
+    line with a macro that joins words; 0 if no line matches."""
     match = re.search(rf"\b{re.escape(word)}\b", text) or re.search(r"##", text)
     return text.count("\n", 0, match.start()) + 1 if match else 0
 

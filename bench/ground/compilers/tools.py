@@ -44,14 +44,14 @@ SECONDS = 20.0
 
 
 class ToolError(Exception):
-    """A tool that crashes or does not end, whatever it is given."""
+    """A tool crashes or does not end."""
 
 
 def path_of(tool: str) -> Path:
     """Return the path of a tool: on the path, or in an installed package that has it.
 
     Raises:
-        MissingError: one line that says what to install.
+        MissingError: the tool is missing; the message is one line that says what to install.
     """
     if tool == SLANG_LIBRARY:
         return slang.path_of_library()
@@ -62,8 +62,8 @@ def path_of(tool: str) -> Path:
 
 
 def states() -> list[str]:
-    """Return a text for each compiler, its path and file state, or empty if it is missing. Compiled results are
-    valid while these texts stay the same."""
+    """Return a text for each compiler: its path and file state, or empty if the compiler is missing. Results of
+    compilers are valid while these texts stay the same."""
     paths = (shutil.which(tool) for tool in MISSING)
     return [f"{path} {state_of(Path(path))}" if path else "" for path in paths]
 
@@ -100,7 +100,7 @@ def version(tool: str) -> str:
 
 
 def stamp(tool: str) -> str:
-    """Return text that identifies a build of a tool: its path, size and time. Raises MissingError."""
+    """Return text that identifies a build of a tool: its path, size and modification time. Raises MissingError."""
     path = path_of(tool).resolve()
     status = path.stat()
     return f"{path} {status.st_size} {status.st_mtime_ns}"
@@ -141,11 +141,11 @@ def run(
         words: options, and names of files in the folder.
         files: the texts that the tool is given, by file name.
         seconds: the time limit.
-        wall: what the tool may use, if anybody may have written the text.
+        wall: what the tool may access, for text that anybody may have written; None for no restriction.
 
     Raises:
         MissingError: the tool is missing.
-        ToolError: the tool crashes or does not end; another exit status is not an error.
+        ToolError: the tool crashes or does not end; any other exit status is not an error.
     """
     for name, text in files.items():
         put(folder / name, text)
@@ -162,7 +162,8 @@ def run(
 
 
 def wall_around(tool: str, folder: Path) -> Wall | None:
-    """Return the wall of a tool that works on anybody's text in a folder; None if this system has no walls.
+    """Return the wall for a tool that works on anybody's text in a folder; None if this system does not support
+    walls.
 
     Raises:
         MissingError: the tool is missing.
@@ -172,13 +173,13 @@ def wall_around(tool: str, folder: Path) -> Wall | None:
 
 
 def slang_text(text: str, words: Sequence[str], folder: Path) -> Text:
-    """Return a text that `slangc` may be given with some options. Its own preprocessor shows which words macros spell,
-    if the text itself leaves that open.
+    """Return a checked text for `slangc` with some options. If the text itself does not show which words macros
+    spell, the preprocessor of `slangc` does.
 
     Raises:
         RefusedError: `slangc` may not be given the text.
         MissingError: the tool is missing.
-        ToolError: the tool crashes, does not end, or its preprocessor refuses the text.
+        ToolError: the tool crashes, does not end, or its preprocessor rejects the text.
     """
 
     def expanded(plain: Text) -> str:
@@ -195,7 +196,7 @@ def slang_text(text: str, words: Sequence[str], folder: Path) -> Text:
 
 
 def module_of(text: Text, words: Sequence[str]) -> tuple[Ran, bytes]:
-    """Run glslang on a text from standard input; return its status and output, and the SPIR-V module."""
+    """Run glslang on a text passed by standard input. Return the exit status and output, and the SPIR-V module."""
     with file_of_child() as module_file:
         command = [str(path_of(GLSLANG)), "--stdin", *words, "-o", module_file.path]
         done = _piped(command, text.content.encode(), *module_file.descriptors)
@@ -203,7 +204,7 @@ def module_of(text: Text, words: Sequence[str]) -> tuple[Ran, bytes]:
 
 
 def optimised(binary: bytes) -> bytes:
-    """Return a SPIR-V module after `spirv-opt` has optimised it; empty if `spirv-opt` refuses it."""
+    """Return a SPIR-V module after `spirv-opt` has optimised it; empty if `spirv-opt` rejects it."""
     done = _piped([str(path_of(SPIRV_OPT)), "-O", "-", "-o", "-"], binary)
     return done.stdout if done.returncode == 0 else b""
 
@@ -216,5 +217,5 @@ def _piped(command: list[str], given: bytes, *descriptors: int) -> subprocess.Co
 
 
 def webgpu_module(device: Any, text: Text) -> Any:
-    """Return the shader module that naga makes from WGSL on a device of wgpu."""
+    """Return the shader module that naga makes from WGSL on a wgpu device."""
     return device.create_shader_module(code=text.content)

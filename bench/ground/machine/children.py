@@ -1,6 +1,6 @@
-"""Processes of this program's own, for code and files that may do anything. Imports nothing heavy.
+"""Child processes for untrusted code and files. Imports nothing heavy.
 
-Nothing of the current folder is imported in them. Those that run users' code limit themselves.
+They import nothing from the current folder. Processes that run users' code limit their own resources.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def environment() -> dict[str, str]:
 
 
 def limit_this_process() -> None:
-    """Limit memory, processor time and files; exceeding a limit ends this process and no other."""
+    """Limit this process's memory, processor time and files. Exceeding a limit ends this process and no other."""
     limit(SECONDS, FILE, MEMORY)
 
 
@@ -49,10 +49,10 @@ def stop() -> None:
 
 
 def finished(command: Sequence[str], seconds: float, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """Run a command in a folder, and return its status and its output. The command, and all that it started, are
-    ended after `seconds` at the latest.
+    """Run a command in a folder, and return its status and its output. The command, and all processes that it
+    started, are ended after at most `seconds`.
 
-    The output goes to files, whose size the command limits itself.
+    The output is written to files; the command itself limits their size.
 
     Raises:
         TimeoutExpired: the command took longer; the error has the output until then.
@@ -77,8 +77,8 @@ def finished(command: Sequence[str], seconds: float, folder: Path | None = None)
 
 
 def how_it_ended(done: subprocess.CompletedProcess[str]) -> str:
-    """Return text on how a process that limits itself ended: the signal and the limits, or the exit status and the
-    last line that it printed to standard error."""
+    """Return text on how a process that limits its own resources ended: the signal and the limits, or the exit status
+    and the last line that the process printed to standard error."""
     limits = f"its limits were {MEMORY >> 20} MiB of memory and {SECONDS} s of processor time"
     if name := signal_name(done.returncode):
         return f"killed the process ({name}); {limits}"

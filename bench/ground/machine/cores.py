@@ -27,9 +27,9 @@ on_fork(_waiting.clear)
 def on_all_cores(
     function: Callable[[Item], T], items: Iterable[Item], stop: Callable[[], None] = lambda: None
 ) -> Iterator[T]:
-    """Yield a function's result for each item, in order. Only a few items are in progress at once, so memory stays
-    constant for any number of items. The iterable is run in the calling thread. If that thread is interrupted, the
-    work in progress is waited for, after `stop`, which may cut it short."""
+    """Yield a function's result for each item, in order. Only a few items are in progress at once, so that memory
+    stays constant for any number of items. The calling thread iterates over the items. If that thread is interrupted,
+    call `stop`, which may cut the work in progress short, and wait for this work to end."""
     # Half of the threads wait: for the kernel to clear memory, and for the one that asks for the results.
     threads, ahead = 2 * cores(), deque()
     others = _waiting.setdefault(threads, [])

@@ -18,7 +18,7 @@ from .systems.system_files import processor_kind
 
 
 def require_jax() -> None:
-    """Raise MissingError if JAX has too little memory, or no device, such as after an unknown JAX_PLATFORMS."""
+    """Raise MissingError if JAX has too little memory, or no device, for example because JAX_PLATFORMS is unknown."""
     require_memory()
     keep_programs()
     try:
@@ -49,7 +49,7 @@ def keep_programs() -> None:
 
 
 def programs_folder() -> Path:
-    """Return the folder of compiled programs: a separate one for each version of JAX and kind of processor."""
+    """Return the folder for compiled programs, which differs for each version of JAX and each kind of processor."""
     return cache.folder() / "programs" / cache.key_of(jax.__version__, *processor_kind())[:16]
 
 

@@ -1,4 +1,4 @@
-"""Whether this process has memory enough, and how it is given back. Imports nothing heavy."""
+"""Checks for sufficient memory, and ways to return memory to the system. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def require_memory() -> None:
 
 
 def lack_of_memory() -> str:
-    """Return a message if this process is limited to too little memory, with what to do; empty if it is not."""
+    """Return a message with advice if this process is limited to too little memory; empty if it is not."""
     most = most_addresses()
     if most is None or most >= LEAST:
         return ""
@@ -37,12 +37,12 @@ def lack_of_memory() -> str:
 
 
 def have_few_heaps() -> None:
-    """Have all threads share two heaps from now on; does nothing unless the C library is glibc."""
+    """Make all threads share two heaps from now on; this has no effect unless the C library is glibc."""
     _mallopt(M_ARENA_MAX, ARENAS)
 
 
 def keep_what_is_freed() -> None:
-    """Keep freed memory in this process for the next use; does nothing unless the C library is glibc."""
+    """Keep freed memory in this process for reuse; this has no effect unless the C library is glibc."""
     _mallopt(M_MMAP_THRESHOLD, LARGEST_IN_HEAPS)
     _mallopt(M_TRIM_THRESHOLD, KEPT)
 
@@ -59,8 +59,8 @@ def give_back_what_is_freed() -> None:
 
 
 def give_back_what_a_table_needed() -> None:
-    """Free unreferenced objects and compiled programs: hundreds of megabytes. The next table reads the programs that it
-    shares from the cache."""
+    """Free unreferenced objects and compiled programs: hundreds of megabytes. The next table reads the programs that
+    it shares with earlier tables from the cache."""
     gc.collect()
     if jax := sys.modules.get("jax"):
         jax.clear_caches()
@@ -68,14 +68,14 @@ def give_back_what_a_table_needed() -> None:
 
 
 def look_for_garbage_seldom() -> None:
-    """Have the garbage collector look after 50 000 new objects, not 700. Imports and JAX make a million objects, and
-    nearly all of them stay."""
+    """Make the garbage collector run after 50,000 new objects instead of 700. Imports and JAX create a million
+    objects, and nearly all of them are kept."""
     gc.set_threshold(50_000, 10, 10)
 
 
 def keep_what_is_imported() -> None:
-    """Exclude all objects that exist now from garbage collection: with JAX, a million objects would be examined again
-    and again for nothing."""
+    """Exclude all objects that exist now from garbage collection: with JAX, a million objects would be examined
+    repeatedly for nothing."""
     gc.collect()
     gc.freeze()
     # At the end it is let go like all else, or libraries in C++ complain of leaks.

@@ -11,7 +11,7 @@ from .systems.files import HOME, is_closed, user
 
 
 def prepare() -> None:
-    """Set a home folder if the system knows none; called before anything else is used."""
+    """Set a home folder if the system does not know the user's; called before anything else is used."""
     try:
         Path.home()
     except RuntimeError:

@@ -1,4 +1,4 @@
-"""The devices that wgpu finds by Vulkan, on macOS by Metal. Imports wgpu only when it is asked."""
+"""The devices that wgpu finds through Vulkan or, on macOS, Metal. Imports wgpu only when needed."""
 
 from __future__ import annotations
 

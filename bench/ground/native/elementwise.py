@@ -1,7 +1,7 @@
-"""A JAX function of numbers in C.
+"""Translation of elementwise JAX functions to C.
 
-Only functions that treat each element of their arrays alike can be written so. JAX traces them; each of its operations
-becomes one line of C. Numbers have the types that they have in JAX, and elements no array.
+Only functions that treat each element of their arrays alike can be translated. JAX traces the functions, and each
+operation becomes one line of C. Numbers have the same types as in JAX, and the elements are not in arrays.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ LANES = 8
 
 
 class NotElementwiseError(Exception):
-    """A JAX function that cannot be written in C here, and which of its operations cannot."""
+    """A JAX function cannot be translated to C; the message names the operation."""
 
 
 def c_function(name: str, function: Callable[..., Any], *arguments: Any) -> str:
@@ -63,11 +63,11 @@ def c_function(name: str, function: Callable[..., Any], *arguments: Any) -> str:
     Args:
         name: the name of the function in C.
         function: a function of arrays, one pytree per argument; its results are a pytree of arrays. Python numbers
-            in it have 64 bits, as where rows are measured.
-        arguments: like those of the function, with a NumPy type in place of each array.
+            in it have 64 bits, as when rows are measured.
+        arguments: the function's arguments, with a NumPy type in place of each array.
 
     Raises:
-        NotElementwiseError: an operation has no line of C, or mixes elements.
+        NotElementwiseError: an operation cannot be written in C, or mixes elements.
     """
     shaped = jax.tree.map(lambda dtype: jax.ShapeDtypeStruct((LANES,), dtype), arguments)
     with jax.enable_x64(True):
@@ -89,7 +89,7 @@ def _type(aval: Any) -> str:
 
 
 def c_type(dtype: Any) -> str:
-    """Return the C type of a NumPy number. Raises NotElementwiseError if C has none."""
+    """Return the C type for a NumPy type. Raises NotElementwiseError if C has no such type."""
     name = np.dtype(dtype).name
     if name not in TYPES:
         raise NotElementwiseError(f"numbers of type {name}")
@@ -97,7 +97,7 @@ def c_type(dtype: Any) -> str:
 
 
 class _Constant(str):
-    """A number in C, with its value."""
+    """A constant as C text, with its value."""
 
     value: float
 
@@ -120,14 +120,14 @@ def _literal(value: Any) -> _Constant:
 
 
 class _Writer:
-    """Lines of C, as a traced function is gone through."""
+    """The lines of C for a traced function, written operation by operation."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
 
     def results(self, traced: core.ClosedJaxpr, arguments: Sequence[str]) -> list[str]:
-        """Return the C expressions of a traced function's results, given those of its arguments; statements that
-        they need are added to `lines`."""
+        """Return C expressions for a traced function's results, given expressions for its arguments. Add the
+        statements that the results need to `lines`."""
         names: dict[Any, str] = dict(zip(traced.jaxpr.invars, arguments, strict=True))
         names |= {var: _literal(value) for var, value in zip(traced.jaxpr.constvars, traced.consts, strict=True)}
 
@@ -157,8 +157,8 @@ class _Writer:
 
 
 def _check_types(equation: Any) -> None:
-    """Raise NotElementwiseError for an operation on half floats other than a conversion: C may keep more digits of
-    a result than half floats have."""
+    """Raise NotElementwiseError for an operation on half floats other than a conversion, because C may compute it in
+    higher precision."""
     if equation.primitive.name != "convert_element_type" and any(
         var.aval.dtype == np.float16 for var in (*equation.invars, *equation.outvars)
     ):
@@ -215,11 +215,11 @@ def _limited(sign: str, equation: Any, value: str, other: str) -> str:
 
 
 def _shifted(operator: str, kind: str, equation: Any, value: str, by: str) -> str:
-    """Return a shift by a constant number of bits as a C expression. Raises NotElementwiseError for any other
-    shift, because C does not define a shift by all bits or more.
+    """Return a shift by a constant number of bits as a C expression. Raises NotElementwiseError for any other shift,
+    because C does not define a shift by all bits or more.
 
     Args:
-        kind: the kind of integers, signed or unsigned, that C shifts in this way; other integers are cast to it.
+        kind: "u" to shift unsigned integers, or "" to shift signed integers; other integers are cast.
     """
     dtype = equation.outvars[0].aval.dtype
     if not isinstance(by, _Constant) or not 0 <= by.value < 8 * dtype.itemsize:

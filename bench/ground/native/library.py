@@ -1,4 +1,4 @@
-"""C source as a library of this process: compiled for this machine, and kept in the user's cache folder."""
+"""C source as a library in this process: compiled for this machine, and kept in the user's cache folder."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ def compiler() -> str:
 
 
 def source(file: Path, function: str, given: Sequence[str], **numbers: int) -> Text:
-    """Return a file as C that `library` can compile.
+    """Return C source that `library` can compile: macros, a function and the file that calls it.
 
     Args:
-        file: the file's C, which follows the text that is added here.
+        file: the C file, which follows the text that is added here.
         function: the function that the file calls, as `c_function` writes it.
         given: the types of the arguments that the function takes from the array `given`.
         numbers: other macros.
@@ -56,7 +56,7 @@ def source(file: Path, function: str, given: Sequence[str], **numbers: int) -> T
 
 
 def library(text: Text, *functions: str) -> ctypes.CDLL:
-    """Return a compiled library of C source.
+    """Compile C source, and return the loaded library.
 
     Args:
         text: the source.
@@ -73,7 +73,8 @@ def library(text: Text, *functions: str) -> ctypes.CDLL:
 
 @cache
 def _made(text: Text, functions: tuple[str, ...]) -> ctypes.CDLL | str:
-    """Return a library, or text on why it is missing. Failures are kept too: a compilation is not tried again."""
+    """Return a library, or text on why it is missing. Failures are kept too, so that no compilation is tried
+    again."""
     if not compiler():
         return NONE
     path = kept.folder() / "native" / f"{kept.key_of(text.content, *FLAGS, compiler(), *processor_kind())}.so"
@@ -102,8 +103,8 @@ def _compiled(text: Text, folder: Path) -> Path:
 
 
 def _whole(path: Path) -> Path | None:
-    """Return the path of a library as this user wrote it, without links; None if there is no such file. A damaged
-    library would end the process that loads it, and another user's library could do anything."""
+    """Return the path of an undamaged library that this user wrote, without links; None if there is no such file. A
+    damaged library would end the process that loads it, and another user's library could do anything."""
     if not (own := kept.loadable(path)):
         return None
     try:
@@ -114,8 +115,8 @@ def _whole(path: Path) -> Path | None:
 
 
 def _loaded(path: Path, functions: Sequence[str]) -> ctypes.CDLL:
-    """Return a loaded library, which works on after its file is deleted. Raises NoCompilerError if it lacks a
-    function, and OSError if it cannot be loaded."""
+    """Return a loaded library, which keeps working after its file is deleted. Raises NoCompilerError if the library
+    lacks a function, and OSError if it cannot be loaded."""
     try:
         handle = ctypes.CDLL(str(path))
     except OSError:
@@ -126,10 +127,10 @@ def _loaded(path: Path, functions: Sequence[str]) -> ctypes.CDLL:
 
 
 def _loaded_elsewhere(path: Path) -> ctypes.CDLL:
-    """Load a copy of a library whose folder forbids execution, as some mount their home or their /tmp.
+    """Load a copy of a library whose folder forbids execution, as home folders or /tmp do on some systems.
 
     Raises:
-        OSError: it is not a library, or no folder allows execution.
+        OSError: the file is not a library, or no folder allows execution.
     """
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         try:

@@ -1,1 +1,1 @@
-"""Options as types, and things chosen by name."""
+"""Options as typed fields, and values chosen by name."""

@@ -1,4 +1,4 @@
-"""Ranges of counts: normals of a set, sides of an image, repetitions. Imports nothing heavy."""
+"""Ranges of counts: normals in a set, sides of an image, repetitions. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def checked_count(count: int) -> int:
 
 
 def check_seed(seed: int) -> None:
-    """Raise UsageError for a seed that is out of range: seeds are kept in 64 bits."""
+    """Raise UsageError for a seed that is not from 0 to 2^63 - 1."""
     in_range("--seed", seed, 0, 2**63 - 1)
 
 
@@ -68,8 +68,8 @@ def checked_sides(text: str, most: int, where: str) -> tuple[int, int]:
 
 
 def checked_numbers(option: str, words: Names, kind: Callable[[str], N], least: N, most: N) -> tuple[N, ...]:
-    """Return words as a tuple of numbers, each once. Raises UsageError if no word is given, or a number is invalid
-    or out of range."""
+    """Return words as a tuple of numbers without duplicates. Raises UsageError if no word is given, or a number is
+    invalid or out of range."""
     try:
         read: Any = whole_number if kind is int else kind
         numbers: tuple[N, ...] = tuple(dict.fromkeys(read(str(word)) for word in words))

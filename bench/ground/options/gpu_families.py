@@ -20,11 +20,11 @@ class Family:
 
     Attributes:
         title: the name that people use.
-        vendor: "radeon", "intel" or "nvidia": also the name of the group of its families.
-        library: the driver that compiles for it: a Vulkan driver, or NVRTC.
-        names: every name that a version of Mesa may have for it; the first that the driver accepts is used.
-        null_device: what a driver is told about a GPU that is not present, in the format of null_i915.c.
-        stages: the kinds of shaders that are counted.
+        vendor: "radeon", "intel" or "nvidia", which is also the name for all families of the vendor.
+        library: the driver that compiles for the family: a Vulkan driver, or NVRTC.
+        names: the family's names in all versions of Mesa; the first name that the driver accepts is used.
+        null_device: the description of an absent GPU that a driver is given, in the format of null_i915.c.
+        stages: the shader stages whose instructions are counted.
     """
 
     title: str
@@ -95,5 +95,5 @@ def usual_stage(family: str) -> str:
 
 
 def titled(vendor: str) -> str:
-    """Return a vendor's families as text for help: "hsw (Haswell), bdw (Broadwell)"."""
+    """Return a vendor's families as text for help, such as "hsw (Haswell), bdw (Broadwell)"."""
     return ", ".join(f"{name} ({FAMILIES[name].title})" for name in CHOICES[vendor])

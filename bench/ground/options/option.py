@@ -1,7 +1,7 @@
-"""Options as typed fields: flag, kind, default and help, each once.
+"""Options as typed fields, each with its flag, kind, default and help in one place.
 
-The command line, the pytest plugin, gates and Python all read these. Imports nothing heavy: every pytest run imports
-this module.
+The command line, the pytest plugin, gates and Python all read these fields. Imports nothing heavy: every pytest run
+imports this module.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from .words import Names, names, typed
 
 @dataclass(frozen=True)
 class Option:
-    """The name and the help of an option. Its type and default are at the field that has it.
+    """The name and the help of an option. The field that has the option also has its type and default.
 
     Attributes:
         flag: as typed: "--count"; "--unpack/--no-unpack" if it can be negated; without dashes for an argument.
         help: a sentence.
-        files: whether its words may be files.
-        in_run: whether `run` takes it too, for every table that has an option of this name in `run`.
-        letter: a short form: "-D".
+        files: whether the option's words may name files.
+        in_run: whether `run` also takes the option, for every table that has an option of this name in `run`.
+        letter: a short form, such as "-D".
         repeats: whether a name that is given twice counts twice.
     """
 
@@ -118,7 +118,7 @@ Verbose = Annotated[
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Options that split texts of several names into names when they are constructed, and nowhere else."""
+    """Options that split comma-separated text into names when they are constructed, and nowhere else."""
 
     def __post_init__(self) -> None:
         for name, field in fields_of(type(self)).items():
@@ -127,13 +127,13 @@ class Options:
 
 @dataclass(frozen=True, kw_only=True)
 class Sources(Options):
-    """Options for reading users' files of encodings; comma-separated.
+    """Options for reading users' encoding files. The values are comma-separated.
 
     Attributes:
         define: macros.
-        prelude: files that are put in front.
-        include: folders in which includes are searched.
-        language: the language of the files, whatever their names end in.
+        prelude: files to insert before the shader file.
+        include: folders to search for includes.
+        language: the language of the files, regardless of their extensions.
     """
 
     define: Annotated[
@@ -158,14 +158,14 @@ class Reading(Options):
 
     Attributes:
         channels: a layer, or three channels by name; None for the channels that look like normals.
-        unpack: whether [0, 1] stands for [-1, 1]; None: only in files of integers, which have no negative numbers.
+        unpack: whether [0, 1] represents [-1, 1]; None: only in integer files, which have no negative numbers.
         curve: the curve that was applied to the components before they were stored, one of captures.CURVES.
         normalise: whether any length is accepted.
         space: the space of the frame, one of captures.SPACES.
-        code_space: the space that its normals are encoded in, one of captures.CODE_SPACES.
-        view_matrix: world to view space, 9 or 16 numbers row by row or a text file of them; for world space.
-        mask: a file or a channel that is 0 on the background; None if normals of length 0 mark it.
-        nan_share: the share of normals that may be NaN or infinite; these are masked and counted.
+        code_space: the space to encode the frame's normals in, one of captures.CODE_SPACES.
+        view_matrix: world to view space, 9 or 16 numbers row by row or a text file with them; for world space.
+        mask: a file or a channel that is 0 on the background; None if normals of length 0 mark the background.
+        nan_share: the largest share of normals that may be NaN or infinite; such normals are masked and counted.
         fov: the camera's vertical field of view in degrees; None for parallel rays.
         size: the size of a mesh's image, WxH.
     """
@@ -212,13 +212,13 @@ class Reading(Options):
 
     @property
     def reading(self) -> Reading:
-        """The options of `Reading` alone, with the values that they have here."""
+        """Only the options of `Reading`, with the values that they have here."""
         return Reading(**{field.name: getattr(self, field.name) for field in fields(Reading)})
 
 
 @dataclass(frozen=True)
 class Field:
-    """An option where it is used: its type, such as `str | None`, and its default."""
+    """A use of an option, with its type, such as `str | None`, and its default."""
 
     name: str
     type: Any
@@ -232,7 +232,8 @@ class Field:
 
     @property
     def kind(self) -> type:
-        """The type of the option as it is typed: str, also for several names, int, float, bool or Path."""
+        """The type of the option's value on the command line: str, also for several names, int, float, bool or
+        Path."""
         return str if self.has_names else next(k for k in get_args(self.type) or (self.type,) if k is not NoneType)
 
     @property
@@ -241,19 +242,19 @@ class Field:
         return typed(self.default)
 
     def read(self, value: Any, folder: Path = Path()) -> Any:
-        """Return the option's value for a given value: text of several names is split into a tuple of names, and
+        """Return the option's value for a given value: text with several names is split into a tuple of names, and
         any other value is unchanged.
 
         Args:
-            folder: where files are looked for.
+            folder: the folder to look for files in.
         """
         if not self.has_names or not isinstance(value, str):
             return value
         return file_names(value, folder) if self.option.files else names(value, repeats=self.option.repeats)
 
     def checked(self, value: Any) -> Any:
-        """Return a value from a file or a test as the option's type. A text option takes numbers and paths as
-        well, and a float option whole numbers. Raises UsageError for any other type."""
+        """Return a value from a file or a test, converted to the option's type. A text option also takes numbers and
+        paths, and a float option whole numbers. Raises UsageError for any other type."""
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if self.kind is str and (number or hasattr(value, "__fspath__")):
             value = str(value)
@@ -281,7 +282,7 @@ KINDS = {str: "text", int: "a whole number", float: "a number", bool: "true or f
 
 @cache
 def fields_of(group: type) -> Mapping[str, Field]:
-    """Return the options of a dataclass by their Python names: first its own, then those that it inherits."""
+    """Return the options of a dataclass by their Python names: first its own options, then inherited options."""
     hints, options = get_type_hints(group, include_extras=True), {}
     for field in fields(group):
         kind, option = get_args(hints[field.name])

@@ -1,6 +1,6 @@
-"""Options for reading users' files. They become a part of the files' names, which are passed on everywhere.
+"""Options for reading users' files. They become part of the files' names, which are passed on everywhere.
 
-Every run of pytest imports this module, so modules that read names are imported only when they are needed.
+Every run of pytest imports this module; therefore modules that read names are imported only when needed.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ def in_names(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def names_files(values: Mapping[str, Any]) -> bool:
-    """Whether a value of an option names a user's file."""
+    """Whether any option's value names a user's file."""
     return any(is_a_users_file(word) for name in NAMED for word in values.get(name) or ())
 
 
 @dataclass(frozen=True, kw_only=True)
 class SourceOptions(Sources):
-    """Options of a table that measures users' files; the names have how they are read."""
+    """Options of a table that measures users' files; the files' names include the settings for reading them."""
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -35,7 +35,8 @@ def checked_setting(objects: int, lights: int, seed: int) -> Setting:
 
 
 def checked_target(size: str, samples: int, frames: int, device: Device) -> tuple[tuple[int, int], int]:
-    """Return the size, and the samples per pixel that the device gives. Raises UsageError for values out of range."""
+    """Return the size, and the samples per pixel that the device provides. Raises UsageError for values out of
+    range."""
     in_range("--samples", samples, 1, 64)
     sides, given = checked_sides(size, device.max_size, f"on {device.renderer}"), device.given_samples(samples)
     _check_budget(sides, given * frames)
@@ -52,7 +53,7 @@ def _check_budget(size: tuple[int, int], samples: int) -> None:
 
 
 class Fitted(Protocol):
-    """A codec that may not fit the storage that it is asked for in."""
+    """A codec that may not fit its storage."""
 
     @property
     def name(self) -> str: ...
@@ -98,8 +99,8 @@ def without_noise(codecs: Iterable[N], reason: str) -> list[N]:
 
 
 def what_is_left(usable: list[T], complaints: list[str]) -> list[T]:
-    """Return `usable` unchanged, and report the complaints on standard error, each once. Raises UsageError with
-    the first complaint if nothing is usable."""
+    """Return `usable` unchanged, and report each different complaint on standard error. Raises UsageError with the
+    first complaint if nothing is usable."""
     reasons = list(dict.fromkeys(complaints))
     if not usable:
         raise UsageError(reasons[0] if reasons else "nothing to measure")

@@ -1,4 +1,5 @@
-"""Names as people give them: comma-separated in a text, or several from Python, some of which stand for values."""
+"""Names as users give them: as comma-separated text or, in Python, as several names, some of which represent
+values."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ MOST_COMMAS = 4
 
 
 class Given(NamedTuple):
-    """A value of a Python caller's own, under a name."""
+    """A Python caller's own value, with its name."""
 
     name: str
     value: Any
@@ -24,11 +25,11 @@ Names: TypeAlias = tuple[Word, ...]
 
 
 def names(text: str, is_whole: Callable[[str], bool] = lambda _: False, repeats: bool = False) -> tuple[str, ...]:
-    """Split a text into a tuple of comma-separated names without blanks around them: the only place where such a
-    text is split.
+    """Split text into a tuple of comma-separated names without surrounding spaces. No other function splits such
+    text.
 
     Args:
-        is_whole: whether a text with commas is one name, such as a file's.
+        is_whole: tells whether a text with commas is one name, such as a file name.
         repeats: whether a name that occurs twice counts twice.
     """
     parts, words = text.split(","), list[str]()
@@ -42,7 +43,7 @@ def names(text: str, is_whole: Callable[[str], bool] = lambda _: False, repeats:
 
 
 def text_of(words: Iterable[Word]) -> str:
-    """Return names as they are typed: one text, comma-separated."""
+    """Return names as they are typed: as one comma-separated text."""
     return ",".join(map(str, words))
 
 
@@ -52,5 +53,6 @@ def typed(value: Any) -> Any:
 
 
 def words_in(value: str | Names | None) -> Names:
-    """Return an option's value as a tuple of words: a text is one word, several names stay, and None has no words."""
+    """Return an option's value as a tuple of words: a text as one word, several names unchanged, and None as no
+    words."""
     return (value,) if isinstance(value, str) else value or ()

@@ -1,1 +1,1 @@
-"""Everything that is written: rows, files, messages, progress, the journal and the cache."""
+"""All output: rows, files, messages, progress, the journal and the cache."""

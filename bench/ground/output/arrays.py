@@ -23,7 +23,7 @@ class DamagedError(ValueError):
 
 
 def array_of(data: bytes) -> np.ndarray:
-    """Return the array in the bytes of an .npy file. Raises DamagedError if they are anything else."""
+    """Return the array in the bytes of an .npy file. Raises DamagedError if the bytes are anything else."""
     try:
         file = io.BytesIO(data)
         shape, is_fortran, dtype = HEADERS[np.lib.format.read_magic(file)](file)
@@ -44,7 +44,7 @@ def _bytes(path: Path, most: int) -> bytes:
 
 
 def read_npy(path: Path, most: int) -> np.ndarray:
-    """Return the array of a file of at most `most` bytes. Raises OSError or DamagedError."""
+    """Return the array in an .npy file of at most `most` bytes. Raises OSError or DamagedError."""
     return array_of(_bytes(path, most))
 
 

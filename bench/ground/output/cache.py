@@ -1,7 +1,7 @@
-"""Results that are computed once and stay valid, kept in the user's cache folder: one file for each key.
+"""Results that are computed once and stay valid, kept in the user's cache folder: one file per key.
 
-Some of them are machine code that this process loads, and all of them determine figures. So nothing is read that
-another user may have written.
+Some results are machine code that this process loads, and all results determine figures. Therefore nothing is read
+that another user may have written.
 """
 
 from __future__ import annotations
@@ -30,34 +30,34 @@ OFF, ANEW = "NORMALBENCH_NO_CACHE", "NORMALBENCH_ANEW"
 
 
 def switch_off() -> None:
-    """Switch the cache off from now on, in this process and in those that it starts."""
+    """Switch the cache off from now on, in this process and in processes that it starts."""
     os.environ[OFF] = "1"
 
 
 def measure_anew() -> None:
-    """Have figures measured again although they are kept, in this process and in those that it starts."""
+    """Have figures measured again even if they are cached, in this process and in processes that it starts."""
     os.environ[ANEW] = "1"
 
 
 def is_off() -> bool:
-    """Whether the cache is not to be used."""
+    """Whether the cache is switched off."""
     return bool(os.environ.get(OFF))
 
 
 def folder() -> Path:
-    """Return the cache folder: under XDG_CACHE_HOME, or where this system has caches."""
+    """Return the cache folder: under XDG_CACHE_HOME, or in this system's folder for caches."""
     home = os.environ.get("XDG_CACHE_HOME", "")
     # The XDG specification has relative paths ignored.
     return (Path(home) if Path(home).is_absolute() else cache_home()) / "normalbench"
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder of the cache, and the folders above it, for this user alone.
+    """Make a folder of the cache, and the folders above it, for this user only.
 
-    A folder that others could write into until now is closed to them, and their entries are removed.
+    If others could write into a folder until now, it is closed to them, and their entries are removed.
 
     Raises:
-        OSError: the folder cannot be made, or it is another user's.
+        OSError: the folder cannot be made, or belongs to another user.
     """
     for directory in reversed((path, *path.parents)):
         if not directory.is_dir():
@@ -68,8 +68,8 @@ def make_folder(path: Path) -> None:
 
 
 def _close(path: Path) -> None:
-    """Close a folder to other users and remove their entries. Raises PermissionError if the folder is another user's:
-    not even root uses what others own."""
+    """Close a folder to other users and remove their entries. Raises PermissionError if the folder belongs to another
+    user: even root does not use other users' folders."""
     if not is_own(path.stat()):
         raise PermissionError(EACCES, "another user's folder", str(path))
     path.chmod(PRIVATE)
@@ -89,8 +89,8 @@ def require_folder() -> None:
 
 
 def keep_only_files(path: Path) -> None:
-    """Remove everything except files from a folder that other programs read by file name: they would wait for a pipe,
-    and never finish reading a device. Raises OSError."""
+    """Remove everything except files from a folder that other programs read by file name, because these programs
+    would wait for a pipe, and never finish reading a device. Raises OSError."""
     with os.scandir(path) as entries:
         for entry in entries:
             if not entry.is_file(follow_symlinks=False):
@@ -98,7 +98,7 @@ def keep_only_files(path: Path) -> None:
 
 
 def is_private(path: Path) -> bool:
-    """Whether a file exists that nobody but this user can have written or put there."""
+    """Whether a file exists that only this user can have written or put there."""
     above = [parent for parent in path.parents if parent.is_relative_to(folder())]
     try:
         status = path.lstat()
@@ -109,9 +109,9 @@ def is_private(path: Path) -> bool:
 
 
 def loadable(path: Path) -> Path | None:
-    """Return the path of a file to load as code, without links. Return None if anybody but this user and root can
-    have written it, or can put another file in its place: see `is_private`, and `is_guarded`, which checks all
-    folders above the cache too."""
+    """Return the path of a file to load as code, without links. Return None if anyone but this user and root can have
+    written or can replace the file: see `is_private`, and `is_guarded`, which also checks all folders above the
+    cache."""
     try:
         whole = path.resolve()
         return whole if is_private(path) and is_guarded(whole) else None
@@ -120,7 +120,7 @@ def loadable(path: Path) -> Path | None:
 
 
 def keeps_code() -> bool:
-    """Whether the cache may hold code to be loaded: nobody else can put another folder in its place.
+    """Whether the cache may hold code to be loaded: nobody else can replace its folder.
 
     The cache itself is closed to others when something is put into it.
     """
@@ -132,7 +132,7 @@ def keeps_code() -> bool:
 
 @functools.cache
 def folder_of_this_process() -> Path:
-    """Return a folder for what the cache cannot take; it is deleted when the process ends."""
+    """Return a folder for files that cannot be in the cache; the folder is deleted when the process ends."""
     path = tempfile.mkdtemp(prefix="normalbench-")
     atexit.register(shutil.rmtree, path, ignore_errors=True)
     return Path(path)
@@ -143,14 +143,14 @@ def folder_to_execute_from() -> Path:
     folder that others can write to.
 
     Raises:
-        OSError: the cache cannot be made, or it is another user's.
+        OSError: the cache cannot be made, or belongs to another user.
     """
     make_folder(folder())
     return folder_of_this_process() if forbids_execution(folder()) or not keeps_code() else folder()
 
 
 def key_of(*parts: str | bytes) -> str:
-    """Return a key, a hexadecimal digest, that differs wherever one of the parts does."""
+    """Return a key, a hexadecimal digest, that differs if any of the parts differs."""
     digest = hashlib.sha256()
     for part in parts:
         data = part.encode() if isinstance(part, str) else part
@@ -159,7 +159,8 @@ def key_of(*parts: str | bytes) -> str:
 
 
 def read(key: str) -> dict[str, Any] | None:
-    """Return the value kept by a key; None if it is missing or is not what was written, or the cache is off."""
+    """Return the cached value for a key; None if the value is missing, damaged or not private, or the cache is
+    off."""
     if is_off():
         return None
     try:
@@ -174,17 +175,18 @@ def read(key: str) -> dict[str, Any] | None:
 
 
 def figures(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-    """Return the figures of a key as `kept` does, but make them again if figures are to be measured again."""
+    """Return the figures for a key as `kept` does, but make them again after `measure_anew`."""
     return _found_or_made(read_figures(key), key, make)
 
 
 def read_figures(key: str) -> dict[str, Any] | None:
-    """Return the figures of a key; None if there are none, or they are to be measured again."""
+    """Return the cached figures for a key; None if they are missing, or after `measure_anew`."""
     return None if os.environ.get(ANEW) or not key else read(key)
 
 
 def kept(key: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-    """Return the value of a key. If it is missing, or the key is empty, make it; keep it unless the key is empty."""
+    """Return the cached value for a key. If the value is missing, or the key is empty, make the value, and cache it
+    unless the key is empty."""
     return _found_or_made(read(key) if key else None, key, make)
 
 
@@ -201,14 +203,14 @@ def _digest(value: Any) -> str:
 
 
 def write(key: str, value: dict[str, Any]) -> None:
-    """Keep a value; a folder that cannot be written to is not an error."""
+    """Cache a value under a key; a folder that cannot be written to is not an error."""
     if not is_off():
         with suppress(OSError):
             put(_path(key), json.dumps({"key": key, "digest": _digest(value), "value": value}).encode())
 
 
 def put(path: Path, data: bytes) -> None:
-    """Write a file into the cache in one step: readers see the old file or the new one. Raises OSError."""
+    """Write a file into the cache in one step, so that readers see either the old or the new file. Raises OSError."""
     make_folder(path.parent)
     with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
         try:

@@ -35,7 +35,7 @@ _noted: ContextVar[list[str] | None] = ContextVar("noted", default=None)
 
 
 def leave_out(line: str) -> None:
-    """Report on standard error what is not measured, and why; within `noting_what_is_left_out`, add the line to
+    """Report on standard error that something is left out, and why; within `noting_what_is_left_out`, add the line to
     its list instead."""
     if (lines := _noted.get()) is None:
         tell(f"left out: {line}")
@@ -45,7 +45,8 @@ def leave_out(line: str) -> None:
 
 @contextmanager
 def noting_what_is_left_out() -> Iterator[list[str]]:
-    """Yield the list to which `leave_out` adds lines meanwhile; print them at the end unless an error is raised."""
+    """Yield the list that `leave_out` adds lines to within the context. Print the lines at the end unless an error is
+    raised."""
     lines: list[str] = []
     token = _noted.set(lines)
     try:
@@ -57,12 +58,12 @@ def noting_what_is_left_out() -> Iterator[list[str]]:
 
 
 def lacks_twin(reason: str) -> bool:
-    """Whether a row's reason for missing figures is that its encoding is written for shaders alone."""
+    """Whether a row's reason for missing figures is that its encoding is written only for shaders."""
     return NO_TWIN in reason
 
 
 class UsageError(Exception):
-    """Bad input or usage: one line that says what would have been right. Exit status 2."""
+    """Bad input or usage: the message is one line that says what would be right. Exit status 2."""
 
     exit_code = 2
 
@@ -72,7 +73,7 @@ class SeveralEncodersError(UsageError):
 
     Attributes:
         pairs: the names of each encoder and its decoder, ENCODE:DECODE.
-        alone: the file with its only function that is an encoder by its name, translated; otherwise None.
+        alone: the translated file with the only function that is named like an encoder; None without such a function.
         failing: the names of pairs that do not round-trip.
     """
 
@@ -82,7 +83,7 @@ class SeveralEncodersError(UsageError):
 
 
 class MissingError(Exception):
-    """This machine lacks something: one line that says what to install. Exit status 3."""
+    """This machine lacks something: the message is one line that says what to install. Exit status 3."""
 
     exit_code = 3
 
@@ -95,7 +96,8 @@ _heard: list[list[tuple[bool, str]]] = []
 
 @contextmanager
 def hearing() -> Iterator[list[tuple[bool, str]]]:
-    """Yield the messages that are printed meanwhile, in order: whether each went to standard error, and its text."""
+    """Yield a list of the messages printed within the context, in order: whether each goes to standard error, and its
+    text."""
     _heard.append([])
     try:
         yield _heard[-1]
@@ -104,7 +106,7 @@ def hearing() -> Iterator[list[tuple[bool, str]]]:
 
 
 def hear(is_error: bool, text: str) -> None:
-    """Record a message for everybody who listens."""
+    """Record a message in the lists of all `hearing` contexts."""
     for listener in _heard:
         listener.append((is_error, text))
 
@@ -112,7 +114,7 @@ def hear(is_error: bool, text: str) -> None:
 def tell(line: str) -> None:
     """Print a line to standard error, once per command.
 
-    The output is one line and leaves the terminal as it is, whatever the names of files contain.
+    The output is one line, and file names in it cannot change the state of the terminal.
     """
     # Here, because every run of pytest imports this module.
     from ....reports.tables import visible
@@ -126,7 +128,7 @@ def tell(line: str) -> None:
 
 
 def _cut(number: re.Match[str]) -> str:
-    """Return a long number in short: its first DIGITS digits, and how many digits it has."""
+    """Return a long number in a short form: its first DIGITS digits, and its number of digits."""
     return f"{number[0][:DIGITS]}... ({len(number[0])} digits)"
 
 

@@ -1,4 +1,4 @@
-"""Arrays that took long to make, kept in the user's cache folder: an NPZ file for each key."""
+"""Arrays that take long to make, kept in the user's cache folder: one NPZ file per key."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ Arrays = Mapping[str, np.ndarray]
 
 
 def kept_arrays(key: str, make: Callable[[], Arrays]) -> Arrays:
-    """Return the arrays of a key, or make and keep them now. A folder that cannot be written to is not an error.
+    """Return the cached arrays for a key, or make and cache them. A folder that cannot be written to is not an error.
 
     Args:
-        key: lower-case hexadecimal digits; it differs if the arrays would.
+        key: lower-case hexadecimal digits, which must differ for different arrays.
     """
     path = cache.folder() / "arrays" / f"{key}.npz"
     arrays = None if cache.is_off() else _read(path)
@@ -32,7 +32,8 @@ def kept_arrays(key: str, make: Callable[[], Arrays]) -> Arrays:
 
 
 def _read(path: Path) -> Arrays | None:
-    """Read the arrays of a file; None if it is missing, another user may have written it, or its checksum is wrong."""
+    """Return the arrays in a file; None if the file is missing, another user may have written it, or its checksum is
+    wrong."""
     if not cache.is_private(path):
         return None
     try:

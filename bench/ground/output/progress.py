@@ -32,7 +32,7 @@ class Bar:
     """A progress bar on standard error; not shown if standard error is not a terminal.
 
     Args:
-        expected: for each table, its number of steps and the seconds that each is expected to take.
+        expected: for each table, its number of steps and the seconds that each step is expected to take.
     """
 
     def __init__(self, bar: Any, expected: Mapping[str, tuple[int, float]]):
@@ -49,7 +49,7 @@ class Bar:
         self._move(self._step, f"{self._of}{description}")
 
     def begin(self, table: str, there: int) -> None:
-        """Begin a table, `there` of whose steps are done already and take no time."""
+        """Begin a table; `there` of its steps are already done and take no time."""
         self._begun[table] = None
         self._step = self._expected.get(table, (0, 0.0))[1]
         tables = len(self._expected) - (PAGE in self._expected)
@@ -117,10 +117,10 @@ def spoken() -> Iterator[None]:
 
 @contextmanager
 def progress_of_all(expected: Mapping[str, tuple[int, float]]) -> Iterator[None]:
-    """Show one bar for all tables of a run, which the bars of single tables become part of.
+    """Show one bar for all tables of a run, which includes the bars of single tables.
 
     Args:
-        expected: by table its steps and how many seconds each is expected to take.
+        expected: for each table, its number of steps and the seconds that each step is expected to take.
     """
     with _shown(expected) as bar:
         _whole.append(bar)
@@ -135,8 +135,8 @@ def progress(steps: int, table: str = "", there: int = 0) -> Iterator[Callable[[
     """Yield a function that advances a bar by one step; its argument names the step that begins.
 
     Args:
-        table: the measured table; `there` of its steps are already measured. In a run its bar is a part of the run's
-            bar.
+        table: the measured table. In a run, its bar is part of the run's bar.
+        there: the number of steps that are already measured.
     """
     if _whole and table:
         _whole[-1].begin(table, there)

@@ -13,7 +13,8 @@ from ..machine.systems.files import c_function
 
 @contextmanager
 def without_their_output() -> Iterator[None]:
-    """Discard what C code writes to standard output meanwhile; what Python wrote before is flushed first."""
+    """Discard the output of C code to standard output within the context. Earlier output from Python is flushed
+    first."""
     sys.stdout.flush()
     kept = os.dup(1)
     try:

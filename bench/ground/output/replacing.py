@@ -1,4 +1,4 @@
-"""Files that may be replaced: those that normalbench wrote, unless the command reads them."""
+"""Files that may be replaced: files that normalbench wrote, unless the command reads them."""
 
 from __future__ import annotations
 
@@ -32,9 +32,10 @@ reads: list[Callable[[], Iterable[Path]]] = []
 
 
 def check_replaceable(path: Path, mark: bytes = b"") -> None:
-    """Raise UsageError if an existing file is an input of the command, or lacks the mark of what replaces it.
+    """Raise UsageError if an existing file is an input of the command, or lacks the mark of the file that replaces
+    it.
 
-    Raises OSError as well.
+    Also raises OSError.
 
     Args:
         mark: one of MARKS; empty for any file.
@@ -49,8 +50,8 @@ def check_replaceable(path: Path, mark: bytes = b"") -> None:
 
 
 def check_alike(path: Path, new: Path) -> None:
-    """Raise UsageError if a file must not be replaced by a new one: see `check_replaceable`. Without a mark, two files
-    are alike if their first bytes match, and two texts if their first lines match. Raises OSError as well."""
+    """Raise UsageError if a file must not be replaced by a new file: see `check_replaceable`. Without a mark, two
+    files are alike if their first bytes match, and two texts if their first lines match. Also raises OSError."""
     old, ends = _ends(path), _ends(new)
     mark = next((mark for mark in MARKS if mark in ends), b"")
     check_replaceable(path, mark)
@@ -64,13 +65,13 @@ def not_ours(path: Path, what: str) -> UsageError:
 
 
 def is_empty(data: bytes) -> bool:
-    """Whether nothing is lost with a file of this content."""
+    """Whether a file's content is blank, so that nothing is lost if the file is replaced."""
     return not data.strip()
 
 
 def _ends(path: Path) -> bytes:
-    """Return the first and the last MOST bytes of a file: matplotlib writes its name at the end of a PDF. A short
-    file is returned whole."""
+    """Return the first and the last MOST bytes of a file, because matplotlib writes its name at the end of a PDF. A
+    short file is returned whole."""
     with path.open("rb") as file:
         first = file.read(MOST)
         file.seek(max(file.seek(0, 2) - MOST, len(first)))
@@ -78,7 +79,8 @@ def _ends(path: Path) -> bytes:
 
 
 def _beginning(data: bytes) -> bytes:
-    """Return the beginning that files of one kind share: first bytes, the bracket of JSON, or the first line."""
+    """Return the beginning that files of the same kind share: the first bytes, the bracket of JSON, or the first
+    line."""
     if b"\0" in data:
         return data[:4]
     return data[:1] if data[:1] in (b"{", b"[") else data.partition(b"\n")[0]

@@ -1,4 +1,4 @@
-"""The source files that compute rows: rows from other sources may differ."""
+"""The source files that compute rows: rows from different sources may differ."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROOMS = ("encodings", "gbuffer", "bench", "reports")
 
 @cache
 def sources() -> str:
-    """Return a fingerprint of all source files of the package that compute: 16 hexadecimal digits."""
+    """Return a fingerprint of all source files in the package that compute rows: 16 hexadecimal digits."""
     root, digest = Path(__file__).parents[3], hashlib.sha256()
     for room in ROOMS:
         for path in sorted((root / room).rglob("*")):

@@ -50,7 +50,7 @@ def check_writable(path: Path, makes_folder: bool = False, mark: bytes = b"") ->
 
 
 def _check_own(path: Path) -> None:
-    """Raise UsageError if a file belongs to a run, which alone may write it."""
+    """Raise UsageError if a file belongs to a run, because only the run may write it."""
     is_own = path.suffix in OWN_SUFFIXES and (path.parent / RUN).exists() and path.exists()
     if is_own:
         raise UsageError(f"{path} belongs to the run in its folder; name another file")
@@ -78,7 +78,7 @@ def check_folder(folder: Path) -> None:
 
 
 def target_of(path: Path) -> Path:
-    """Return the file that links lead to, which is the file to write. Raises UsageError if the links form a loop."""
+    """Return the file to write, with all links resolved. Raises UsageError if the links form a loop."""
     try:
         return path.resolve()
     except (OSError, RuntimeError) as error:
@@ -91,7 +91,7 @@ def is_special(path: Path) -> bool:
 
 
 def clear_away(path: Path) -> None:
-    """Remove the partial files and folders that killed processes have left of a path. Raises OSError."""
+    """Remove the partial files and folders that killed processes left behind for a path. Raises OSError."""
     for partial in path.parent.glob(f".{glob.escape(path.name)}.*.partial"):
         number = partial.name.split(".")[-2]
         if number.isdecimal() and not is_running(int(number)):
@@ -100,7 +100,7 @@ def clear_away(path: Path) -> None:
 
 @contextmanager
 def whole_file(path: Path, is_checked: bool = False) -> Iterator[Path]:
-    """Yield a path to write to, which becomes `path` if all goes well and vanishes otherwise.
+    """Yield a path to write to, which becomes `path` if all goes well and is deleted otherwise.
 
     Missing folders are made. A link's target is written, not the link.
 
@@ -108,7 +108,7 @@ def whole_file(path: Path, is_checked: bool = False) -> Iterator[Path]:
         is_checked: whether the caller knows that an existing file may be replaced.
 
     Raises:
-        UsageError: the file cannot be written, or another kind of file has its name.
+        UsageError: the file cannot be written, or a different kind of file has its name.
     """
     path = target_of(path)
     partial = path if is_special(path) else partial_of(path)
@@ -132,7 +132,7 @@ def whole_file(path: Path, is_checked: bool = False) -> Iterator[Path]:
 
 
 def check_page(path: Path | None) -> None:
-    """Raise UsageError if a page has the name of another kind of file; None is allowed."""
+    """Raise UsageError if a page's name has the extension of a different kind of file; None is allowed."""
     if path and path.suffix.lower() in NOT_PAGES:
         raise UsageError(f"{path}: the page is HTML; name it {path.with_suffix('.html')}")
 
@@ -153,7 +153,7 @@ def check_plot(path: Path | None) -> None:
 
 
 def save_plot(path: Path, figure: Any) -> None:
-    """Write a figure in the format that the file's name ends in. Raises UsageError if the file cannot be written."""
+    """Write a figure in the format given by the file's extension. Raises UsageError if the file cannot be written."""
     with whole_file(path) as partial:
         plots.save(figure, (partial, path.suffix[1:].lower()))
 
@@ -181,7 +181,12 @@ def abandon_output() -> None:
 def write_text(make: Callable[[], str], output: Path | None, is_checked: bool = False) -> None:
     """Write text to a file or to standard output. The text is made only after the check that the file can be written.
 
-    Raises UsageError; `is_checked` as in `whole_file`.
+    Args:
+        make: a function that returns the text.
+        is_checked: see `whole_file`.
+
+    Raises:
+        UsageError: the file cannot be written.
     """
     if output:
         check_writable(output)

@@ -1,1 +1,1 @@
-"""Errors of displayed images by the orientation of an encoding in the scene."""
+"""Errors of displayed images, by the orientation of an encoding in the scene."""

@@ -1,4 +1,4 @@
-"""The orientations of an encoding's axes in a scene, and the accuracy of a mean over them."""
+"""Orientations of an encoding's axes in a scene, and the accuracy of a mean over them."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ POLES: Mapping[str, Float[np.ndarray, "3 3"]] = MappingProxyType(
 
 
 def yaws(first: int, count: int, seed: int) -> Float[np.ndarray, "count 3 3"]:
-    """Return rotation matrices about the world's y axis, in steps of STEP_DEG with a random offset each: numbers
-    `first` to `first + count - 1` of the series that a seed begins."""
+    """Return rotation matrices about the world's y axis, in steps of STEP_DEG, each with a random offset: elements
+    `first` to `first + count - 1` of the seed's series."""
     random = np.random.default_rng([seed, 0])
     start, jitter = random.uniform(0, 360), random.uniform(0, JITTER_DEG, first + count)
     angles = np.radians(start + STEP_DEG * np.arange(first, first + count) + jitter[first:])
@@ -37,19 +37,19 @@ def yaws(first: int, count: int, seed: int) -> Float[np.ndarray, "count 3 3"]:
 
 
 def rotations(first: int, count: int, seed: int) -> Float[np.ndarray, "count 3 3"]:
-    """Return independent uniform rotation matrices: numbers `first` to `first + count - 1` of a seed's series."""
+    """Return independent uniform rotation matrices: elements `first` to `first + count - 1` of the seed's series."""
     from scipy.spatial.transform import Rotation
 
     return Rotation.random(first + count, np.random.default_rng([seed, 1])).as_matrix()[first:]
 
 
 def jackknife(figure: Callable[[np.ndarray], float], samples: Sequence[int]) -> float:
-    """Return the standard error of a figure of samples, by leaving out one after the other.
+    """Return the jackknife standard error of a figure computed from samples: one sample at a time is left out.
 
     Source: B. Efron and C. Stein, The jackknife estimate of variance, 1981.
 
     Args:
-        figure: computes the figure of the samples whose indices it is given.
+        figure: computes the figure from the samples with the given indices.
         samples: the indices of all samples, two or more.
     """
     # se^2 = (n - 1) / n sum (x_i - mean x)^2, x_i without sample i

@@ -1,4 +1,4 @@
-"""The error of the displayed image that encodings cause, over pixels sampled from each class of a scene's surfaces."""
+"""The error that encodings cause in the displayed image, over pixels sampled from each surface class of a scene."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ TILT_DEG, TILTS = 0.5, 4
 
 @dataclass(frozen=True)
 class Sample:
-    """Pixels of one class.
+    """Sampled pixels of one class.
 
     Attributes:
         name: the class.
-        columns: the range of the class among the image's samples.
+        columns: the range of the class in the image's samples.
         share: the share of this class in the frame's pixels that show a surface.
-        weights: the weight of each pixel, so that the mean of weighted figures is that of the class; float64 of shape
-            (count,).
+        weights: the weight of each pixel, such that the mean of weighted figures is the mean of the class; float64 of
+            shape (count,).
     """
 
     name: str
@@ -48,9 +48,9 @@ class SampledImage:
 
     Args:
         whole: the image.
-        seed: the seed of the choice of pixels.
+        seed: the seed for the choice of pixels.
         device: the device that lights the pixels.
-        stack: the stack that keeps what the lighting needs.
+        stack: the exit stack that keeps the resources for lighting.
 
     Attributes:
         classes: the samples of each class in the image.
@@ -69,7 +69,7 @@ class SampledImage:
 
     def errors(self, trip: Trip, turns: Sequence[Turn]) -> Float[np.ndarray, "turns count"]:
         """Return the squared error of each sampled pixel, as displayed, in each orientation of an encoding: (turns,
-        count). It is the mean over channels; a channel that is not finite counts as 1."""
+        count). The error is averaged over the channels; a channel that is not finite counts as 1."""
         parts = (turns[first : first + ROWS] for first in range(0, len(turns), ROWS))
         return np.concatenate([self._errors(trip, part) for part in parts])
 
@@ -79,11 +79,11 @@ class SampledImage:
         return np.mean(np.where(np.isfinite(shown), shown - self._exact, 1.0) ** 2, axis=-1)
 
     def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
-        """Return by class the mean squared error in each orientation, (turns,), and under "" the mean squared error
-        of the frame, in which classes count by their share; {} if no sampled pixel counts.
+        """Return the mean squared error of each class in each orientation, (turns,), by class, and under "" the mean
+        squared error of the frame, with classes weighted by their shares; {} if no sampled pixel counts.
 
         Args:
-            domain: pixels whose normals are outside do not count; a class without other pixels is left out.
+            domain: pixels with normals outside it do not count; a class without other pixels is left out.
         """
         return self._means(self.errors(trip, turns), in_domain(self.normals, self.positions, domain))
 
@@ -97,15 +97,17 @@ class SampledImage:
         return {"": total / whole, **means} if whole else {}
 
     def pixel_error(self, errors: Float[np.ndarray, " count"]) -> float:
-        """Return the standard error of the frame's mean squared error that the choice of pixels causes, from the
-        squared errors of the sampled pixels in one orientation."""
+        """Return the standard error that the choice of pixels causes in the frame's mean squared error.
+
+        Args:
+            errors: the squared errors of the sampled pixels in one orientation."""
         parts = (sample.share * sample.weights * errors[sample.columns] for sample in self.classes)
         return float(np.sqrt(sum(part.var() / part.size for part in parts)))
 
 
 def _changes(whole: WholeImage, seed: int) -> np.ndarray:
-    """Return how much each displayed pixel changes if normals are tilted a little, at random: the mean square,
-    (height, width)."""
+    """Return the mean squared change of each displayed pixel, (height, width), if normals are tilted slightly at
+    random."""
     random = np.random.default_rng([seed, 3])
 
     def tilted(normals: np.ndarray, _: np.ndarray) -> np.ndarray:
@@ -121,8 +123,8 @@ def _changes(whole: WholeImage, seed: int) -> np.ndarray:
 def _sampled(whole: WholeImage, changes: np.ndarray, seed: int) -> tuple[np.ndarray, list[Sample]]:
     """Return the rows and columns of sampled pixels, (count, 2), and a `Sample` for each class that the image shows.
 
-    Pixels are grouped by class, in an order that keeps neighbours in space close. Half of a pixel's chance is the
-    same for all, and half is proportional to its change, so that no weight exceeds 2.
+    Pixels are grouped by class, in an order that keeps spatial neighbours together. Half of a pixel's probability is
+    the same for all pixels, and half is proportional to its change, so that no weight exceeds 2.
     """
     random, is_seen = np.random.default_rng([seed, 2]), whole.classes >= 0
     total, change_of_all = max(int(is_seen.sum()), 1), float(np.sum(changes[is_seen])) or 1.0
@@ -147,7 +149,7 @@ def _sampled(whole: WholeImage, changes: np.ndarray, seed: int) -> tuple[np.ndar
 
 
 def _along_a_curve(places: np.ndarray, bits: int = 10) -> np.ndarray:
-    """Return the order of points, (count, 3), along Morton's curve, as indices: a lamp reaches few runs of them."""
+    """Return the indices that put points, (count, 3), in Morton order, so that a lamp reaches few runs of them."""
     spread = np.ptp(places, axis=0).max() or 1.0
     cells = ((places - places.min(axis=0)) / spread * (2**bits - 1)).astype(np.int64)
     curve = np.zeros(len(places), np.int64)

@@ -1,7 +1,7 @@
-"""The effect of an encoding's orientation on image errors: the best pole, the mean over yaws, and its accuracy.
+"""The effect of an encoding's orientation on image errors: the best pole, the mean over yaws and its accuracy.
 
-Mean squared errors of displayed images, by image, by pole, of each yaw in its order: {"studio": {"x": [...], ...}}.
-An encoding in view space has one orientation, whose pole is "".
+Errors are the mean squared errors of displayed images, by image and by pole, in the order of the yaws:
+{"studio": {"x": [...], ...}}. An encoding in view space has one orientation, whose pole is "".
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ Errors = Mapping[str, Mapping[str, Sequence[float]]]
 
 
 def best_pole(errors: Errors) -> str:
-    """Return the pole at which the lowest PSNR of all images is highest, over at most ALL yaws common to them."""
+    """Return the pole at which the lowest PSNR of all images is highest, over at most ALL yaws that they share."""
     poles = next(iter(errors.values()))
     return max(poles, key=lambda pole: worst_db(errors, pole, range(min(ALL, count_of(errors, pole)))))
 
 
 def count_of(errors: Errors, pole: str) -> int:
-    """Return the number of yaws that every image has at a pole: the smallest number of any image."""
+    """Return the number of yaws at a pole that all images have."""
     return min(len(by_pole[pole]) for by_pole in errors.values())
 
 
@@ -41,8 +41,8 @@ def image_db(errors: Sequence[float] | np.ndarray) -> float:
 
 
 def worst_db(errors: Errors, pole: str, yaws: Sequence[int] | np.ndarray) -> float:
-    """Return the lowest PSNR of all images at a pole, in dB, each from the mean of its squared errors at the yaws
-    with these indices."""
+    """Return the lowest PSNR of all images at a pole, in dB. An image's PSNR is computed from the mean of its squared
+    errors at the yaws with these indices."""
     kept = np.asarray(yaws)
     return min(image_db(np.asarray(by_pole[pole])[kept]) for by_pole in errors.values())
 
@@ -61,8 +61,8 @@ def two_worst_db(errors: Sequence[float]) -> float:
 def gap_db(errors: Errors, other: Errors) -> tuple[float, float]:
     """Return how far the lowest PSNR of an encoding is above that of another, in dB, and the gap's standard error.
 
-    Each encoding is at its best pole, over the yaws that both have. A PSNR counts as INDISTINGUISHABLE_DB at most.
-    The error of a single orientation is 0.
+    Each encoding uses its best pole; only the yaws that both have are compared. PSNRs are capped at
+    INDISTINGUISHABLE_DB. The standard error for a single orientation is 0.
     """
     poles = best_pole(errors), best_pole(other)
     yaws = range(min(count_of(errors, poles[0]), count_of(other, poles[1])))

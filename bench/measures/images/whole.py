@@ -1,4 +1,4 @@
-"""Whole frames of a scene with exact normals and with those of encodings; its surfaces are drawn once."""
+"""Whole frames of a scene, with exact normals and with the decoded normals of encodings; surfaces are drawn once."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ class WholeImage:
 
     Attributes:
         scene: the scene at that moment.
-        display: how it is shown.
-        exact: the displayed image of exact normals, (height, width, 3), row 0 on top.
+        display: the conversion of linear light to the displayed image.
+        exact: the displayed image with exact normals, (height, width, 3), row 0 on top.
         surfaces: as `Rendering.surfaces` returns them for layout fp32.
-        classes: for each pixel the number of its class among AXIS_ALIGNED and those of UP_TO; -1 where no surface
-            is visible, or one is visible through another; (height, width).
-        places: view positions, float32 of shape (height, width, 3).
+        classes: the number of each pixel's class among AXIS_ALIGNED and the classes of UP_TO, (height, width); -1 if
+            no surface is visible, or a surface is visible through another surface.
+        places: positions in view space, float32 of shape (height, width, 3).
         to_world: the matrix from view space to the world's axes, (3, 3).
     """
 
@@ -80,8 +80,8 @@ class WholeImage:
     def decoded(
         self, trip: Trip, turns: Sequence[Turn], normals: Float[np.ndarray, "count 3"], positions: np.ndarray
     ) -> Float[np.ndarray, "turns count 3"]:
-        """Return view-space normals after a round trip in each orientation of an encoding, back in view space:
-        (turns, count, 3)."""
+        """Return view-space normals after a round trip through an encoding in each of its orientations, again in view
+        space: (turns, count, 3)."""
         matrices = [np.eye(3) if turn is None else turn @ self.to_world for turn in turns]
         given = np.concatenate([normals @ matrix.T for matrix in matrices]).astype(np.float32)
         decoded = trip(given, np.tile(positions, (len(turns), 1))).reshape(len(turns), *normals.shape)
@@ -100,11 +100,11 @@ class WholeImage:
         return self.covered & in_domain(self.surfaces[0][..., :3], self.places, domain)
 
     def view_angles(self) -> Float[np.ndarray, " covered"]:
-        """Return how far the covered pixels' normals are from the line of sight, in degrees."""
+        """Return the angles between the covered pixels' normals and the lines of sight to the viewer, in degrees."""
         return view_angles(self.surfaces[0][self.covered, :3], self.places[self.covered])
 
     def by_class(self, trip: Trip, turns: Sequence[Turn], domain: str) -> dict[str, Float[np.ndarray, " turns"]]:
-        """Return the mean squared error of each class and, under "", that of the frame; see `SampledImage.by_class`."""
+        """Return the mean squared error of each class and, under "", of the frame; see `SampledImage.by_class`."""
         held, rows = self.held_by(domain), []
         numbers = {"": held} | {name: held & (self.classes == i) for i, name in enumerate((AXIS_ALIGNED, *UP_TO))}
         for turn in turns:

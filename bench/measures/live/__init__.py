@@ -1,1 +1,1 @@
-"""The data of a run for its page's laboratory: each codec's functions in GLSL ES."""
+"""A run's data for the laboratory on its page: each codec's functions in GLSL ES."""

@@ -1,10 +1,10 @@
-"""Checksums of a codec's expected codes, in few bytes: they tell which number of which normal is one step away.
+"""Checksums of a codec's expected codes, in few bytes: they identify a single number that is off by one step.
 
 The codes of 2^16 normals would be hundreds of kilobytes for each codec. Instead, the page holds one word for each
 group of 128 normals: the sum of weight(normal, number) code(normal, number), modulo 2^32. A browser subtracts the
-sum of its own codes from it. If the difference is 0, all codes are equal. If it is plus or minus one weight, this
-number of this normal is one step away. Codes are integers in the order of the numbers that they stand for, so one
-step of a float is also a difference of 1.
+sum of its own codes from this word. If the difference is 0, all codes are equal. If it is plus or minus one weight,
+the number of the normal with this weight is off by one step. Codes are integers in the order of the numbers that
+they stand for, so one step of a float is also a difference of 1.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ DOMAINS = ("sphere", "hemisphere", "view")
 
 
 def common() -> dict[str, Any]:
-    """Return, as values for JSON, the data from which browsers make the normals and the weights of checksums, and the
-    checksums of each domain's normals and views."""
+    """Return data, as values for JSON, from which browsers make the normals and the weights of checksums, and also
+    the checksums of each domain's normals and views."""
     given = normals.hard()
     starts = {"normals": normals.NORMALS, "views": normals.VIEWS, "weights": normals.WEIGHTS, "sums": normals.SUMS}
     return {
@@ -51,12 +51,13 @@ def common() -> dict[str, Any]:
 
 @cache
 def sums(domain: str) -> list[int]:
-    """Return the checksums of a domain's normals and of its views, by which a browser checks its own."""
+    """Return the checksums of a domain's normals and of its views, with which a browser checks its own vectors."""
     return [checksum(vectors) for vectors in normals.normals(domain)]
 
 
 def is_whole(saved: Mapping[str, Any], domain: str, size: int) -> bool:
-    """Whether saved checks are of the normals that this version makes, and as long as for codes of `size` numbers."""
+    """Whether saved checks belong to the normals that this version makes, and have the lengths for codes of `size`
+    numbers."""
     counts = {"groups": COUNT // GROUP, "numbers": size, "sample": COUNT // STRIDE * size}
     try:
         is_there = all(len(base64.b64decode(saved[name], validate=True)) == 4 * count for name, count in counts.items())
@@ -100,15 +101,15 @@ def _codec_checks(codec: Codec) -> dict[str, Any]:
 
 
 def ordered(codec: Codec, reference: Reference) -> np.ndarray:
-    """Return a reference's codes as integers in the order of the numbers that they stand for: one step of a number is
-    a difference of 1. The result is int32 of shape (count, components)."""
+    """Return a reference's codes as integers in the order of the numbers that they stand for, int32 of shape (count,
+    components). One step of a number is a difference of 1."""
     channels = Channels(codec).channels
     whole = [signed(channel, reference.integers[:, i]) for i, channel in enumerate(channels)]
     return np.stack(whole, axis=1).astype(np.int32)
 
 
 def weights() -> np.ndarray:
-    """Return an odd weight for each number of each code of a group, uint32 of shape (GROUP, NUMBERS)."""
+    """Return an odd weight for each number of each code in a group, uint32 of shape (GROUP, NUMBERS)."""
     index = np.arange(GROUP * NUMBERS, dtype=np.uint32).reshape(GROUP, NUMBERS)
     return hashed(np.uint32(normals.WEIGHTS) + index) | np.uint32(1)
 

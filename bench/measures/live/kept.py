@@ -1,5 +1,5 @@
-"""A run's codecs for the laboratory of its page: a file for each codec, checked when read because people may edit
-it."""
+"""A run's codecs for the laboratory on its page: a file for each codec, checked when it is read because people may
+edit it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Degrees = Annotated[float, Field(ge=0, le=180)]
 
 @with_config(STRICT)
 class Channel(TypedDict):
-    """The position of a number of a code in its texel."""
+    """The position of one of a code's numbers in the texel."""
 
     kind: Literal["unorm", "snorm", "float"]
     bits: Annotated[int, Field(ge=1, le=32)]
@@ -94,7 +94,7 @@ def file_name(codec: Codec) -> str:
 
 
 def write_live(codecs: Iterable[Codec], folder: Path) -> None:
-    """Write a JSON file for each codec into a folder; if browsers cannot run the codec, the file has the reason.
+    """Write a JSON file for each codec to a folder; if browsers cannot run the codec, the file gives the reason.
     Raises UsageError if a file cannot be written."""
     for codec in dict.fromkeys(codecs):
         try:
@@ -114,15 +114,15 @@ def _checks_or_none(codec: Codec) -> Record | None:
 
 
 def _current_record(record: Record) -> Record:
-    """Return a record, without its checks (None) if they are not of the normals that the page makes."""
+    """Return a record, with its checks set to None if they do not belong to the normals that the page makes."""
     kept_checks = record["checks"]
     is_whole = kept_checks and checks.is_whole(kept_checks, record["domain"], len(record["channels"]))
     return record if is_whole else {**record, "checks": None}
 
 
 def read_live(folder: Path) -> tuple[list[Record], dict[str, str]]:
-    """Return the records of the codecs in a run's folder, and why others are left out, by the codec's name; a damaged
-    file is left out under the file's name."""
+    """Return the records of the codecs in a run's folder, and the reasons for leaving out others, by the codec's name
+    or, for a damaged file, by the file's name."""
     records, left_out = [], {}
     for name, path in sorted(files_of(folder).items()):
         if path.suffix != ".json":

@@ -1,7 +1,7 @@
-"""The normals that browsers encode, bit for bit those of live/measure.js: hard normals, then random normals.
+"""The normals that browsers encode, bit-identical to those in live/measure.js: hard normals, then random normals.
 
-Random normals are made from integers by a hash, and by sums, products and roots of float32, which every machine
-rounds alike. Hard normals are stored in the page, as their bits.
+Random normals are made from hashed integers by float32 sums, products and square roots, which every machine rounds
+identically. Hard normals are stored in the page, as bits.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def _uniform_numbers(words: np.ndarray) -> np.ndarray:
 
 
 def _random_normals(index: np.ndarray) -> np.ndarray:
-    """Return uniform unit normals, float32 of shape (count, 3); the same for the same index.
+    """Return uniformly distributed unit normals, float32 of shape (count, 3), which depend only on the indices.
 
     G. Marsaglia, "Choosing a Point from the Surface of a Sphere" (1972): the first (a, b) with s = a^2 + b^2 < 1
     gives (2 a sqrt(1 - s), 2 b sqrt(1 - s), 1 - 2 s).
@@ -62,7 +62,8 @@ def _at_length_1(vectors: np.ndarray) -> np.ndarray:
 
 
 def _fold_normals() -> np.ndarray:
-    """Return normals on the planes where maps fold, x = 0 and |x| = |y| for every pair of axes, and next to x = 0."""
+    """Return normals on the planes where encodings fold, x = 0 and |x| = |y| for all pairs of axes, and close to
+    x = 0."""
     points, parts = _random_normals(np.arange(ON_LINES, dtype=np.uint32)).astype(np.float64), []
     for axis, other in PAIRS:
         for value in BESIDE:
@@ -75,8 +76,9 @@ def _fold_normals() -> np.ndarray:
 
 
 def _neighbour_normals(n: np.ndarray) -> np.ndarray:
-    """Return six neighbours of each normal, with one component one float32 up or down, not renormalised. A component
-    of 0 becomes NEXT_TO_0 or minus that, which stays normal in products: devices may flush subnormal numbers."""
+    """Return six neighbours of each normal, not renormalised: one component is moved up or down by one float32 step.
+    A component of 0 becomes NEXT_TO_0 or -NEXT_TO_0, whose products are still normal numbers: devices may flush
+    subnormal numbers."""
     parts = []
     for axis in range(3):
         for toward in (-2.0, 2.0):
@@ -88,7 +90,7 @@ def _neighbour_normals(n: np.ndarray) -> np.ndarray:
 
 @cache
 def hard() -> np.ndarray:
-    """Return axes with both zeros and their neighbours, diagonals and their neighbours, and normals where maps fold:
+    """Return the axes with zeros of both signs, the diagonals, neighbours of both, and normals where encodings fold:
     float32 of shape (count, 3)."""
     known = directions()[:-RANDOM]
     diagonals = known[-26:]
@@ -97,7 +99,7 @@ def hard() -> np.ndarray:
 
 @cache
 def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return unit normals of a domain, the hard ones first, and view-space positions: float32, (COUNT, 3) each.
+    """Return unit normals in a domain, hard normals first, and view-space positions: float32, (COUNT, 3) each.
 
     Args:
         domain: "sphere", "hemisphere" (z >= 0) or "view" (normals that face the viewer).
@@ -123,7 +125,7 @@ def _view_positions() -> np.ndarray:
 
 
 def checksum(values: np.ndarray) -> int:
-    """Return a checksum of 32-bit numbers, a sum of hashed words modulo 2^32; it depends on their order."""
+    """Return a checksum of 32-bit numbers that depends on their order: the sum of hashed words modulo 2^32."""
     words = np.ascontiguousarray(values).view(np.uint32).ravel()
     places = hashed(np.uint32(SUMS) + np.arange(len(words), dtype=np.uint32))
     return int(np.sum(hashed(words ^ places), dtype=np.uint32))

@@ -33,7 +33,7 @@ TABLES_TOO_LARGE = "its lookup tables are too large for a page"
 
 
 class NotLiveError(ValueError):
-    """A codec that no browser can be given, and why."""
+    """Raised for a codec that browsers cannot run; the message is the reason."""
 
 
 @cache
@@ -109,8 +109,8 @@ def _table_record(table: np.ndarray) -> Record:
 
 
 def storage_functions(names: list[str]) -> list[Record]:
-    """Return records like those of `program` for an encoder that is typed into a page: for each storage its functions
-    for codes of two and of three numbers, if it can store them.
+    """Return records like those of `program` for an encoder that a user types into a page: each storage's functions
+    for codes of two and of three numbers, as far as the storage can hold them.
 
     Args:
         names: storages of the run; unknown names are left out. The usual storages are always included.

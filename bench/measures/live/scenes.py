@@ -1,7 +1,7 @@
-"""The sets of normals of a run that are images, for the laboratory of its page: small images, as stored in the run.
+"""A run's image sets of normals, for the laboratory on its page: small images, as stored in the run.
 
-A pixel's normal is stored in two numbers of 12 bits each. It is turned first, by a rotation that has no axis in
-common with any encoding. So the normals that a page puts through a codec are not on the codec's own grid.
+A pixel's normal is stored in two numbers of 12 bits each. It is first rotated about an axis that no encoding uses, so
+that the normals that a page puts through a codec are not on the codec's own grid.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ ROTATION = np.eye(3) + np.sin(1.0) * _ACROSS + (1.0 - np.cos(1.0)) * _ACROSS @ _
 
 
 def write_scene(name: str, n: np.ndarray, view: np.ndarray, covered: np.ndarray, folder: Path) -> None:
-    """Write a set of normals as a small image, NAME.npz in a folder, at most SIDE pixels long. Raises UsageError if
-    it cannot be written.
+    """Write a set of normals as a small image, NAME.npz in a folder, with at most SIDE pixels per side. Raises
+    UsageError if the file cannot be written.
 
     Args:
         name: the name of the set and of its file.
@@ -56,10 +56,11 @@ def _slope(view: np.ndarray) -> np.ndarray:
 
 
 def read_scenes(folder: Path) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
-    """Yield for each image in a run's folder its name, its pixels as uint8 of shape (height, width, 4), and its
-    slope, float32 of shape (2,). Damaged files are skipped.
+    """Yield the name of each image in a run's folder, its pixels as uint8 of shape (height, width, 4), and its slope,
+    float32 of shape (2,). Damaged files are skipped.
 
-    A pixel's first 12 bits are the first number, the next 12 the second; the fourth byte is 255 on a surface.
+    The first 12 bits of a pixel are the first number, the next 12 bits the second number; the fourth byte is 255 on a
+    surface.
     """
     for name, path in sorted(files_of(folder).items()):
         if path.suffix != ".npz":
@@ -81,5 +82,5 @@ def _pixels(codes: np.ndarray, covered: np.ndarray) -> np.ndarray:
 
 
 def unpacking() -> Mapping[str, Any]:
-    """Return the data with which a page decodes the pixels: levels, and the rows of the inverse rotation."""
+    """Return the data that a page needs to decode the pixels: levels, and the rows of the inverse rotation."""
     return {"levels": LEVELS, "back": ROTATION.T.tolist()}

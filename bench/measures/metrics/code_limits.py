@@ -1,10 +1,10 @@
-"""Lower bounds on the errors of N codes, whatever the codes.
+"""Lower bounds on the errors of any N codes.
 
-For N points on a surface of area A, the bounds are in radians of the angle between a uniform direction and its
-code. The mean square is at least 5 / (18 sqrt 3) A / N, that of regular hexagons (L. Fejes Toth's moment theorem).
-The mean is at least a hexagon's, and the maximum at least that of a covering of the whole sphere by N caps (Fejes
-Toth 1943). The border of a part of the sphere is not counted: the bound uses its density, N 4 pi / A codes for the
-whole sphere, and is asymptotic in N.
+For N points on a surface of area A, the bounds are on the angle, in radians, between a uniformly distributed
+direction and its code. The mean square is at least 5 / (18 sqrt 3) A / N, the value for regular hexagons (L. Fejes
+Toth's moment theorem). The mean is at least that of a hexagon, and the maximum at least that of a covering of the
+whole sphere by N caps (Fejes Toth 1943). The border of a part of the sphere is ignored: the bound uses the density,
+N 4 pi / A codes for the whole sphere, and is asymptotic in N.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def covering_deg(codes: float) -> float:
     """Return the smallest angle that `codes` (4 or more) equal caps need to cover the sphere, in degrees.
 
     The angle is arccos(cot(w) / sqrt 3) with w = pi/6 N / (N - 2); it is computed from the sine of half the angle,
-    which does not cancel.
+    which avoids cancellation.
     """
     excess = math.pi / (3 * (codes - 2))
     half_squared = math.sin(excess) / (math.sqrt(3) * math.sin(math.pi / 6 + excess))
@@ -64,7 +64,7 @@ def covering_deg(codes: float) -> float:
 
 def effective_bits(angle_rms_deg: float, area: float | None) -> float | None:
     """Return log2 of the number of codes that, ideally placed on `area` steradians, have this RMS angle; infinite for
-    an angle of 0. Return None if `area` is None, because the set is not uniform."""
+    an angle of 0. Return None if `area` is None, which means that the set is not uniform."""
     if area is None:
         return None
     if angle_rms_deg == 0:
@@ -73,7 +73,7 @@ def effective_bits(angle_rms_deg: float, area: float | None) -> float | None:
 
 
 def is_measurable(least: CodeLimit) -> bool:
-    """Whether float32 normals can tell errors of this limit's size."""
+    """Whether float32 normals can resolve errors as small as this limit."""
     return least.rms_deg > RESOLUTION_DEG
 
 

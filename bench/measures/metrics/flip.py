@@ -1,4 +1,4 @@
-"""FLIP, a perceptual difference of two images seen one after the other, at the same place.
+"""FLIP, a measure of the perceived difference between two images that alternate at the same place.
 
 P. Andersson, J. Nilsson, T. Akenine-Moller, M. Oskarsson, K. Astrom, M. D. Fairchild: FLIP: A Difference Evaluator
 for Alternating Images, HPG 2020. Implemented as published for images in [0, 1], with separable filters.
@@ -44,7 +44,7 @@ WHITE = XYZ_OF_RGB.sum(axis=1)[:, None, None]
 
 
 class _Seen(NamedTuple):
-    """An image as an eye has it: L*a*b* with Hunt's effect, and the strength of edges and of points."""
+    """An image as the eye perceives it: L*a*b* with the Hunt effect, and the strengths of edges and points."""
 
     colour: Planes
     edges: Plane
@@ -52,10 +52,10 @@ class _Seen(NamedTuple):
 
 
 class Flip:
-    """Compares images with one reference, which is filtered once, when it is first needed.
+    """A comparison of images with one reference, which is filtered only once, on first use.
 
     Args:
-        reference: display values in [0, 1], sRGB.
+        reference: sRGB display values in [0, 1].
     """
 
     def __init__(self, reference: Float[np.ndarray, "height width 3"]):
@@ -66,10 +66,10 @@ class Flip:
         return _seen(self.reference)
 
     def of(self, image: Float[np.ndarray, "height width 3"]) -> Plane:
-        """Return the difference of an image from the reference at each pixel, 0 to 1.
+        """Return the difference between an image and the reference at each pixel, 0 to 1.
 
         Args:
-            image: like the reference. A pixel that is not a number counts as black.
+            image: sRGB display values, of the same size as the reference. NaN counts as 0.
         """
         ours, theirs = _seen(image), self._reference_seen
         apart = _apart(ours.colour, theirs.colour) ** Q_COLOUR
@@ -98,7 +98,7 @@ def _linear(srgb: Planes) -> Planes:
 
 
 def _opponent_of(xyz: Planes) -> Planes:
-    """Return YCxCz of XYZ relative to white, (3, height, width): 116 Y - 16, 500 (X - Y), 200 (Y - Z)."""
+    """Convert XYZ to YCxCz relative to white, (3, height, width): 116 Y - 16, 500 (X - Y), 200 (Y - Z)."""
     x, y, z = xyz / WHITE
     return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)])
 
@@ -109,7 +109,7 @@ def _xyz_of(opponent: Planes) -> Planes:
 
 
 def _lab_of(xyz: Planes) -> Planes:
-    """Return L*a*b* of XYZ, (3, height, width), with a* and b* multiplied by 0.01 L*: Hunt's effect."""
+    """Convert XYZ to L*a*b*, (3, height, width), with a* and b* multiplied by 0.01 L* for the Hunt effect."""
     limit = 6 / 29
     share = xyz / WHITE
     x, y, z = np.where(share > limit**3, np.cbrt(share), share / (3 * limit**2) + 4 / 29)
@@ -118,22 +118,22 @@ def _lab_of(xyz: Planes) -> Planes:
 
 
 def _apart(a: Planes, b: Planes) -> Plane:
-    """Return the HyAB distance at each pixel of L*a*b* images: difference in L* plus distance in (a*, b*)."""
+    """Return the HyAB distance between two L*a*b* images at each pixel: distance in L* plus distance in (a*, b*)."""
     return abs(a[0] - b[0]) + np.hypot(a[1] - b[1], a[2] - b[2])
 
 
 @cache
 def _most() -> float:
-    """Return the largest difference in colour, between green and blue, raised to Q_COLOUR."""
+    """Return the largest colour difference, between green and blue, raised to the power Q_COLOUR."""
     green, blue = (_lab_of(_mixed(XYZ_OF_RGB, np.eye(3, dtype=np.float32)[k][:, None, None])) for k in (1, 2))
     return float(_apart(green, blue)[0, 0] ** Q_COLOUR)
 
 
 def _filtered(plane: Plane, terms: tuple[tuple[float, float], ...]) -> Plane:
-    """Return a plane filtered by a sum of separable Gaussians, normalised to 1.
+    """Return a plane filtered with a sum of separable Gaussians, normalised to 1.
 
     Args:
-        terms: (a, b) of each Gaussian a sqrt(pi / b) exp(-pi^2 d^2 / b), with the distance d in degrees."""
+        terms: (a, b) for each Gaussian a sqrt(pi / b) exp(-pi^2 d^2 / b), with the distance d in degrees."""
     radius = math.ceil(3 * math.sqrt(WIDEST / (2 * math.pi**2)) * PIXELS_PER_DEGREE)
     degrees = np.arange(-radius, radius + 1) / PIXELS_PER_DEGREE
     gaussians = [np.exp(-((math.pi * degrees) ** 2) / b) for _, b in terms]
@@ -143,8 +143,8 @@ def _filtered(plane: Plane, terms: tuple[tuple[float, float], ...]) -> Plane:
 
 
 def _features(lightness: Plane) -> tuple[Plane, Plane]:
-    """Return the strength of edges and the strength of points at each pixel, from first and from second derivatives
-    of Gaussians, whose positive weights add up to 1 and whose negative weights add up to -1."""
+    """Return the strengths of edges and of points at each pixel, from the first and second derivatives of a Gaussian,
+    with positive weights that add up to 1 and negative weights that add up to -1."""
     width = 0.5 * FEATURE_DEG * PIXELS_PER_DEGREE
     radius = math.ceil(3 * width)
     x = np.arange(-radius, radius + 1)

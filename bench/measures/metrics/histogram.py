@@ -1,7 +1,8 @@
-"""The histogram of angles, and the figures that come from it.
+"""The histogram of angles, and the figures computed from it.
 
-A bin is the upper bits of a float32, ten of them mantissa: 2^-10 of an octave, so that percentiles are accurate to
-0.1%. Bins range from 2^-40 degrees to 180 and above, and their numbers fit in 16 bits.
+A bin is given by the upper bits of a float32, including ten bits of its mantissa. It is 2^-10 of an octave wide, so
+that percentiles are accurate to 0.1%. Bins range from 2^-40 degrees to 180 and above, and their numbers fit in 16
+bits.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ def bins_of(angle: Float[Array, "*shape"], covered: Bool[ArrayLike, "*shape"]) -
 
 
 def bin_of(angle_deg: float) -> int:
-    """Return the number of an angle's bin, from degrees; the first or the last bin for angles beyond them."""
+    """Return the number of the bin for an angle in degrees; the first or the last bin for angles beyond all bins."""
     return min(max((int(np.float32(angle_deg).view(np.uint32)) >> BIN_SHIFT) - FIRST_BIN, 0), BINS - 1)
 
 
@@ -47,8 +48,8 @@ def tally(bins: UInt[Array, "*shape"]) -> Int[Array, " bins"]:
 
 
 def percentile(histogram: Int[np.ndarray, " bins"], largest: float, share: float) -> float:
-    """Return the angle, in degrees, below which `share` (0 to 1) of the counts fall, interpolated within its bin; at
-    most `largest`, the largest angle, and 0 if that is 0."""
+    """Return the angle, in degrees, below which `share` (0 to 1) of the counts fall, interpolated within its bin. The
+    result is at most `largest`, the largest angle, and 0 if `largest` is 0."""
     cumulative = np.cumsum(histogram[:BINS])
     rank = share * cumulative[-1]
     index = int(np.searchsorted(cumulative, rank))

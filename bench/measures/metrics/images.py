@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 def squared_error(image: Float[np.ndarray, "*shape 3"], reference: Float[np.ndarray, "*shape 3"]) -> tuple[float, int]:
-    """Return the mean squared error of two displayed images, over all or some pixels and every channel, in [0, 1].
+    """Return the mean squared error between two displayed images, or parts of them, over all channels, in [0, 1].
 
     Returns:
-        the error, and the number of pixels that are not finite; each of those counts as 1 in every channel.
+        the error, and the number of pixels that are not finite, each of which counts as 1 in every channel.
     """
     finite = np.isfinite(image)
     # An image seldom has such a pixel, and looking at each one's three channels takes NumPy long.

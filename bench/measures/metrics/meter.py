@@ -53,7 +53,7 @@ def angle_between(a: Vec3, b: Vec3) -> Float[Array, "*shape"]:
 
 
 def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Bool[Array, "*shape"]]:
-    """Return the decoded normals, or -n where they are not finite, and a mask of the finite ones."""
+    """Return the decoded normals, with -n in place of those that are not finite, and a mask of the finite normals."""
     finite = jnp.isfinite(dot(decoded, decoded))
     return select(finite, decoded, -n), finite
 
@@ -61,8 +61,9 @@ def readable(n: Vec3, decoded: Vec3) -> tuple[Vec3, Bool[Array, "*shape"]]:
 def errors(
     n: Vec3, decoded: Vec3, covered: Bool[ArrayLike, "*shape"]
 ) -> tuple[Float[Array, "*shape"], Float[Array, "*shape"], Float[Array, "*shape"], Bool[Array, "*shape"]]:
-    """Return for each normal the squared error, the article's squared error (a whole number) and the angle in
-    degrees, all float32, and whether the decoded normal is not finite and counts as -n; 0 unless `covered`."""
+    """Return for each normal the squared error, the squared error as in the article (a whole number) and the angle in
+    degrees, all float32, and whether the decoded normal is not finite, so that it counts as -n. Everything is 0 if
+    the normal is not `covered`."""
     decoded, finite = readable(n, decoded)
     difference = select(covered, n - decoded, n * 0.0)
     # The article's difference image was |n - n'| in eight bits per channel.
@@ -77,13 +78,13 @@ def _packed(
     angle: Float[Array, "*shape"],
     invalid: Bool[Array, "*shape"],
 ) -> tuple[Float[Array, "*shape"], Int[Array, "*shape"], Float[Array, "*shape"]]:
-    """Return (squared, article, angle) as `errors` does, with the invalid flag as the bit INVALID_BIT of the article's
-    error, int32."""
+    """Return (squared, article, angle) as in `errors`, with `article` as int32 that has the invalid flag as bit
+    INVALID_BIT."""
     return squared, jnp.asarray(article, jnp.int32) + (jnp.asarray(invalid, jnp.int32) << INVALID_BIT), angle
 
 
 class Decoded(NamedTuple):
-    """CHUNK normals, their decoded normals, and which of them count."""
+    """CHUNK normals, their decoded normals, and a mask of the normals that count."""
 
     n: Vec3
     decoded: Vec3
@@ -99,9 +100,9 @@ def _as_it_is(row):
 
 
 def _added(start: Num[Array, " lanes"], rows: Num[Array, "rows lanes"], of=_as_it_is) -> Num[Array, " lanes"]:
-    """Return `start` plus `of` each row, one row after the other: the same bits however many rows a block has.
+    """Return `start` plus `of` each row, added row by row, so that the result does not depend on the size of a block.
 
-    A row is computed and converted when it is added. XLA would write whole blocks in float64 first.
+    A row is computed and converted only when it is added. Otherwise XLA would first write whole blocks in float64.
     """
     return reduce(operator.add, (of(rows[row]).astype(start.dtype) for row in range(ROWS)), start)
 
@@ -135,7 +136,7 @@ _scan = jax.jit(_traced_scan)
 
 
 def _worst(bins: UInt[np.ndarray, " count"], largest: float, n: Vec3, decoded: Vec3) -> Worst | None:
-    """Return the normal of a chunk with the largest angle, among those of the highest bin; None if no normal counts."""
+    """Return the normal with the largest angle in a chunk, from the bin of `largest`; None if no normal counts."""
     indices = np.flatnonzero(bins == bin_of(largest))
     if not indices.size:
         return None
@@ -147,8 +148,8 @@ def _worst(bins: UInt[np.ndarray, " count"], largest: float, n: Vec3, decoded: V
 
 
 def worst_of(normals: Float[np.ndarray, "count 3"], decoded: Float[np.ndarray, "count 3"]) -> Worst | None:
-    """Return the normal that is farthest from its decoded normal, the first of several; None for empty arrays. Both
-    arrays are float32."""
+    """Return the normal that is farthest from its decoded normal, or the first such normal; None for empty arrays.
+    Both arrays are float32."""
     if not len(normals):
         return None
     angles = _angles(normals, decoded)
@@ -170,7 +171,7 @@ def _angles(n: Float[np.ndarray, "count 3"], decoded: Float[np.ndarray, "count 3
 
 
 def _on_device(plane: Shaped[Array | np.ndarray, "*shape"]) -> Shaped[Array, "*shape"]:
-    """Return a plane as a JAX array. The check is ten times as fast as converting a JAX array once more."""
+    """Return a plane as a JAX array. The check is ten times as fast as converting a JAX array again."""
     return plane if isinstance(plane, jax.Array) else jnp.asarray(plane)
 
 
@@ -186,14 +187,14 @@ class Measures(Protocol):
 
         Args:
             load: returns the chunk.
-            met_deg: an angle that another chunk has. The worst normal is None if its angle is smaller.
-            device: the JAX device that computes them; None for any.
+            met_deg: an angle found in another chunk. The worst normal is None if its angle is smaller.
+            device: the JAX device that computes the results; None for any device.
         """
         ...
 
 
 class Once:
-    """A load that is done once, by whoever asks first, and kept for the others."""
+    """A load that is run only once, on the first call; all calls return its result."""
 
     def __init__(self, load: Load):
         self._load, self._lock = load, Lock()
@@ -206,14 +207,14 @@ class Once:
 
 
 class Meter:
-    """A meter of the errors of a decoder on sets of normals; compiled once and used for every chunk.
+    """A meter for the errors of a decoder on sets of normals; compiled once and used for every chunk.
 
-    There are two programs: the decoder's own, and that of the statistics, which is the same for all decoders and
-    takes longer to compile.
+    There are two programs: one for the decoder, and one for the statistics, which all decoders share and which takes
+    longer to compile.
 
     Args:
         decode: a jitted function from a block to decoded normals. A block is a pytree of planes with the unit normals
-            `n`, the mask `covered` of those that count, and whatever else the decoder needs.
+            `n`, the mask `covered` of the normals that count, and everything else that the decoder needs.
         given: other arguments of `decode`, the same for every block.
     """
 
@@ -236,11 +237,11 @@ class Meter:
         return figures, histogram, _worst(bins, figures.largest, chunk.n, decoded)
 
     def total(self, loads: Iterable[Load], tick: Callable[[], None] = idle) -> ErrorTotal:
-        """Return the total over the chunks of a set, which are shared among the cores.
+        """Return the total over the chunks of a set, which are distributed over the cores.
 
         Args:
-            loads: for each chunk a function that returns it. The iterable is run in the calling thread, which a GL
-                context is bound to; the functions in worker threads.
+            loads: a function for each chunk, which returns the chunk. The iterable is run in the calling thread, to
+                which an OpenGL context is bound; the functions are run in worker threads.
             tick: called when a chunk is done.
         """
         return measure_together([self], loads, lambda _: tick())[0]
@@ -255,10 +256,10 @@ def measure_together(
     loads: Iterable[Load],
     tick: Callable[[int], None],
 ) -> list[ErrorTotal]:
-    """Return the total of one set for each meter; each chunk is made once. `tick` is called with a meter's index for
-    each chunk that it has measured.
+    """Return the total over one set for each meter; each chunk is loaded once. `tick` is called with a meter's index
+    for each chunk that the meter has measured.
 
-    Chunks are dealt to all devices that JAX has. The rest is as for `Meter.total`.
+    Chunks are distributed over all JAX devices. See `Meter.total` for `loads`.
     """
     totals = [ErrorTotal() for _ in meters]
     whose = itertools.cycle(range(len(meters)))

@@ -1,4 +1,4 @@
-"""The error of a method of ambient occlusion against rays through the scene's own triangles."""
+"""The error of an ambient occlusion method, compared with rays cast against the scene's own triangles."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ HAIR = KINDS.index("hair")
 
 
 class OcclusionError(NamedTuple):
-    """A method's visibility minus that of rays, over pixels.
+    """The difference between a method's visibility and the visibility by rays, over pixels.
 
     Attributes:
-        rms: its root mean square, without the scatter of the rays.
-        mean: its mean; above 0 if the method is too bright.
-        standard_error: that of `rms`, from the number of pixels and rays.
+        rms: the root mean square of the difference, without the noise of the rays.
+        mean: the mean of the difference; above 0 if the method is too bright.
+        standard_error: the standard error of `rms`, from the number of pixels and rays.
         least: the smallest difference that the rays can tell from zero: the RMS of their own standard errors.
         visibility: the mean visibility by rays.
     """
@@ -43,7 +43,7 @@ class OcclusionError(NamedTuple):
 
 
 class Pixels(NamedTuple):
-    """Some drawn pixels: world-space positions, moved towards the eye, normals, and visibility by the effect."""
+    """World-space positions of drawn pixels, moved towards the eye, their normals, and the effect's visibility."""
 
     positions: Float[np.ndarray, "pixels 3"]
     normals: Float[np.ndarray, "pixels 3"]
@@ -59,21 +59,21 @@ def method_error(
     rays: int = RAYS,
     seed: int = 0,
 ) -> OcclusionError:
-    """Compare a method of ambient occlusion with rays of its own radius and fall-off, from the same fp32 G-buffer.
+    """Compare an ambient occlusion method with rays of the same radius and fall-off, from the same fp32 G-buffer.
 
     Args:
         device: the device that draws the scene, with the deferred pipeline.
         chosen: the method and its settings; its effect is an `AmbientOcclusion`.
         scene: the scene, drawn from its own view.
         size: the size of the image.
-        pixels: the number of pixels, chosen at random among the covered pixels; without hair, whose normal the
-            G-buffer does not store.
-        rays: the number of rays for each pixel.
-        seed: the seed of the random choice and the rays.
+        pixels: the number of pixels, chosen at random from the covered pixels except hair, whose normal the G-buffer
+            does not store.
+        rays: the number of rays per pixel.
+        seed: the seed for the random choice and the rays.
 
     Raises:
         MissingError: embreex is not installed.
-        EffectError: the effect is not a method of ambient occlusion.
+        EffectError: the effect is not an ambient occlusion method.
     """
     method = chosen.effect
     if not isinstance(method, AmbientOcclusion):
@@ -87,8 +87,8 @@ def method_error(
 def compared(
     visibilities: Float[np.ndarray, " pixels"], exact: Float[np.ndarray, " pixels"], error: Float[np.ndarray, " pixels"]
 ) -> OcclusionError:
-    """Return the errors of visibilities, compared with the exact visibilities by rays. The noise of the rays, given
-    as standard errors, is subtracted from the RMS."""
+    """Return the error of visibilities compared with the exact visibilities by rays. The noise of the rays, given as
+    standard errors, is subtracted from the RMS."""
     difference, noise = visibilities - exact, float(np.mean(error**2))
     square = difference**2
     rms = float(np.sqrt(max(np.mean(square) - noise, 0.0)))
@@ -107,7 +107,7 @@ def drawn_pixels(
     device: Device, chosen: ChosenEffect, scene: Scene, size: tuple[int, int], pixels: int, seed: int
 ) -> Pixels:
     """Draw an effect over an fp32 G-buffer, and return its visibility at up to `pixels` covered pixels, chosen at
-    random and without hair, with their positions and normals in world space."""
+    random from those without hair, with the pixels' positions and normals in world space."""
     plan = Plan(size, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, False, 1.0)
     pipeline = PIPELINES["deferred"].with_effect(chosen.passes())
     with rendering(device, pipeline, scene, plan) as renderer:

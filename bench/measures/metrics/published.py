@@ -5,8 +5,8 @@ A. Pranckevicius, Compact Normal Storage for Small G-Buffers, 2010.
 Quality: PSNR in dB of the 8-bit difference image over every pixel, normals in RGBA8. The page's own summary prints
 18.629 for X and Y; its text and its MSE give 18.692.
 
-Cost: HLSL compiled into ps_3_0 by d3dx9_42 (February 2010), instruction slots of arithmetic and of texture reads,
-scale and bias for UNORM included; general purpose registers and cycles per pixel on Radeons by GPU ShaderAnalyzer
+Cost: HLSL compiled to ps_3_0 by d3dx9_42 (February 2010), instruction slots for arithmetic and texture reads,
+including scale and bias for UNORM; general purpose registers and cycles per pixel, on Radeons by GPU ShaderAnalyzer
 1.53 (Catalyst 9.12) and on GeForces by NVShaderPerf 2.0 (174.74). The page's own summary prints 1.00 cycles to decode
 stereographic on the Radeon HD 5870; its text gives 0.50.
 """

@@ -1,4 +1,4 @@
-"""The totals of the chunks of a set, and the figures of a row that are computed from them."""
+"""Totals over the chunks of a set, and the figures of a row that are computed from them."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 
 class Figures(NamedTuple):
-    """Figures of the covered normals of a chunk: the sums of the squared error, of the article's squared error (in
-    units of 1/255), of the angle and of its square (degrees), the number of decodes that are not finite, and the
-    largest angle."""
+    """Figures for the covered normals in a chunk: the sums of the squared error, of the squared error as in the
+    article (for 8-bit values from 0 to 255), of the angle and of its square (degrees), the number of decoded normals
+    that are not finite, and the largest angle."""
 
     squared: Any
     article_squared: Any
@@ -34,18 +34,19 @@ class Figures(NamedTuple):
 
 @dataclass(frozen=True)
 class Statistics:
-    """The errors of a set of normals in a codec.
+    """The errors of a codec on a set of normals.
 
     Attributes:
-        count: normals that count, without the background.
-        pixels: all pixels, background included.
-        invalid: decodes that are not finite; each counts as the opposite direction.
+        count: the number of normals that count, without the background.
+        pixels: the number of all pixels, background included.
+        invalid: the number of decoded normals that are not finite; each counts as the opposite direction.
         mse: mean squared error over the three components of covered normals, not renormalised.
-        article_mse: the article's: |n - n'| rounded to 8 bits, over every pixel.
-        angle_mean_deg, angle_rms_deg, angle_p99_deg, angle_max_deg: figures of the angle between input and decode.
+        article_mse: mean squared error as in the article: |n - n'| rounded to 8 bits, over every pixel.
+        angle_mean_deg, angle_rms_deg, angle_p99_deg, angle_max_deg: figures for the angle between a normal and its
+            decoded normal.
         angle_counts: the number of angles in each non-empty eighth of an octave, by its lower edge in degrees; the
-            first includes 0.
-        within: for each power of two of degrees, ascending, the number of angles below it.
+            first eighth includes 0.
+        within: for each power of two in degrees, ascending, the number of angles below it.
         worst: the normal with the largest error.
     """
 
@@ -86,7 +87,7 @@ ChunkTotal = tuple[Figures, np.ndarray, "Worst | None"]
 
 
 class ErrorTotal:
-    """The total of chunks. Sums are exact, so that parts of a set give the same figures as the whole set."""
+    """A total over chunks. Sums are exact, so that parts of a set add up to the same figures as the whole set."""
 
     def __init__(self):
         self.figures, self.histogram = Figures(*[Fraction()] * len(Figures._fields)), np.zeros(BINS + 1, np.int64)

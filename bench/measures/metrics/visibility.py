@@ -1,10 +1,9 @@
-"""Visibility of points of a scene, measured by rays: the reference for methods of ambient occlusion.
+"""Visibility of points in a scene, measured by rays: the reference for ambient occlusion methods.
 
 The visibility of a point with normal n is V = (1/pi) times the integral of (1 - w(t)) cos over the hemisphere of n. A
-ray travels a distance t until it meets a surface, and w is the share of light that a surface at that distance takes
-away. The textbook definition has w = 1 at all distances. A method with a radius has its own w, and rays without it
-would measure the fall-off in place of the method. Rays are drawn with the density of the cosine, so V is the mean of
-1 - w.
+ray travels a distance t until it meets a surface, and w is the share of light that a surface at that distance
+blocks. The textbook definition has w = 1 at all distances. A method with a radius has its own w, and rays without it
+would measure the fall-off instead of the method. Rays are drawn with cosine density, so V is the mean of 1 - w.
 """
 
 from __future__ import annotations
@@ -32,8 +31,8 @@ class Visible(NamedTuple):
 
     Attributes:
         visibility: the visibility of each point.
-        error: its standard error.
-        bent: the mean direction from which light arrives, times how much light arrives.
+        error: the standard error of each visibility.
+        bent: the mean direction from which light arrives, scaled by the amount of light.
     """
 
     visibility: Float[np.ndarray, " points"]
@@ -61,10 +60,10 @@ def require_rays() -> None:
 
 
 class RayCaster:
-    """Triangles that rays can meet, by Embree in float32.
+    """A ray caster for triangles, which uses Embree in float32.
 
     Args:
-        triangles: corners. Either side of them stops a ray.
+        triangles: their corners. Both sides of a triangle stop rays.
 
     Raises:
         MissingError: embreex is not installed.
@@ -81,7 +80,8 @@ class RayCaster:
     def distances(
         self, origins: Float[np.ndarray, "rays 3"], directions: Float[np.ndarray, "rays 3"]
     ) -> Float[np.ndarray, " rays"]:
-        """Return each ray's distance to the nearest triangle; over 1e30 if it hits none. Directions have length 1."""
+        """Return each ray's distance to the nearest triangle; over 1e30 if the ray hits none. Directions have
+        length 1."""
         given = (np.ascontiguousarray(a, np.float32) for a in (origins, directions))
         return self._scene.run(*given, query="DISTANCE")
 
@@ -96,11 +96,11 @@ class RayCaster:
         """Return the visibility of points by rays, its standard error and the bent normal of each point.
 
         Args:
-            positions: each a little over its own surface.
+            positions: points slightly above their own surfaces.
             normals: unit normals.
-            rays: the number of rays for each point, 2 or more.
-            lost: (distances) -> the share of light that a surface at this distance takes away, w.
-            seed: the seed of the directions.
+            rays: the number of rays per point, 2 or more.
+            lost: a function from distances to w, the share of light that a surface at each distance blocks.
+            seed: the seed for the directions.
         """
         rng, blocks = np.random.default_rng(seed), []
         for first, count in _block_ranges(len(positions), max(BLOCK // rays, 1)):
@@ -121,9 +121,11 @@ def _block_ranges(total: int, most: int) -> Iterator[tuple[int, int]]:
 def cosine_directions(
     normals: Float[np.ndarray, "normals 3"], count: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "normals {count} 3"]:
-    """Return `count` random unit directions over each normal, as dense as the cosine of their angle to it.
+    """Return `count` random unit directions around each normal, with density proportional to the cosine of the angle
+    to the normal.
 
-    A point on the unit ball around the tip of the normal, seen from the origin: the cosine's density exactly.
+    They point from the origin to uniformly distributed points on the unit sphere around the tip of the normal, which
+    gives exactly the cosine density.
     """
     z, turn = rng.uniform(-1, 1, (2, len(normals), count)) * np.array([1.0, np.pi])[:, None, None]
     ring = np.sqrt(1 - z**2)

@@ -84,7 +84,7 @@ def decoder(round_trip: Callable[..., Vec3], given: Sequence[Any] = ()) -> ctype
 
 
 class NativeMeter:
-    """A meter of the errors of a round trip on chunks of normals.
+    """A meter for the errors of a round trip on chunks of normals.
 
     Args:
         compiled: the round trip, from `decoder`.
@@ -116,7 +116,7 @@ class NativeMeter:
         return figures, counts, None if is_smaller(figures.largest, met_deg) else self._worst(held, figures, counts)
 
     def _worst(self, held: _Held, figures: Figures, counts: np.ndarray) -> Worst | None:
-        """Return the normal with the largest angle, among those of the highest bin; None if no normal counts."""
+        """Return the normal with the largest angle in a chunk, from that angle's bin; None if no normal counts."""
         number = bin_of(figures.largest)
         vectors, least = np.empty((counts[number], 6), np.float32), ctypes.c_float(lower_edge(number))
         room = ctypes.c_size_t(len(vectors))

@@ -1,8 +1,9 @@
-"""The corners of codes' cells: where the worst normals of most codecs are.
+"""The corners of cells, which are where the worst normals of most codecs are.
 
-A cell is the set of numbers that are stored as one code. Its corners are found by asking the storage where the range
-of each number begins and ends, so any rounding and any format will do; a code just inside is decoded, and the normal
-is a candidate. The result does not rely on this, because the error of this normal itself is measured afterwards.
+A cell is the set of numbers that are stored as one code. Its corners are found by asking the storage where the
+interval of each number begins and ends, which works for every rounding and every format. A point just inside a
+corner is decoded, and its normal is a candidate. The result does not depend on the corners being exact, because the
+error of the candidate itself is measured afterwards.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def way_to_corners(exact: ExactCodec) -> str:
 
 
 def corners(exact: ExactCodec, way: str) -> np.ndarray:
-    """Return normals at the worst corners of cells, (3, count), by a method from `way_to_corners`, except NONE."""
+    """Return normals at the worst corners of cells, (3, count), by a method from `way_to_corners` other than NONE."""
     if way == NEAREST:
         return _across_faces(exact)
     tables = sides(exact)
@@ -49,8 +50,8 @@ def corners(exact: ExactCodec, way: str) -> np.ndarray:
 
 
 def sides(exact: ExactCodec) -> list[np.ndarray]:
-    """Return for each free component the beginning and the end of each number's interval, just inside: two values for
-    each number; for the other components their numbers."""
+    """Return an array for each component. For a free component it has two values per number, just inside the two
+    ends of the number's interval; for any other component it has the numbers themselves."""
     return [_sides(exact, i) if i in exact.free else exact.codec.numbers(i) for i in range(exact.size)]
 
 
@@ -100,8 +101,8 @@ def _all_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
 
 
 def column_peaks(values: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return at most `count` of the largest values, the largest of each of COLUMNS interleaved columns, in descending
-    order, and their indices."""
+    """Return the largest value of each of COLUMNS interleaved columns, in descending order and at most `count` of
+    them, and the indices of these values."""
     columns = np.pad(values, (0, -len(values) % COLUMNS), constant_values=-1.0).reshape(-1, COLUMNS)
     index = np.minimum(columns.argmax(axis=0) * COLUMNS + np.arange(COLUMNS), len(values) - 1)
     kept = index[np.argsort(-values[index], kind="stable")[:count]]
@@ -109,8 +110,8 @@ def column_peaks(values: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray
 
 
 def _climb_cells(exact: ExactCodec, tables: list[np.ndarray]) -> np.ndarray:
-    """Return CLIMBERS cells, as indices of shape (components, CLIMBERS): random cells, each replaced CLIMBS times by
-    the worst of four cells near or far if that is worse."""
+    """Return CLIMBERS cells, as indices of shape (components, CLIMBERS): random cells, each compared CLIMBS times
+    with four near or distant cells and replaced by the worst of these if that is worse."""
     random = np.random.default_rng(0)
     sizes = np.array([len(table) // (2 if i in exact.free else 1) for i, table in enumerate(tables)])[:, None]
     cells = random.integers(0, sizes, (exact.size, CLIMBERS))
@@ -139,17 +140,18 @@ def _corners_of(exact: ExactCodec, tables: list[np.ndarray], cells: np.ndarray) 
 
 
 def _across_faces(exact: ExactCodec) -> np.ndarray:
-    """Return the directions equally far from three neighbouring codes, (3, count): across their hull's faces."""
+    """Return the directions that are equidistant from three neighbouring codes, (3, count): the face normals of the
+    codes' convex hull."""
     numbers = [exact.codec.numbers(i) for i in range(exact.size)]
     code = np.stack([c.ravel() for c in np.meshgrid(*numbers, indexing="ij")])
     return across_faces(_distinct(exact.normals(code).round(12)))
 
 
 def across_faces(directions: np.ndarray) -> np.ndarray:
-    """Return the directions across the faces of the hull of different directions, shape (3, count).
+    """Return the face normals of the convex hull of distinct directions, shape (3, count).
 
-    Each band of z is a hull of its own, so that every core has one to find. Their faces are faces of the whole
-    hull. Euler's formula tells whether these are all its faces: a hull of n corners has 2 n - 4 triangles.
+    The hull of each band of z is computed separately, so that all cores are used. The faces found are faces of the
+    whole hull. Euler's formula tells whether any are missing: a hull of n corners has 2 n - 4 triangles.
     """
     edges = np.linspace(-1.0, 1.0, BANDS + 1)
     bands = zip(edges, (*edges[1:-1], np.inf), strict=False)
@@ -159,7 +161,7 @@ def across_faces(directions: np.ndarray) -> np.ndarray:
 
 
 def _across_band(directions: np.ndarray, band: tuple[float, float]) -> np.ndarray:
-    """Return the directions in a band of z across the faces whose corners are near, shape (3, count); empty if the
+    """Return the normals in a band of z of the hull's faces with near corners, shape (3, count); empty if the
     directions near the band have no hull."""
     reach = REACH * math.sqrt(4 * math.pi / directions.shape[1])
     latitudes, (low, high) = np.arcsin(directions[2]), np.arcsin(np.minimum(band, 1.0))

@@ -1,6 +1,6 @@
-"""A climb to a worst case: a place moves to its worst neighbour, in steps that shrink if no neighbour is worse.
+"""Hill climbing to a worst case: a place moves to its worst neighbour, in steps that shrink if no neighbour is worse.
 
-A place is a normal, or a tangent frame: a column of numbers. A `Ground` gives the errors of places, and their
+A place is a normal or a tangent frame, as a column of numbers. A `Ground` gives the errors of places and their
 neighbours.
 """
 
@@ -28,17 +28,18 @@ LAST_ROUNDS, SETTLED = 12, 1e-8
 
 @dataclass(frozen=True)
 class Starts:
-    """Places, shape (numbers of a place, count), and the squares of the distances they are moved by, shape (count,)."""
+    """Places, shape (numbers per place, count), and the squared distances by which a round trip moves them, shape
+    (count,)."""
 
     chords: np.ndarray
     places: np.ndarray
 
     def best(self, count: int) -> Starts:
-        """Return the `count` starts that are moved farthest, the worst first; all if `count` is larger."""
+        """Return the `count` starts with the largest distances, largest first; all starts if there are fewer."""
         return self[np.argsort(-self.chords, kind="stable")[:count]]
 
     def filled(self, count: int) -> Starts:
-        """Return `count` starts, repeated as needed: climbs differ by the place in the block where they start."""
+        """Return `count` starts, repeated as needed. Climbs from the same start differ by its index in the block."""
         return self[np.arange(count) % len(self.chords)]
 
     def __getitem__(self, which: slice | np.ndarray) -> Starts:
@@ -50,14 +51,14 @@ class Starts:
 
 @dataclass(frozen=True)
 class Ground:
-    """The space that is climbed over.
+    """The space in which places climb.
 
     Attributes:
-        chords: places -> the squares of the distances that they are moved by.
-        around: (places, sizes, step) -> WAYS places around each, shape (numbers of a place, WAYS, count).
-        errors: those squares -> errors, in the unit of sizes.
-        degrees: one of those squares -> an angle.
-        lanes: the number of places that are climbed from at once.
+        chords: a function from places to the squared distances by which a round trip moves them.
+        around: (places, sizes, step) -> WAYS places around each place, shape (numbers per place, WAYS, count).
+        errors: a function from squared distances to errors, in the unit of sizes.
+        degrees: a function from a squared distance to an angle, in degrees.
+        lanes: the number of places that climb together.
     """
 
     chords: Callable[[np.ndarray], np.ndarray]
@@ -68,11 +69,12 @@ class Ground:
 
 
 def highest(ground: Ground, starts: Starts, count: int, first_sizes: tuple[float, ...]) -> tuple[Starts, float]:
-    """Return the worst place that climbing finds, as `Starts` of one place, and by how many degrees the last round of
-    climbing still raised it.
+    """Return the worst place that climbing finds, as `Starts` with one place, and by how many degrees the last round
+    of climbing increased its error.
 
     Args:
-        starts: where to begin; the worst `count` of them are climbed from, a multiple of `ground.lanes`.
+        starts: the places to choose from; the worst `count` of them are climbed from.
+        count: a multiple of `ground.lanes`.
         first_sizes: the size of the first step of each round, relative to the error.
     """
     starts = starts.best(count).filled(count)
@@ -90,14 +92,14 @@ def highest(ground: Ground, starts: Starts, count: int, first_sizes: tuple[float
 
 def _climb(ground: Ground, starts: Starts, first: Any) -> Starts:
     """Return starts, each moved to the worst place that a climb from it reaches. `first` is the size of the first
-    step, relative to the error, for all starts or for each."""
+    step, relative to the error: one for all starts, or one for each."""
     sizes = first * ground.errors(starts.chords)
     parts = (slice(begin, begin + ground.lanes) for begin in range(0, len(sizes), ground.lanes))
     return reduce(add, on_all_cores(lambda part: _climb_from(ground, starts[part], sizes[part]), parts))
 
 
 def _climb_from(ground: Ground, starts: Starts, sizes: np.ndarray) -> Starts:
-    """Return starts after a climb whose first steps have these absolute sizes; at most `ground.lanes` starts."""
+    """Return at most `ground.lanes` starts after climbs whose first steps have these absolute sizes."""
     chords, places = starts.chords, starts.places
     errors, lane = ground.errors(chords), np.arange(len(chords))
     for step in range(STEPS):

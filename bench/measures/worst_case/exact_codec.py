@@ -1,7 +1,8 @@
-"""A codec in float64, which stands for the exact map, for the searches for worst cases and odd codes.
+"""A codec in float64, which stands for the exact map in the searches for worst cases and odd codes.
 
-All functions work in blocks of one size, so that they are compiled once for an encoding: from codes to normals, from
-normals to codes, and from normals to the errors of their round trips. Scales of fixed-point formats are arguments.
+All functions work in blocks of one size, so that each is compiled only once for an encoding: from codes to normals,
+from normals to codes, and from normals to the errors of their round trips. Scales of fixed-point formats are
+arguments.
 """
 
 from __future__ import annotations
@@ -33,17 +34,18 @@ def ahead(like) -> Vec3:
 
 
 def _unit_or_z(v: Vec3) -> Vec3:
-    """Return vectors at length 1; +z for a vector that is zero or not finite."""
+    """Return vectors scaled to length 1; +z for a vector that is zero or not finite."""
     length2 = dot(v, v)
     is_direction = (length2 > 0.0) & jnp.isfinite(length2)
     return select(is_direction, v * (1.0 / jnp.sqrt(select(is_direction, length2, 1.0))), Vec3(0.0, 0.0, 1.0))
 
 
 def unit(n: Vec3) -> Vec3:
-    """Return a unit vector; near an axis its two short components get the length that the long component leaves them.
+    """Return unit vectors, corrected near the axes: the two short components get the length that the long component
+    leaves.
 
-    Encoders compute 1 + n.z, which is exact there. Normalising a vector rounds n.z by itself, which can change
-    1 + n.z by all that it is: the encoder would be given a vector of another length.
+    Encoders compute 1 + n.z, which is exact there. Normalising a vector rounds n.z separately, which can change
+    1 + n.z by as much as its own value, so that the encoder would be given a vector of a different length.
     """
     long = maximum(maximum(abs(n.x), abs(n.y)), abs(n.z))
     short = Vec3(*(select(abs(c) == long, 0.0, c) for c in n))
@@ -57,7 +59,7 @@ _unit = jax.jit(unit)
 
 
 class _Programs:
-    """The compiled functions of an encoding, for every fixed-point format of a kind: the scales are arguments."""
+    """The compiled functions of an encoding, for all fixed-point formats of one kind: the scales are arguments."""
 
     def __init__(self, encoding: Encoding, like: Storage, rounding: str, is_half: bool):
         self._encoding, self._like, self._rounding, self._is_half = encoding, like, rounding, is_half
@@ -77,7 +79,7 @@ class _Programs:
         return jnp.stack(_unit_or_z(self._encoding.decode(*self._code_and_rays(code))))
 
     def _code_and_rays(self, code) -> tuple[Vec2 | Vec3, Vec3]:
-        """Return a code as a vector, and the eye rays that it is decoded for: a decoder's arguments."""
+        """Return a decoder's arguments: a code as a vector, and the eye rays for which it is decoded."""
         return self._code(*code), ahead(code[0])
 
     def _chords(self, n, *scales: Scale):
@@ -90,7 +92,7 @@ class _Programs:
         return select(n.z >= 0.0, chords, -1.0) if self._is_half else chords
 
     def _decoded(self, codec: Codec, n: Vec3) -> Vec3:
-        """Return normals after a round trip; with precise rounding, decoded from the nearest code around."""
+        """Return normals after a round trip; with precise rounding, decoded from the nearest surrounding code."""
         if not self._encoding.is_precise:
             return codec.round_trip(n, ahead(n.z))
         # The codes around are decoded as one array: the program is a quarter as long and compiles sooner.
@@ -131,10 +133,10 @@ _compiled = cache(_Programs)
 
 
 class ExactCodec:
-    """A codec in float64 on the whole sphere, or on z >= 0 alone.
+    """A codec in float64 on the whole sphere, or only on z >= 0.
 
-    Planes are NumPy arrays of shape (3, count) and codes of shape (components and sign bits, count), float64, of any
-    count; they are computed in blocks of `block`.
+    Normals are NumPy arrays of shape (3, count), and codes are arrays of shape (components and sign bits, count),
+    both float64. Any count is allowed; arrays are processed in blocks of `block`.
     """
 
     def __init__(self, codec: Codec, is_half: bool):
@@ -147,21 +149,22 @@ class ExactCodec:
 
     @property
     def free(self) -> list[int]:
-        """The indices of the components that are ordinary numbers: not signs, nor numbers of few values."""
+        """The indices of the components that are neither signs nor numbers with few values."""
         return self._programs.free
 
     def corners(self, edges: Sequence[np.ndarray], numbers: Sequence[np.ndarray], others: np.ndarray) -> np.ndarray:
-        """Return squared chords from the corners of a plane's cells to the farthest of the four codes around, because
-        each of these has normals there; with precise rounding, to the nearest code, which all normals there have.
+        """Return squared chords from the corners of a plane's cells to the farthest of the four surrounding codes,
+        because each of these has normals near the corner; with precise rounding, to the nearest of the four, which
+        encodes all normals near the corner.
 
         Args:
-            edges: the ends of cells, in each of the two free components; at most the number in SLAB.
-            numbers: the numbers of those components around the edges: one more of each.
-            others: the whole code, which gives the components that are not free.
+            edges: the ends of cells, in each of the two free components; at most as many as SLAB states.
+            numbers: the numbers of these components around the edges: one more in each component.
+            others: the whole code, from which the components that are not free are taken.
 
         Returns:
-            shape (edges of the first component, of the second); -1 if the corner has another code, or is outside
-            the domain.
+            shape (edges of the first component, edges of the second); -1 if the corner's normal has a different code,
+            or is outside the domain.
         """
         rows, columns = (len(side) for side in edges)
         # One shape, so that one compiled program serves every storage.
@@ -171,7 +174,7 @@ class ExactCodec:
             return np.asarray(self._programs.corners(edges, numbers, others))[:rows, :columns]
 
     def normals(self, code: np.ndarray) -> np.ndarray:
-        """Return the decoded unit directions of codes, stored or not, (3, count); +z if a code has none."""
+        """Return the unit directions that codes, stored or not, decode to, (3, count); +z for no direction."""
         return self._in_blocks(self._programs.normals, code)
 
     def stored(self, code: np.ndarray) -> np.ndarray:
@@ -183,8 +186,8 @@ class ExactCodec:
         return self._in_blocks(self._programs.codes, n)
 
     def chords(self, n: np.ndarray) -> np.ndarray:
-        """Return the squared distances of unit normals from their decoded directions, at length 1: 4 if the decoded
-        vector has no direction, -1 for normals outside the domain."""
+        """Return the squared distances between unit normals and their decoded directions, both of length 1: 4 if the
+        decoded vector has no direction, -1 for normals outside the domain."""
         return self._in_blocks(self._programs.chords, n)
 
     def _in_blocks(self, function, planes: np.ndarray) -> np.ndarray:
@@ -199,8 +202,8 @@ class ExactCodec:
             return np.concatenate([np.asarray(part) for part in parts], axis=-1)[..., :count]
 
     def around(self, n: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
-        """Return WAYS unit normals around each, shape (3, WAYS, count): in all directions, at four distances, which
-        are shares of `sizes`. The directions turn at each step."""
+        """Return WAYS unit normals around each normal, shape (3, WAYS, count): in all directions, at four distances
+        that are fractions of `sizes`. The directions are rotated at each step."""
         x, y, z = n
         # Two axes across n (J. Frisvad 2012, T. Duff et al. 2017).
         sign = np.where(z < 0.0, -1.0, 1.0)
@@ -218,7 +221,7 @@ class ExactCodec:
         return around / np.linalg.norm(around, axis=0)
 
     def unit(self, n: np.ndarray) -> tuple[float, float, float]:
-        """Return one normal, shape (3,), as `chords` takes it."""
+        """Return one normal, shape (3,), corrected to unit length as in `chords`."""
         with jax.enable_x64(True):
             x, y, z = (float(c) for c in _unit(Vec3(*n)))
         return x, y, z
@@ -234,5 +237,5 @@ def _lengthened(numbers: np.ndarray, count: int) -> np.ndarray:
 
 
 def degrees(chord2: float) -> float:
-    """Return the angle, in degrees, that a chord of the unit sphere spans, from the square of its length."""
+    """Return the angle, in degrees, that a chord of the unit sphere subtends, from the chord's squared length."""
     return float(np.degrees(2 * np.arcsin(np.sqrt(max(chord2, 0.0)) / 2)))

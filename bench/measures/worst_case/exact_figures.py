@@ -19,8 +19,8 @@ T = TypeVar("T")
 
 
 def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Row:
-    """Return the columns of the supremum: its angle, its normal and the method that found it, or only why it was not
-    searched for. Without a domain the set is finite, and the columns have its measured maximum.
+    """Return the columns of the supremum: its angle, its normal and the method that found it, or only the reason why
+    it was not searched for. Without a domain the set is finite, and the columns contain its measured maximum.
 
     Raises UsageError as `_exactly` does.
     """
@@ -43,8 +43,8 @@ def supremum(codec: Codec, domain: str | None, area: float, s: Statistics) -> Ro
 
 
 def odd(codec: Codec, domain: str | None) -> Row:
-    """Return the columns that count odd codes on the domain, the encoding's own if it is None; {} for too many codes
-    or an encoding without an exact map.
+    """Return the columns that count odd codes on a domain, or on the encoding's own domain if `domain` is None; {}
+    for too many codes or an encoding without an exact map.
 
     Raises UsageError as `_exactly` does.
     """
@@ -72,10 +72,11 @@ def _exactly(search: Callable[[Codec, bool], T], codec: Codec, domain: str) -> T
 
 
 def held(codec: Codec, domain: str | None, s: Statistics, sup_deg: float | None) -> Row:
-    """Return the columns of the bounds, and of how much of each is reached in percent; the maximum is compared by the
-    supremum if it is known. Return {} without a domain.
+    """Return the columns of the bounds, and each bound as a percentage of the codec's figure; for the maximum, the
+    figure is the supremum if that is known. Return {} without a domain.
 
-    If float32 normals cannot resolve errors of that size, the shares and the check against the bounds are left out.
+    If float32 normals cannot resolve errors of that size, the percentages and the check against the bounds are left
+    out.
     """
     if not domain:
         return {}

@@ -1,11 +1,11 @@
-"""The largest rotation that a tangent frame codec makes, in float64, and the tangent frame that it rotates so far.
+"""The largest rotation that a tangent frame codec causes, in float64, and the tangent frame that it rotates most.
 
-Tangent frames are unit quaternions with a hand. Many are spread evenly, and climbs start from the worst of them, in
-ever smaller steps; a last climb starts from the best result alone, with steps of every size. The result is a rotation
-that some tangent frame really undergoes, so it is never above the supremum; `moved_deg` says by how much the last
-round of climbing still raised it.
+Tangent frames are unit quaternions with a handedness. Many are spread evenly, and climbs start from the worst of
+them, in ever smaller steps; a last climb starts from the best result alone, with steps of every size. The result is a
+rotation that some tangent frame really undergoes, so it is never above the supremum; `moved_deg` is the increase in
+the last round of climbing.
 
-A rotation by theta moves the three axes by 8 sin^2(theta / 2) in all, the sum of their squared distances.
+If a rotation by theta moves the three axes, the sum of their squared distances is 8 sin^2(theta / 2).
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ class WorstFrame:
     """A codec's largest rotation.
 
     Attributes:
-        angle_deg: the supremum as it was found.
+        angle_deg: the supremum, as found by the search.
         quaternion: x, y, z, w of the tangent frame with this rotation.
-        hand: its handedness, 1 or -1.
-        moved_deg: how much the last round of climbing still raised it.
+        hand: the frame's handedness, 1 or -1.
+        moved_deg: the increase of the angle in the last round of climbing.
     """
 
     angle_deg: float
@@ -54,7 +54,7 @@ class WorstFrame:
 
 @cache
 def worst_frame(codec: FrameCodec) -> WorstFrame:
-    """Return the largest rotation by a round trip that a search over all tangent frames finds, and that frame."""
+    """Return the largest rotation by a round trip that a search over tangent frames finds, and the rotated frame."""
     program = jax.jit(partial(_moves, codec))
 
     def moves(frames: np.ndarray) -> np.ndarray:
@@ -69,7 +69,8 @@ def worst_frame(codec: FrameCodec) -> WorstFrame:
 
 
 def _moves(codec: FrameCodec, quaternions, hands):
-    """Return the sum of the squared distances that tangent frames' axes move; FARTHEST if the result is not a frame."""
+    """Return for each tangent frame the sum of the squared distances by which a round trip moves its axes; FARTHEST
+    if the result is not a frame."""
     given = rotated_frame(Vec4(*quaternions), hands)
     decoded = _at_right_angles(codec.round_trip(frame_of(*given)))
     pairs = zip((*given[:2], cross(*given[:2])), (*decoded[:2], cross(*decoded[:2])), strict=True)
@@ -78,14 +79,14 @@ def _moves(codec: FrameCodec, quaternions, hands):
 
 
 def _at_right_angles(frame: Frame) -> Frame:
-    """Return a frame with axes of length 1, and its tangent at right angles to its normal."""
+    """Return a frame with axes of length 1 and its tangent perpendicular to its normal."""
     n = normalize(frame.normal)
     return Frame(n, normalize(frame.tangent - n * dot(n, frame.tangent)), frame.hand)
 
 
 def _worst_of(moves: Callable[[np.ndarray], np.ndarray]) -> Starts:
-    """Return as starts the worst LANES of tangent frames that are spread evenly by Haar's measure (K. Shoemake 1992),
-    of either hand: their quaternions and hands, shape (5, LANES)."""
+    """Return as starts the worst LANES of many tangent frames of both hands, spread evenly according to the Haar
+    measure (K. Shoemake 1992): their quaternions and hands, shape (5, LANES)."""
 
     def block(start: int) -> Starts:
         index = np.arange(start, start + BLOCK) + 0.5
@@ -100,7 +101,8 @@ def _worst_of(moves: Callable[[np.ndarray], np.ndarray]) -> Starts:
 
 
 def _frames_around(frames: np.ndarray, sizes: np.ndarray, step: int) -> np.ndarray:
-    """Return WAYS tangent frames around each, turned about axes all around by four angles: (5, WAYS, count)."""
+    """Return WAYS tangent frames around each frame, rotated by four angles about axes in all directions: shape
+    (5, WAYS, count)."""
     way, lane = np.arange(WAYS)[:, None], np.arange(len(sizes))[None, :]
     index = way + WAYS * step + 0.5 * lane
     height, turn = (2.0 * np.modf(index * part)[0] - 1.0 for part in TWO)

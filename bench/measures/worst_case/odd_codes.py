@@ -1,11 +1,12 @@
-"""Wasted or strange codes among all codes: never made, pointing in the same direction as another, or decoding to a
-normal of another code.
+"""Wasted and strange codes: codes that are never made, that point in the same direction as another code, or that
+decode to a normal with a different code.
 
-A code is used if some normal of the domain makes it. The search tries normals at the middle, corners and edges of
-its cell, and directions spread over the domain: if a code has three numbers, the sphere only grazes some cells, and
-if it comes from a lookup table, its cell may be anywhere. A code that none of these makes is called unused; a code
-made by a sliver of directions may be among them. Unused and duplicate codes are found in float64, which stands for
-the exact map. Codes that decode to a normal of another code are found in float32, as a shader computes them.
+A code is used if some normal in the domain is encoded to it. The search tries normals at the middle, corners and
+edges of its cell, and directions spread over the domain: if a code has three numbers, the sphere only grazes some
+cells, and if it comes from a lookup table, its cell may be anywhere. A code that none of these normals makes is
+called unused, although a sliver of directions might make it. Unused and duplicate codes are found in float64, which
+stands for the exact map. Codes that decode to a normal with a different code are found in float32, as a shader
+computes them.
 """
 
 from __future__ import annotations
@@ -33,12 +34,12 @@ MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.
 
 @dataclass(frozen=True)
 class OddCodes:
-    """The numbers of a codec's odd codes.
+    """Counts of a codec's odd codes.
 
     Attributes:
-        unused: codes that no normal of the domain makes.
+        unused: codes that no normal in the domain makes.
         duplicate: codes minus distinct directions: the number of codes that could be spared.
-        unstable: used codes that decode to a normal with another code.
+        unstable: used codes that decode to a normal with a different code.
     """
 
     unused: int
@@ -98,7 +99,7 @@ class _Numbers:
 
 
 def _made_within(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray], index: np.ndarray) -> np.ndarray:
-    """Return those of `index` whose codes are made by normals at the middle, edges and corners of their cells."""
+    """Return the elements of `index` whose codes are made by normals at the middle, edges or corners of the cell."""
     is_made = np.zeros(len(index), bool)
     for where in _stencil(exact):
         left = np.flatnonzero(~is_made)
@@ -111,8 +112,8 @@ def _made_within(exact: ExactCodec, numbers: _Numbers, tables: list[np.ndarray],
 
 
 def _stencil(exact: ExactCodec) -> list[tuple[int, ...]]:
-    """Return the places of a cell to try, each with -1, 0 or 1 for each free component: the beginning, the middle or
-    the end of its interval. The middles come first; edges are left out with three or more free components."""
+    """Return the points of a cell to try, each as -1, 0 or 1 for each free component: the beginning, middle or end of
+    its interval. The middle comes first; edges are left out if there are three or more free components."""
     every: list[tuple[int, ...]] = list(itertools.product((0, -1, 1), repeat=len(exact.free)))
     return every if len(exact.free) < 3 else [where for where in every if len({abs(side) for side in where}) == 1]
 
@@ -129,13 +130,13 @@ def _code_points(
 
 
 def _comes_back(exact: ExactCodec, numbers: _Numbers, index: np.ndarray) -> np.ndarray:
-    """Return whether each of some codes decodes to a normal that has the same code, in float32."""
+    """Return a mask of the codes that decode to a normal with the same code, in float32; codes are given by index."""
     normals = exact.normals(numbers.codes(index).astype(np.float32))
     return numbers.index(exact.codes(normals).astype(np.float64)) == index
 
 
 def _distinct_count(exact: ExactCodec, numbers: _Numbers) -> int:
-    """Count the distinct directions of the codes."""
+    """Count the distinct directions to which the codes decode."""
     keys = np.empty((len(OFFSETS), exact.codec.codes), np.uint64)
 
     def boxes(index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

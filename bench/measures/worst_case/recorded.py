@@ -1,4 +1,4 @@
-"""Suprema of the catalogue's codecs as the search found them before."""
+"""Recorded suprema of the catalogue's codecs, from an earlier search."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ SUPREMA = Recorded(
 
 
 def supremum(codec: Codec, is_half: bool) -> Worst:
-    """Return the largest error over the sphere, or over z >= 0: as it was recorded if it was computed from the same
-    sources, else by `worst_case`."""
+    """Return a codec's largest error over the sphere, or over z >= 0 if `is_half`: the recorded error if it was
+    computed from the same sources, else the result of `worst_case`."""
     if known := SUPREMA.find(name_of(codec, is_half), codec):
         return Worst(known["angle_deg"], tuple(known["normal"]), known["found_by"], known["moved_deg"])
     return worst_case(codec, is_half)

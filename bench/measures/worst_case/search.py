@@ -1,16 +1,16 @@
-"""The largest angular error of a codec, in float64, and the normal that makes it.
+"""The largest angular error of a codec, in float64, and the normal with this error.
 
-Within the cell of a code the angle to the decoded direction grows towards the border, so the worst normals are at
+Within the cell of a code, the angle to the decoded direction grows towards the border, so the worst normals are at
 corners of cells, approached from inside. If a code is a point in a plane (two numbers besides signs and indices),
-the corners of all cells are tried if there are 2^24 of them at most; otherwise cells are climbed over from many
-starts. Codes that are points on the sphere instead have their corners where three of them are equally near: across
-the faces of their convex hull. For all codecs the search also tries directions spread over the domain, the great
-circles where codes are folded, and rings around the axes. From the worst of all these a climb in ever smaller steps
-continues across whatever cuts the cells: seams, the domain's rim, and the sphere itself if a code has three
-numbers.
+the corners of all cells are tried if there are at most 2^24 of them; otherwise the search climbs over cells from many
+starts. If codes are points on the sphere instead, cells have their corners where three codes are equidistant: on the
+face normals of the codes' convex hull. For all codecs, the search also tries directions spread over the domain, the
+great circles where codes are folded, and rings around the axes. From the worst of all these directions, a climb in
+ever smaller steps continues across everything that cuts the cells: seams, the domain's rim, and the sphere itself if
+a code has three numbers.
 
-The result is an error that a normal makes, so it is never above the supremum; `moved_deg` says by how much the last
-round of climbing, which starts from the best place alone with steps of every size, still raised it.
+The result is the error of an actual normal, so it is never above the supremum; `moved_deg` is the increase in the
+last round of climbing, which starts from the best place alone with steps of every size.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ class Worst:
     """A codec's largest error.
 
     Attributes:
-        angle_deg: the supremum as it was found.
-        normal: the unit normal that makes it.
-        found_by: one of `cells`' ways, or "climbing".
-        moved_deg: how much the last round of climbing still raised it.
+        angle_deg: the supremum, as found by the search.
+        normal: the unit normal with this error.
+        found_by: a method of `cells`, or "climbing".
+        moved_deg: the increase of the angle in the last round of climbing.
     """
 
     angle_deg: float
@@ -82,13 +82,13 @@ def _lengths(chords: np.ndarray) -> np.ndarray:
 
 
 def _worst_corners(exact: ExactCodec, way: str, count: int) -> Starts:
-    """Return the worst of the normals at corners of cells, at most `count`."""
+    """Return at most `count` of the worst normals at corners of cells."""
     normals = cells.corners(exact, way)
     return Starts(exact.chords(normals), normals).best(count)
 
 
 def _worst_of(exact: ExactCodec, blocks: Iterable[Sequence[Callable[[], np.ndarray]]], count: int) -> Starts:
-    """Return the worst of the normals that functions return, at most `count`.
+    """Return at most `count` of the worst normals that functions return.
 
     Args:
         blocks: lists of functions, each of which returns normals of shape (3, any); a list fills one block."""
@@ -113,7 +113,7 @@ def _peak_starts(chords: np.ndarray, normals: np.ndarray) -> Starts:
 
 def spread(count: int, is_half: bool) -> Iterator:
     """Yield functions that each return BLOCK directions, at least `count` in all: spread evenly over the sphere, or
-    over z >= 0 if `is_half`, by golden ratios."""
+    over z >= 0 if `is_half`, by a two-dimensional additive sequence."""
 
     def block(start: int) -> np.ndarray:
         index = np.arange(start, start + BLOCK) + 0.5
@@ -129,9 +129,10 @@ def _sphere_points(z: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def _special_starts(is_half: bool) -> Iterator:
-    """Yield lists of functions that return normals where codes are folded, cut or singular: great circles between
-    axes and diagonals, and both sides of them; the rim of a hemisphere, densely; and rings around the axes. Nearer
-    than 1e-4 to a pole even float64 cancels in some encodings, which are then not the exact map."""
+    """Yield lists of functions that return normals where codes are folded, cut or singular: great circles
+    perpendicular to axes and diagonals, and circles on both sides of them; the rim of a hemisphere, densely; and
+    rings around the axes. Within 1e-4 of a pole, some encodings suffer from cancellation even in float64 and are not
+    the exact map."""
     circle = _sphere_points(np.zeros(BLOCK // 4), np.arange(BLOCK // 4) * (8 * np.pi / BLOCK))
     diagonals = [(1, s, 0) for s in (1, -1)] + [(1, 0, s) for s in (1, -1)] + [(0, 1, s) for s in (1, -1)]
     offsets = [circle + np.array([[0.0], [0.0], [offset]]) for offset in (0.0, 1e-9, -1e-9)]
@@ -148,7 +149,7 @@ def _special_starts(is_half: bool) -> Iterator:
 
 
 def _moved_to_axis(axis: np.ndarray, around_z: np.ndarray) -> np.ndarray:
-    """Return unit normals around +z, rotated to another axis."""
+    """Return unit normals around +z, rotated so that they are around the given axis."""
     axis = axis / np.linalg.norm(axis)
     least = np.eye(3)[np.argmin(np.abs(axis))]
     x = np.cross(least, axis)

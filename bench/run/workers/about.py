@@ -1,4 +1,4 @@
-"""Marks of all that rows depend on besides their keys: two processes with the same marks give the same rows."""
+"""Marks of everything that rows depend on besides their keys: processes with the same marks give the same rows."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ PACKAGES = ("normalbench", "numpy", "jax", "jaxlib", "moderngl", "scipy", "wgpu"
 
 @cache
 def marks() -> Mapping[str, str]:
-    """Return marks by name: this process's, and that of each device or tool that it can measure with. A mark is the
-    name and a short hash of what figures depend on."""
+    """Return the marks of this process and of each device or tool with which it can measure, by name. A mark is the
+    name and a short hash of everything that figures depend on."""
     texts = {BASE: _base()} | {name: ask() for name, ask in CAN.items()}
     return {name: f"{name} {hashlib.sha256(text.encode()).hexdigest()[:12]}" for name, text in texts.items()}
 
 
 def marks_of(needs: Iterable[str]) -> frozenset[str]:
-    """Return the marks that a process must have to measure in place of this one: the base, and those of `needs`."""
+    """Return the marks that a process needs to measure in place of this one: the base mark and those for `needs`."""
     return frozenset(marks()[name] for name in (BASE, *needs))
 
 
 def named(chosen: Iterable[str]) -> str:
-    """Return the names in marks, sorted, as a text with commas: the devices and tools that they describe."""
+    """Return the sorted names in some marks, separated by commas: the devices and tools that the marks describe."""
     return ", ".join(sorted(mark.rpartition(" ")[0] for mark in chosen))
 
 

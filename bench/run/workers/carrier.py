@@ -1,4 +1,4 @@
-"""The tasks and answers of workers, and their carriers: pipes to local processes, or a dask scheduler."""
+"""The tasks and answers of workers, and what carries them: pipes to local processes, or a dask scheduler."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ LOOK_S = 0.5
 
 @dataclass(eq=False)
 class Task:
-    """Steps that a worker is sent together.
+    """Steps that are sent to a worker together.
 
     Attributes:
-        needs: the marks that it has to have.
-        is_packed: whether the order travels with them; else its id does, which most workers know.
+        needs: the marks that the worker must have.
+        is_packed: whether the order itself is sent with the steps; otherwise only its id, which most workers know.
     """
 
     order: Order
@@ -42,12 +42,12 @@ class Answer:
     """The result of a task.
 
     Attributes:
-        steps: for each of its steps, in order, the rows, and the images by their path.
+        steps: the rows and the images (by path) of each of the task's steps, in order.
         told: lines for standard error.
-        knows: whether the worker has the order; if not, it must be sent along.
-        refused: why no worker measures it; empty if a worker does.
-        lost: the number of workers that were lost with it; 0 if it was measured in the end.
-        error: the UsageError or MissingError that the step after these raised; None if nothing was raised.
+        knows: whether the worker has the order; if not, the order must be sent too.
+        refused: why no worker measures the task; empty if a worker does.
+        lost: the number of workers that were lost during the task; 0 if it was measured in the end.
+        error: the UsageError or MissingError that the next step raised; None if nothing was raised.
     """
 
     steps: Sequence[tuple[list[Row], dict[str, bytes]]] = ()
@@ -59,7 +59,7 @@ class Answer:
 
 
 class Carrier(Protocol):
-    """Workers that are there, or may come."""
+    """A connection to workers, which may join later."""
 
     def count(self, needs: frozenset[str]) -> int:
         """Return the number of workers that have all of these marks."""
@@ -74,7 +74,8 @@ class Carrier(Protocol):
         ...
 
     def arrivals(self) -> Sequence[tuple[Task, Answer | None]]:
-        """Wait a moment, and return tasks that have come back with their answers; None: the task must be sent again.
+        """Wait briefly, and return the tasks that have come back, each with its answer, or with None if the task must
+        be sent again.
 
         Raises:
             UsageError, MissingError: a measurement failed, or the workers or their scheduler were lost.
@@ -82,5 +83,5 @@ class Carrier(Protocol):
         ...
 
     def close(self) -> None:
-        """End the connection, and the workers that were started for it."""
+        """Close the connection, and end the workers that were started for it."""
         ...

@@ -1,4 +1,4 @@
-"""The number of steps sent together; it falls towards the end, so that all workers end at about the same time."""
+"""The number of steps sent together; it decreases towards the end, so that all workers end at about the same time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Worker processes of this machine, reached through pipes. Whichever of them ends is started again."""
+"""Worker processes on this machine, reached through pipes. A process that ends is started again."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MOST_LOST = 3
 
 
 class LocalWorkers:
-    """Some worker processes, each with one task at a time. They are ended with `close`."""
+    """Some worker processes, each with one task at a time; `close` ends them."""
 
     def __init__(self, count: int):
         self._address = f"local:{count}"
@@ -69,8 +69,8 @@ class LocalWorkers:
         return answers
 
     def _without(self, task: Task) -> Answer | None:
-        """Return an answer that says how many workers were lost with a task; None if it must be sent again, as a
-        single step is up to MOST_LOST times."""
+        """Return an answer with the number of workers that were lost during a task; None if the task must be sent
+        again, as a single step is up to MOST_LOST times."""
         self._lost[task] += 1
         is_lost = len(task.steps) > 1 or self._lost[task] > MOST_LOST
         return Answer(lost=self._lost[task]) if is_lost else None

@@ -1,4 +1,4 @@
-"""The data that is sent to a worker: a table's options as text, and the users' files that they name, as bytes."""
+"""The data sent to a worker: a table's options as text, and the users' files that the options name, as bytes."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Order:
         options: sets of options, each with the typed values by name.
         pictures: whether images are wanted.
         files: users' files, by their path in the worker's folder.
-        typed: for each folder that has another name on the worker, the name that the user typed.
+        typed: for each folder that has a different name on the worker, the name that the user typed.
     """
 
     id: str
@@ -50,19 +50,20 @@ class Order:
 
 
 def step_name(table: str, key: Row) -> str:
-    """Return a hash of a table's name and a step's key, 24 characters, for places where the key would be long."""
+    """Return a 24-character hash of a table's name and a step's key, for use where the key would be too long."""
     return hashlib.sha256(key_text(table, key).encode()).hexdigest()[:24]
 
 
 class Packing:
-    """The users' files of a command, as they are collected."""
+    """A collection of the users' files that a command reads."""
 
     def __init__(self) -> None:
         self.files: dict[str, Path] = {}
         self.typed: dict[str, str] = {}
 
     def packed(self, word: str) -> str:
-        """Return a word as a worker is to read it, and collect the files that it names, with their companions."""
+        """Return a word with the paths that a worker needs, and collect the files that the word names, with their
+        companions."""
         others: dict[str, str] = {}
         for part in parts_of(word):
             path = file_of(part)
@@ -77,11 +78,11 @@ class Packing:
         return with_files(word, others)
 
     def _place(self, path: Path, read: Sequence[Path]) -> Path:
-        """Return the folder of a worker that stands for a file's folder: the same if all files are below this folder,
-        else a folder below ELSEWHERE.
+        """Return the folder on a worker that stands for the folder of the file `path`: the same folder if all files
+        are below the current folder, else a folder below ELSEWHERE.
 
         Args:
-            read: the files read with it; they must not be above the folders of a worker.
+            read: the files read with it; on the worker, they must not be above the worker's folders.
         """
         if os.pardir not in path.parts and all(map(_is_below, read)):
             return path.parent
@@ -95,7 +96,7 @@ class Packing:
 
 
 def _is_below(path: Path) -> bool:
-    """Whether the path of a file, as written, is in this folder or below it."""
+    """Whether a file's path, as written, is in the current folder or below it."""
     return not path.is_absolute() and os.pardir not in Path(os.path.normpath(path)).parts
 
 

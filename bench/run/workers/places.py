@@ -16,8 +16,8 @@ def place(on: str | None) -> Iterator[Place]:
     """Yield the place that `--on` names, for as long as a command runs; this process if `on` is None.
 
     Raises:
-        UsageError: the word names no place, or no scheduler responds at the address.
-        MissingError: dask.distributed is not installed, which an address needs.
+        UsageError: the word does not name a place, or no scheduler responds at the address.
+        MissingError: dask.distributed is not installed, and an address needs it.
     """
     if on is None:
         yield HERE

@@ -28,8 +28,8 @@ class Pool:
         self._carrier = carrier
 
     def measure(self, ask: Asked, steps: Sequence[Step], tick: Tick) -> Found:
-        """Yield each step with its rows, as they come. At the end this process measures the timed steps, while
-        nothing else is under way, and the steps that no worker measures.
+        """Yield each step with its rows, as they arrive. At the end, this process measures the timed steps, with
+        nothing else running, and the steps that no worker measures.
 
         Raises:
             UsageError, MissingError: a measurement failed, or the workers or their scheduler were lost.
@@ -69,8 +69,8 @@ class Pool:
             yield from self._measured(ask, again, refused)
 
     def _answers(self, tasks: Sequence[Task]) -> Iterator[tuple[Task, Answer]]:
-        """Send tasks to workers, and yield each task with its answer, as they come; refuse the rest if no worker has
-        the needed marks for WAIT_S seconds."""
+        """Send tasks to workers, and yield each task with its answer, as answers arrive; refuse the remaining tasks
+        if no worker has the needed marks for WAIT_S seconds."""
         under_way, waiting, able_at = dict[Task, None](), _Waiting(tasks), time.monotonic()
         while needed := {task.needs for task in under_way} | waiting.needs:
             if any(map(self._carrier.count, needed)):

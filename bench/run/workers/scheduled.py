@@ -1,5 +1,5 @@
-"""Workers of a dask scheduler. Dask sends each task to a worker that has its marks, and to another if that worker is
-lost. Dask reconnects if the scheduler comes back, and encrypts connections if it is configured to."""
+"""Workers of a dask scheduler. Dask sends each task to a worker that has the task's marks, and to another worker if
+the first is lost. Dask reconnects if the scheduler comes back, and encrypts connections if it is configured to."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CONNECT_S, ANSWER_S, AGAIN_S = 5.0, 120.0, 2.0
 
 
 class Scheduled:
-    """Workers of the scheduler at an address. Raises UsageError where none answers."""
+    """Workers of the scheduler at an address. Raises UsageError if no scheduler responds."""
 
     def __init__(self, address: str):
         quiet()
@@ -77,7 +77,7 @@ class Scheduled:
 
 
 def _answer(future: Any) -> Answer | None:
-    """Return a task's answer; None if it was lost, for example with its scheduler. Raises the errors of tasks."""
+    """Return a task's answer; None if the task was lost, for example with its scheduler. Raise the task's error."""
     if future.status == "error":
         error = future.exception(timeout=ANSWER_S)
         if isinstance(error, KilledWorker):

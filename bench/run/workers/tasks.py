@@ -1,4 +1,4 @@
-"""The work of a worker: write the files of an order, make its steps, and measure those that are wanted."""
+"""The work of a worker: write the files of an order, make its steps, and measure the wanted steps."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TOLD = "normalbench: "
 
 @dataclass(frozen=True)
 class Laid:
-    """An order on this worker: its folder, its request, and its steps by name."""
+    """An order on this worker: its folder, its request and its steps by name."""
 
     order: Order
     folder: Path
@@ -39,12 +39,12 @@ _laid: dict[str, Laid] = {}
 
 
 def measure(order: Order | str, needs: Set[str], wanted: Sequence[str]) -> Answer:
-    """Measure steps of an order, and return the answer, which also says so if this worker refuses them, does not know
-    the order or meets a UsageError or a MissingError.
+    """Measure steps of an order, and return the answer. The answer also reports if this worker refuses the steps,
+    does not know the order, or meets a UsageError or a MissingError.
 
     Args:
         order: the order, or the id of an order that was sent before.
-        needs: the marks that this worker has to have.
+        needs: the marks that this worker must have.
         wanted: the names of steps, as from `step_name`.
     """
     if absent := needs - set(marks().values()):
@@ -69,13 +69,13 @@ def measure(order: Order | str, needs: Set[str], wanted: Sequence[str]) -> Answe
 
 
 def _answers(laid: Laid, wanted: Sequence[str]) -> Iterator[tuple[list[Row], dict[str, bytes]]]:
-    """Measure steps, and yield for each its rows and its pictures by their path."""
+    """Measure steps, and yield for each step its rows and its pictures by path."""
     for _, rows in HERE.measure(laid.ask, [laid.steps[name] for name in wanted], lambda _: None):
         yield rows, _taken(laid.folder)
 
 
 def _taken(folder: Path) -> dict[str, bytes]:
-    """Return the pictures that a step wrote, by their path below the folder of pictures, and delete their files."""
+    """Return the pictures that a step wrote, by path relative to the folder of pictures, and delete their files."""
     root = folder / PICTURES
     paths = {path.relative_to(root).as_posix(): path for path in sorted(root.rglob("*")) if path.is_file()}
     taken = {name: path.read_bytes() for name, path in paths.items()}
@@ -85,8 +85,8 @@ def _taken(folder: Path) -> dict[str, bytes]:
 
 
 def _laid_down(order: Order | str) -> Laid | None:
-    """Return an order with its files written and its steps made, which is done once; None for an id that is not known
-    here. Raises UsageError and MissingError."""
+    """Return an order with its files written and its steps made, which happens only once per order; None for an
+    unknown id. Raises UsageError and MissingError."""
     if isinstance(order, str):
         return _laid.get(order)
     if order.id not in _laid:
@@ -127,7 +127,7 @@ def _in_folder(folder: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _listening() -> Iterator[list[str]]:
-    """Yield a list that is filled, after the block, with the lines told in it; nothing is printed."""
+    """Yield a list that, after the block, contains the messages told in it; nothing is printed."""
     lines: list[str] = []
     told.clear()
     with contextlib.redirect_stderr(io.StringIO()) as printed:

@@ -35,8 +35,8 @@ Job = tuple["Future[Any]", Callable[..., Any], tuple[Any, ...], dict[str, Any]]
 
 
 class MainThread(Executor):
-    """An executor that runs jobs in the thread that calls `serve`, because a GL context stays with one thread and
-    dask starts new threads."""
+    """An executor that runs jobs in the thread that calls `serve`, because an OpenGL context stays with one thread
+    and dask starts new threads."""
 
     def __init__(self) -> None:
         self._jobs: queue.SimpleQueue[Job | None] = queue.SimpleQueue()
@@ -72,10 +72,11 @@ class MainThread(Executor):
 
 
 class Connection(threading.Thread):
-    """Keeps the worker joined to its scheduler; ends the main thread's work where that is gone for good.
+    """A thread that keeps the worker joined to its scheduler, and ends the main thread's work if the scheduler is
+    gone for good.
 
     Attributes:
-        why: why it has not joined; empty once it has.
+        why: why the worker has not joined; empty once it has.
     """
 
     def __init__(self, address: str, executor: MainThread):
@@ -131,7 +132,7 @@ def why(error: BaseException) -> str:
 
 
 def serve(address: str) -> str:
-    """Join a scheduler and measure until it is gone. Return why it could not be joined; empty if it could."""
+    """Join a scheduler and measure until it is gone. Return why it could not be joined; empty if it was joined."""
     keep_what_is_freed()
     # What it and dask write goes with it; dask may be writing as it ends.
     with tempfile.TemporaryDirectory(prefix="normalbench-", ignore_cleanup_errors=True) as tempfile.tempdir:
@@ -145,7 +146,7 @@ def serve(address: str) -> str:
 
 
 def worker_command(address: str) -> int:
-    """Run `normalbench worker`: measure for whoever asks the scheduler, until it is gone, and return exit status 0.
+    """Run `normalbench worker`: measure for all clients of the scheduler, until it is gone, and return exit status 0.
 
     Raises:
         UsageError: the address is invalid, or no scheduler responds.

@@ -1,1 +1,1 @@
-"""A codec as code of many languages: written, run and compared."""
+"""A codec as code in many languages: written, run and compared."""

@@ -34,9 +34,9 @@ class Piece:
         part: the index of the channel.
         above: the number of higher bits of the same number.
         below: the number of lower bits of the same number.
-        left: its lowest bit in the channel.
-        bits: the number of its bits.
-        is_first: whether it begins at the channel's highest bit.
+        left: the position in the channel of the piece's lowest bit.
+        bits: the number of bits in the piece.
+        is_first: whether the piece begins at the channel's highest bit.
     """
 
     part: int
@@ -47,13 +47,13 @@ class Piece:
     is_first: bool
 
     def placed(self, name: str) -> str:
-        """Return the GLSL expression of a number's bits at their place in the channel, from the number's name."""
+        """Return the GLSL expression for the piece's bits at their place in the channel, from the number `name`."""
         low = f"{name} >> {self.below}" if self.below else name
         kept = f"({low} & {mask_text(self.bits)})" if self.above else low
         return f"{kept} << {self.left}" if self.left else kept
 
     def taken(self, part: str) -> str:
-        """Return the GLSL expression of a channel's bits at their place in the number, from the channel's name."""
+        """Return the GLSL expression for the piece's bits at their place in the number, from the channel `part`."""
         low = f"{part} >> {self.left}" if self.left else part
         kept = low if self.is_first else f"({low} & {mask_text(self.bits)})"
         return f"{kept} << {self.below}" if self.below else kept
@@ -67,15 +67,15 @@ class Channel:
         name: x, y, z or w.
         kind: the kind of the storage.
         bits: the number of its bits.
-        first: its lowest bit among all bits of the texel; if numbers are laid across channels, among the bits of
-            the channels read as one number, the first channel the highest.
+        first: the position of its lowest bit in the texel; if numbers are laid across channels, in the channels read
+            as one number, in which the first channel is the highest.
         integer: the integer that stands for 1.
         most: the largest integer.
         rounding: one of `storage.ROUNDINGS`.
         form: the form of a float.
         share: as in `Numbers`.
-        is_offset: whether `integer` is added to its integer, so that no stored integer is negative.
-        words: the number of words of the texel.
+        is_offset: whether `integer` is added to the number's integer, so that no stored integer is negative.
+        words: the number of words in the texel.
         pieces: its bits by channel, if numbers are laid across channels.
     """
 
@@ -98,7 +98,7 @@ class Channel:
 
     @property
     def top(self) -> str:
-        """The largest integer as the text of a float, such as `127.0`."""
+        """The largest integer as a float literal, such as `127.0`."""
         return f"{self.most}.0"
 
     @property
@@ -107,7 +107,7 @@ class Channel:
 
     @property
     def largest(self) -> str:
-        """The largest unsigned integer of as many bits as the text of a float, such as `255.0`."""
+        """The largest unsigned integer with this number of bits, as a float literal such as `255.0`."""
         return f"{(1 << self.bits) - 1}.0"
 
     @property
@@ -116,7 +116,7 @@ class Channel:
 
     @property
     def float_words(self) -> str:
-        """The arguments of `float_bits` as text: the bits of exponent and mantissa, and whether it has a sign."""
+        """The arguments of `float_bits` as text: the bits of exponent and mantissa, and whether it is signed."""
         assert self.form
         return f"{self.form.exponent}, {self.form.mantissa}, {'true' if self.form.is_signed else 'false'}"
 
@@ -126,7 +126,8 @@ class Channel:
         return f"{self.scale}, {'true' if self.share == 'signed' else 'false'}"
 
     def rounded(self, x: str) -> str:
-        """Return the GLSL expression, a float, that rounds `x` in [-1, 1], a text, to a whole number."""
+        """Return the GLSL expression, a float, that scales the expression `x`, in [-1, 1], and rounds it to a whole
+        number."""
         if self.rounding == "nearest":
             whole = f"roundEven({x} * {self.scale})"
             return whole if self.most == self.integer else f"min({whole}, {self.top})"
@@ -141,7 +142,7 @@ class Channel:
 
     @property
     def read(self) -> str:
-        """The GLSL expression of the number's bits, taken from the word or the channels that hold them; in
+        """The GLSL expression that takes the number's bits from the word or the channels that hold them; in
         parentheses unless it is a name."""
         if self.pieces:
             return f"({' | '.join(f'({piece.taken(PARTS[piece.part])})' for piece in self.pieces)})"
@@ -157,14 +158,14 @@ class Channel:
 
     @property
     def placed(self) -> str:
-        """The GLSL expression of the number's bits, which have its name, shifted to their place in a word."""
+        """The GLSL expression that shifts the number's bits, a variable with its name, to their place in a word."""
         shift = self.first % WORD
         return f"{self.name} << {shift}" if shift else self.name
 
 
 @dataclass(frozen=True)
 class Channels:
-    """The numbers of a codec of any kind in their storage, as the template asks for them."""
+    """The numbers of any kind of codec in their storage, as the template needs them."""
 
     codec: Any
 
@@ -181,7 +182,8 @@ class Channels:
 
     @property
     def part(self) -> int:
-        """The bits of a channel that numbers are laid across; 0 if each has a channel, or all are in one integer."""
+        """The number of bits per channel if numbers are laid across channels; 0 if each number has its own channel,
+        or all numbers are in one integer."""
         return 0 if self.numbers.storage.is_word else self.numbers.storage.part
 
     @property
@@ -223,7 +225,7 @@ class Channels:
         return self.part * self.parts - before - bits[index] if self.part else before
 
     def _pieces(self, index: int) -> tuple[Piece, ...]:
-        """Return the pieces of a number, one for each channel with bits of it; empty if not laid across channels."""
+        """Return the pieces of a number, one per channel with bits of it; empty unless laid across channels."""
         if not self.part:
             return ()
         bits = self.numbers.storage.bits
@@ -237,7 +239,7 @@ class Channels:
         return tuple(pieces)
 
     def _texel_text(self, word: int) -> str:
-        """Return the GLSL expression of a word of the texel, from its numbers or channels; "0u" if it is empty."""
+        """Return the GLSL expression for a word of the texel, from its numbers or channels; "0u" if it is empty."""
         if not self.part:
             return " | ".join(c.placed for c in self.channels if c.first // WORD == word) or "0u"
         each = WORD // self.part
@@ -245,7 +247,7 @@ class Channels:
         return " | ".join(_shifted_text(PARTS[i], self.part * (i % each)) for i in inside) or "0u"
 
     def _part_text(self, part: int) -> str:
-        """Return the GLSL expression of a channel, from the numbers laid across it; "0u" if it is empty."""
+        """Return the GLSL expression for a channel, from the numbers laid across it; "0u" if the channel is empty."""
         held = [(c.name, piece) for c in self.channels for piece in c.pieces if piece.part == part]
         return (
             " | ".join(f"({piece.placed(name)})" if piece.left else piece.placed(name) for name, piece in held) or "0u"
@@ -311,7 +313,7 @@ class Channels:
         }
 
     def _across_fields(self) -> dict[str, Any]:
-        """Return the template's variables for texels whose bits fill channels one by one; empty lists for others."""
+        """Return the template's variables for texels whose bits fill channels one by one; empty lists otherwise."""
         if not self.parts:
             return {"parts": [], "target_parts": []}
         size, each = self.numbers.storage.part, WORD // self.numbers.storage.part
@@ -328,7 +330,8 @@ class Channels:
     # The same in NumPy.
 
     def texel_words(self, integers: np.ndarray) -> np.ndarray:
-        """Return texels of the bits of numbers, uint32: (count, words) from (count, numbers)."""
+        """Return the texels that hold numbers, uint32 of shape (count, words), from the bits of the numbers, of shape
+        (count, numbers)."""
         words = np.zeros((len(integers), self.words), np.uint32)
         for index, channel in enumerate(self.channels):
             if not channel.pieces:
@@ -353,7 +356,7 @@ class Channels:
         return integers
 
     def part_in(self, words: np.ndarray, part: int) -> np.ndarray:
-        """Return the integers of channel `part` of texels, uint32 of shape (count,); numbers are laid across it."""
+        """Return the integers in channel `part` of texels with numbers laid across it, uint32 of shape (count,)."""
         size = self.numbers.storage.part
         place = part * size
         return words[:, place // WORD] >> np.uint32(place % WORD) & np.uint32((1 << size) - 1)

@@ -1,4 +1,4 @@
-"""A codec's code in a language: its functions and its storage's, without anything else."""
+"""A codec's code in a language: only the functions of the codec and of its storage."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ ROOT = Path(__file__).with_name("codec.glsl")
 
 @dataclass(frozen=True)
 class Language:
-    """A language that functions are written in. The module of the same name in `run`, if any, runs its files.
+    """A language in which functions are written. The module of the same name in `run`, if any, runs its files.
 
     Attributes:
-        title: its name for readers.
+        title: the language's name for readers.
         ending: the extension of its files.
-        writer: the class that writes it from a tree.
+        writer: the class that writes code in the language from a syntax tree.
         advice: a line for users of a file, on versions and compiler options.
-        has_preprocessor: whether it has a preprocessor, so that files need include guards.
+        has_preprocessor: whether the language has a preprocessor, so that files need include guards.
     """
 
     title: str
@@ -76,8 +76,8 @@ def _template() -> Template:
 
 @lru_cache(1)
 def program_of(codec: Any, prefix: str) -> Program:
-    """Return the six functions of a codec of any kind as a tree, with all that they need. The last result is cached,
-    because a codec is written in all languages one after the other.
+    """Return the six functions of a codec of any kind as a syntax tree, with everything that they need. The last
+    result is cached, because a codec is written in all languages one after the other.
 
     Raises:
         ShaderError: its GLSL cannot be read, or it uses half arithmetic or is a chain.

@@ -1,4 +1,4 @@
-"""The files of a codec's functions: one file in a language, and its lookup tables next to it."""
+"""The files with a codec's functions: one file in a language, and the lookup tables next to it."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ MARK = len("// ")
 
 @dataclass(frozen=True, eq=False)
 class Code:
-    """A codec's code in one language, without its head.
+    """A codec's code in one language, without the comment at the head of the file.
 
     Attributes:
         codec, language: the codec and the language, a key of LANGUAGES.
-        prefix: the beginning of its names.
-        body: its text.
+        prefix: the beginning of the names in the code.
+        body: the text of the code.
         interface: the interface of its functions.
     """
 
@@ -48,8 +48,8 @@ class Code:
         return file_name(self.codec, self.language)
 
     def text(self, head: Iterable[str]) -> str:
-        """Return the text of the file: the functions under a comment of these paragraphs, in an include guard if the
-        language has one."""
+        """Return the text of the file: the functions under a comment with these paragraphs, in an include guard if
+        the language has a preprocessor."""
         return commented(self.body, self.language, self.guard, head)
 
     @property
@@ -59,14 +59,14 @@ class Code:
         return stem_of(self.codec) if self.prefix == usual_prefix(self.codec) else self.prefix
 
     def files(self, head: Iterable[str]) -> dict[str, bytes]:
-        """Return the contents of all files of the codec, by file name: its functions under a comment of these
+        """Return the contents of all files of the codec, by file name: its functions under a comment with these
         paragraphs, and its lookup tables."""
         beside = table_files(self.interface.tables, self.language, stem_of(self.codec), self.prefix)
         return {self.name: self.text(head).encode(), **beside}
 
 
 def commented(body: str, language: str, guard: str, head: Iterable[str]) -> str:
-    """Return the text of a file under a comment of these paragraphs; indented paragraphs are not wrapped. If the
+    """Return the text of a file under a comment with these paragraphs; indented paragraphs are not wrapped. If the
     language has a preprocessor, the text gets an include guard that is named after `guard`."""
     comment = "".join(in_a_comment(f"// {line}").rstrip() + "\n" for paragraph in head for line in _lines(paragraph))
     if not LANGUAGES[language].has_preprocessor:
@@ -82,7 +82,7 @@ def _lines(paragraph: str) -> list[str]:
 
 
 def file_name(codec: Any, language: str) -> str:
-    """Return the name of the file of a codec's functions."""
+    """Return the name of the file with a codec's functions."""
     return stem_of(codec) + LANGUAGES[language].ending
 
 
@@ -128,8 +128,8 @@ def code_of(codec: Any, language: str, prefix: str = "") -> Code:
 
 
 def _untranslatable_reason(codec: Any, reason: str) -> str:
-    """Return why a codec is not translated, from a translator's message: after the line in its GLSL, or after the
-    user's file alone if that was translated to GLSL first."""
+    """Return why a codec is not translated, from a translator's message. The text begins with the line in the GLSL,
+    or with only the user's file if that was translated to GLSL first."""
     encoding = codec.encoding
     source = getattr(encoding, "source", None)
     if source is None or not UserFile(str(source)).is_translated:

@@ -1,4 +1,4 @@
-"""Lines of code that fit a reader's window: long ones are broken."""
+"""Breaking of long lines of code, so that they fit a reader's window."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ BRACKET = re.compile(r"[({](?=\S)")
 
 
 def folded(text: str) -> str:
-    """Return the text with lines of over WIDTH columns broken where they can be. Directives and lines with a comment
-    at their end stay as they are."""
+    """Return the text with lines longer than WIDTH columns broken where possible. Directives and lines that end with
+    a comment are not changed."""
     return "".join(f"{part}\n" for line in text.splitlines() for part in _folded_line(line))
 
 
@@ -37,8 +37,8 @@ def _folded_line(line: str) -> list[str]:
 
 
 def _broken_lines(line: str, indent: str) -> list[str]:
-    """Return the parts of a line that is too long, the first as it begins, the others after `indent`. A part that
-    cannot be broken stays long."""
+    """Return the parts of a line that is too long: the first part with the line's own indentation, the others with
+    `indent`. A part that cannot be broken stays long."""
     parts: list[str] = []
     depth = 0
     while len(line) > WIDTH and (place := _best_break(line, depth)):
@@ -53,8 +53,8 @@ def _opened(text: str) -> int:
 
 
 def _best_break(line: str, depth: int) -> int:
-    """Return the index at which to break a line: after a comma, before an operator or else after a bracket, within as
-    few brackets as possible, and as late as possible there; 0 if it cannot be broken."""
+    """Return the index at which to break a line: after a comma, else before an operator, else after a bracket, within
+    as few brackets as possible, and then as late as possible; 0 if the line cannot be broken."""
     begin = len(line) - len(line.lstrip())
     for pattern in (COMMA, OPERATOR, BRACKET):
         places = [match.end() for match in pattern.finditer(line[: WIDTH + 1], begin) if match.end() <= WIDTH]

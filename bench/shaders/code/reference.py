@@ -45,17 +45,17 @@ class Reference:
 # Each has megabytes; the languages of one codec follow each other.
 @lru_cache(8)
 def reference(codec: Any) -> Reference:
-    """Return the catalogue's results for the test values of a codec, which its kind makes."""
+    """Return the catalogue's results for a codec, at the test values of its kind."""
     return reference_of(codec, *kind_of(codec).values(codec))
 
 
 def reference_of(codec: Any, n: np.ndarray, view: np.ndarray, compiled: bool = True) -> Reference:
-    """Return the catalogue's results for values, float32 of shape (count, 3 or 4).
+    """Return the catalogue's results for given values, float32 of shape (count, 3 or 4).
 
     Args:
         codec: a codec of any kind.
-        compiled: whether XLA compiles the codec as a whole. Otherwise each step is rounded by itself, as GPUs round
-            it: XLA may round a product and a sum once. Step by step takes less time if a codec is needed once.
+        compiled: whether XLA compiles the codec as a whole. Otherwise each step is rounded separately, as on GPUs:
+            XLA may round a product and a sum only once. Separate steps take less time if a codec is needed only once.
     """
     transform = jax.jit if compiled else _step_by_step
     kind, channels = kind_of(codec), Channels(codec)
@@ -84,8 +84,8 @@ def _step_by_step(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _stored_numbers(channels: Channels, integers: np.ndarray, code: np.ndarray) -> np.ndarray:
-    """Return codes with the numbers that their stored bits stand for. Each product and sum is rounded by itself;
-    compilers may round the two once."""
+    """Return codes as the numbers that their stored bits stand for. Each product and each sum is rounded separately;
+    compilers may round a product and a sum only once."""
     stored = code.copy()
     for index, channel in enumerate(channels.channels):
         texel = values_of(channel, integers[:, index])
@@ -101,7 +101,7 @@ def _array(planes) -> np.ndarray:
 
 
 def _integers(channel: Channel, texels: np.ndarray) -> np.ndarray:
-    """Return the bits as which a channel stores texels' numbers, uint32 of shape (count,)."""
+    """Return the bits in which a channel stores the numbers of texels, uint32 of shape (count,)."""
     numbers = texels.astype(np.float64)
     if channel.form:
         return float_words(numbers, channel.form)
@@ -140,7 +140,7 @@ def values_of(channel: Channel, integers: np.ndarray) -> np.ndarray:
 
 
 def signed(channel: Channel, integers: np.ndarray) -> np.ndarray:
-    """Return bits as integers in the order of their numbers, int64: the difference of two is a number of steps."""
+    """Return bits as integers in the order of the numbers that they stand for, int64; differences count steps."""
     whole = integers.astype(np.int64)
     has_sign = channel.form.is_signed if channel.form else channel.kind == "snorm" and not channel.is_offset
     if not has_sign:

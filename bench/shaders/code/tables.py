@@ -1,4 +1,4 @@
-"""Lookup tables next to a codec's functions: as a texture file, and as a C header."""
+"""Lookup tables next to a codec's functions, as texture files or as a C header."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ GIVEN, FOUR_LETTERS, IS_TEXTURE = 0x100F, 0x4, 0x1000
 
 
 def texels_of(table: np.ndarray) -> Texels:
-    """Return the size of a table and the format in which it is stored: 8 bits if they hold it exactly, else floats.
+    """Return the size of a table and the format in which it is stored: 8 bits if they are exact, else floats.
 
     Args:
         table: float32 of shape (height, width, channels).
@@ -37,15 +37,15 @@ def _as_bytes(table: np.ndarray) -> np.ndarray:
 
 
 def kept(table: np.ndarray) -> np.ndarray:
-    """Return a table as a file stores it, of its shape: uint8 if 8 bits hold it exactly, else float32."""
+    """Return a table as a file stores it, with the same shape: uint8 if 8 bits are exact, else float32."""
     return _as_bytes(table) if texels_of(table).is_bytes else np.ascontiguousarray(table, "<f4")
 
 
 def dds(table: np.ndarray) -> bytes:
-    """Return a table as the bytes of a DDS texture file with the header of DirectX 10.
+    """Return a table as the bytes of a DDS texture file with the DX10 header.
 
     Args:
-        table: float32 of shape (height, width, channels), of 1, 2 or 4 channels.
+        table: float32 of shape (height, width, channels), with 1, 2 or 4 channels.
     """
     height, width, channels = table.shape
     data = kept(table)
@@ -58,7 +58,7 @@ def dds(table: np.ndarray) -> bytes:
 
 
 def header(tables: Mapping[str, np.ndarray]) -> str:
-    """Return the text of tables as C arrays, by name: row by row, the channels of a texel next to each other."""
+    """Return tables as the text of C arrays, sorted by name: row by row, with the channels of a texel together."""
     return "\n".join([*(_array_text(name, tables[name]) for name in sorted(tables))])
 
 
@@ -86,8 +86,8 @@ def table_lines(tables: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def table_files(tables: Mapping[str, np.ndarray], language: str, stem: str, prefix: str) -> dict[str, bytes]:
-    """Return the contents of the table files next to a file of a language, by file name: for C one header of all
-    tables, else a DDS file for each, named after `stem` and the table without the prefix; {} without tables."""
+    """Return the contents of the table files next to a file in a language, by file name: for C one header with all
+    tables, else a DDS file for each table, named after `stem` and the table without the prefix; {} without tables."""
     if not tables:
         return {}
     if language == "c":

@@ -1,4 +1,4 @@
-"""A codec on a Vulkan device: its file of WGSL, from normals through packed texels and back."""
+"""A codec on a Vulkan device: a round trip of normals through packed texels, by the codec's WGSL file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Trip = Callable[[np.ndarray, np.ndarray], Ran]
 @contextmanager
 def by_wgsl(codec: Codec) -> Iterator[Trip]:
     """Yield a function from normals and views, (count, 3) each, to the results of a codec's WGSL on the Vulkan
-    device; it is compiled once.
+    device; the WGSL is compiled once.
 
     Raises:
         MissingError: wgpu or a Vulkan driver is missing; what to install.
@@ -58,5 +58,5 @@ def _wgsl_code(codec: Codec) -> Code:
 
 
 def device_name() -> str:
-    """Return the device's name in rows. Raises MissingError."""
+    """Return the device's name as it appears in rows. Raises MissingError."""
     return wgsl.device_name()

@@ -1,4 +1,4 @@
-"""Whether an encoding is there in JAX, as a twin of its GLSL."""
+"""Whether an encoding exists in JAX, as a twin of its GLSL."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ....encodings.vec import Vec3
 
 
 class NoTwinError(Exception):
-    """An encoding that is there in GLSL only."""
+    """Raised for an encoding that exists only in GLSL."""
 
 
 def lacking_twin(reason: str) -> Callable[..., Any]:
-    """Return a function that raises NoTwinError with a reason, for an encoder or a decoder without a twin."""
+    """Return a function that raises NoTwinError with a reason, in place of an encoder or a decoder without a twin."""
 
     def lacking(*_: Any) -> Any:
         raise NoTwinError(reason)

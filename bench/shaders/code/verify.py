@@ -40,17 +40,18 @@ class Agreement:
 
     Attributes:
         count: the number of values.
-        texels: the number of different texels that these have in the catalogue.
-        differing: values whose texel is not the catalogue's.
-        steps: the largest difference of a number, in steps of the storage, in texels that do not decode to the
-            same.
+        texels: the number of different texels that the values have in the catalogue.
+        differing: the number of values whose texel differs from the catalogue's.
+        steps: the largest difference of a number, in steps of the storage, in texels that decode differently.
         are_ties: whether no number differs by more than a step or CODE, whichever is larger.
         share: the share of the texels that may differ.
         worse: the largest error that a differing texel adds when decoded, in `unit`.
-        unpacked: numbers from the texels, or from the render target, that differ from the catalogue's.
-        targets: texels that the render target's own conversion would make other than `pack` does.
+        unpacked: the number of equal texels that unpack to numbers other than the catalogue's, plus the number of
+            those whose numbers differ when read from the render target.
+        targets: the number of equal texels that the render target's own conversion would store differently.
         decoded: the largest difference of a decoded component.
-        far: values with a component that differs by more than DECODED and OF_ERROR allow, or is not a number.
+        far: the number of values with a component that differs by more than DECODED and OF_ERROR allow, or is not a
+            number.
         searches: whether the encoder takes the best of several codes.
         is_ours: whether the codec is the catalogue's.
         plural: the name of the values, in the plural.
@@ -76,7 +77,7 @@ class Agreement:
     @property
     def holds(self) -> bool:
         """Whether the file agrees with the catalogue, except for ties in rounding, equivalent codes of a search and
-        values next to where the map is singular."""
+        values next to singularities of the map."""
         is_rare = self.differing <= self.share * self.count
         agrees = is_rare or self.worse <= SEARCHED if self.searches else is_rare and self.are_ties
         # Next to a pole a longitude may be any, and the normal is the same.
@@ -91,7 +92,7 @@ class Agreement:
 
     @property
     def says(self) -> str:
-        """The agreement in words, as a file's head has it."""
+        """The agreement in words, for the comment at the head of a file."""
         if not self.differing:
             codes = f"all {self.texels} texels of {self.count} {self.plural} are equal, bit for bit"
         elif self.searches:
@@ -114,7 +115,7 @@ def interface_of(codec: Any, prefix: str, program: Program) -> Interface:
 
     Args:
         codec: a codec of any kind.
-        program: its functions, without settings that nothing reads.
+        program: the codec's functions, without unused settings.
     """
     parameters = program.function(f"{prefix}_encode").parameters
     names, kinds = ([getattr(parameter, word) for parameter in parameters] for word in ("name", "kind"))
@@ -208,8 +209,8 @@ def _worse(codec: Any, expected: Reference, ran: Ran, differs: np.ndarray) -> fl
 
 
 def _targets_apart(channels: Channels, expected: Reference, ran: Ran, same: np.ndarray) -> int:
-    """Return the number of texels of the render target that its own conversion stores differently from the expected
-    ones, among those where `same` is true."""
+    """Return the number of texels that the render target's own conversion stores differently than expected, among the
+    texels for which `same` is true."""
     target, apart = channels.numbers.target, np.zeros(len(same), bool)
     for index in range(channels.parts or channels.numbers.count):
         stored = np.asarray(store_texel(jnp.asarray(ran.targets[:, index]), target, index))

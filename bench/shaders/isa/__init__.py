@@ -1,1 +1,1 @@
-"""Results of GPU compilers for GLSL, computed in separate processes."""
+"""Results of GPU compilers, which run in separate processes."""

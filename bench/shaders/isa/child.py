@@ -3,9 +3,9 @@
     python -m normalbench.bench.shaders.isa.child < JOBS
 
 JOBS is JSON: the binding of the storage buffer, and for each job its key, stage and SPIR-V (base64). The output is
-lines of JSON, each written as soon as it is known: a description of the driver, the key of each job that begins,
-and its result. For an empty mapping the output is the list of the driver's files. The driver's files and the GPU
-come from the environment.
+JSON lines, each written as soon as its contents are known: a description of the driver, and for each job its key when
+it begins and then its result. For an empty mapping the output is the list of the driver's files. The driver's files
+and the GPU come from the environment.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .compiler import Compiler, DriverError, MissingDriverError, loaded_files
 
 
 def own_output() -> Any:
-    """Return standard output, reserved for results: the driver's own output goes to standard error."""
+    """Return standard output, reserved for results; the driver's own output is redirected to standard error."""
     own = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     return own
@@ -38,12 +38,12 @@ def compiled(driver: Any, job: dict[str, Any], planes: int) -> dict[str, Any]:
 
 
 def main(compiler: Callable[[], Any] = Compiler, fingerprints: Callable[[], dict[str, str]] = loaded_files) -> int:
-    """Compile every job on standard input, which is JSON, and write the results as lines of JSON; without jobs, write
-    the driver's files. Return exit status 0, also after a failure, which is a line too.
+    """Compile the jobs on standard input (JSON) and write the results as JSON lines; without jobs, list the driver's
+    files. Return exit status 0, even after a failure, which is reported as a line.
 
     Args:
-        compiler: makes a driver with the interface of `Compiler`.
-        fingerprints: returns the driver's files, as `loaded_files` does.
+        compiler: a function that returns an object with the interface of `Compiler`.
+        fingerprints: a function that returns the driver's files, as `loaded_files` does.
     """
     given = json.load(sys.stdin)
     out = own_output()

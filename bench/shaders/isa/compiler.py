@@ -1,7 +1,7 @@
-"""A Vulkan driver of Mesa, and its compiler's report on a shader.
+"""A Mesa Vulkan driver, and its compiler's report on a shader.
 
-No GPU is needed: RADV offers a null device for a family named by RADV_FORCE_FAMILY, and Intel's drivers take the
-null device of null_i915.c. This runs in a child process (`child`), because drivers crash.
+No GPU is needed: RADV offers a null device for the family in RADV_FORCE_FAMILY, and Intel's drivers accept the null
+device of null_i915.c. This runs in a child process (`child`), because drivers crash.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ OP_CAPABILITY, FLOAT16 = 17, 9
 
 
 class DriverError(Exception):
-    """An operation that the driver cannot do; one line."""
+    """An operation that the driver cannot perform; the message is one line."""
 
 
 class MissingDriverError(DriverError):
-    """A component that is not installed; one line that names the package."""
+    """A component that is not installed; the one-line message names the package."""
 
 
 def _vulkan_module() -> Any:
@@ -52,8 +52,8 @@ HEAD = 4096
 
 
 def loaded_files() -> dict[str, str]:
-    """Return fingerprints by path of the loaded files of the driver, and of the LLVM that disassembles for it; empty
-    if the system does not report which files a process has loaded.
+    """Return the fingerprints, by path, of the loaded driver files and of the LLVM library that the driver
+    disassembles with; empty if the system does not report a process's loaded files.
 
     Raises:
         MissingDriverError: there is no Vulkan loader.
@@ -64,7 +64,7 @@ def loaded_files() -> dict[str, str]:
 
 
 def fingerprint(path: Path) -> str:
-    """Return a text that differs between two builds of a library."""
+    """Return a library's fingerprint, by which builds can be told apart: its size and a hash of its first bytes."""
     with path.open("rb") as file:
         return f"{path.stat().st_size} {hashlib.sha256(file.read(HEAD)).hexdigest()}"
 
@@ -78,7 +78,7 @@ def _instance(vk: Any) -> Any:
 
 
 def uses_halves(code: bytes) -> bool:
-    """Whether a SPIR-V module computes in 16 bits, according to its capabilities, which come first."""
+    """Whether a SPIR-V module declares 16-bit float arithmetic in its capabilities, which come first."""
     words = struct.unpack(f"<{len(code) // 4}I", code)
     index = 5
     while index < len(words) and words[index] & 0xFFFF == OP_CAPABILITY:
@@ -92,12 +92,12 @@ class Compiler:
     """A logical device that compiles shaders and reports the results.
 
     Attributes:
-        device: the driver's name for it.
+        device: the driver's name for the device.
         version: Mesa's version.
 
     Raises:
         MissingDriverError: there is no Vulkan loader, or no driver.
-        DriverError: the driver lacks a feature that is needed.
+        DriverError: the driver lacks a required feature.
     """
 
     def __init__(self):
@@ -124,7 +124,7 @@ class Compiler:
             raise DriverError(f"the Vulkan driver lists no devices: {type(error).__name__}") from error
 
     def _half_features(self, physical: Any) -> Any:
-        """Return the device's features of 16-bit arithmetic."""
+        """Return a physical device's features for 16-bit arithmetic."""
         vk = self._vk
         halves = vk.VkPhysicalDeviceShaderFloat16Int8Features()
         vk.vkGetPhysicalDeviceFeatures2(physical, vk.VkPhysicalDeviceFeatures2(pNext=halves))
@@ -157,15 +157,16 @@ class Compiler:
 
         Args:
             stage: "compute" or "fragment".
-            code: the shader, and `vertex` the vertex shader before a fragment shader, as SPIR-V.
+            code: the shader, as SPIR-V.
+            vertex: the vertex shader that precedes a fragment shader, as SPIR-V.
             planes: the binding of the storage buffer; lower bindings are lookup tables.
 
         Returns:
             a kernel for each number of lanes that the driver compiles for: "simd_width", that number; "statistics",
-            by the driver's own names; and "assembly", the disassembly, empty if the driver gives none.
+            under the driver's own names; and "assembly", the disassembly, empty if the driver gives none.
 
         Raises:
-            DriverError: it does not compile.
+            DriverError: the shader does not compile.
         """
         vk = self._vk
         if not self._has_halves and uses_halves(code):
@@ -222,10 +223,11 @@ class Compiler:
         return vk.vkCreateComputePipelines(self._device, None, 1, [info], None)[0]
 
     def _graphics_pipeline(self, code: bytes, vertex: bytes) -> Any:
-        """Return a pipeline of a fragment shader, `code`, and the vertex shader before it. Its targets are floats,
-        which convert no numbers: a conversion counts as the storage's cost.
+        """Return a pipeline with a vertex shader, `vertex`, and a fragment shader, `code`. Its render targets are
+        32-bit floats, so that it converts no numbers: a conversion counts towards the cost of the storage.
 
-        Each part has a name until the call ends, because the bindings do not keep the parts of a structure alive.
+        Local variables keep each part until the call ends, because the bindings do not keep the members of a
+        structure alive.
         """
         vk = self._vk
         stages = [self._shader_stage(vk.VK_SHADER_STAGE_VERTEX_BIT, vertex)]
@@ -261,7 +263,7 @@ class Compiler:
         return vk.vkCreateGraphicsPipelines(self._device, None, 1, [info], None)[0]
 
     def _render_pass(self, formats: list[int]) -> Any:
-        """Return a render pass that draws into targets of these formats."""
+        """Return a render pass with colour attachments of these formats."""
         vk = self._vk
         layout = vk.VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL
         targets = [
@@ -274,7 +276,7 @@ class Compiler:
         )
 
     def _executables(self, pipeline: Any) -> Iterator[tuple[int, int, int]]:
-        """Return for each executable of a pipeline its index, the bits of its stages and its number of lanes."""
+        """Return the index, stage flags and number of lanes of each executable in a pipeline."""
         ask = self._vk.vkGetDeviceProcAddr(self._device, "vkGetPipelineExecutablePropertiesKHR")
         executables = ask(self._device, self._vk.VkPipelineInfoKHR(pipeline=pipeline))
         return ((i, executable.stages, executable.subgroupSize) for i, executable in enumerate(executables))
@@ -288,8 +290,8 @@ class Compiler:
             yield str(statistic.name), getattr(statistic.value, fields[statistic.format])
 
     def _disassembly(self, executable: Any) -> str:
-        """Return the disassembly; empty if the driver gives none. The driver is called directly, because the bindings
-        cannot pass the buffers for the text."""
+        """Return an executable's disassembly; empty if the driver gives none. The driver is called directly, because
+        the bindings cannot pass the buffers for the text."""
         vk, ffi = self._vk, self._vk.ffi
         name = "vkGetPipelineExecutableInternalRepresentationsKHR"
         ask = ffi.cast(f"PFN_{name}", vk.lib.vkGetDeviceProcAddr(self._device, name.encode()))

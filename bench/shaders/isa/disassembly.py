@@ -1,8 +1,8 @@
-"""The contents of a Radeon's disassembly: the kind of each instruction, its issue slots, and its jumps.
+"""The contents of a Radeon disassembly: the kinds of its instructions, their issue slots, and its jumps.
 
 Scalar instructions run once for all lanes, in parallel with the others. Memory instructions are loads, stores,
-interpolation and export. Waiting instructions are the compiler's statements about order: waits, hints, the end. The
-others run once for each lane, at rates that depend on the family.
+interpolation and export. Waiting instructions control the order of execution: waits, hints and the program's end. The
+other instructions run once per lane, at rates that depend on the family.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ SLOTS: Mapping[str, Mapping[str, int]] = MappingProxyType(
 
 
 def names(assembly: str) -> list[str]:
-    """Return the name of each instruction, in order, without labels, comments and blank lines."""
+    """Return the names of a listing's instructions, in order; labels, comments and blank lines are skipped."""
     mnemonics: list[str] = []
     for line in assembly.splitlines():
         if match := _INSTRUCTION.match(line):
@@ -57,8 +57,8 @@ def names(assembly: str) -> list[str]:
 
 @cache
 def kind(name: str, family: str = "") -> str:
-    """Return the kind of an instruction, one of KINDS. Raises ValueError if its name is unknown, or if it computes
-    doubles, which have other rates."""
+    """Return the kind of an instruction, one of KINDS. Raises ValueError if its name is unknown, or if it computes in
+    64-bit floats, which have other rates."""
     if "_f64" in name:
         raise ValueError(f"{name} computes in 64-bit floats")
     if family in _SLOW and re.match(_SLOW[family], name):
@@ -82,14 +82,14 @@ def kinds(assembly: str, total: int, family: str = "") -> dict[str, int] | None:
 
 
 def issue_slots(counts: Mapping[str, int], family: str) -> int | None:
-    """Return the issue slots of a kernel's lane instructions on the vector ALU, in full-rate instructions; the slots
-    of several kernels add up. None for a family whose rates are not known."""
+    """Return the issue slots of a kernel on the vector ALU, in full-rate instructions; the slots of several kernels
+    can be added. None if the family's rates are unknown."""
     slots = rates(family)
     return sum(rate * counts[name] for name, rate in slots.items()) if slots else None
 
 
 def rates(family: str) -> Mapping[str, int] | None:
-    """Return the issue slots of each kind of instruction, without kinds that run in parallel; None if unknown."""
+    """Return the issue slots per instruction, by kind, without the kinds that run in parallel; None if unknown."""
     return SLOTS.get(family)
 
 
@@ -104,7 +104,7 @@ def packed(assembly: str) -> int:
 
 
 def loops(assembly: str) -> list[range]:
-    """Return the instruction indices of each loop: from the label that a jump goes back to, to that jump."""
+    """Return each loop's range of instruction indices: from the target label of a backward jump to the jump."""
     begins: dict[str, int] = {}
     spans: list[range] = []
     place = 0
@@ -121,7 +121,8 @@ def loops(assembly: str) -> list[range]:
 
 
 def jumps(assembly: str) -> tuple[int, int]:
-    """Return (branches, loops): conditional jumps ahead, over code that not every wave runs; and jumps back."""
+    """Return (branches, loops): the number of conditional forward jumps, over code that some waves skip, and of
+    backward jumps."""
     ahead = back = 0
     for is_conditional, is_back in _jumps(assembly):
         back += is_back
@@ -130,7 +131,7 @@ def jumps(assembly: str) -> tuple[int, int]:
 
 
 def _jumps(assembly: str) -> Iterator[tuple[bool, bool]]:
-    """Yield for each jump whether it is conditional, and whether it goes back."""
+    """Yield two Booleans for each jump: whether it is conditional, and whether it goes back."""
     passed: set[str] = set()
     for line in assembly.splitlines():
         if label := _LABEL.match(line):

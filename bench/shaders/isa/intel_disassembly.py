@@ -1,4 +1,4 @@
-"""The contents of an Intel GPU's disassembly: the kind of each instruction, and its jumps.
+"""The contents of an Intel GPU's disassembly: the kinds of its instructions, and its jumps.
 
 The number of lanes that an instruction works on is in its parentheses: "mad(16)". Mesa's own count leaves out
 `nop`; some versions of Mesa also leave out `sync nop`, which only waits, and others count it
@@ -34,8 +34,8 @@ _FLOATS = {"HF", "F", "DF"}
 
 
 class Instruction(NamedTuple):
-    """An instruction of a listing: whether it has a predicate, its name, its second word ("rsq" in "math rsq"), its
-    lanes and its operands."""
+    """An instruction in a listing: whether it has a predicate, its name, its second word ("rsq" in "math rsq"), its
+    number of lanes and its operands."""
 
     is_predicated: bool
     name: str
@@ -45,7 +45,7 @@ class Instruction(NamedTuple):
 
 
 def instructions(assembly: str) -> Iterator[Instruction]:
-    """Yield all instructions except `nop`, in order, without a message's second line and labels."""
+    """Yield the instructions of a listing, in order, without `nop`, labels and the second line of a message."""
     for line in assembly.splitlines():
         if (match := _INSTRUCTION.match(line)) and match[2] != "nop":
             yield Instruction(bool(match[1]), match[2], match[3] or "", int(match[4]), match[5])
@@ -76,7 +76,7 @@ def kind(instruction: Instruction) -> str:
 
 
 def _is_conversion(instruction: Instruction) -> bool:
-    """Whether an instruction is a `mov` between floats and integers, or between floats of two sizes."""
+    """Whether an instruction is a `mov` between floats and integers, or between floats of different sizes."""
     types = _TYPE.findall(instruction.operands.split("{")[0])
     if instruction.name != "mov" or len(types) < 2:
         return False
@@ -102,13 +102,13 @@ def issue_slots(_: Mapping[str, int], __: str) -> None:
 
 
 def packed(_: str) -> None:
-    """Return None: an instruction works on as many lanes with 16-bit numbers as with 32-bit numbers."""
+    """Return None: instructions process as many lanes with 16-bit numbers as with 32-bit numbers."""
     return
 
 
 def rates(family: str) -> Mapping[str, int]:
-    """Return the issue slots of an instruction of each kind, by Mesa's model of the units (brw_ir_performance.cpp):
-    from generation 8 on, 8 lanes keep the `math` unit busy for 4 cycles and other units for 2; before, all for 2."""
+    """Return the issue slots per instruction, by kind, from Mesa's model of the units (brw_ir_performance.cpp): from
+    generation 8 on, 8 lanes keep the `math` unit busy for 4 cycles and other units for 2; before, all for 2."""
     return {**dict.fromkeys(KINDS, 1), "waiting": 0, "transcendental": 1 if family == "hsw" else 2}
 
 
@@ -118,7 +118,7 @@ def kinds_in_order(assembly: str, _: str) -> list[str]:
 
 
 def loops(assembly: str) -> list[range]:
-    """Return the instruction indices of each loop: from the label that a `while` goes back to, to that `while`."""
+    """Return each loop's range of instruction indices: from the label that a `while` jumps to, to the `while`."""
     begins: dict[str, int] = {}
     spans: list[range] = []
     place = 0
@@ -134,7 +134,7 @@ def loops(assembly: str) -> list[range]:
 
 
 def jumps(assembly: str) -> tuple[int, int]:
-    """Return (branches, loops): the number of conditional jumps ahead, `if` included, and of jumps back."""
+    """Return (branches, loops): the number of conditional forward jumps, including `if`, and of backward jumps."""
     listed = list(instructions(assembly))
     loops = sum(instruction.name == "while" for instruction in listed)
     return sum(

@@ -1,8 +1,8 @@
-"""Results of compilers for GPUs that need not be in this machine, family by family: Mesa's, and NVIDIA's for CUDA.
+"""Results of Mesa's compilers and NVIDIA's CUDA compiler for GPU families; the machine needs none of these GPUs.
 
-Each family compiles in a child process, because drivers crash and hang: a job that does not come back loses only
-its own result, with the reason, and the others continue in a new child. Results are kept in the user's cache, by
-the shader, the driver's own files and the family.
+Each family compiles in a child process, because drivers crash and hang: a job that crashes its child is reported as
+failed, with the reason, and the other jobs continue in a new child. Results are kept in the user's cache, by shader,
+driver files and family.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ OWN_FILES = ("compiler.py", "child.py", "null_i915.c", "null_drm.h")
 
 @dataclass(frozen=True)
 class Job:
-    """A shader to compile: "compute" or "fragment", as SPIR-V or as CUDA's text, and the vertex shader before it."""
+    """A shader to compile: its stage ("compute" or "fragment"), its SPIR-V or CUDA text, and its vertex shader."""
 
     stage: str
     code: bytes
@@ -52,7 +52,7 @@ class Kernel:
 
     Attributes:
         simd_width: the number of lanes that an instruction works on.
-        statistics: the driver's statistics, by its own names.
+        statistics: the driver's statistics, under its own names.
         assembly: the disassembly; empty if the driver gives none.
     """
 
@@ -79,7 +79,7 @@ class Compiled:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why nothing came of a job, in one line; and whether a package is missing."""
+    """The reason why a job has no result, in one line, and whether a missing package is the reason."""
 
     reason: str
     is_missing: bool = False
@@ -90,9 +90,9 @@ Outcome = Compiled | Failure
 
 @cache
 def _loaded(path: Path) -> str | Failure:
-    """Return a text that changes with the driver or the library that disassembles for it: the names and fingerprints
-    of their files, as a child has loaded them. Empty if these are unknown, a Failure if the driver cannot be
-    loaded."""
+    """Return a key that changes with the driver and with the library that disassembles for it, from the names and
+    fingerprints of the files that a child process loads; empty if these are unknown, a Failure if the driver cannot
+    be loaded."""
     with child({}, Driver(path, threading.Event()), {}) as (lines, why):
         line = lines()
         if line is None:
@@ -106,7 +106,7 @@ def _loaded(path: Path) -> str | Failure:
 
 
 def missing(library: str = RADV) -> str:
-    """Return what this machine lacks for a driver to compile, in one line; empty if nothing is missing."""
+    """Return a one-line message on what a driver needs and this machine lacks; empty if nothing is missing."""
     if library == NVRTC:
         return tools.missing()
     path = driver_file(library)
@@ -123,7 +123,7 @@ def missing(library: str = RADV) -> str:
 
 
 def _null_device(library: str) -> None:
-    """Build the null device for a driver; nothing for RADV, which has its own. Raises NullDeviceError."""
+    """Build the null device for a driver, except for RADV, which has its own. Raises NullDeviceError."""
     if library != RADV:
         null_device.library()
 
@@ -131,7 +131,7 @@ def _null_device(library: str) -> None:
 def compile_all(
     jobs: Sequence[Job], families: Sequence[str], tick: Callable[[str], None]
 ) -> dict[tuple[str, Job], Outcome]:
-    """Compile each job for each family; return outcomes by (family, job). `tick` gets each family that is done."""
+    """Compile each job for each family; return outcomes by (family, job). Call `tick` with each finished family."""
     by_job: dict[tuple[str, Job], Outcome] = {}
     stop = threading.Event()
     with ThreadPoolExecutor(cores()) as pool:
@@ -150,14 +150,14 @@ def compile_all(
 
 
 def driver_versions() -> dict[str, str]:
-    """Return each driver's version, by its name; for a driver that cannot compile, the reason in one line."""
+    """Return the drivers' versions, by driver name; for a driver that cannot compile, the reason in one line."""
     with ThreadPoolExecutor(cores()) as pool:
         return dict(zip(TITLES.values(), pool.map(_driver_version, TITLES), strict=True))
 
 
 def _driver_version(library: str) -> str:
-    """Return a driver's version, and the device name that Mesa's drivers report for their first family; or the reason
-    why the driver cannot compile, in one line."""
+    """Return a driver's version, for Mesa with the driver's device name for its first family; if the driver cannot
+    compile, the reason in one line."""
     if reason := missing(library):
         return reason
     first = next(name for name, family in FAMILIES.items() if family.library == library)
@@ -184,8 +184,8 @@ def _family(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Out
 
 
 def _counted(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Outcome]:
-    """Return a family's outcomes, in the order of the jobs: from the cache, else compiled by child processes; the
-    same Failure for all jobs if the driver is missing."""
+    """Return a family's outcomes, in the order of the jobs, from the cache or from child processes that compile; if
+    the driver is missing, the same Failure for all jobs."""
     if not jobs:
         return []
     library, gpu = FAMILIES[family].library, FAMILIES[family].null_device
@@ -208,7 +208,7 @@ def _counted(family: str, stop: threading.Event, jobs: Sequence[Job]) -> list[Ou
 
 
 def _driver(library: str, stop: threading.Event) -> Driver:
-    """Return the driver of a library, after `missing` found nothing missing."""
+    """Return a library's driver; `missing` must have found that nothing is missing."""
     if library == NVRTC:
         return Driver(tools.found()[0], stop, python("normalbench.bench.shaders.isa.nvidia.child"))
     path = driver_file(library)
@@ -217,7 +217,7 @@ def _driver(library: str, stop: threading.Event) -> Driver:
 
 
 def _identity(library: str) -> str:
-    """Return a text that changes with the driver; empty if its files are unknown."""
+    """Return a key that changes with the driver; empty if the driver's files are unknown."""
     if library == NVRTC:
         return tools.identity()
     path = driver_file(library)
@@ -226,7 +226,7 @@ def _identity(library: str) -> str:
 
 
 def _as_compiled(value: dict[str, Any] | None) -> Compiled | None:
-    """Return a result that was kept; None if the value is anything else."""
+    """Return the result in a cached value; None if the value has the wrong form."""
     texts, kernels = ("family", "device", "version"), (value or {}).get("kernels")
     if value is None or set(value) != {*texts, "kernels"} or not isinstance(kernels, list) or not kernels:
         return None
@@ -248,8 +248,8 @@ def _kernels(values: Sequence[dict[str, Any]]) -> tuple[Kernel, ...]:
 
 
 def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str, Outcome]:
-    """Compile jobs, and return their outcomes by key, under the first of the family's names that the driver accepts;
-    a Failure for each job if it accepts none."""
+    """Compile jobs under the first of the family's names that the driver accepts, and return their outcomes by key; a
+    Failure for each job if the driver accepts none of the names."""
     names = FAMILIES[family].names
     for name in names:
         try:
@@ -263,7 +263,7 @@ def _compiled(family: str, driver: Driver, jobs: Mapping[str, Job]) -> dict[str,
 
 
 def _variables(family: str, name: str) -> dict[str, str]:
-    """Return the environment that makes a driver compile for a family by this name. Raises NullDeviceError."""
+    """Return the environment with which a driver compiles for a family under this name. Raises NullDeviceError."""
     if FAMILIES[family].library == NVRTC:
         return {ARCHITECTURE: name}
     words = FAMILIES[family].null_device
@@ -273,8 +273,8 @@ def _variables(family: str, name: str) -> dict[str, str]:
 def _by_children(
     name: str, variables: Mapping[str, str], driver: Driver, jobs: Mapping[str, Job]
 ) -> dict[str, Outcome]:
-    """Compile jobs in one child process after the other, and return the outcome of each by key. A job with which a
-    child ends is a Failure, and the other jobs go to the next child, until MOST_LOST children are lost."""
+    """Compile jobs in a child process, and return each job's outcome by key. If the child ends during a job, that job
+    is a Failure and a new child takes the other jobs, until MOST_LOST children are lost."""
     outcomes: dict[str, Outcome] = {}
     lost = 0
     while len(outcomes) < len(jobs):
@@ -300,7 +300,7 @@ def _by_children(
 def _answers(
     name: str, variables: Mapping[str, str], driver: Driver, jobs: Mapping[str, Job]
 ) -> Iterator[str | Failure | tuple[str, Outcome]]:
-    """Yield one child's messages: the key of a job that begins, a key and its outcome, and finally why it ended."""
+    """Yield a child's messages: a job's key at its start, its key and outcome, and finally why the child ended."""
     facts: dict[str, str] = {}
     with child(variables, driver, _job_fields(jobs)) as (lines, why):
         while (line := lines()) is not None:
@@ -319,7 +319,7 @@ def _answers(
 
 
 def _job_fields(jobs: Mapping[str, Job]) -> dict[str, Any]:
-    """Return jobs, and the binding of the storage buffer, as a child reads them: values for JSON."""
+    """Return the input of a child, as values for JSON: the jobs, and the binding of the storage buffer."""
     return {"planes": PLANES, "jobs": [_as_json(key, job) for key, job in jobs.items()]}
 
 

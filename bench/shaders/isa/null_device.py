@@ -1,7 +1,7 @@
 """A stand-in for an Intel GPU: null_i915.c, built once into the user's cache folder.
 
-The library's name contains hashes of its sources and of its content. It is built again if a source changes or the
-file is damaged.
+The library's name contains hashes of its sources and of its content. The library is built again if a source changes
+or the file is damaged.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SAID = "NORMALBENCH_NULL_I915"
 
 
 class NullDeviceError(Exception):
-    """The null device cannot be built; one line. `is_missing` is true if something must be installed."""
+    """A failure to build the null device; one-line message. `is_missing`: whether something must be installed."""
 
     def __init__(self, message: str, is_missing: bool = False):
         super().__init__(message)
@@ -37,14 +37,14 @@ class NullDeviceError(Exception):
 
 
 def library() -> Path:
-    """Return the path of the library that stands in for a GPU, and build it if needed. Raises NullDeviceError."""
+    """Return the path of the library that stands in for a GPU; build it if necessary. Raises NullDeviceError."""
     folder = _library_folder()
     stem = f"{SOURCE.stem}-{kept.key_of(SOURCE.read_bytes(), SHARED.read_bytes(), platform.machine())[:16]}"
     return _kept_library(folder, stem) or _built_library(folder, stem)
 
 
 def _kept_library(folder: Path, stem: str) -> Path | None:
-    """Return a library that was built before; None if it must be built. The build reports folders of other owners."""
+    """Return the path of a library that was built earlier and can be loaded; None if the library must be built."""
     try:
         paths = sorted(folder.glob(f"{stem}-*.so"))
     except OSError:
@@ -63,14 +63,14 @@ def _library_folder() -> Path:
 
 
 def variables(words: str) -> dict[str, str]:
-    """Return the environment variables with which a process finds the Intel GPU that `words`, one text, describes.
+    """Return the environment variables with which a process finds the Intel GPU that the text `words` describes.
     Raises NullDeviceError."""
     return preloaded(library()) | {SAID: words}
 
 
 def _library_name(stem: str, path: Path) -> str:
-    """Return the file name of a library, the stem and a hash of its content; empty if the file cannot be read, or
-    others may have written it."""
+    """Return a library's expected file name, from the stem and a hash of its content; empty if the file cannot be
+    read, or if others may have written it."""
     try:
         return f"{stem}-{kept.key_of(path.read_bytes())[:16]}.so" if kept.is_private(path) else ""
     except OSError:

@@ -1,4 +1,4 @@
-"""The number of waves of a kernel that a GPU's SIMD holds at once, by the number of registers that each takes."""
+"""The number of a kernel's waves that a GPU's SIMD can hold at once, from the number of registers per wave."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from types import MappingProxyType
 
 @dataclass(frozen=True)
 class Occupancy:
-    """The room of a SIMD for its waves.
+    """The limits on the number of waves in a SIMD.
 
     Attributes:
-        waves: the maximum that it holds, however few registers they take.
-        registers: the number of its registers, each with the lanes of a wave; 0 if each wave has its own share.
-        step: the number of registers that it allots at once.
+        waves: the maximum, however few registers a wave uses.
+        registers: the number of registers, each as wide as a wave; 0 if each wave has its own fixed share.
+        step: the number of registers that are allocated at once.
     """
 
     waves: int
@@ -22,10 +22,10 @@ class Occupancy:
     step: int = 1
 
     def of(self, registers: float) -> int:
-        """Return the number of waves that it holds if each takes this number of registers.
+        """Return the number of waves that a SIMD holds if each uses this number of registers.
 
         Args:
-            registers: as a driver counts them.
+            registers: the number of registers per wave, as the driver counts them.
         """
         if not self.registers:
             return self.waves
@@ -53,8 +53,8 @@ OCCUPANCY: Mapping[str, Occupancy] = MappingProxyType(
 
 
 def waves(family: str, registers: float | None) -> int | None:
-    """Return the number of waves that a SIMD of a GPU family holds of a kernel with this number of registers; None if
-    that is not known."""
+    """Return the number of waves that a SIMD of a GPU family holds for a kernel with this number of registers; None
+    if it is unknown."""
     rule = OCCUPANCY.get(family)
     if rule is None or (rule.registers and registers is None):
         return None

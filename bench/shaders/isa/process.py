@@ -29,7 +29,7 @@ Lines = Callable[[], dict[str, Any] | None]
 class Driver:
     """A driver: its path for the loader, and the event that tells its children to stop.
 
-    `command` starts a child; if it is empty, CHILD does.
+    `command` starts a child process; if it is empty, CHILD is used.
     """
 
     path: Path
@@ -41,11 +41,11 @@ class Driver:
 def child(
     variables: Mapping[str, str], driver: Driver, given: dict[str, Any]
 ) -> Iterator[tuple[Lines, Callable[[], str]]]:
-    """Yield two functions for a child process that reads `given`, for the GPU that the variables name. The first
-    returns the child's next line, or None at its end or after too long a silence; the second returns why the child
-    ended. The child is killed when the block ends.
+    """Start a child process that reads `given`, for the GPU that `variables` select, and yield two functions. The
+    first returns the child's next line, or None at its end or after too long a silence; the second returns why the
+    child ended. The child is killed when the block ends.
 
-    Its input and its error output are unnamed files, so nothing is left of them, however this process ends.
+    The child's input and error output are unnamed files, so that no files remain, however this process ends.
     """
     with tempfile.TemporaryFile("w+", encoding="utf-8") as work, tempfile.TemporaryFile() as errors:
         json.dump(given, work)
@@ -78,8 +78,8 @@ class _Heard:
         self._lines, self._stop, self._is_silent = lines, stop, False
 
     def following(self) -> dict[str, Any] | None:
-        """Return the child's next line, parsed from JSON; None at the end, for a line that was cut off, after SECONDS
-        of silence, or once the children are told to stop."""
+        """Return the child's next line, parsed from JSON; None at the end, for a truncated line, after SECONDS of
+        silence, or once the children are told to stop."""
         until = time.monotonic() + SECONDS
         while not self._stop.is_set() and time.monotonic() < until:
             try:
@@ -91,8 +91,7 @@ class _Heard:
         return None
 
     def why(self, process: subprocess.Popen[str], errors: IO[bytes]) -> str:
-        """Return why no more lines come: the driver's silence, or how the process ended, by its status and
-        `errors`."""
+        """Return why the output ended: no response from the driver, or the process's exit status and `errors`."""
         if self._is_silent:
             return f"the driver did not respond within {SECONDS:g} s"
         status = process.wait(SECONDS)
@@ -101,8 +100,7 @@ class _Heard:
 
 
 def _parsed(line: str | None) -> dict[str, Any] | None:
-    """Return the dictionary in a child's line of JSON; None at the end, and for a line that was cut off when the
-    child died."""
+    """Return the dictionary in a child's line of JSON; None at the end, and for a line cut short by a crash."""
     try:
         answer = json.loads(line or "null")
     except ValueError:
@@ -117,7 +115,7 @@ def _read(stream: Any, lines: queue.Queue[str | None]) -> None:
 
 
 def _end_reason(status: int, errors: str) -> str:
-    """Return a clause on how a child ended, by its exit status, and the last line that it or its driver wrote."""
+    """Return a clause on how a child ended, with its exit status and the last line of its error output."""
     how = f"signal {name}" if (name := signal_name(status)) else f"status {status}"
     last = [line.strip() for line in errors.splitlines() if line.strip()]
     return f"the driver ended with {how}" + (f": {last[-1][:200]}" if last else "")

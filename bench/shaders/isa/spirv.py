@@ -1,4 +1,4 @@
-"""GLSL to SPIR-V by glslangValidator, and how many instructions that is."""
+"""Compilation of GLSL to SPIR-V by glslangValidator, and the number of SPIR-V instructions."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ UNROLL, DONT_UNROLL = 1, 2
 
 @dataclass(frozen=True)
 class Module:
-    """A shader as SPIR-V, and the number of instructions of its optimised functions.
+    """A shader as SPIR-V, and the number of instructions in its optimised functions.
 
-    The number is None without spirv-opt, or if a loop remains, which would count once however often it runs.
+    The number is None without spirv-opt, or if a loop remains, whose instructions would count only once.
     """
 
     binary: bytes
@@ -34,7 +34,8 @@ class Module:
 
 
 def version(tool: str) -> str | None:
-    """Return all that a tool reports about its version; "of no version" if that is nothing, None without the tool."""
+    """Return all that a tool reports about its version; "(unknown version)" if that is empty, None without
+    the tool."""
     try:
         return tools.version_text(tool) or "(unknown version)"
     except MissingError:
@@ -42,7 +43,7 @@ def version(tool: str) -> str | None:
 
 
 def compiler() -> str:
-    """Return the GLSL compiler's own text about its version. Raises MissingError, one line that names the package."""
+    """Return the GLSL compiler's version text. Raises MissingError, whose one-line message names the package."""
     compiler_version = version(COMPILER)
     if compiler_version is None:
         raise MissingError(NO_COMPILER)
@@ -50,37 +51,37 @@ def compiler() -> str:
 
 
 class ToolError(ShaderError):
-    """A tool that crashes or does not end, whatever it is given."""
+    """A tool that crashes or hangs, whatever its input."""
 
 
 def title(output: str) -> str:
-    """Return "glslang" and its version, from all that the compiler reports about its version."""
+    """Return "glslang" and its version, from the compiler's version text."""
     return "glslang " + output.splitlines()[0].split(":")[-1].strip()
 
 
 def titles() -> str:
-    """Return the compiler and its version and, if the optimiser is installed, the same of it, as one text. Raises
+    """Return the names and versions of the compiler and, if it is installed, of the optimiser, as one text. Raises
     MissingError as `compiler` does."""
     optimiser = version(OPTIMISER)
     return title(compiler()) + (f", {OPTIMISER} {_version_number(optimiser)}" if optimiser else "")
 
 
 def _version_number(output: str) -> str:
-    """Return the first word of a version's text that is a number, such as v2023.1; else the first line."""
+    """Return the first number in a version text, such as v2023.1; the text's first line if it contains no number."""
     return next((word for word in output.split() if word.strip("v")[:1].isdigit()), output.splitlines()[0])
 
 
 def compiled(source: Source, stage: str, counted: bool = True) -> Module:
-    """Return a source compiled to SPIR-V, from the cache if its text and the versions of the tools are the same.
+    """Return a source compiled to SPIR-V, from the cache if neither its text nor the tools' versions have changed.
 
-    Its instructions are counted if `counted` and if spirv-opt is installed.
+    The instructions are counted if `counted` is true and spirv-opt is installed.
 
     Args:
         stage: "vert", "frag" or "comp".
 
     Raises:
         MissingError: no compiler is installed.
-        ShaderError: it does not compile; the message names the file and the line.
+        ShaderError: the source does not compile; the message names the file and the line.
     """
     optimiser = version(OPTIMISER) if counted else None
     ours = Path(__file__).read_text(encoding="utf-8")
@@ -97,7 +98,7 @@ def compiled(source: Source, stage: str, counted: bool = True) -> Module:
 
 
 def _as_module(value: dict[str, Any] | None) -> Module | None:
-    """Return the module in a cached value with `binary`, in base64, and `instructions`; None for other values."""
+    """Return the module in a cached dictionary of `binary` (base64) and `instructions`; None for other values."""
     try:
         binary, count = base64.b64decode((value or {})["binary"], validate=True), (value or {})["instructions"]
     except (KeyError, TypeError, ValueError):
@@ -126,8 +127,8 @@ def _glslang_binary(source: Source, stage: str) -> bytes:
 
 
 def _optimised(binary: bytes) -> bytes | None:
-    """Return the module with loops of known length unrolled, so that all instructions of a polynomial count; None if
-    the optimiser fails, because the compilers do not need it."""
+    """Return an optimised module whose loops of known length are unrolled, so that all instructions of a polynomial
+    count; None if the optimiser fails, which is no error, because the GPU compilers do not need this module."""
     try:
         module = tools.optimised(_asking_to_unroll(binary))
     except tools.ToolError:
@@ -140,7 +141,7 @@ def _module_words(binary: bytes) -> list[int]:
 
 
 def _instructions(words: list[int]) -> Iterator[tuple[int, int]]:
-    """Yield (word index, opcode) of each instruction in the words of a module."""
+    """Yield (word index, opcode) for each instruction in a module's words."""
     place = HEADER
     while place < len(words):
         yield place, words[place] & 0xFFFF
@@ -148,7 +149,7 @@ def _instructions(words: list[int]) -> Iterator[tuple[int, int]]:
 
 
 def _asking_to_unroll(binary: bytes) -> bytes:
-    """Return a module with the hint to unroll on every loop; GLSL cannot express the hint without an extension."""
+    """Return a module with the unroll hint on every loop; GLSL cannot express this hint without an extension."""
     words = _module_words(binary)
     for place, opcode in _instructions(words):
         if opcode == LOOP_MERGE:
@@ -157,7 +158,7 @@ def _asking_to_unroll(binary: bytes) -> bytes:
 
 
 def _count(binary: bytes) -> int | None:
-    """Return the number of instructions from each OpFunction to its OpFunctionEnd; None if a loop is among them."""
+    """Return the number of instructions in all functions, OpFunction to OpFunctionEnd; None if there is a loop."""
     inside, count = False, 0
     for _, opcode in _instructions(_module_words(binary)):
         if opcode == LOOP_MERGE:

@@ -1,1 +1,1 @@
-"""Users' encoders in other shading languages than GLSL, translated once and kept."""
+"""Users' encoders in shading languages other than GLSL, translated once and cached."""

@@ -1,4 +1,4 @@
-"""The programs in a file of an engine's materials: blocks of HLSL, each of which is compiled by itself."""
+"""The programs in an engine's material file: blocks of HLSL that are compiled separately."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ COMMON = "INCLUDE"
 
 
 def programs_of(source: Source) -> list[Source]:
-    """Return a source for each program block of a file: this block and the common blocks, with each line in its
-    place. A file without blocks gives its own source alone."""
+    """Return a source for each program block in a file, with the block and the common blocks at their original lines.
+    If the file has no blocks, return only its own source."""
     matches = list(_BLOCK.finditer(source.text))
     if not matches:
         return [source]

@@ -1,9 +1,9 @@
-"""A WGSL file on a Vulkan device, in a process that may crash: some files make naga panic.
+"""Execution of a WGSL file on a Vulkan device, in a separate process, because some files make naga panic.
 
     python -m normalbench.bench.shaders.languages.by_naga FOLDER
 
-The folder's given.wgsl computes made.bin from given.bin: rows of four numbers, three input rows and two output rows
-for each normal. If it fails, the last line says why, and the status is not 0.
+The folder's given.wgsl computes made.bin from given.bin: rows of four numbers, with three input rows and two output
+rows per normal. On failure, the last line states the reason, and the exit status is not 0.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ ENTRY, GROUP, ROW = "normalbench_second", 64, 16
 
 
 def main(folder: Path) -> None:
-    """Run `given.wgsl` of a folder on `given.bin` with a Vulkan device, and write the results to `made.bin` there.
-    Raises MissingError without a device."""
+    """Run the `given.wgsl` in a folder on its `given.bin` with a Vulkan device, and write the results to its
+    `made.bin`. Raises MissingError if there is no device."""
     import wgpu
 
     all_adapters = adapters()

@@ -1,9 +1,9 @@
-"""A SPIR-V module on OpenGL, in a process that may crash: some modules crash drivers.
+"""Execution of a SPIR-V module on OpenGL, in a separate process, because some modules crash drivers.
 
     python -m normalbench.bench.shaders.languages.by_spirv FOLDER
 
-The folder's made.spv, compiled from second.hlsl, computes made.bin from given.bin: rows of four numbers, three input
-rows and two output rows for each normal. If it fails, the last line says why, and the status is not 0.
+The folder's made.spv, compiled from second.hlsl, computes made.bin from given.bin: rows of four numbers, with three
+input rows and two output rows per normal. On failure, the last line states the reason, and the status is not 0.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ CONVERSIONS, UNSET = (109, 110), 3
 
 
 def defined(module: bytes) -> bytes:
-    """Return a module in which nothing that SPIR-V leaves undefined looks as if it were defined.
+    """Return a SPIR-V module, changed so that undefined operations in it do not look defined.
 
-    Divisions of whole numbers are noted, CONVERTED converts floats, and variables begin as 0.
+    Integer divisions are noted, the functions CONVERTED convert floats to integers, and variables start at 0.
 
     Raises:
-        ValueError: it divides integers that do not have 32 bits.
+        ValueError: the module divides integers of a size other than 32 bits.
     """
     words = np.frombuffer(module, "<u4")
     instructions = [*_instructions(words)]
@@ -81,7 +81,7 @@ def _written(opcode: int, operands: Iterable[int]) -> list[int]:
 
 
 def _instructions(words: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
-    """Yield the opcode and the operands of each instruction in the words of a module."""
+    """Yield the opcode and the operands of each instruction in a module's words."""
     offset = HEADER
     while offset < len(words):
         size, opcode = divmod(int(words[offset]), 1 << 16)
@@ -90,8 +90,8 @@ def _instructions(words: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
 
 
 def main(folder: Path) -> int:
-    """Run `made.spv` of a folder on `given.bin`, write the results to `made.bin` there, and return the exit status of
-    the process: UNDEFINED if the module did something undefined, else 0."""
+    """Run the `made.spv` in a folder on its `given.bin`, write the results to its `made.bin`, and return the exit
+    status of the process: UNDEFINED if the module did something undefined, else 0."""
     context = device().context
     if EXTENSION not in context.extensions:
         raise NoDeviceError(f"the OpenGL driver does not support {EXTENSION}")

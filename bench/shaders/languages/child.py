@@ -1,14 +1,15 @@
-"""The translation of a user's file, in a process that may hang or die.
+"""The translation of a user's file, in a process that may hang or crash.
 
     python -m normalbench.bench.shaders.languages.child FOLDER WORD LANGUAGE KIND PART
 
-FOLDER is an empty folder to work in. WORD names the file: see `user_files.py`. LANGUAGE is the reader, a name of
+FOLDER is an empty working folder. WORD names the file: see `user_files.py`. LANGUAGE is the reader, a name in
 `BY_NAME`; empty for the file's own language. KIND is the kind of the encoded values: see `encodings.kinds`. PART
 selects declarations to leave out: 3:4 is the last of four equal parts, 0:0 is none.
 
-Prints a line of JSON. If PART selects any: `left_out`, these declarations. If something is wrong with the file:
-`error`, the message, `pairs`, the names of several pairs, and `alone`, the facts about an encoder or a decoder
-without a partner. If a tool is missing: `missing`, what to install. Otherwise the fields of `Translated`.
+Prints a JSON object on one line. If PART selects any declarations, `left_out` lists them. If something is wrong with
+the file: `error`, the message; `pairs`, the names of the pairs if there are several; and `alone`, the facts about an
+encoder or a decoder without a partner. If a tool is missing: `missing`, what to install. Otherwise: the fields of
+`Translated`.
 """
 
 from __future__ import annotations
@@ -75,7 +76,7 @@ def answer(
     once_read: Callable[[Source], None] = lambda _: None,
     part: Part = (0, 0),
 ) -> dict[str, Any]:
-    """Return the answer for a file; see the module. `once_read` is called before any compiler runs."""
+    """Return the answer for a file (see the module). `once_read` is called before any compiler runs."""
     try:
         source = Source(file)
         source.part = part
@@ -122,8 +123,8 @@ def _wall_in(source: Source, folder: Path) -> None:
 
 
 def _facts_of_a_program(whole: Source, folder: Path, by: str, kind: Kind) -> dict[str, Any]:
-    """Return the facts of the first program of a file that has an encoder and its decoder. If none has, raise the
-    error of one of them."""
+    """Return the facts about the first program in a file that has both an encoder and its decoder. If none has both,
+    raise one program's error."""
     errors: list[Exception] = []
     for source in programs_of(whole):
         try:
@@ -160,14 +161,14 @@ def _translation_facts(source: Source, asked: tuple[str, str] | None, folder: Pa
 
 
 def _check_refused(parsed: Read, asked: tuple[str, str] | None) -> None:
-    """Raise TranslationError if a refused function has a requested name, or the name of an encoder or a decoder: that
-    explains the missing pair."""
+    """Raise TranslationError if a refused function has a requested name, or is named like an encoder or a decoder:
+    this explains why no pair was found."""
     if why := next((why for name, why in parsed.refused.items() if name in (asked or ()) or role(name)), ""):
         raise TranslationError(why) from None
 
 
 def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, by: str, kind: Kind) -> dict[str, Any]:
-    """Return facts as `_translation_facts` does, for an encoding of something other than normals."""
+    """Return the same facts as `_translation_facts`, for an encoding of something other than normals."""
     language = language_of(source.file, by)
     parsed = language.read(source, folder)
     if asked and not all(wiring_of(text).is_plain for text in asked):
@@ -206,7 +207,7 @@ def _shaped_facts(source: Source, asked: tuple[str, str] | None, folder: Path, b
 def _adapter_texts(
     source: Source, language: Language, called: Mapping[str, Function], prefix: str, folder: Path
 ) -> str:
-    """Return the text of a GLSL function for each adapter, which is named by the prefix and the adapter's letter."""
+    """Return the GLSL text of the adapters, functions named by the prefix and the letter of each adapter."""
     return "".join(
         plain(language.shader(source, function, folder), f"{prefix}_{letter}", "vec4", HAS_PARAMETERS)
         for letter, function in called.items()
@@ -216,10 +217,10 @@ def _adapter_texts(
 def _pair_facts(
     parsed: Read, pair: Pair, text: str, folder: Path, by: str, asked: tuple[str, str] | None = None
 ) -> dict[str, Any]:
-    """Return the facts of `Translated` about two functions, or about one alone.
+    """Return the fields of `Translated` for two functions, or for one function without a partner.
 
     Args:
-        text: the text behind the user's own.
+        text: the text to append to the user's text.
     """
 
     def texts(reader: Language, part: Source, prefix: str) -> list[str]:
@@ -241,12 +242,12 @@ _Texts = Callable[[Language, Source, str], list[str]]
 def _facts_of_texts(
     parsed: Read, text: str, names: Collection[str], name: str, by: str, texts: _Texts
 ) -> dict[str, Any]:
-    """Return the facts of `Translated` about functions, except facts that depend on their kind.
+    """Return the fields of `Translated` for functions, except those that depend on the kind of the encoding.
 
     Args:
-        text: the text after the user's own.
-        names: the names of the functions that are called.
-        name: the name of the encoding in rows.
+        text: the text to append to the user's text.
+        names: the names of the functions to call.
+        name: the encoding's name in rows.
     """
     prefix = "user_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
     source = parsed.source.with_text(reached(parsed.source.text + text, names))
@@ -274,8 +275,8 @@ def _facts_of_texts(
 
 
 def _pair_and_text(parsed: Read, asked: tuple[str, str] | None, path: Path) -> tuple[Pair, str, str]:
-    """Return the pair that is measured, the HLSL text of its two functions if these call others as they are wired,
-    else empty, and the name by which the pair is requested. Raises NoPairError."""
+    """Return the pair to measure, the HLSL text of its functions if they are wired from other functions (else empty),
+    and the name by which the pair is requested. Raises NoPairError."""
     first, other = wirings = [wiring_of(text) for text in asked] if asked else (Wiring(""), Wiring(""))
     names = (first.function, other.function) if asked else None
     if not (first.is_plain and other.is_plain):
@@ -308,8 +309,8 @@ def _wired_pair(wirings: Sequence[Wiring], parsed: Read) -> tuple[Pair, str, str
 
 
 def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: str) -> tuple[str, list[str]]:
-    """Return the compiler that read the functions, empty for their language's own, and the GLSL texts from `texts`.
-    Slang's failures on HLSL are tried again with glslang."""
+    """Return the compiler that read the functions (empty for their language's own) and the GLSL texts from `texts`.
+    If Slang fails on HLSL, glslang is tried."""
     try:
         return by, texts(language_of(source.file, by), source, prefix)
     except TranslationError:
@@ -321,8 +322,7 @@ def _texts_by_whoever_reads_it(source: Source, by: str, texts: _Texts, prefix: s
 
 
 def _others(functions: Sequence[Function], pair: Pair) -> list[str]:
-    """Return a line on each other pair with a 32-bit code or more parameters, at most MOST_OTHERS in all, but not on
-    pairs of plain numbers."""
+    """Return a note on each other pair that has a 32-bit code or needs wiring, at most MOST_OTHERS notes in all."""
     others = [] if pair.is_packed else packed_pairs(functions)
     packed = {other.named: f", which packs into {_A[other.encode.kind]}," for other in others}
     wired = dict.fromkeys(f"{first.function}:{other.function}" for first, other in candidates(_but(functions, pair)))
@@ -341,7 +341,7 @@ def _but(functions: Sequence[Function], pair: Pair) -> list[Function]:
 
 
 def _read_with(source: Source) -> list[str]:
-    """Return a list with one line on the files and macros that were read with the file; empty if there are none."""
+    """Return a list with a one-line note on the other files and macros read with a file; empty without them."""
     others = [str(path) for path in source.files.values() if path not in source.mains]
     more = f" and {len(others) - MOST_NAMED} others" if len(others) > MOST_NAMED else ""
     macros = [f"-D {macro}" for macro in source.settings.defines]
@@ -350,7 +350,7 @@ def _read_with(source: Source) -> list[str]:
 
 
 def _row_name(source: Source, pair: Pair, asked: tuple[str, str] | None) -> str:
-    """Return the name for rows: NAME of NAME_encode and NAME_decode, as in GLSL, or the file's; and its macros."""
+    """Return an encoding's name for rows: NAME of NAME_encode and NAME_decode, or the file's; with macros."""
     names = [pair.encode.name.removesuffix("_encode"), pair.decode.name.removesuffix("_decode")]
     file = source.path.name
     function = wiring_of(asked[0]).function if asked else pair.encode.name
@@ -361,8 +361,8 @@ def _row_name(source: Source, pair: Pair, asked: tuple[str, str] | None) -> str:
 
 
 def _function_texts(source: Source, language: Language, pair: Pair, prefix: str, folder: Path) -> list[str]:
-    """Return two GLSL texts of the two functions: for codes in [-1, 1], and for codes in [0, 1]. The texts are equal
-    if the code is packed."""
+    """Return a pair's GLSL text twice, for codes in [-1, 1] and for codes in [0, 1]; both are equal for a packed
+    code."""
     sides = {f"{prefix}_e": pair.encode, f"{prefix}_d": pair.decode}
     text = "".join(
         plain(language.shader(source, side, folder), name, side.takes or f"vec{side.given[0]}")

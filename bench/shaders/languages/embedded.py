@@ -1,4 +1,4 @@
-"""Shaders in files of something else: GLSL in strings of JavaScript, and the blocks of Stride's shader classes."""
+"""Shaders embedded in other files: GLSL in JavaScript strings, and the blocks of Stride's shader classes."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ _OF_STRIDE = re.compile(r"^([ \t]*)((?:(?:override|abstract|stage|clone|static)\
 
 
 def shader_text(text: str, ending: str) -> str:
-    """Return the shader in a file's text, with each line in its place. A file type that embeds no shaders is returned
-    as it is.
+    """Return the shader in a file's text, at its original lines. For file types that embed no shaders, return the
+    text unchanged.
 
     Args:
         ending: the file's extension, in lower case.
@@ -32,7 +32,7 @@ def shader_text(text: str, ending: str) -> str:
 
 
 def _block(text: str, start: int) -> tuple[int, int]:
-    """Return (start, end) of the text inside braces; `start` is the place behind the opening brace."""
+    """Return (start, end) of the text inside braces, where `start` is the index after the opening brace."""
     depth, bare = 1, without_comments(text)
     for mark in re.finditer(r"[{}]", bare[start:]):
         depth += 1 if mark[0] == "{" else -1
@@ -42,8 +42,7 @@ def _block(text: str, start: int) -> tuple[int, int]:
 
 
 def only(text: str, spans: list[tuple[int, int]]) -> str:
-    """Return a text in which everything outside the spans is blank, and each line stays where it is. A span is
-    (start, end)."""
+    """Return a text with everything outside the spans blanked; line numbers do not change. A span is (start, end)."""
     parts, last = [], 0
     for start, end in spans:
         parts += [blank(text[last:start]), text[start:end]]

@@ -1,4 +1,4 @@
-"""HLSL to GLSL in another way than Slang's: glslang makes SPIR-V of it, and SPIRV-Cross makes GLSL of that."""
+"""Translation of HLSL to GLSL without Slang: glslang compiles it to SPIR-V, which SPIRV-Cross converts to GLSL."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _ERROR = re.compile(rf"^ERROR: {re.escape(GIVEN)}:(\d+): '([^']*)' : (.*)$", re.
 
 
 def shader(source: Source, function: Function, folder: Path) -> str:
-    """Return the text of a GLSL fragment shader that calls a function of an HLSL source: see `plain.py`.
+    """Return the text of a GLSL fragment shader that calls a function of an HLSL source (see `plain.py`).
 
     Raises:
-        TranslationError: it does not compile.
-        ToolError: a tool crashes or does not end.
+        TranslationError: the source does not compile.
+        ToolError: a tool crashes or hangs.
         MissingError: a tool is not installed.
     """
     try:
@@ -50,7 +50,7 @@ def _define_options(source: Source) -> list[str]:
 
 
 def _check(source: Source, status: int, message: str) -> None:
-    """Raise TranslationError if glslang refused a source: it ended with this status and printed this message."""
+    """Raise TranslationError if glslang ended with an error status for a source; `message` is its output."""
     if not status:
         return
     match = _ERROR.search(message)

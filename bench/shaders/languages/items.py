@@ -1,4 +1,4 @@
-"""The top-level items of a text in a language that looks like C: functions, structures, globals, one after another.
+"""The top-level items of a text in a C-like language, in order: functions, structures and globals.
 
 Only braces and semicolons are understood; the rest is left to the compiler. A namespace is not an item, but its
 contents are.
@@ -27,10 +27,10 @@ class Item(NamedTuple):
     """An item.
 
     Attributes:
-        start: where it begins.
-        end: where it ends.
-        function: the name of the function that it defines, as NAME or SPACE::NAME; empty where it defines none.
-        body: where the braces of that function begin; its end where it defines none.
+        start: the index of its start.
+        end: the index of its end.
+        function: the name of the function that the item defines, as NAME or SPACE::NAME; empty if it defines none.
+        body: the index of the function's opening brace; `end` if the item defines no function.
     """
 
     start: int
@@ -40,13 +40,13 @@ class Item(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The name of its function without the namespace."""
+        """The name of the item's function without the namespace."""
         return self.function.rpartition("::")[2]
 
 
 def items(text: str) -> list[Item]:
-    """Return the items of a text without comments, in order. The items and the braces of namespaces are all of the
-    text, without gaps."""
+    """Return the items of a text without comments, in order. Together with the braces of namespaces, the items cover
+    the whole text without gaps."""
     parts: list[Item] = []
     spaces: list[str] = []
     bare = _QUOTED.sub(lambda match: blank(match[0]), _without_directives(text))
@@ -71,7 +71,7 @@ def items(text: str) -> list[Item]:
 
 
 def _items(bare: str, start: int, end: int, body: int, space: str) -> list[Item]:
-    """Return the items between two ends: one item, or a function and the lines before it, such as a macro."""
+    """Return the items from `start` to `end`: one item, or a function and, before it, lines such as a macro."""
     match = _NAME.search(bare[start:body].rstrip()) if body < end else None
     if not match:
         return [Item(start, end, "", end)]
@@ -84,7 +84,7 @@ def _items(bare: str, start: int, end: int, body: int, space: str) -> list[Item]
 
 
 def functions_in(text: str) -> list[str]:
-    """Return the names of the functions that a text defines, each once; SPACE::NAME in a namespace or a structure."""
+    """Return the distinct names of the functions that a text defines; SPACE::NAME in a namespace or structure."""
     return list(dict.fromkeys(_functions_in(text, "")))
 
 
@@ -97,7 +97,7 @@ def _functions_in(text: str, space: str) -> Iterator[str]:
 
 
 def words_of(text: str) -> set[str]:
-    """Return the set of words in a text, except in the heads of its functions."""
+    """Return the set of words in a text, except in function heads."""
     bodies = _rewritten(text, ((item.start, item.body, "") for item in items(text) if item.function))
     return set(_WORD.findall(bodies))
 
@@ -110,13 +110,13 @@ def defined_in(text: str) -> Iterator[str]:
 
 
 def heads(text: str) -> str:
-    """Return a text with a semicolon in place of each function's body; each line stays where it is."""
+    """Return a text with each function's body replaced by a semicolon; line numbers do not change."""
     return _rewritten(text, ((item.body, item.end, ";") for item in items(text) if item.function))
 
 
 def marked_heads(text: str, mark: str) -> str:
-    """Return a text as `heads` does, with a mark before the name of each function, so that no name is one of the
-    language's own."""
+    """Return a text as `heads` does, with a mark before each function name, so that no name clashes with the
+    language's own names."""
     functions = [item for item in items(text) if item.function]
     names = (re.search(rf"\b{item.name}\s*\(", text[item.start : item.body]) for item in functions)
     places = (item.start + name.start() for item, name in zip(functions, names, strict=True) if name)
@@ -125,12 +125,12 @@ def marked_heads(text: str, mark: str) -> str:
 
 
 def without(text: str, some: Iterable[Item]) -> str:
-    """Return a text with some of its items blanked; directives in them stay, and each line stays where it is."""
+    """Return a text with some of its items blanked, except directives in them; line numbers do not change."""
     return _rewritten(text, ((item.start, item.end, "") for item in some))
 
 
 def reached(text: str, names: Collection[str]) -> str:
-    """Return a text with only the functions that these names, or the text outside functions, need."""
+    """Return a text with only the functions that are needed for these names or for the text outside functions."""
     every = items(text)
     words = set(_WORD.findall(" ".join(_DIRECTIVE.findall(text))))
     words |= {name.rpartition("::")[2] for name in names}
@@ -144,13 +144,13 @@ def reached(text: str, names: Collection[str]) -> str:
 
 
 def _may_be_pasted(name: str, parts: Collection[str]) -> bool:
-    """Whether a name begins or ends with one of some parts, so that a macro may paste it together."""
+    """Whether a name begins or ends with any of these parts, so that a macro may have pasted it together."""
     return any(name.startswith(part) or name.endswith(part) for part in parts)
 
 
 def _rewritten(text: str, parts: Iterable[tuple[int, int, str]]) -> str:
-    """Return a text with new words, padded with blanks, in some of its parts: (start, end, words), which do not
-    overlap."""
+    """Return a text with some of its parts replaced by words and padded with blanks. A part is (start, end, words),
+    and parts do not overlap."""
     pieces, last = [], 0
     for start, end, words in sorted(parts):
         pieces += [text[last:start], words, blanked(text[start:end])[len(words) :]]
@@ -159,12 +159,12 @@ def _rewritten(text: str, parts: Iterable[tuple[int, int, str]]) -> str:
 
 
 def blanked(text: str) -> str:
-    """Return a text with everything blanked except its preprocessor directives; each line stays where it is."""
+    """Return a text with everything blanked except its preprocessor directives; line numbers do not change."""
     kept: Iterator[str] = iter(_DIRECTIVE.findall(text))
     parts = _DIRECTIVE.split(text)
     return "".join(blank(part) + next(kept, "") for part in parts)
 
 
 def _without_directives(text: str) -> str:
-    """Return a text with its preprocessor directives blanked; each line stays where it is."""
+    """Return a text with its preprocessor directives blanked; line numbers do not change."""
     return _DIRECTIVE.sub(lambda match: blank(match[0]), text)

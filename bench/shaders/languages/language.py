@@ -1,4 +1,4 @@
-"""The languages that are translated: a line each."""
+"""The languages that can be translated, and how each is read and translated."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ class Language:
     """A shading language.
 
     Attributes:
-        tools: the compilers that it needs.
-        read: (source, folder to work in) -> the part of the source that a compiler reads.
-        shader: (source, function, folder to work in) -> the function as a fragment shader in GLSL: input 0 is the
-            function's own input, input 1 the view-space position, output 0 the result.
-        adapter: makes a function that calls another function, in the language of a program that has both.
+        tools: the compilers that the language needs.
+        read: (source, working folder) -> the part of the source that a compiler reads.
+        shader: (source, function, working folder) -> the function as a GLSL fragment shader: input 0 is its
+            own input, input 1 the view-space position, output 0 the result.
+        adapter: a function that writes an adapter, which calls a function of the same program.
         placed: (source, functions) -> the functions with the places of their inputs and outputs.
-        others: other compilers, which read sources that its own refuses, or check what its own has read.
+        others: other compilers, for sources that the language's own refuses, or to check what it has read.
     """
 
     tools: tuple[str, ...]
@@ -68,8 +68,8 @@ def language_of(file: UserFile, by: str = "") -> Language:
 
 
 def name_of(file: UserFile) -> str:
-    """Return the name of a file's language: as the user names it, by the file's extension, or by its text if several
-    languages have that extension; "HLSL" if the text does not show it."""
+    """Return the name of a file's language: the user's choice, or by the file's extension, or by its text if several
+    languages share the extension; "HLSL" if the text does not show the language."""
     ending = file.path.suffix.lower()
     language = file.settings.language or TRANSLATED.get(ending, GLSL_NAME if ending == GLSL else "")
     if language:

@@ -1,4 +1,4 @@
-"""The two functions of a file that are an encoder and its decoder, found by their types and their names."""
+"""The encoder and its decoder in a file, found by the types and the names of functions."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Place:
     """A number or a vector in a function's input or output.
 
     Attributes:
-        path: its name in a program: s.normalWS of a parameter s; empty for a whole result.
+        path: its name in a program, such as s.normalWS for a field of parameter s; empty for a whole result.
         kind: the type of its numbers: float, uint, int or bool.
         size: the number of its components, 1 to 4.
     """
@@ -62,11 +62,11 @@ class Parameter:
     """A parameter of a function.
 
     Attributes:
-        name: of it.
-        kind: its type, as HLSL writes it.
+        name: its name.
+        kind: its type, in HLSL.
         is_given: whether the function reads it: `in` or `inout`.
         is_made: whether the function writes it: `out` or `inout`.
-        has_default: whether it need not be given.
+        has_default: whether it can be omitted in a call.
         places: its numbers and vectors.
     """
 
@@ -84,12 +84,12 @@ class Function:
 
     Attributes:
         name: its name.
-        result: the number of components of its result; 0 if that is not a vector of two or three.
-        given: the number of components of each of its parameters, likewise.
-        kind: the type of its result, as it is written.
-        takes: the type of its first parameter, if that is one integer or one float of 32 bits; else empty.
-        parameters: its parameters, if its compiler reports them.
-        results: the numbers and vectors of its result, likewise.
+        result: the number of components of its result; 0 unless the result is a vector of two or three numbers.
+        given: the number of components of each parameter, counted in the same way.
+        kind: the type of its result, as written in the source.
+        takes: the type of its first parameter if this is a single 32-bit integer or float; else empty.
+        parameters: its parameters, if the compiler reports them.
+        results: the numbers and vectors of its result, if the compiler reports them.
     """
 
     name: str
@@ -102,52 +102,51 @@ class Function:
 
     @property
     def takes_view(self) -> bool:
-        """Whether it has a second parameter, the view-space position."""
+        """Whether the function has a second parameter, the view-space position."""
         return len(self.given) == 2
 
     def called(self, given: str) -> str:
-        """Return the text of a call of it with this argument, and with `view` if it takes the view-space position."""
+        """Return the text of a call with this argument, and with `view` if the function takes a view position."""
         return f"{self.name}({given}, view)" if self.takes_view else f"{self.name}({given})"
 
     @property
     def may_encode(self) -> bool:
-        """Whether it takes a normal, perhaps with a view-space position, and returns a vector of two or three
-        numbers."""
+        """Whether the function takes a normal, perhaps with a view position, and returns two or three numbers."""
         return self.result > 0 and self.takes_a_normal
 
     @property
     def takes_a_normal(self) -> bool:
-        """Whether it takes a normal, and nothing else except a view-space position."""
+        """Whether the function takes a normal, and nothing else except a view-space position."""
         return self.given in ((NORMAL,), (NORMAL, NORMAL))
 
     @property
     def gives_by_parameter(self) -> bool:
-        """Whether its first parameter is a vector of two or three numbers and it returns nothing."""
+        """Whether the function's first parameter is a vector of two or three numbers and it returns nothing."""
         return self.kind == "void" and self.given[:1] > (0,)
 
     @property
     def packs(self) -> bool:
-        """Whether it takes a normal, perhaps with a view-space position, and returns one 32-bit integer or float."""
+        """Whether the function takes a normal, with or without a view-space position, and returns a 32-bit value."""
         return self.takes_a_normal and self.kind in PACKED
 
     @property
     def unpacks(self) -> bool:
-        """Whether it takes one 32-bit integer or float, perhaps with a view-space position, and returns a normal."""
+        """Whether the function takes a 32-bit value, with or without a view-space position, and returns a normal."""
         return self.result == NORMAL and self.takes in PACKED and self.given[1:] in ((), (NORMAL,))
 
     @property
     def given_type(self) -> str:
-        """The type of its first parameter, as HLSL writes it."""
+        """The type of the function's first parameter, in HLSL."""
         return self.takes or f"float{self.given[0]}"
 
     @property
     def result_type(self) -> str:
-        """The type of its result, as HLSL writes it."""
+        """The type of the function's result, in HLSL."""
         return self.kind if self.kind in PACKED else f"float{self.result}"
 
     @property
     def may_decode(self) -> bool:
-        """Whether it returns a normal, and takes a code and nothing else except a view-space position."""
+        """Whether the function takes only a code, with or without a view-space position, and returns a normal."""
         return self.result == NORMAL and self.given[:1] > (0,) and self.given[1:] in ((), (NORMAL,))
 
 
@@ -160,12 +159,12 @@ class Pair:
 
     @property
     def components(self) -> int:
-        """The number of components of the code; for one 32-bit value, its two halves."""
+        """The number of components of the code; a 32-bit value counts as two halves."""
         return HALVES if self.is_packed else self.encode.result
 
     @property
     def is_packed(self) -> bool:
-        """Whether the code is one 32-bit integer or float, which is stored unchanged."""
+        """Whether the code is a single 32-bit integer or float, which is stored unchanged."""
         return self.encode.packs
 
     @property
@@ -200,12 +199,12 @@ class SeveralPairsError(NoPairError):
 def pair_of(
     functions: Sequence[Function], asked: tuple[str, str] | None = None, file: str = "", own: Collection[str] = ()
 ) -> Pair:
-    """Return the encoder and its decoder among functions.
+    """Return the pair of an encoder and its decoder from a file's functions.
 
     Args:
         file: the file's name in messages.
-        asked: the names of the two functions that are requested; None to find them.
-        own: the names of the functions that the file defines itself, rather than includes.
+        asked: the names of the two requested functions; None to find them.
+        own: the names of the functions defined in the file itself, rather than in its includes.
 
     Raises:
         NoPairError: no pair fits.
@@ -244,13 +243,12 @@ def pair_of(
 
 
 def _is_half_named(pair: Pair) -> bool:
-    """Whether exactly one name says that its function encodes or decodes; the other function may be for something
-    else."""
+    """Whether only one of the two names shows its function's role; the other function may be for something else."""
     return bool(role(pair.encode.name)) != bool(role(pair.decode.name))
 
 
 def _fitting(functions: Sequence[Function]) -> Iterator[Pair]:
-    """Yield the pairs whose types fit; if these would be too many, only pairs of functions with the same stem."""
+    """Yield the pairs of functions whose types match; if there are too many of them, only those with equal stems."""
     encoders, decoders = _sides(functions)
     needs_name = too_many(encoders, decoders)
     for encode, decode in itertools.product(encoders, decoders):
@@ -266,13 +264,12 @@ def _sides(functions: Sequence[Function]) -> tuple[list[Function], list[Function
 
 
 def too_many(encoders: Sequence[Function], decoders: Sequence[Function]) -> bool:
-    """Whether there are too many encoders and decoders to try each encoder with each decoder."""
+    """Whether there are too many encoders and decoders to try all pairs of them."""
     return len(encoders) * len(decoders) > MOST_PAIRED
 
 
 def packed_pairs(defined: Sequence[Function]) -> list[Pair]:
-    """Return the pairs of an encoder and a decoder, by their names, whose code is one 32-bit value of the same
-    type."""
+    """Return the pairs named as encoder and decoder whose code is a single 32-bit value of the same type."""
     sides = [function for function in defined if function.packs], [function for function in defined if function.unpacks]
     alike = (both for both in itertools.product(*sides) if stem(both[0].name) == stem(both[1].name))
     return _by_name([Pair(encoder, other) for encoder, other in alike if encoder.kind == other.takes])
@@ -293,15 +290,15 @@ def _asked(functions: Sequence[Function], asked: tuple[str, str], pairs: Sequenc
 
 
 def _by_name(pairs: Sequence[Pair]) -> list[Pair]:
-    """Return the pairs that are an encoder and a decoder by their names, preferring those with the same stem."""
+    """Return the pairs whose names show an encoder and a decoder; if any of them share a stem, only these."""
     named = [pair for pair in pairs if role(pair.encode.name) == "encode" and role(pair.decode.name) == "decode"]
     same = [pair for pair in named if stem(pair.encode.name) == stem(pair.decode.name)]
     return same or named
 
 
 def _by_parameter(functions: Sequence[Function], best: Sequence[Pair]) -> str:
-    """Return the name of the function that is, by its name, the partner of a function in the best pairs, but returns
-    nothing; else empty.
+    """Return the name of a function that returns nothing but is named as the partner of a function in the best pairs;
+    empty if there is no such function.
 
     A function that returns a code in its place is probably one of its helpers.
     """
@@ -314,24 +311,24 @@ def _by_parameter(functions: Sequence[Function], best: Sequence[Pair]) -> str:
 
 
 def speaks_of_normals(pair: Pair) -> bool:
-    """Whether the names of a pair say that it is for normals."""
+    """Whether a pair's names show that it is for normals."""
     return name_speaks_of_normals(pair.named)
 
 
 def name_speaks_of_normals(name: str) -> bool:
-    """Whether a function's name says that it is for normals."""
+    """Whether a function's name shows that it is for normals."""
     return any(word in name.lower() for word in NORMALS)
 
 
 def has_side_of_colours(pair: Pair) -> bool:
-    """Whether the name of one function is about normals, and the name of the other function about colours."""
+    """Whether one function's name refers to normals and the other function's name to colours."""
     sides = pair.encode.name, pair.decode.name
     is_of_colours = [bool(OF_COLOURS & words_in(name)) and not name_speaks_of_normals(name) for name in sides]
     return any(is_of_colours) and speaks_of_normals(pair)
 
 
 def speaks_of_others(pair: Pair) -> bool:
-    """Whether the names of a pair say that it is for something other than normals."""
+    """Whether a pair's names show that it is for something other than normals."""
     named = f"{pair.encode.name} {pair.decode.name}"
     kind = kind_spoken_of(named)
     # A code of two numbers is of a direction, such as that to a light.
@@ -340,14 +337,14 @@ def speaks_of_others(pair: Pair) -> bool:
 
 
 def _by_size(pairs: Sequence[Pair]) -> list[Pair]:
-    """Return the pairs whose types alone tell encoder and decoder apart, unless their names say the contrary."""
+    """Return the pairs whose types alone distinguish encoder and decoder, unless their names contradict the types."""
     told = [pair for pair in pairs if pair.components != NORMAL]
     return [pair for pair in told if role(pair.encode.name) != "decode" and role(pair.decode.name) != "encode"]
 
 
 def _ways(name: str) -> tuple[list[str], list[str]] | None:
-    """Return the words for a function's input and output in its name: NormalToOctahedron, oct_from_vec; None if the
-    name does not say."""
+    """Return the words for the input and for the output in a function's name, such as NormalToOctahedron or
+    oct_from_vec; None if the name does not show them."""
     words = [word.lower() for word in WORD.findall(name)]
     for between in ("to", "from"):
         if between in words[1:-1]:
@@ -359,7 +356,7 @@ def _ways(name: str) -> tuple[list[str], list[str]] | None:
 
 @cache
 def role(name: str) -> str:
-    """Return a function's role by its name: "encode", "decode", or empty."""
+    """Return the role that a function's name shows: "encode", "decode", or empty."""
     if ways := _ways(name):
         given, is_code_made = (any(word.startswith(CODES) for word in words) for words in ways)
         if given != is_code_made:
@@ -372,16 +369,15 @@ def role(name: str) -> str:
 
 @cache
 def stem(name: str) -> str:
-    """Return a function's name, in lower case, without the words that say that it encodes or decodes; two functions
-    with the same stem belong together."""
+    """Return a function's name, in lower case, without words for encoding or decoding; two functions with the same
+    stem belong together."""
     if ways := _ways(name):
         return " ".join(sorted(" ".join(words) for words in ways))
     return re.sub("|".join((*DECODES, *ENCODES, "_")), "", name.lower())
 
 
 def alone(functions: Sequence[Function]) -> Pair | None:
-    """Return the only function of a file that encodes or decodes, paired with a function without a name; None if the
-    file has more or none."""
+    """Return a file's only encoder or decoder, paired with a nameless function; None if there are several or none."""
     encoders = [function for function in functions if function.may_encode and role(function.name) == "encode"]
     decoders = [function for function in functions if function.may_decode and role(function.name) == "decode"]
     if len(encoders) + len(decoders) != 1:
@@ -391,7 +387,7 @@ def alone(functions: Sequence[Function]) -> Pair | None:
 
 
 def _of_something_else(functions: Sequence[Function], file: str, among: Collection[kinds.Kind] = kinds.KINDS) -> str:
-    """Return a message if function names show that a file without a pair is of something else; else empty."""
+    """Return a message if function names show that a file without a pair encodes something else; else empty."""
     for name in (function.name for function in functions if role(function.name)):
         if (kind := kind_spoken_of(name)) and kind in among and not name_speaks_of_normals(name):
             return OF_OTHERS.format(name, kind.plural, kinds.NORMAL.plural, kind.command.format(file))

@@ -1,6 +1,6 @@
-"""A fragment shader for one function, in the GLSL of compilers, as a part of another shader.
+"""A compiler's GLSL fragment shader for one function, rewritten as a part of another shader.
 
-Its inputs become parameters, its output becomes the result of its `main`, and all its names begin with a prefix.
+The shader's inputs become parameters, its output becomes the result of its `main`, and all its names get a prefix.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ HAS_A_NORMAL = "only the normal and the view-space position are available"
 
 
 def plain(shader: str, prefix: str, given: str, has: str = HAS_A_NORMAL) -> str:
-    """Return a GLSL fragment shader, given as text, as a function `PREFIX_main(PREFIX_0, view)` that returns its
-    output.
+    """Return the text of a GLSL fragment shader, rewritten as a function `PREFIX_main(PREFIX_0, view)` that returns
+    the shader's output.
 
     Args:
-        given: the GLSL type of its first input; its second input has three numbers.
-        has: the inputs that it may read, in words.
+        given: the GLSL type of the shader's first input; its second input has three numbers.
+        has: the inputs that the shader may read, in words.
 
     Raises:
-        NotPlainError: it reads something else.
+        NotPlainError: the shader reads something else.
     """
     text = _HALF_NUMBER.sub("", _HALF.sub(lambda match: f"{match[1]}{match[2]}" if match[1] else "float", shader))
     text = _HALVES.sub("", _HINT.sub("", _HINTS.sub("", text)))
@@ -64,7 +64,7 @@ def plain(shader: str, prefix: str, given: str, has: str = HAS_A_NORMAL) -> str:
 
 
 def _function_text(text: str, prefix: str, given: str, result: str) -> str:
-    """Return a shader's text with its last function, `main`, as `PREFIX_main`, which returns the output.
+    """Return a shader's text with its last function, `main`, renamed to `PREFIX_main`, which returns the output.
 
     Args:
         given, result: the GLSL types of the first input and of the output."""

@@ -1,4 +1,4 @@
-"""The compiled text: a user's source with an entry point, and macros for types that engines define elsewhere."""
+"""The text to compile: a user's source with an entry point, and macros for types that engines define elsewhere."""
 
 from __future__ import annotations
 
@@ -32,10 +32,11 @@ class Read(NamedTuple):
     """The parts of a source that a compiler reads.
 
     Attributes:
-        source: the part of it that is compiled; each line keeps its number.
-        functions: the functions of vectors in it.
-        refused: by its name, why a function is not among them.
-        lost: by its name, why a global or a type is not in the source; under ANY, why unknown names are not.
+        source: the part of the source that is compiled, with unchanged line numbers.
+        functions: its functions of vectors.
+        refused: for the name of each function that is missing from these, the reason.
+        lost: for the name of each global or type that is missing from the source, the reason; under ANY, the reason
+            for unknown names.
     """
 
     source: Source
@@ -45,11 +46,11 @@ class Read(NamedTuple):
 
 
 class TranslationError(Exception):
-    """A file that a compiler refuses; one line that names the user's file, and the line and the column if known."""
+    """A file that a compiler refuses; the one-line message names the file, and the line and column if known."""
 
 
 def template(name: str, **words: object) -> str:
-    """Return the text of a file of this folder with each word that is a keyword here replaced by its value."""
+    """Return the text of a file in this folder with the names of the keyword arguments replaced by their values."""
     return re.sub(rf"\b(?:{'|'.join(words)})\b", lambda match: str(words[match[0]]), _text(name))
 
 
@@ -63,11 +64,12 @@ UNIT_WAYS = (" * 2.0 - 1.0", " * 0.5 + 0.5")
 
 
 def pair(name: str, components: int, encoder: Function, decoder: Function, is_unit: bool) -> str:
-    """Return the GLSL functions NAME_encode and NAME_decode that every program calls; they call two functions above
-    them.
+    """Return the GLSL functions NAME_encode and NAME_decode that every program calls; these call two functions above
+    them, `encoder` and `decoder`.
 
     Args:
-        is_unit: whether these two use codes in [0, 1], which are converted to [-1, 1] on output and back on input.
+        is_unit: whether the functions above use codes in [0, 1], which are converted to [-1, 1] on output and back on
+            input.
     """
     way_out, way_back = UNIT_WAYS if is_unit else ("", "")
     words = {f"NAME_{side}": f"{name}_{side}" for side in ("encode", "decode")}
@@ -82,8 +84,8 @@ HANDS: Mapping[str, str] = MappingProxyType(
 
 
 def shaped(name: str, shaped_pair: ShapedPair, is_unit: bool) -> str:
-    """Return the GLSL functions of a kind that every program calls; they call adapters above them, such as
-    NAME_e_main.
+    """Return the GLSL functions that every program calls for an encoding of a kind; they call the adapters above
+    them, such as NAME_e_main.
 
     Args:
         is_unit: as for `pair`.
@@ -109,7 +111,7 @@ _BITS: Mapping[str, tuple[str, str]] = MappingProxyType(
 
 
 def packed_pair(name: str, encoder: Function, decoder: Function) -> str:
-    """Return functions like those of `pair`, for a code that is one 32-bit value: its halves are the two numbers."""
+    """Return functions like those of `pair`, for a code that is a 32-bit value; its halves are the two numbers."""
     words = {f"NAME_{side}": f"{name}_{side}" for side in ("encode", "decode", "halves", "whole")}
     way_out, way_back = _BITS[encoder.kind]
     words |= {"ENCODED": way_out.format(encoder.called("n")), "LARGEST": LARGEST}
@@ -129,7 +131,7 @@ def program(source: Source, function: Function) -> str:
 
 
 def macros(source: Source, types: Mapping[str, str] = ENGINE_TYPES) -> list[str]:
-    """Return NAME=TEXT for each type, and for the HLSL version, that a source uses but does not define."""
+    """Return macros, as NAME=TEXT, for the types and the HLSL version that a source uses but does not define."""
     words = set(re.findall(r"\w+", source.text))
     used = [(old + size, new + size) for old, new in types.items() for size in SIZES if old + size in words]
     used += [(VERSION, YEAR)] if VERSION in words else []
@@ -141,5 +143,5 @@ def _defines(text: str, name: str) -> bool:
 
 
 def has_halves(text: str) -> bool:
-    """Whether a text without comments has numbers of 16 bits."""
+    """Whether a text without comments uses 16-bit floats."""
     return bool(_HALF.search(text))

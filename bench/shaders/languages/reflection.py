@@ -15,10 +15,12 @@ FLOATS, NUMBERS = ("half", "float"), ("float", "uint", "int", "bool")
 
 
 def functions_of(compiled: Compiled, names: Mapping[str, str]) -> list[Function]:
-    """Return the functions of these names, with all overloads. Names that exist only in another branch are skipped.
+    """Return the functions with these names, including all overloads. Names that exist only in a branch that is not
+    compiled are skipped.
 
     Args:
-        names: for each function's name, its name in the compiled text: the library does not tolerate its own names.
+        names: the functions' names in the compiled text, by their own names; the library does not tolerate its own
+            functions' names.
     """
     reflection = api().reflection(compiled.request)
     handles = [(name, api().find(reflection, spelled.encode())) for name, spelled in names.items()]
@@ -55,7 +57,7 @@ def _function(name: str, function: int) -> Function:
 
 
 def size_of(places: Sequence[Place]) -> int:
-    """Return the number of components if the places are one whole vector of two or three floats, else 0."""
+    """Return the number of components if the places are a single vector of two or three floats, else 0."""
     whole = places[0] if len(places) == 1 and "." not in places[0].path else None
     return whole.size if whole and whole.kind == "float" and whole.size in (2, 3) else 0
 
@@ -71,7 +73,7 @@ def _parameter(variable: int) -> Parameter:
 
 
 def _places(path: str, kind: int) -> Iterator[Place]:
-    """Yield each number or vector of a type as a place; for a structure, those of each field, as PATH.FIELD."""
+    """Yield the numbers and vectors of a type as places; for a structure, those of each field, as PATH.FIELD."""
     library = api()
     scalar = SCALARS.get(library.scalar(kind), "")
     scalar = "float" if scalar in FLOATS else scalar
@@ -84,7 +86,7 @@ def _places(path: str, kind: int) -> Iterator[Place]:
 
 
 def _kind(kind: int) -> str:
-    """Return the name of a type, which is given by the library's handle, as HLSL writes it."""
+    """Return the HLSL name of a type, given the library's handle for the type."""
     library = api()
     scalar = SCALARS.get(library.scalar(kind), "")
     if library.kind(kind) == VECTOR and scalar:

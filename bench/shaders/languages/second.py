@@ -1,8 +1,8 @@
 """A second way to run a translated encoder. If possible, it shares neither reader nor writer with the first way.
 
 HLSL, Slang and GLSL go through Slang's compiler to SPIR-V, WGSL through naga to Vulkan. The results are compared with
-the measured results, which GLSL on OpenGL computes: a translation that compiles can still be wrong. Files run only as
-shaders.
+the measured results, which come from GLSL on OpenGL, because a translation that compiles can still be wrong. Users'
+files run only as shaders.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ Way = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarra
 
 
 class UndefinedError(Exception):
-    """A program does something that its language leaves undefined; one line."""
+    """A program that does something undefined in its language; the message is one line."""
 
 
 class NoSecondWayError(Exception):
-    """The second way is not available here; one line with the reason.
+    """The second way is not available here; the one-line message states the reason.
 
     Attributes:
         is_of_the_file: whether an installed compiler refuses the file.
@@ -56,15 +56,15 @@ class NoSecondWayError(Exception):
 
 
 def second_way(file: UserFile, encoder: Translated, folder: Path) -> Way:
-    """Return a function that runs the two functions of a file in a second way: see `Way`.
+    """Return a function that runs a file's two functions in a second way (see `Way`).
 
     Args:
-        encoder: its translation.
-        folder: an empty folder to work in.
+        encoder: the translation of the file.
+        folder: an empty working folder.
 
     Raises:
         NoSecondWayError: a compiler is missing or refuses the file; also raised when the returned function is called.
-        UndefinedError: only when it is called: the file divides an integer by 0.
+        UndefinedError: only when the returned function is called: the file divides an integer by 0.
     """
     make = _naga_runner if name_of(file) == "WGSL" else _spirv_runner
     run = make(Source(file), encoder, folder)
@@ -81,7 +81,7 @@ def second_way(file: UserFile, encoder: Translated, folder: Path) -> Way:
 
 
 def _program_text(name: str, encoder: Translated) -> str:
-    """Return the text of the program that calls the two functions of a file, from the template of this name."""
+    """Return the text of a program that calls an encoder's two functions, from the template with this name."""
     if encoder.packed and name == "second.hlsl":
         return _of_halves(encoder)
     size = encoder.components
@@ -92,7 +92,7 @@ def _program_text(name: str, encoder: Translated) -> str:
 
 
 def _of_halves(encoder: Translated) -> str:
-    """Return the text of the same program for two functions whose code is one 32-bit value."""
+    """Return the text of the program in second.hlsl for two functions whose code is a single 32-bit value."""
     (pack, is_viewed), (unpack, is_viewed_back) = encoder.functions
     words = {
         "PACK": pack,
@@ -108,7 +108,7 @@ def _of_halves(encoder: Translated) -> str:
 
 def _spirv_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
     """Compile a file to SPIR-V with Slang, and return a function that runs it on OpenGL, in a process that the driver
-    may end. Raises NoSecondWayError."""
+    may crash. Raises NoSecondWayError."""
     of_language = list(slang.GLSL) if name_of(source.file) == GLSL_NAME else []
     used = macros(source.with_text(encoder.text), slang.TYPES)
     defined = [*of_language, *(word for macro in used for word in ("-D", macro))]
@@ -137,7 +137,7 @@ def _refusal_text(source: Source, printed: str) -> str:
 
 def _naga_runner(source: Source, encoder: Translated, folder: Path) -> Callable[[int], None]:
     """Write a file's WGSL to a folder, and return a function that runs it on a Vulkan device, in a process that naga
-    may end. Raises NoSecondWayError."""
+    may crash. Raises NoSecondWayError."""
     try:
         text = judged(bare(encoder.text + _program_text("second.wgsl", encoder), is_wgsl=True), "wgsl")
     except RefusedError as error:
@@ -148,7 +148,8 @@ def _naga_runner(source: Source, encoder: Translated, folder: Path) -> Callable[
 
 
 def _run(command: list[str], folder: Path) -> None:
-    """Run a command in a folder. Raises UndefinedError if it divides by 0, NoSecondWayError if it fails otherwise."""
+    """Run a command in a folder. Raises UndefinedError for a division by 0, NoSecondWayError for any
+    other failure."""
     try:
         done = children.finished(command, SECONDS, folder)
     except subprocess.TimeoutExpired as error:

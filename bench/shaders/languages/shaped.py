@@ -39,7 +39,7 @@ class Fitted:
 
     Attributes:
         function: the function.
-        given: the shape's argument for each input of the function, without structure fields that match none.
+        given: the shape's argument for each input of the function, without structure fields that match no argument.
         made: the output of the function for each argument of the shape.
     """
 
@@ -48,14 +48,14 @@ class Fitted:
     made: Mapping[CodeArgument, Place]
 
     def size(self, part: str) -> int:
-        """Return the number of components of the part of this name here; 0 if the part is missing."""
+        """Return the number of components of the part with this name; 0 if the function lacks the part."""
         both = [*((part, place) for place, part in self.given.items()), *self.made.items()]
         return next((place.size for argument, place in both if argument.name == part), 0)
 
 
 @dataclass(frozen=True)
 class ShapedPair:
-    """An encoder and its decoder, as a shape has them."""
+    """An encoder and its decoder, matched to a shape."""
 
     shape: Shape
     encode: Fitted
@@ -73,7 +73,7 @@ class ShapedPair:
 
     @property
     def settings(self) -> list[str]:
-        """The names of the settings that either function is given."""
+        """The names of the settings that either function takes."""
         return [
             setting.name
             for setting in self.shape.settings
@@ -82,11 +82,11 @@ class ShapedPair:
 
     @property
     def parts(self) -> dict[str, list[int]]:
-        """For each part, the number of components that the encoder takes and the decoder returns; 0 for none."""
+        """By part, the numbers of components that the encoder takes and that the decoder returns; 0 for none."""
         return {part.name: [side.size(part.name) for side in (self.encode, self.decode)] for part in self.shape.parts}
 
     def sides(self, adapter: Adapter) -> dict[str, tuple[Function, str]]:
-        """Return each adapter, as a function and its text, by the letter that a program calls it by: e encodes."""
+        """Return the adapters, each as a function and its text, by the letter in their names; e is the encoder's."""
         by_letter = {"e": _adapted(self.encode, "e", (self.shape.code.name,), adapter)}
         for letter, names in zip(LETTERS, self.shape.results, strict=False):
             by_letter[letter] = _adapted(self.decode, letter, names, adapter)
@@ -98,11 +98,11 @@ LETTERS = "dtb"
 
 
 def _adapted(fitted: Fitted, letter: str, results: Sequence[str], adapter: Adapter) -> tuple[Function, str]:
-    """Return an adapter of a function, which takes seven numbers and returns four, and its text.
+    """Return an adapter, which calls a function, takes seven numbers and returns four, together with its text.
 
     Args:
-        letter: the end of its name.
-        results: the names of the parts that it returns, in order."""
+        letter: the last letter of the adapter's name.
+        results: the names of the parts that the adapter returns, in order."""
     name = f"{fitted.function.name.replace('::', '_')}_{letter}"
     given = {place.path: part.sizes[place.size] for place, part in fitted.given.items()}
     places = {part.name: place for part, place in fitted.made.items()}
@@ -117,7 +117,7 @@ def shaped_pair(
     file: str = "",
     own: Collection[str] = (),
 ) -> ShapedPair:
-    """Return the pair of a kind among functions; the arguments are as for `pairs.pair_of`.
+    """Return the pair for a kind of value from a file's functions; the other arguments are as for `pairs.pair_of`.
 
     Raises:
         NoPairError: no pair fits.
@@ -149,7 +149,7 @@ def _all_pairs(functions: Sequence[Function], kind: Kind, asked: tuple[str, str]
 
 
 def _may_be(function: Function, side: str, asked: tuple[str, str] | None) -> bool:
-    """Whether a function is the requested one or, without a request, has the role of a side."""
+    """Whether a function is requested for a side ("encode" or "decode") or, without a request, has that role."""
     return function.name == asked[side == "decode"] if asked else role(function.name) == side
 
 
@@ -165,9 +165,10 @@ def _fitted(
 
 
 def _assigned(places: Sequence[Place], parts: Sequence[CodeArgument]) -> dict[Place, CodeArgument] | None:
-    """Return the part for each place, by its name, then by the order; None if a needed part or a place is left over.
+    """Match places to parts, by name and then by order, and return the part for each place; None if a required part
+    or a place remains unmatched.
 
-    Fields of a structure may be left over. A place matches a part only if it holds floats, in a number that the part
+    Structure fields may remain unmatched. A place matches a part only if it holds floats and has a size that the part
     allows.
     """
     assigned: dict[Place, CodeArgument] = {}
@@ -196,8 +197,8 @@ def _likeness(place: Place, part: CodeArgument) -> int:
 
 
 def _likeliest(pairs: Sequence[ShapedPair], kind: Kind) -> list[ShapedPair]:
-    """Return the pairs, if possible with the same stem, whose names speak of the kind, else those whose names speak
-    of no kind; all of one shape."""
+    """Return the pairs whose names refer to the kind or, if there are none, those whose names refer to no kind;
+    preferably with the same stem, and all of one shape."""
     same = [pair for pair in pairs if stem(pair.encode.function.name) == stem(pair.decode.function.name)] or pairs
     spoken = [pair for pair in same if kind_spoken_of(pair.named) is kind]
     silent = [pair for pair in same if not kind_spoken_of(pair.named) and not _is_of_colours(pair, kind)]
@@ -211,7 +212,7 @@ def _is_of_colours(pair: ShapedPair, kind: Kind) -> bool:
 
 
 def _why_not(functions: Sequence[Function], kind: Kind, asked: tuple[str, str]) -> str:
-    """Return why two functions that were requested are not a pair."""
+    """Return a message on why the two requested functions are not a pair."""
     names = {function.name for function in functions}
     if missing := [name for name in asked if name not in names]:
         return f"unknown function {missing[0]}; known: {', '.join(dict.fromkeys(names)) or 'none'}"
@@ -219,7 +220,7 @@ def _why_not(functions: Sequence[Function], kind: Kind, asked: tuple[str, str]) 
 
 
 def _why_none(functions: Sequence[Function], kind: Kind, file: str) -> str:
-    """Return a message on why a file has no pair of a kind among its functions."""
+    """Return a message on why a file's functions include no pair for a kind."""
     wanted = f"the two functions must be {_wanted(kind)}"
     sides = {side: [function for function in functions if role(function.name) == side] for side in ("encode", "decode")}
     spoken = [function for several in sides.values() for function in several]
@@ -238,7 +239,7 @@ def _why_none(functions: Sequence[Function], kind: Kind, file: str) -> str:
 
 
 def _other_kind(name: str, kind: Kind) -> Kind | None:
-    """Return the kind that a function's name speaks of; None if that is this kind, or if it speaks of none."""
+    """Return the kind to which a function's name refers; None if this is `kind`, or if the name refers to none."""
     spoken = kind_spoken_of(name)
     if spoken is kind:
         return None

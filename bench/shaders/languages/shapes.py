@@ -1,6 +1,6 @@
 """The inputs and outputs of the two functions of a user's encoding, for each kind of value except normals.
 
-A program calls the functions of every kind in one way, by adapters `float4 NAME(float4 n, float3 view)`: a
+A program calls the functions of every kind in the same way, through adapters `float4 NAME(float4 n, float3 view)`; a
 `CodeArgument` gives the place of a value among these seven numbers. GLSL around the adapters then provides the same
 functions as the catalogue's encodings.
 """
@@ -20,8 +20,9 @@ class CodeArgument:
 
     Attributes:
         name: its name.
-        sizes: by its number of components, its place in the seven numbers of an adapter; vec4 stands for that type.
-        words: the names of parameters for it, in lower case; a single letter must be the whole name.
+        sizes: its place among the seven numbers of an adapter, by its number of components; vec4 stands for that
+            type.
+        words: words in the names of matching parameters, in lower case; a single letter must be the whole name.
         is_needed: whether every function must have it.
     """
 
@@ -31,8 +32,8 @@ class CodeArgument:
     is_needed: bool = True
 
     def likeness(self, called: str) -> int:
-        """Return the length of the longest word of this part that occurs in a name in lower case; 0 if none does. A
-        single letter must be the whole name."""
+        """Return the length of the longest of this argument's words that occurs in a lower-case name; 0 if none
+        occurs. A single letter must be the whole name."""
         return max(
             (len(word) for word in self.words if word == called or (len(word) > 1 and word in called)), default=0
         )
@@ -46,9 +47,9 @@ class Shape:
         parts: the encoded values.
         code: their code.
         settings: other inputs that both functions may have.
-        results: the names of the parts that each adapter of a decoder returns, with 0 for a part that is missing.
+        results: the names of the parts that each of the decoder's adapters returns; a missing part is 0.
         template: the GLSL file around the adapters.
-        wanted: the form of the two functions, for messages.
+        wanted: the required form of the two functions, for messages.
         has_sign: whether the code's numbers may be in [-1, 1]; then the code may also be in [0, 1].
     """
 

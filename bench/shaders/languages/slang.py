@@ -1,9 +1,9 @@
 """The translation of Slang, HLSL and GLSL to GLSL by Slang's own compiler.
 
-A file of an engine contains much that an encoder does not need: other stages, resources, functions of headers that
-are missing. So the compiler first reads only the heads of the functions. Functions and other declarations that it
-refuses are cut out, again and again, until it reads the rest and reports which functions there are. Then it reads the
-functions that the encoder or the decoder needs.
+An engine's file contains much that an encoder does not need: other stages, resources, functions from missing headers.
+Therefore the compiler first reads only function heads. Functions and other declarations that it refuses are removed
+repeatedly, until it accepts the rest and reports the functions in it. Then it compiles the functions that the encoder
+or the decoder needs.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ INSTEAD = "; #include a file next to it"
 
 
 class RefusedWordError(TranslationError):
-    """A text has a word that must not reach a compiler.
+    """A word in a text that must not reach a compiler.
 
     Attributes:
         place: the line and column of the word, and what is wrong with it.
@@ -77,7 +77,7 @@ def read_glsl(source: Source, folder: Path) -> Read:
 
 
 def _diagonals(text: str) -> Iterator[int]:
-    """Yield the number, counted from 1, of each line in which a matrix is made of one value."""
+    """Yield the 1-based number of each line in which a matrix is constructed from a single value."""
     for match in _DIAGONAL.finditer(text):
         depth, commas = 1, 0
         for index in range(match.end(), len(text)):
@@ -91,7 +91,7 @@ def _diagonals(text: str) -> Iterator[int]:
 
 
 def _text_of_no_stage(text: str) -> str:
-    """Return GLSL without directives for its own compiler, and without the inputs and outputs of a stage."""
+    """Return GLSL text without directives for a GLSL compiler, and without the inputs and outputs of a stage."""
     text = with_known_directives(_VERSION.sub(r"#define __VERSION__ \1", text))
     return without(text, [item for item in items(text) if _OF_A_STAGE.match(text[item.start : item.end].lstrip())])
 
@@ -100,10 +100,11 @@ GLSL = ("-allow-glsl",)
 
 
 def _readable_part(source: Source, first: Callable[[str], str], folder: Path, options: tuple[str, ...]) -> Read:
-    """Return the live part of a source without refused items, and its functions. Function bodies are not checked.
+    """Return the active part of a source without refused items, and the functions in it. Function bodies are not
+    checked.
 
     Args:
-        first: (text) -> the text to read.
+        first: a function from the source's text to the text to read.
     """
     source = source.without_missing()
     source = _live_part(source.with_text(first(source.text)), folder, options).without_part()
@@ -123,8 +124,8 @@ def _readable_part(source: Source, first: Callable[[str], str], folder: Path, op
 
 
 def _refused_now(source: Source, options: tuple[str, ...], folder: Path) -> dict[Item, str]:
-    """Return the items of a source that are refused, each with the first message; empty if the text compiles without
-    function bodies. Raises TranslationError if the refused text is not an item."""
+    """Return the items of a source that the compiler refuses, each with its first message; empty if the text compiles
+    without function bodies. Raises TranslationError if the refused text is not in an item."""
     try:
         compiled = _compiled(source, heads(source.text) + NO_ENTRY, (*options, *TARGET), folder)
     except RefusedWordError as error:
@@ -145,8 +146,7 @@ def _marked(name: str) -> str:
 
 
 def _live_part(source: Source, folder: Path, options: tuple[str, ...]) -> Source:
-    """Return a source without its conditional directives and without the branches that its preprocessor leaves out;
-    each line stays where it is."""
+    """Return a source without conditional directives and inactive branches; line numbers do not change."""
     parts, ends = _CONDITIONAL.split(source.text), [*_CONDITIONAL.findall(source.text), ""]
     if len(parts) == 1:
         return source
@@ -160,7 +160,7 @@ def _live_part(source: Source, folder: Path, options: tuple[str, ...]) -> Source
 
 
 def _names_in_head(text: str, item: Item) -> list[str]:
-    """Return the names that an item may give a function: its function's name, else all names before "("."""
+    """Return the function names that an item may define: its function's name, or else all names before "("."""
     before, brace, _ = text[item.start : item.end].partition("{")
     if item.function:
         return [item.name]
@@ -173,7 +173,7 @@ def _any_name(why: str) -> list[str]:
 
 
 def _items_at(source: Source, messages: Iterable[tuple[int, int, str]]) -> dict[Item, str]:
-    """Return the items that messages are about, each with its first message. Messages about directives are ignored.
+    """Return the items to which messages refer, each with its first message. Messages about directives are ignored.
 
     Args:
         messages: the line, the column and the text of each message.
@@ -190,10 +190,10 @@ def _items_at(source: Source, messages: Iterable[tuple[int, int, str]]) -> dict[
 
 
 def shader(source: Source, function: Function, folder: Path, options: tuple[str, ...] = ()) -> str:
-    """Return the text of a GLSL fragment shader that calls a function of a source: see `plain.py`.
+    """Return the text of a GLSL fragment shader that calls a function of a source (see `plain.py`).
 
     Raises:
-        TranslationError: it does not compile.
+        TranslationError: the source does not compile.
         MissingError: the compiler is not installed.
     """
     compiled = _compiled(source, program(source, function), (*options, *TARGET), folder)
@@ -205,8 +205,8 @@ def shader(source: Source, function: Function, folder: Path, options: tuple[str,
 
 
 def shader_of_glsl(source: Source, function: Function, folder: Path) -> str:
-    """Return a GLSL fragment shader for a function of a GLSL source, as `shader` does. Raises TranslationError also
-    for a matrix made of one value."""
+    """Return a GLSL fragment shader for a function of a GLSL source, as `shader` does. Also raises TranslationError
+    for a matrix constructed from a single value."""
     if line := next(_diagonals(source.text), 0):
         what = "a matrix constructed from one value differs from GLSL's; write out its elements"
         raise TranslationError(source.explained(line, what))
@@ -214,8 +214,8 @@ def shader_of_glsl(source: Source, function: Function, folder: Path) -> str:
 
 
 def _compiled(source: Source, text: str, options: tuple[str, ...], folder: Path) -> library.Compiled:
-    """Return the result of Slang's compiler for a part of a source with the text behind it; the compiler may have
-    failed. Raises TranslationError if the text is refused before it is compiled."""
+    """Compile a text made from a source with Slang's compiler, and return the result, which may be a failure. Raises
+    TranslationError if the text is refused before it is compiled."""
     defined = [word for macro in macros(source, TYPES) for word in ("-D", macro)]
     # A text without an entry point is checked, and nothing is written of it.
     target = () if "-target" in options else ("-target", "glsl")
@@ -233,7 +233,7 @@ def _compiled(source: Source, text: str, options: tuple[str, ...], folder: Path)
 
 
 def refusal(source: Source, error: RefusedError) -> str:
-    """Return why a text of a source is refused, with the user's file and line."""
+    """Return a message on why a source's text is refused, with the user's file and line."""
     why = _explained(error)
     return source.explained(error.line, why) if error.line else f"{source.path}: {why}"
 
@@ -249,7 +249,7 @@ def check(source: Source, printed: str, status: int) -> None:
 
 
 def _explanation(source: Source, printed: str) -> str:
-    """Return the first error, at the user's line and column, and a missing include, which may be its cause."""
+    """Return the first error message, at the user's line and column, with a missing include as a possible cause."""
     behind = f" ({source.missing[0]})" if source.missing else ""
     for number, column, what in _messages(printed):
         return source.explained(number, what, column=column) + behind
@@ -257,7 +257,7 @@ def _explanation(source: Source, printed: str) -> str:
 
 
 def _messages(printed: str) -> Iterator[tuple[int, int, str]]:
-    """Yield the line, column and message of each error, except the error that the entry point is missing."""
+    """Yield the line, column and message of each error, except errors about a missing entry point."""
     errors = list(_ERROR.finditer(printed))
     starts = [error.start() for error in errors]
     for error, end in zip(errors, [*starts[1:], len(printed)], strict=False):

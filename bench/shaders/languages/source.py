@@ -1,4 +1,4 @@
-"""A user's file with its includes, and the place of each line."""
+"""A user's file with its includes, and the origin of each line."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _ANY_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include\b", re.M)
 
 
 class Line(NamedTuple):
-    """A line of a program: its text, where it was written, and what is wrong with it if that is known."""
+    """A line of a program: its text, its file, its line number there, and its error, if known."""
 
     text: str
     path: Path
@@ -49,7 +49,7 @@ Part = tuple[int, int]
 
 
 def _homes() -> Iterator[Path]:
-    """Yield the home folder, as it is named and with its links resolved; nothing if it is unknown."""
+    """Yield the path of the home folder, as given and with its links resolved; nothing if the folder is unknown."""
     with suppress(RuntimeError, OSError):
         yield from (Path.home(), Path.home().resolve())
 
@@ -85,8 +85,8 @@ _PRAGMA, _NATURE = (-1,), (-2,)
 
 
 def _read(own: Path, path: Path, language: str) -> _Text:
-    """Return the text of the file `own` without comments, with its includes and its guard; messages call it `path`.
-    Raises UsageError."""
+    """Return the text of the file `own` without comments, with its includes and its include guard; messages name the
+    file `path`. Raises UsageError."""
     is_wgsl = (language or TRANSLATED.get(path.suffix.lower())) == "WGSL"
     try:
         text = bare(shader_text(file_text(own), path.suffix.lower()), is_wgsl)
@@ -113,12 +113,12 @@ def _read(own: Path, path: Path, language: str) -> _Text:
 
 
 class _Text(NamedTuple):
-    """A file as it is read.
+    """The text of a file that was read.
 
     Attributes:
         lines: its lines, without comments.
-        includes: the included file, by the index of the line.
-        guard: the indices of the lines that keep it from being compiled twice, or a marker; empty if nothing does.
+        includes: the included file, by line index.
+        guard: the line indices of its include guard, or a marker for a guard of another form; empty without a guard.
         imports: the indices of the lines that import a module, which is read once.
     """
 
@@ -129,7 +129,7 @@ class _Text(NamedTuple):
 
 
 def _guard(lines: list[str]) -> tuple[int, ...]:
-    """Return the line indices of #ifndef NAME and its #endif if they enclose a whole text; else an empty tuple."""
+    """Return the line indices of a guard, #ifndef NAME and #endif, around a whole text; else an empty tuple."""
     written = [i for i, line in enumerate(lines) if line.strip()]
     first = _UNLESS.fullmatch(lines[written[0]]) if len(written) > 2 else None
     if not first or not re.match(rf"[ \t]*#[ \t]*define[ \t]+{first[1]}\b", lines[written[1]]):
@@ -144,12 +144,12 @@ def _guard(lines: list[str]) -> tuple[int, ...]:
 
 
 def _defined(lines: list[Line]) -> set[str]:
-    """Return the names defined at the top level of lines."""
+    """Return the names that lines define at the top level."""
     return set(defined_in("".join(f"{line.text}\n" for line in lines)))
 
 
 def _renamed(lines: list[Line], names: set[str], mark: str) -> Iterator[Line]:
-    """Yield lines, between others that define each of the names as NAME_MARK and that undefine it again."""
+    """Yield lines, preceded by a #define that renames each of the names to NAME_MARK, and followed by each #undef."""
     where = lines[0].path
     yield from (Line(f"#define {name} {name}_{mark}", where, 1) for name in sorted(names))
     yield from lines
@@ -157,7 +157,7 @@ def _renamed(lines: list[Line], names: set[str], mark: str) -> Iterator[Line]:
 
 
 class _Branches:
-    """The branches of #if and #else that contain a line, each with a number of its own."""
+    """The #if and #else branches that contain a line, each with its own number."""
 
     def __init__(self) -> None:
         self.now: tuple[int, ...] = ()
@@ -173,18 +173,17 @@ class _Branches:
 
 
 class Source:
-    """A file together with its includes, which are searched in its own folder, the folders below it and those above it
-    up to its repository's, and nowhere else.
+    """A file together with its includes, which may be in the file's folder, in folders below it or above it up to the
+    repository's root, or in the folders named by --include.
 
-    A file is included wherever an #include names it, in each branch. A file with an include guard is included only
+    A file is included wherever an #include names it, in every branch. A file with an include guard is included only
     where it may not have been read yet. A file never includes itself again.
 
-    An #include of a file that is missing or elsewhere becomes an #error, which does no harm in a branch that is not
-    compiled.
+    An #include of a file that is missing or elsewhere becomes an #error, which is harmless in an inactive branch.
 
     Raises:
         UsageError: a file cannot be read, the files are too large or too many together, or they are nested too
-            deep.
+            deeply.
     """
 
     def __init__(self, file: UserFile):
@@ -215,7 +214,7 @@ class Source:
         self.text = "".join(f"{line.text}\n" for line in self.lines)
 
     def _all_lines(self) -> Iterator[Line]:
-        """Yield the lines of macros, of preludes and of the file."""
+        """Yield the lines of the macros, the preludes and the file or files."""
         for macro in self.settings.defines:
             name, _, value = macro.partition("=")
             yield Line(f"#define {name} {value if '=' in macro else 1}", Path("--define"), 1)
@@ -229,7 +228,7 @@ class Source:
             yield from self._of_two()
 
     def _of_two(self) -> Iterator[Line]:
-        """Yield the lines of the encoder's file and the decoder's, each read as if alone, with clashes renamed."""
+        """Yield the lines of the encoder's and the decoder's file, each read as if alone, with clashes renamed."""
         encode, decode = (name.partition("::")[0] for name in self.file.functions or ("", ""))
         if encode == decode:
             raise UsageError(f"{self.file}: both functions are called {encode}; rename one")
@@ -243,10 +242,10 @@ class Source:
         yield from _renamed(second, clash & {encode}, "of_decoder")
 
     def _alone(self, path: Path, before: Mapping[Path, list[tuple[int, ...]]]) -> list[Line]:
-        """Return the lines of one of two files, read as if alone.
+        """Return the lines of one of two files, read as if the other did not exist.
 
         Args:
-            before: the files that were read before both, each with its branches."""
+            before: the files that were read before both, each with the branches in which it was read."""
         self._main, self._folders = path, _searched(_resolved(path.parent))
         self._tops.append(self._folders[-1])
         self._branches.now, self._read_in = (), {own: list(branches) for own, branches in before.items()}
@@ -300,7 +299,7 @@ class Source:
             yield from self._expanded(target)
 
     def _targets(self, path: Path, name: str) -> list[Path]:
-        """Return the paths at which a file that `path` includes by this name may be, in the order of preference."""
+        """Return the possible paths of a file that `path` includes by this name, in order of preference."""
         if name.endswith(SLANG) and "_" in name:
             # A module's file may have hyphens for underscores.
             return [*self._targets(path, name.replace("_", "-")), *self._targets_as_written(path, name)]
@@ -315,8 +314,8 @@ class Source:
         return [*own, *given, *(folder / name for folder in self._folders)]
 
     def _is_read(self, own: Path, target: Path, is_module: bool) -> bool:
-        """Whether a file need not be read again: it is open, or it guards itself, or is a module, and was read
-        wherever this line is. If not, and it is guarded or a module, remember that it is read here."""
+        """Whether a file need not be read again: it is being read, or it is a module or has an include guard and was
+        read in a branch around this line. If not, record that a module or guarded file is read here."""
         if own in self._open:
             return True
         if not (is_module or self._text_of(own, target).guard):
@@ -328,14 +327,14 @@ class Source:
         return False
 
     def with_text(self, text: str) -> Source:
-        """Return a copy with another text of as many lines, which keep their places."""
+        """Return a copy with a different text of the same number of lines, which keep their places."""
         clone = copy(self)
         clone.text = text
         return clone
 
     @property
     def own_text(self) -> str:
-        """The remaining text of the file itself, or of both files."""
+        """The remaining text of the file itself, or of both files, without includes."""
         texts = zip(self.text.split("\n"), self.lines, strict=False)
         return "".join(f"{text}\n" for text, line in texts if line.path in self.mains)
 
@@ -350,8 +349,8 @@ class Source:
         return [f"{line.path}:{line.number}: {line.wrong}" for line in self.lines if line.wrong]
 
     def without_part(self) -> Source:
-        """Return a copy in which the declarations that `part` selects are blank, and add them to `left_out`; the
-        source itself if it selects none."""
+        """Return a copy with the declarations that `part` selects blanked, and add them to `left_out`; return the
+        source itself if `part` selects nothing."""
         number, count = self.part
         if not count:
             return self
@@ -364,12 +363,12 @@ class Source:
         return self.with_text(without(self.text, some))
 
     def may_read(self, target: Path) -> bool:
-        """Whether a file, whose links are resolved, is in a searched folder and has a shader's extension."""
+        """Whether a file, given as a path without links, is in a searched folder and has a shader's extension."""
         return any(map(target.is_relative_to, self._tops)) and target.suffix.lower() in ENDINGS
 
     def place(self, number: int) -> tuple[Path, int]:
-        """Return the file and the line number of a line of `text`, counted from 1; beyond its end, of the last
-        line."""
+        """Return the original file and line number of a line of `text`, counted from 1; beyond the end of `text`,
+        those of its last line."""
         line = self._line(number)
         return line.path, line.number
 

@@ -1,4 +1,4 @@
-"""A user's file in another language as a file of GLSL, kept in the cache."""
+"""GLSL translations of users' files in other languages, kept in the cache."""
 
 from __future__ import annotations
 
@@ -38,17 +38,16 @@ class Translated:
         name: its name in rows.
         prefix: the prefix of its GLSL functions' names.
         components: the number of components of its code.
-        packed: the type of the single 32-bit value that is its code and whose halves are its numbers; otherwise
-            empty.
+        packed: the type of its code if this is a single 32-bit value, whose halves are the numbers; otherwise empty.
         notes: lines to report about it.
-        texts: its GLSL; and its GLSL with codes in [0, 1] converted to [-1, 1] on output and back on input.
+        texts: its GLSL, and a version with codes in [0, 1] converted to [-1, 1] on output and back on input.
         text: the part of the user's file that was compiled.
-        functions: the name of the encoder and of the decoder in the user's file, and whether each takes the view.
-        named: the two as a user names them, ENCODE:DECODE.
-        read_by: the compiler that read it, if not its language's own: see `BY_NAME`.
-        shaped: for an encoding of something other than normals: `template`, the file around it, `settings`, the
-            other inputs of its functions, and `parts`, the number of components of each part that they take and
-            return: see `shapes.py`.
+        functions: the names of the encoder and the decoder in the user's file, each with whether it takes the view.
+        named: the two functions as a user names them, ENCODE:DECODE.
+        read_by: the compiler that read the file, if not its language's own (see `BY_NAME`).
+        shaped: for an encoding of something other than normals: `template`, the file around it; `settings`, the
+            other inputs of its functions; and `parts`, the number of components of each part that the functions take
+            and return (see `shapes.py`).
     """
 
     name: str
@@ -64,13 +63,13 @@ class Translated:
     shaped: dict[str, Any]
 
     def glsl(self, is_unit: bool) -> Path:
-        """Return a file with one of the GLSL texts, which other processes find as well; `is_unit` chooses the text
-        with converted codes."""
+        """Return the path of a file with one of the GLSL texts, which other processes can find; `is_unit` selects the
+        version with converted codes."""
         return glsl_file(self.prefix, self.texts[is_unit], TEXTS[is_unit])
 
 
 class AloneError(UsageError):
-    """A file has an encoder or a decoder alone.
+    """A file with an encoder or a decoder, but not both.
 
     Attributes:
         made: the translation of the file, in which the missing function returns 0.
@@ -85,13 +84,14 @@ def translated(file: UserFile, by: str = "", kind: Kind = kinds.NORMAL) -> Trans
     """Return a user's encoder, translated to GLSL; from the cache if nothing has changed.
 
     Args:
-        by: the compiler that reads the file, if not its own language's: see `BY_NAME`.
+        by: the compiler that reads the file, if not its language's own (see `BY_NAME`).
         kind: the kind of the encoded values.
 
     Raises:
-        UsageError: it cannot be read or translated; one line with the user's file, and line and column if known.
-        SeveralEncodersError: it has several encoders, and none is named.
-        MissingError: a compiler is missing; what to install.
+        UsageError: the file cannot be read or translated; the one-line message names the user's file, and the line
+            and column if known.
+        SeveralEncodersError: the file has several encoders, and none is requested.
+        MissingError: a compiler is missing; the message states what to install.
     """
     source = Source(file)
     read = [str(path) for path in source.files.values()]
@@ -115,19 +115,19 @@ def _tool_stamps(file: UserFile, by: str) -> list[str]:
 
 @cache
 def own() -> str:
-    """Return a hash of the sources that decide a translation: this folder, the translator, the compilers' tools."""
+    """Return a hash of the sources that affect translations: this folder, the translator and the compiler tools."""
     return kept.key_of(*(file.read_bytes() for file in sources_of_this()))
 
 
 def sources_of_this() -> list[Path]:
-    """Return the paths of the files that `own` hashes, sorted."""
+    """Return the sorted paths of the source files that `own` hashes."""
     folders = (Path(file).parent for file in (__file__, tree.__file__, tools.__file__))
     return sorted([Path(kinds.__file__), *(file for folder in folders for file in folder.iterdir() if file.is_file())])
 
 
 def _translated_or_none(value: Any) -> Translated | None:
-    """Return the encoder in a cached or reported value, the fields of `Translated`; None if it is malformed, because
-    a file could have misled the process that reports it."""
+    """Return the encoder in a cached or reported value with the fields of `Translated`; None if the value is
+    malformed, because a file could have misled the process that reports it."""
     try:
         encoder = Translated(**(value or {}))
     except TypeError:
@@ -142,8 +142,8 @@ _KINDS |= {"components": int, "notes": list, "texts": list, "functions": list, "
 
 
 def _by_child(file: UserFile, by: str, kind: Kind) -> dict[str, Any]:
-    """Return the fields of `Translated` from the child process that translates a file, as JSON has them. Raises
-    UsageError, SeveralEncodersError and MissingError."""
+    """Translate a file in a child process, and return the fields of `Translated` as JSON values. Raises UsageError,
+    SeveralEncodersError and MissingError."""
     done = _ended_child(file, by, kind)
     answer = _answer(done)
     if answer is None and done.returncode in CRASHES:
@@ -170,7 +170,7 @@ def _ended_child(file: UserFile, by: str, kind: Kind, part: Part = (0, 0)) -> su
 
 
 def _answer(done: subprocess.CompletedProcess[str]) -> dict[str, Any] | None:
-    """Return the dictionary that a child printed, empty if it is another value; None if the child printed no JSON."""
+    """Return the dictionary that a child printed as JSON; empty for any other JSON value, None for other output."""
     try:
         answer = json.loads(done.stdout)
     except (ValueError, RecursionError):
@@ -179,8 +179,8 @@ def _answer(done: subprocess.CompletedProcess[str]) -> dict[str, Any] | None:
 
 
 def _answer_without_killer(file: UserFile, by: str, kind: Kind) -> dict[str, Any] | None:
-    """Return the answer without the declaration that kills the compiler; its notes or its error name the declaration.
-    None if it does not help to leave out a single declaration."""
+    """Return the answer without the declaration that crashes the compiler and that its notes or its error name; None
+    if leaving out a single declaration does not help."""
     number, count = 0, 1
     while True:
         halves = [(2 * number, 2 * count), (2 * number + 1, 2 * count)]
@@ -201,14 +201,13 @@ def _one_line(message: Any) -> str:
 
 
 def glsl_file(name: str, text: str, mark: str = "") -> Path:
-    """Return the path of a file in the cache with this GLSL text, which other processes find as well; write it if
-    needed."""
+    """Return the path of a cached file with this GLSL text, for other processes too; write the file if necessary."""
     return _cached_file(f"{name[:40]}-{kept.key_of(text)[:16]}{mark}.glsl", text)
 
 
 def _cached_file(name: str, text: str) -> Path:
-    """Return the path of a file of this name and text in the cache or, if that cannot be written, in a folder of this
-    process; write it if needed. Raises UsageError."""
+    """Return the path of a file with this name and text, in the cache or, if the cache is not writable, in a folder
+    of this process; write the file if necessary. Raises UsageError."""
     for folder in (kept.folder() / "translated", None):
         path = (folder or kept.folder_of_this_process()) / name
         try:

@@ -1,4 +1,4 @@
-"""WGSL to GLSL, by this project's own translator: no tool is needed."""
+"""Translation of WGSL to GLSL by this project's own translator, without other tools."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _function(defined: tree.Function) -> Function:
 
 
 def with_places(source: Source, functions: Sequence[Function]) -> list[Function]:
-    """Return functions of a source with the numbers and vectors of their parameters and results. Raises
+    """Return functions of a source, completed with the numbers and vectors of their parameters and results. Raises
     TranslationError."""
     program = _checked(source, lambda: read_wgsl(source.text))
     structs = {struct.name: struct.kinds for struct in program.structs}
@@ -70,7 +70,7 @@ def _places(path: str, kind: str, structs: _Structs) -> Iterator[Place]:
 
 
 def _free(place: Place) -> str:
-    """Return the WGSL text of the value of an unbound input: that of its type in `FREE`, repeated in a vector."""
+    """Return the WGSL text of an unbound input's value: the value of its type in `FREE`, repeated for a vector."""
     value = FREE[place.kind]
     return value if place.size == 1 else f"vec{place.size}<{TYPES[place.kind]}>({value})"
 
@@ -94,7 +94,7 @@ def adapter(function: Function, name: str, given: Mapping[str, str], places: Seq
 
 
 def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: ARG001 (no tool works there)
-    """Return the text of a GLSL fragment shader that calls a function of a WGSL source: see `plain.py`. Raises
+    """Return the text of a GLSL fragment shader that calls a function of a WGSL source (see `plain.py`). Raises
     TranslationError."""
     program = _checked(source, lambda: reduced(read_wgsl(source.text), {function.name: "entry"}, "wgsl", ""))
     # Names that end in a number are those that `plain.py` makes its own: none is a word of GLSL's.
@@ -108,7 +108,7 @@ def shader(source: Source, function: Function, folder: Path) -> str:  # noqa: AR
 
 
 def _checked(source: Source, make):
-    """Return what the function `make` returns. Raises TranslationError, at the user's line and column if known."""
+    """Call `make` and return its result. Raises TranslationError, at the user's line and column if known."""
     try:
         return make()
     except tree.TranslationError as error:

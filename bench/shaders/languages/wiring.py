@@ -1,10 +1,11 @@
-"""Two functions with more inputs and outputs than a normal and its code, called as an encoder and its decoder.
+"""Wirings: functions with more inputs and outputs than a normal and its code, called as an encoder and its decoder.
 
     Pack(s.normalWS=n; s.roughness=0.5)->o1.xyz
     Unpack(o1.xyz=e)->s.normalWS
 
-gives a function's inputs, and the place of the code or the normal in its output: `n` is the normal, `e` the code,
-`view` the view-space position. `->(n.xy; face)` is a code in two places. Inputs that are not bound are as in `FREE`.
+Each line binds a function's inputs, and names the place of the code or the normal in its output: `n` is the normal,
+`e` the code, `view` the view-space position. `->(n.xy; face)` is a code in two places. Unbound inputs have the values
+in `FREE`.
 """
 
 from __future__ import annotations
@@ -46,12 +47,12 @@ SWIZZLES = ("xy", "xyz", "xyw", "zw", "yzw")
 
 @dataclass(frozen=True)
 class Wiring:
-    """The inputs and outputs of a call of a function.
+    """The inputs and outputs of a function call.
 
     Attributes:
-        function: its name.
-        bound: by place, the value of a number or a vector that it takes: n, view, e or e.xy, or a number.
-        made: the places in its output that hold the code, or the normal; empty for its whole result.
+        function: the function's name.
+        bound: the places of inputs with their values: n, view, e, a part such as e.xy, or a number.
+        made: the places in the output that hold the code or the normal; empty for the whole result.
     """
 
     function: str
@@ -88,7 +89,8 @@ def wiring_of(text: str) -> Wiring:
 
 
 def wired(pair: Sequence[Wiring], functions: Sequence[Function]) -> tuple[str, Pair]:
-    """Return HLSL text of two functions that call two others as they are wired, and the new functions as a pair.
+    """Return the HLSL text of two functions that call two other functions according to their wirings, and the new
+    functions as a pair.
 
     Raises:
         NoPairError: a wired place does not exist, or does not hold a normal or a code.
@@ -142,7 +144,7 @@ def outputs_of(function: Function) -> list[Place]:
 
 
 def _output(function: Function, path: str) -> Place:
-    """Return the place of a function's output, or of a part of one such as o1.xy, by its path. Raises NoPairError."""
+    """Return the place at a path in a function's output, which may be a part such as o1.xy. Raises NoPairError."""
     for place in outputs_of(function):
         if path == place.path:
             return place
@@ -155,7 +157,7 @@ def _output(function: Function, path: str) -> Place:
 
 
 def _made(function: Function, wiring: Wiring) -> tuple[int, str]:
-    """Return how many numbers a wired function outputs in all, and their type; "float" for more than one place."""
+    """Return how many numbers a wired function outputs in total, and their type; "float" for several places."""
     places = [_output(function, path) for path in wiring.made] or outputs_of(function)
     kinds = {place.kind for place in places}
     return sum(place.size for place in places), kinds.pop() if len(places) == 1 else "float"
@@ -170,10 +172,10 @@ def _uses_view(wiring: Wiring) -> bool:
 
 
 def _caller(function: Function, wiring: Wiring, given: str, called: str, returned: str) -> str:
-    """Return the HLSL text of a function that calls another function as it is wired. Raises NoPairError.
+    """Return the HLSL text of a function that calls another function according to its wiring. Raises NoPairError.
 
     Args:
-        given, called: the type and the name of its input.
+        given, called: the type and the name of the new function's input.
         returned: the type of its result.
     """
     known = set(_all_paths(function))
@@ -189,11 +191,11 @@ def _caller(function: Function, wiring: Wiring, given: str, called: str, returne
 
 
 def _body(function: Function, head: str, bound: Mapping[str, str], expression: str) -> str:
-    """Return the HLSL text of a function with this head that calls another function and returns `expression`, an
-    expression of the results of the call.
+    """Return the HLSL text of a function with this head that calls another function and returns `expression`, which
+    uses the results of the call.
 
     Args:
-        bound: by place, the values of the called function's inputs.
+        bound: the values of the called function's inputs, by place.
     """
     asked = {place.partition(".")[0] for place in bound}
     parameters = list(itertools.takewhile(lambda p: not p.has_default or p.name in asked, function.parameters))
@@ -212,12 +214,12 @@ def _body(function: Function, head: str, bound: Mapping[str, str], expression: s
 
 
 def adapter(function: Function, name: str, given: Mapping[str, str], places: Sequence[Place | None]) -> str:
-    """Return the HLSL text of a function of four numbers, n, and three, view, that calls another function and returns
-    four numbers.
+    """Return the HLSL text of an adapter, which takes four numbers, n, and three, view, calls another function and
+    returns four numbers.
 
     Args:
-        given: by the path of each input of the other function, its value as a GLSL expression of n and view.
-        places: the places of the other function's outputs, in order; None is 0.
+        given: the values of the other function's inputs, as GLSL expressions of n and view, by the input's path.
+        places: the places of the other function's outputs, in order; None stands for 0.
     """
     words = {"n": f"{_local(N)}_given", "view": f"{_local(VIEW)}_given", "vec4": "float4"}
     bound = {path: with_words(value, words) for path, value in given.items()}
@@ -231,7 +233,7 @@ def adapter(function: Function, name: str, given: Mapping[str, str], places: Seq
 
 
 def with_words(text: str, words: Mapping[str, str]) -> str:
-    """Return a text with each word that is a key replaced by its value; swizzles are left alone."""
+    """Return a text with each word that is a key replaced by its value; swizzles do not change."""
     return re.sub(rf"(?<![.\w])(?:{'|'.join(words)})\b", lambda match: words[match[0]], text)
 
 
@@ -241,7 +243,8 @@ def _made_paths(function: Function, wiring: Wiring) -> list[str]:
 
 
 def _of_result(path: str, of_result: set[str]) -> str:
-    """Return a path as a program names it: with a dot before it if it is in the function's result, else unchanged.
+    """Return a path in the form that programs use: with a leading dot if it is in the function's result, else
+    unchanged.
 
     Args:
         of_result: the paths of the result's places."""
@@ -250,7 +253,7 @@ def _of_result(path: str, of_result: set[str]) -> str:
 
 
 def _local(path: str) -> str:
-    """Return the name of the variable for a parameter or a part of one, or for a part of the result."""
+    """Return the name of the variable for a parameter, for a part of a parameter, or for a part of the result."""
     return f"{RESULT}{path}" if path.startswith(".") else f"wired_{path}"
 
 
@@ -259,8 +262,8 @@ def inputs_of(function: Function) -> list[Place]:
 
 
 def _value(function: Function, path: str, value: str) -> str:
-    """Return the HLSL text of a wiring's value for the input at `path`: a number as it is; n, e and view as the
-    caller's parameter, a part of which is rounded for an integer."""
+    """Return the HLSL text of a wiring's value for the input at `path`: a number unchanged; n, e and view as the
+    caller's parameter, whose parts are rounded for integer inputs."""
     name, _, letters = value.partition(".")
     if name not in (N, CODE, VIEW):
         return value
@@ -277,7 +280,7 @@ _Ways = Iterator[tuple[tuple[str, ...], tuple[tuple[str, str], ...]]]
 
 
 def candidates(functions: Sequence[Function]) -> list[tuple[Wiring, Wiring]]:
-    """Return the ways in which functions may, by their names, be an encoder and its decoder; likeliest first."""
+    """Return the wirings with which functions, by their names, may be an encoder and its decoder; likeliest first."""
     encoders = [function for function in functions if role(function.name) == "encode" and function.parameters]
     decoders = [function for function in functions if role(function.name) == "decode" and function.parameters]
     alike = [(encoder, other) for encoder in encoders for other in decoders if stem(encoder.name) == stem(other.name)]
@@ -288,12 +291,12 @@ def candidates(functions: Sequence[Function]) -> list[tuple[Wiring, Wiring]]:
 
 
 def _of_normals(pairs: Sequence[tuple[Function, Function]]) -> list[tuple[Function, Function]]:
-    """Return the pairs whose names do not say that they encode something other than normals."""
+    """Return the pairs whose names do not show an encoding of something other than normals."""
     return [pair for pair in pairs if not speaks_of_others(Pair(*pair)) and not has_side_of_colours(Pair(*pair))]
 
 
 def _is_of_other_names(wirings: tuple[Wiring, Wiring]) -> bool:
-    """Whether the code's places have different names in the two functions; GBuffer2 counts as gbuffer2."""
+    """Whether the code's places have different names in the two functions; upper and lower case are equal."""
     encode, decode = wirings
     outputs = {place.partition(".")[0].lower() for place in encode.made}
     given = {place.partition(".")[0].lower() for place, value in decode.bound if value.partition(".")[0] == CODE}
@@ -315,14 +318,13 @@ def _wirings(encode: Function, decode: Function) -> Iterator[tuple[Wiring, Wirin
 
 
 def _named(function: Function, path: str, size: int) -> tuple[str, ...]:
-    """Return the path by which a wiring names an output, in a tuple; an empty tuple for a result that is the only
-    output."""
+    """Return a wiring's path for an output, as a tuple; empty for a result that is the only output."""
     return (path,) if path else ("xyz"[:size],) if len(outputs_of(function)) > 1 else ()
 
 
 def _free(function: Function, taken: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """Yield (path, value) for the inputs of a function that are not taken: `view` for a position, which is recognised
-    by its name, and middle values for the rest. Inputs with a default are skipped."""
+    """Yield (path, value) for the inputs of a function that are not in `taken`: `view` for a position, which is
+    recognised by its name, and middle values for the rest. Inputs with a default are skipped."""
     for parameter in function.parameters:
         for place in parameter.places if parameter.is_given and not parameter.has_default else ():
             is_view = place.size == NORMAL and any(word in place.path.lower() for word in OF_VIEW)
@@ -331,8 +333,8 @@ def _free(function: Function, taken: Sequence[str]) -> Iterator[tuple[str, str]]
 
 
 def _normal_of(places: Sequence[Place]) -> Place | None:
-    """Return the normal among some vectors: the only one of three numbers, the only such one whose name says so, or the
-    only one of four, if there is nothing else."""
+    """Return the normal among vectors: the only vector of three numbers, the only such vector that is named as a
+    normal, or a vector of four numbers if it is the only place; else None."""
     vectors = [place for place in places if place.kind == "float" and place.size == NORMAL]
     named = [place for place in vectors if _is_called_normal(place)]
     wide = [place for place in places if place.kind == "float" and place.size > NORMAL and len(places) == 1]
@@ -357,7 +359,7 @@ def _codes(encode: Function, decode: Function, normal: Place) -> _Ways:
 
 
 def _parts(outputs: Sequence[Place]) -> Iterator[list[Place]]:
-    """Yield lists of outputs, or of parts of an output, that may be a code or belong to a code."""
+    """Yield lists of outputs, or of parts of an output, that may be a code or a part of a code."""
     if sum(place.size for place in outputs) <= NORMAL:
         yield list(outputs)
     for place in outputs:
@@ -370,7 +372,7 @@ def _parts(outputs: Sequence[Place]) -> Iterator[list[Place]]:
 
 def _given(parts: Sequence[Place], encode: Function, decode: Function) -> _Ways:
     """Yield the ways in which the parts can be the code, if the decoder takes them in the same order: the paths of
-    the outputs, and for each input of the decoder its path and value. Nothing for more than three numbers."""
+    the outputs, and the path and value of each of the decoder's inputs. Yield nothing for more than three numbers."""
     inputs, size = inputs_of(decode), sum(part.size for part in parts)
     outputs = tuple(path for part in parts for path in _named(encode, part.path, part.size))
     if size > NORMAL:

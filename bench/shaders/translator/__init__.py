@@ -1,1 +1,1 @@
-"""Shader functions from one language to another: read as a tree, and written as text."""
+"""Translation of shader functions between languages: they are read as a tree and written as text."""

@@ -1,4 +1,4 @@
-"""Functions that every shading language has, by their GLSL names, and the types of their results."""
+"""Built-in functions that every shading language has, by their GLSL names, and the types of their results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Integer operations that C leaves undefined: functions that define them, and where these are not needed."""
+"""Integer operations that are undefined in C: functions that define them, and ranges that make these unnecessary."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ OPERATIONS: Mapping[str, str] = MappingProxyType(
 
 
 def counted(loop: For) -> dict[str, Range]:
-    """Return the range, first and last value, of the counter of a loop that counts up between two numbers, by the
-    counter's name; empty for other loops, and if the loop changes its counter."""
+    """Return the range, first and last value, of a loop's counter, by the counter's name, if the loop counts up
+    between two numbers; empty for other loops, and if the loop's body changes the counter."""
     match loop:
         case For(
             Declare("int" | "uint", name, Literal(_, first)),
@@ -67,7 +67,7 @@ def counted(loop: For) -> dict[str, Range]:
 
 
 def range_of(mark: str, left: Range | None, right: Range | None) -> Range | None:
-    """Return the range of an operation's result from those of its operands; None if it is unknown or does not fit."""
+    """Return the range of an operation's result from its operands' ranges; None if it is unknown or too large."""
     if mark == "&":
         known = [most for operand in (left, right) if operand and operand[0] >= 0 for most in operand[1:]]
         return (0, min(known)) if known else None

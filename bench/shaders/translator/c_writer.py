@@ -1,8 +1,8 @@
 """A writer of C99, which has no vectors: each vector operation is written once per component.
 
-The file defines what GLSL leaves undefined. Conversion to an integer turns NaN into 0 and clamps values that are out
-of range, as in Direct3D. x / 0 is x and x % 0 is 0, as in WGSL. Shifts are modulo 32, integer sums wrap, and an array
-index out of range becomes the nearest valid index. NaN has one bit pattern.
+The written file defines operations that GLSL leaves undefined. Conversion to an integer turns NaN into 0 and clamps
+values that are out of range, as in Direct3D. x / 0 is x and x % 0 is 0, as in WGSL. Shift counts are modulo 32,
+integer sums wrap, and an array index out of range becomes the nearest valid index. NaN has one bit pattern.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ WHOLE = ("int", "uint")
 
 
 class CWriter(Writer):
-    """C99. Structures and helpers have the program's prefix; tables are in a header of their own."""
+    """A writer of C99. Structures and helpers have the program's prefix; tables are in a separate header."""
 
     float_suffix = "f"
     has_tables = False
@@ -136,8 +136,7 @@ class CWriter(Writer):
         return f"typedef struct {{ {scalar} {', '.join(FIELDS[:size])}; }} {self._kind(kind)};"
 
     def _helper(self, name: str, *given: str) -> ScalarText:
-        """Return the text of a call of one of the file's helper functions, which is written to the file, and its
-        level."""
+        """Return the text and the level of a call to a helper function, which will be written to the file."""
         if name not in self._helpers:
             self._helpers[name] = self._global_name(name)
         return f"{self._helpers[name]}({', '.join(given)})", PRIMARY
@@ -234,15 +233,14 @@ class CWriter(Writer):
         return super()._simple_text(statement)
 
     def _is_plain(self, target: Expression, mark: str, value: Expression) -> bool:
-        """Whether C's own operator, such as `+=`, does the assignment: the target is a scalar variable and, for whole
+        """Whether C's own operator, such as `+=`, can be used: the target is a scalar variable and, for whole
         numbers, C defines the result."""
         if target.kind not in SCALARS or not isinstance(target, Name):
             return False
         return scalar_of(target.kind) not in WHOLE or self._is_safe(Binary(target.kind, mark[:-1], target, value))
 
     def _whole(self, value: Expression | None, is_initial: bool = False) -> str:
-        """Return the C text of a whole value: a scalar, or a structure. An initial value is without the structure's
-        type."""
+        """Return the C text of a scalar or a whole structure; without the structure's type for an initial value."""
         assert value
         if isinstance(value, Elements):
             values = [self._whole(element, is_initial=True) for element in value.values]
@@ -257,7 +255,7 @@ class CWriter(Writer):
     # Places: what can be assigned to, and read without being computed.
 
     def _place(self, value: Expression) -> str:
-        """Return the C text of a variable, or of a part of one. Raises TranslationError for any other expression."""
+        """Return the C text of a variable or of a part of it. Raises TranslationError for any other expression."""
         match value:
             case Name(_, name):
                 return self._name(name)
@@ -282,7 +280,7 @@ class CWriter(Writer):
         return f"{self._place(inner)}.{field}"
 
     def _within(self, index: Expression, count: int) -> str:
-        """Return the text of an index into `count` elements; a helper bounds it unless its range is known to fit."""
+        """Return the text of an index into `count` elements; a helper clamps it unless its range is known to fit."""
         known = self._range(index)
         if known and known[0] >= 0 and known[1] < count:
             return self._text(index)
@@ -291,8 +289,7 @@ class CWriter(Writer):
     # Values: a vector is the list of its components.
 
     def _text_and_level(self, value: Expression) -> ScalarText:
-        """Return the text and the level of a scalar, or of a whole value that is a name or a call of an own
-        function."""
+        """Return the text and level of a scalar, or of a whole value that is a name or a call of an own function."""
         if isinstance(value, Name):
             return self._name(value.name), PRIMARY
         if isinstance(value, Call) and value.is_own:
@@ -351,7 +348,7 @@ class CWriter(Writer):
         return self._member_parts(f"(&{whole}.x)[{self._within(index, count)}]", value.kind)
 
     def _count_of(self, kind: str) -> int:
-        """Return how many scalars a value of this type has."""
+        """Return the number of scalars in a value of this type."""
         if kind in self._structs:
             return sum(map(self._count_of, self._structs[kind].kinds.values()))
         return int(kind[3]) ** 2 if kind in MATRICES else size_of(kind)
@@ -368,14 +365,13 @@ class CWriter(Writer):
         return [(f"{name}.{field}", PRIMARY) for field in FIELDS[: size_of(kind)]]
 
     def _once(self, part: ScalarText, kind: str) -> ScalarText:
-        """Return a scalar that is used several times: as it is if it is plain, else as the name of a new variable for
-        it."""
+        """Return a scalar for repeated use: unchanged if its text is plain, else as the name of a new variable."""
         if PLAIN.issuperset(part[0].removeprefix("-")):
             return part
         return self._temporary(self._kind(kind), part[0]), PRIMARY
 
     def _temporary(self, kind: str, text: str) -> str:
-        """Return the name of a new variable with this value, which is declared before the current statement."""
+        """Declare a new variable with this value before the current statement, and return the variable's name."""
         name = self._fresh_name()
         self._hoisted.append(f"{self._indent}const {kind} {name} = {text};\n")
         return name
@@ -412,7 +408,7 @@ class CWriter(Writer):
         return [(f"{_bracketed(a, level)} {mark} {_bracketed(b, level + 1)}", level) for a, b in pairs]
 
     def _size(self, value: Binary) -> int:
-        """Return how many components an operation has: the most that its result or an operand has."""
+        """Return the number of components of an operation: the largest number in its result and its operands."""
         kinds = (value.kind, value.left.kind, value.right.kind)
         return max(map(self._count_of, kinds))
 
@@ -442,7 +438,8 @@ class CWriter(Writer):
         return None
 
     def _logical(self, value: Binary) -> ScalarText:
-        """The text of && or ||, and how tightly it binds; a right side that takes statements is an `if` before it."""
+        """Return the text and the level of && or ||. If the right operand requires statements of its own, these go
+        into an `if` before the current statement."""
         level = BINDING[value.operator]
         left = self._operand(value, value.left, level)
         text, hoisted = self._apart(lambda: self._operand(value, value.right, level + 1), self._indent + INDENT)
@@ -455,8 +452,8 @@ class CWriter(Writer):
         return name, PRIMARY
 
     def _product_parts(self, value: Binary) -> list[ScalarText]:
-        """Return the components of a matrix product: of a vector from the left and each column, or of the columns
-        summed by the components of a vector or of each column of another matrix."""
+        """Return the components of a matrix product: the dot products of a vector on the left with each column, or
+        the sums of the columns, weighted by the components of a vector or of each column of another matrix."""
         left, right = value.left, value.right
         size = int((left if "mat" in left.kind else right).kind[3])
         if "mat" not in left.kind:
@@ -515,8 +512,8 @@ class CWriter(Writer):
         return texts if kind in SCALARS else f"({self._kind(kind)}){texts}"
 
     def _braced_text(self, kind: str, texts: Iterator[str]) -> str:
-        """Return the braced initialiser of a value of this type, taking scalars from `texts`; a scalar itself has no
-        braces."""
+        """Return the braced initialiser of a value of this type, with scalars from `texts`; scalars have
+        no braces."""
         if kind in SCALARS:
             return next(texts)
         inner = [scalar_of(kind)] * size_of(kind)
@@ -548,7 +545,7 @@ class CWriter(Writer):
         return [self._scalar_call(value.name, scalar, parts) for parts in zip(*given, strict=True)]
 
     def _made_parts(self, text: str, kind: str) -> list[ScalarText]:
-        """Return the texts of the components of a structure, which a new variable holds."""
+        """Store a value, given as text, in a new variable, and return the texts of its components."""
         return self._member_parts(self._temporary(self._kind(kind), text), kind)
 
     def _scalar_call(self, name: str, scalar: str, parts: tuple[ScalarText, ...]) -> ScalarText:

@@ -1,7 +1,7 @@
-"""Functions that change their arguments, rewritten to return the changes: some languages lack such arguments.
+"""Functions that change their arguments, rewritten to return the changes, for languages without such arguments.
 
-`void f(vec4 e, out vec3 n, inout float x)` becomes `f_made f(vec4 e, float x)`, a structure of n and x, and
-f(a, b, c) becomes `f_made made = f(a, c); b = made.n; c = made.x`.
+`void f(vec4 e, out vec3 n, inout float x)` becomes `f_made f(vec4 e, float x)`, which returns a structure of n and x,
+and f(a, b, c) becomes `f_made made = f(a, c); b = made.n; c = made.x`.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def _changing(function: Function) -> _Changing:
 
 
 def _unused(name: str, taken: set[str]) -> str:
-    """Return this name, with a number behind it if it is taken, and add it to the taken names."""
+    """Return a name, with a number appended if it is taken, and add it to the taken names."""
     ways = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
     free_name = next(way for way in ways if way not in taken)
     taken.add(free_name)
@@ -81,7 +81,7 @@ def _unused(name: str, taken: set[str]) -> str:
 
 
 def _give_back(function: Function, changing: _Changing) -> None:
-    """Rewrite a function that changes its arguments: it returns the structure of `changing` instead."""
+    """Rewrite a function that changes its arguments so that it returns the structure of `changing` instead."""
     changed = [p for p in function.parameters if p.is_changed]
     function.kind = changing.made.name
     begin = [Declare(p.kind, p.name, None) for p in function.parameters if not _is_taken(p)]
@@ -92,7 +92,7 @@ def _give_back(function: Function, changing: _Changing) -> None:
 
 
 def _is_taken(parameter: Parameter) -> bool:
-    """Whether a function still takes a parameter: not if it is output only and callers use its changes."""
+    """Whether a rewritten function still takes a parameter: not if the parameter only returns changes."""
     return parameter.is_given or not parameter.is_changed
 
 
@@ -101,7 +101,7 @@ def _made(kind: str, value: Expression | None, changed: list[Parameter]) -> Expr
 
 
 def _with_returns(statements: list[Statement], kind: str, changed: list[Parameter]) -> list[Statement]:
-    """Rewrite the returns in statements, at any depth, to return a structure of the old value and the changed
+    """Rewrite the return statements in a list, at any depth, to return a structure of the old value and the changed
     parameters. Return the same list."""
     for statement in statements:
         for body in _bodies(statement):
@@ -134,15 +134,15 @@ class _Calls:
     names: set[str]
 
     def statements(self, given: list[Statement]) -> Iterator[Statement]:
-        """Yield statements in which the calls that change arguments are statements by themselves, at any depth.
-        Raises TranslationError for a call within an expression."""
+        """Yield statements in which each call that changes arguments is a separate statement, at any depth. Raises
+        TranslationError for such a call within an expression."""
         for statement in given:
             for body in _bodies(statement):
                 body[:] = self.statements(body)
             yield from self._apart(statement)
 
     def _apart(self, statement: Statement) -> Iterator[Statement]:
-        """Yield a statement, or its replacement if its whole value is a call of a function that changes arguments.
+        """Yield a statement, or its replacement if its whole value is a call to a function that changes arguments.
         Raises TranslationError for such a call within an expression."""
         value = statement.call if isinstance(statement, Perform) else getattr(statement, "value", None)
         is_plain = not isinstance(statement, Assign) or statement.operator == "="

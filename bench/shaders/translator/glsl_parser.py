@@ -1,4 +1,5 @@
-"""GLSL read as a tree: functions without side effects, constants, and tables that are read texel by texel."""
+"""A parser of GLSL into a tree: functions without side effects, constants, and tables that are read texel
+by texel."""
 
 from __future__ import annotations
 
@@ -46,7 +47,7 @@ PRECISIONS = frozenset(("highp", "mediump", "lowp", "precise"))
 
 
 def read_glsl(text: str) -> Program:
-    """Return the program in a GLSL text whose includes are already in place. Raises TranslationError."""
+    """Return the tree of a GLSL text whose includes are already resolved. Raises TranslationError."""
     before = Preprocessor()
     with one_error_type():
         parser = GlslParser(before.tokens(text), before.constants)
@@ -54,11 +55,11 @@ def read_glsl(text: str) -> Program:
 
 
 class GlslParser(Parser):
-    """GLSL's declarations and statements.
+    """A parser of GLSL's declarations and statements.
 
     Args:
         given: the tokens.
-        constants: numbers by name, each as its tokens.
+        constants: the tokens of named numbers, by name.
     """
 
     def __init__(self, given: Sequence[Token], constants: dict[str, list[Token]]):
@@ -254,7 +255,7 @@ class GlslParser(Parser):
         return For(starts[0] if starts else None, condition, step, body)
 
     def _starts(self) -> list[Statement]:
-        """Read the first part between a loop's parentheses, and return its statements; empty if there are none."""
+        """Read the initialisation in the head of a `for` loop, and return its statements; empty if there are none."""
         if self._skip(";"):
             return []
         if self._is_type(self._next_token.text) or self._next_token.text in ("const", *PRECISIONS):
@@ -262,8 +263,7 @@ class GlslParser(Parser):
         return [self._before_semicolon(self._assignment())]
 
     def _do(self) -> Statement:
-        """Read a loop after `do`: BODY while (CONDITION). Return it as a `while` that skips the condition on its
-        first turn."""
+        """Read a loop after `do`: BODY while (CONDITION). Return a `while` loop that first skips the condition."""
         is_first = self._unused("is_first")
         body = self._body()
         self._take("while")
@@ -292,10 +292,11 @@ class GlslParser(Parser):
         return declarations
 
     def _declarator(self, kind: str, is_constant: bool, is_open: bool) -> Statement | None:
-        """Read a name in a declaration, and its value; return None if it is an alias of another constant.
+        """Read a name and its value in a declaration, and return the declaration; None for an alias of another
+        constant.
 
         Args:
-            is_open: whether it is an array that is as long as its value."""
+            is_open: whether the name is an array that is as long as its value."""
         name = self._word_token().text
         if self._next_token.text == "[" and self._text_ahead(1) == "]":
             self._at += 2
@@ -347,7 +348,8 @@ class GlslParser(Parser):
         return Construct(struct.name, values)
 
     def _choice_of(self, condition: Expression, chosen: Expression, other: Expression) -> Expression:
-        """Return a choice; between structures, one for each field: not every language can choose structures."""
+        """Return a conditional; for structures, a conditional for each field, because not every language can choose
+        between structures."""
         if chosen.kind not in self._structs or chosen.kind != other.kind:
             return super()._choice_of(condition, chosen, other)
         pairs = zip(self._field_values(chosen), self._field_values(other), strict=True)
@@ -356,8 +358,8 @@ class GlslParser(Parser):
         return Construct(chosen.kind, list(choices))
 
     def _field_values(self, value: Expression) -> list[Expression]:
-        """Return the values of a structure's fields. Raises TranslationError unless it is a name or a constructor,
-        because any other value would be computed for each field."""
+        """Return the values of a structure's fields. Raises TranslationError unless the structure is a name or a
+        constructor, because any other expression would be computed once per field."""
         whole = value
         while isinstance(whole, Member):
             whole = whole.value
@@ -376,7 +378,7 @@ class GlslParser(Parser):
         return Elements(f"{kind}[{len(values)}]", values)
 
     def _index_expression(self, value: Expression, index: Expression) -> Expression:
-        """Return an element of an array, a vector or a matrix; of an array that has no name, one of its values."""
+        """Return an element of an array, a vector or a matrix; for an array without a name, one of its values."""
         return (
             self._element_of(value, index) if isinstance(value, Elements) else super()._index_expression(value, index)
         )
@@ -388,8 +390,8 @@ class GlslParser(Parser):
         return choice
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
-        """Return an operation of two values; == and != of vectors are one truth value. Raises TranslationError for
-        structures."""
+        """Return an operation on two values; == and != of vectors return a single Boolean. Raises TranslationError
+        for structures."""
         if left.kind in self._structs or right.kind in self._structs:
             raise self._error(f"{left.kind} {mark} {right.kind}: compare structures field by field")
         combined = self._combined(mark, left, right)

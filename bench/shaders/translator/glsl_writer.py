@@ -1,4 +1,4 @@
-"""GLSL, for OpenGL and Vulkan, and GLSL ES, which wants precisions."""
+"""Writers of GLSL for OpenGL and Vulkan, and of GLSL ES, which requires precision qualifiers."""
 
 from __future__ import annotations
 

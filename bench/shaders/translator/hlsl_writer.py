@@ -41,7 +41,7 @@ TRUTHS = frozenset(("&&", "||"))
 
 
 class HlslWriter(Writer):
-    """HLSL of shader model 5 and later. A matrix is written as its transpose: its rows are GLSL's columns."""
+    """A writer of HLSL for shader model 5 and later. A matrix is written transposed: its rows are GLSL's columns."""
 
     kinds = KINDS
     functions: Mapping[str, str] = MappingProxyType(
@@ -85,8 +85,8 @@ class HlslWriter(Writer):
         return "".join(f"{function}\n\n" for _, function in self._choices.values()) + text
 
     def _statement(self, statement: Statement, indent: str) -> str:
-        """Return the text of a statement. A loop over an array of constants is marked to be unrolled: its elements
-        are then numbers of the instructions."""
+        """Return the text of a statement. A loop with constant ends that reads a constant array is marked [unroll],
+        so that the array's elements become literals in the instructions."""
         text = super()._statement(statement, indent)
         if not isinstance(statement, For) or not _has_ends(statement) or not self._reads_array(statement):
             return text
@@ -98,7 +98,7 @@ class HlslWriter(Writer):
         return any(isinstance(array, Name) and array.name in self._constants for array in arrays)
 
     def _struct(self, struct: Struct) -> str:
-        """Return the text of a structure, and of a function that makes one from its fields: HLSL has no such
+        """Return the text of a structure and of a function that makes it from its fields; HLSL has no such
         constructor."""
         fields = self._fields(struct)
         name = self._makers[struct.name] = self._global_name(f"{struct.name.removeprefix(f'{self._prefix}_')}_of")
@@ -136,13 +136,13 @@ class HlslWriter(Writer):
         return names <= self._constants and not any(isinstance(node, Call) and node.is_own for node in nodes)
 
     def _operand(self, parent: Binary, child: Expression, least: int) -> str:
-        """Return the text of an operand. A `<` in a logical operation gets parentheses: Slang reads `a < b && c >
-        (d)` as a generic function of b && c."""
+        """Return the text of an operand. A `<` in a logical operation is put in parentheses, because Slang reads `a <
+        b && c > (d)` as a call of a generic function."""
         return super()._operand(parent, child, UNARY if parent.operator in TRUTHS and is_less(child) else least)
 
     def _choice_and_level(self, value: Choice) -> tuple[str, int]:
-        """Return the text and the level of a choice; of vectors, by component: HLSL 2021 has no `?:` of vectors, and
-        earlier versions have no select."""
+        """Return the text and the level of a conditional; vectors are chosen by component, because HLSL 2021 has no
+        `?:` for vectors, and earlier versions have no select."""
         size = size_of(value.condition.kind)
         if size == 1:
             text, level = super()._choice_and_level(value)
@@ -160,8 +160,8 @@ class HlslWriter(Writer):
         return f"{self._choice_of(value.kind, value.condition.kind, size)}({', '.join(texts)})", PRIMARY
 
     def _component(self, value: Expression, field: str) -> str:
-        """Return the text of a component of a vector; of a comparison or a constructor, without the rest of the
-        vector."""
+        """Return the text of a vector's component; for a comparison or a constructor, without the
+        other components."""
         index = FIELDS.index(field)
         match value:
             case Binary(_, mark, left, right) if mark in COMPARES and size_of(left.kind) == size_of(right.kind):
@@ -173,7 +173,7 @@ class HlslWriter(Writer):
         return f"{self._text(value, PRIMARY)}.{field}"
 
     def _choice_of(self, kind: str, condition: str, size: int) -> str:
-        """Return the name of the function that chooses between two values of a kind; write the function on first use.
+        """Return the name of the function that chooses between two values of a type; write the function on first use.
 
         Args:
             condition: the type of the condition.
@@ -198,7 +198,7 @@ class HlslWriter(Writer):
 
 
 def _has_ends(loop: For) -> bool:
-    """Whether a loop begins at a number and ends at one."""
+    """Whether a loop's counter begins and ends at literal numbers."""
     match loop.start, loop.condition:
         case Declare(_, _, Literal()), Binary(_, _, Name(), Literal()):
             return True

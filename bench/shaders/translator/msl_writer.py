@@ -29,7 +29,7 @@ TABLE = "texture2d<float>"
 
 
 class MslWriter(Writer):
-    """Metal 2 and later. Tables are arguments: Metal has no textures outside of functions."""
+    """A writer of Metal 2 and later. Tables are arguments, because Metal has no textures outside functions."""
 
     kinds: Mapping[str, str] = MappingProxyType(KINDS)
     functions: Mapping[str, str] = MappingProxyType(
@@ -108,8 +108,8 @@ class MslWriter(Writer):
         return super()._construct(value)
 
     def _conversion(self, value: Construct, given: Expression, size: int) -> str:
-        """Return the text of a conversion. Vectors become Booleans by a comparison, and are made from them by a
-        choice, because compilers differ in the value of true."""
+        """Return the text of a conversion. Vectors are converted to Booleans by a comparison, and from Booleans by a
+        conditional, because compilers differ in the value of true."""
         from_kind, to_kind = scalar_of(given.kind), scalar_of(value.kind)
         if size > 1 and from_kind == "bool":
             ones, zero = (Construct(value.kind, [Literal(to_kind, text)]) for text in _ends(to_kind))
@@ -125,7 +125,7 @@ def _ends(scalar: str) -> tuple[str, str]:
 
 
 def tables_read(program: Program) -> dict[str, list[str]]:
-    """Return, by function, the sorted names of the tables that it reads, itself or in functions that it calls."""
+    """Return the sorted names of the tables that each function reads, itself or in its calls, by function name."""
     names = {table.name for table in program.tables}
     tables: dict[str, list[str]] = {}
     for function in program.functions:

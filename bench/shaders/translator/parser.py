@@ -77,7 +77,7 @@ FIELDS = ("xyzw", "rgba", "stpq")
 
 
 class Parser:
-    """Tokens, scopes and expressions.
+    """The base class of parsers, with tokens, scopes and expressions.
 
     Args:
         given: the tokens.
@@ -114,7 +114,8 @@ class Parser:
         return self._tokens[index].text if index < len(self._tokens) else ""
 
     def _take(self, *texts: str) -> Token:
-        """Take and return the next token. Raises TranslationError at the end, or if texts are given without it."""
+        """Take and return the next token. Raises TranslationError at the end, or if texts are given and the token has
+        none of them."""
         token = self._next_token
         if (texts and token.text not in texts) or token is END:
             raise self._error(f"expected {' or '.join(texts) or 'more'}, not {token.text}")
@@ -122,7 +123,7 @@ class Parser:
         return token
 
     def _skip(self, text: str) -> bool:
-        """Take the next token if it is this text, and return whether it is."""
+        """Take the next token if it has this text, and return whether it was taken."""
         if self._next_token.text != text or self._next_token is END:
             return False
         self._at += 1
@@ -139,7 +140,7 @@ class Parser:
         return TranslationError(f"{place.line}:{place.column}: {what}")
 
     def _deeper(self, read: Callable):
-        """Return the result of `read`, one level deeper. Raises TranslationError if that is too deep."""
+        """Call `read` one level deeper, and return its result. Raises TranslationError if that is too deep."""
         self._depth += 1
         if self._depth > MOST_DEPTH:
             raise self._error(f"nested more than {MOST_DEPTH} levels deep")
@@ -158,28 +159,28 @@ class Parser:
         raise self._error(f"unknown name {token.text}")
 
     def _declared(self, name: str, kind: str, stands_for: Expression | None = None) -> str:
-        """Make a name known in the innermost scope, and return its name in the tree.
+        """Declare a name in the innermost scope, and return its name in the tree.
 
-        A name that would hide another name of the program gets a new name. Nothing is hidden in the tree, so code
-        that writes or renames it needs no scopes.
+        A name that would hide another name in the program gets a new name. Names in the tree therefore never hide
+        each other, and code that writes the tree or renames parts of it needs no scopes.
         """
         called = self._unused(name) if stands_for is None and self._would_hide(name) else name
         self._scopes[-1][name] = stands_for or Name(kind, called)
         return called
 
     def _would_hide(self, name: str) -> bool:
-        """Whether a function, or a scope around the innermost one, has this name already."""
+        """Whether a name already belongs to a function, or to a scope around the innermost scope."""
         return name in self._functions or any(name in scope for scope in self._scopes[:-1])
 
     def _unused(self, name: str) -> str:
-        """Return a name like this one that the program does not have, such as NAME_2, and count it as taken."""
+        """Return a name like this one that the program does not use, such as NAME_2, and mark it as used."""
         plain = name.rstrip("_")
         free_name = next(candidate for number in count(2) if (candidate := f"{plain}_{number}") not in self._words)
         self._words.add(free_name)
         return free_name
 
     def _add(self, function: Function) -> None:
-        """Make a function known, under a name that is unique among its overloads."""
+        """Declare a function, under a name that is unique among its overloads."""
         same = self._functions.setdefault(function.name, [])
         kinds = ",".join(p.kind for p in function.parameters)
         function.name = f"{function.name}({kinds})"
@@ -216,7 +217,7 @@ class Parser:
         return self._combined(mark, left, right)
 
     def _combined(self, mark: str, left: Expression, right: Expression) -> Expression:
-        """Return two values combined component by component by an operator, converted to one scalar type except in
+        """Return a component-wise operation on two values, which are converted to the same scalar type except in
         logic and shifts; integer literals are folded."""
         if mark in LOGICAL:
             # Of two truth values ^^ and != are one, and only GLSL has the former.
@@ -243,7 +244,7 @@ class Parser:
         return left if sizes[0] >= sizes[1] else right
 
     def _alike(self, a: Expression, b: Expression, sizes_too: bool = True) -> tuple[Expression, Expression]:
-        """Return two values converted to one scalar type. With `sizes_too`, their sizes must be equal."""
+        """Return two values converted to the same scalar type. With `sizes_too`, their sizes must be equal."""
         scalars = scalar_of(a.kind), scalar_of(b.kind)
         if scalars[0] != scalars[1]:
             widest = "float" if "float" in scalars else "uint"
@@ -253,7 +254,7 @@ class Parser:
         return a, b
 
     def _converted(self, value: Expression, scalar: str) -> Expression:
-        """Return a value with components of another scalar type; a literal becomes a literal of it. Raises
+        """Return a value with components of another scalar type; a literal becomes a literal of that type. Raises
         TranslationError for a conversion from or to bool."""
         current = scalar_of(value.kind)
         if current == scalar:
@@ -263,8 +264,8 @@ class Parser:
         return self._cast(value, scalar)
 
     def _cast(self, value: Expression, scalar: str) -> Expression:
-        """Return a value with components of another scalar type, as a constructor makes it; a literal becomes a
-        literal of it."""
+        """Return a value converted to components of another scalar type, as by a constructor; a literal becomes a
+        literal of that type."""
         current = scalar_of(value.kind)
         if current == scalar:
             return value
@@ -289,8 +290,8 @@ class Parser:
         raise NotImplementedError
 
     def _behind(self, value: Expression) -> Expression:
-        """Read the members and the elements behind a value, and return the whole expression; the value if there are
-        none."""
+        """Read the member and index accesses that follow a value, and return the whole expression; the value itself
+        if none follow."""
         while True:
             if self._skip("."):
                 value = self._member(value, self._word_token())
@@ -329,7 +330,7 @@ class Parser:
         return f"{kind}[{count}]"
 
     def _whole_number(self, value: Expression | None) -> int | None:
-        """Return the value of a constant expression of integers; None for any other expression."""
+        """Return the value of a constant integer expression; None for any other expression."""
         match value:
             case Literal("int" | "uint", text):
                 return int(text, 0)
@@ -352,11 +353,11 @@ class Parser:
         return arguments
 
     def _called(self, name: str, arguments: list[Expression], place: Place | None = None) -> Expression:
-        """Return the expression for a call of a function by its name: a call, or the operations that replace a
+        """Return the expression for a call of the function with this name: a call, or the operations that replace a
         function such as mod. Raises TranslationError for an unknown function.
 
         Args:
-            place: the place of its name."""
+            place: the place of the name."""
         if name in self._functions:
             return self._own_call(name, arguments)
         if name == "mod" and len(arguments) == 2:
@@ -380,16 +381,17 @@ class Parser:
         return Call(kind, name, arguments)
 
     def _given(self, name: str, arguments: list[Expression]) -> list[Expression]:
-        """Return a built-in function's arguments converted to one type, which is float if it takes no other."""
+        """Return a built-in function's arguments converted to one type, float if the function takes no other type."""
         if name in OF_FLOATS:
             return [self._converted(a, "float") for a in arguments]
         return self._all_alike(arguments) if len(arguments) > 1 and name != FETCH else arguments
 
     def _modulus(self, rounding: str, x: Expression, y: Expression) -> Expression:
-        """Return x - y floor(x / y), or with trunc: other languages' remainders differ where x is negative.
+        """Return x - y floor(x / y), or the same with trunc, because other languages' remainders differ for negative
+        x.
 
-        Operands other than names and numbers are passed to a new function of the program, because they would be
-        written, and computed, twice.
+        Operands other than names and numbers are passed to a function that is added to the program, because they
+        would otherwise be written and computed twice.
         """
         x, y = self._alike(x, y, sizes_too=False)
         kind = self._product_kind(x.kind, y.kind)
@@ -425,8 +427,8 @@ class Parser:
         return Call(function.kind, function.name, given, is_own=True)
 
     def _constructed(self, kind: str, arguments: list[Expression]) -> Expression:
-        """Return the expression for a type's constructor: components of that type, and of the last argument only as
-        many as fit. Raises TranslationError for too many arguments."""
+        """Return the expression for a type's constructor: the arguments' components, converted to that type; surplus
+        components of the last argument are dropped. Raises TranslationError for too many arguments."""
         if len(arguments) == 1 and arguments[0].kind == kind:
             return arguments[0]
         scalar, size = scalar_of(kind), size_of(kind)
@@ -447,8 +449,8 @@ class Parser:
         return components[0] if size == 1 else Construct(kind, components)
 
     def _matrix(self, kind: str, arguments: list[Expression]) -> Expression:
-        """Return a matrix made of its columns or of its numbers, of one number on its diagonal, or of the corner of a
-        larger matrix. Raises TranslationError for other arguments."""
+        """Return a matrix constructed from its columns, from its numbers, from a single number for its diagonal, or
+        from the corner of a larger matrix. Raises TranslationError for other arguments."""
         size = int(kind[3])
         if len(arguments) == 1 and arguments[0].kind == "float":
             (number,) = arguments
@@ -482,7 +484,7 @@ class Parser:
         return statements
 
     def _about(self, statement: Statement, first: Token) -> Statement:
-        """Return a statement, to which the comments around its tokens are added; its last token was just taken."""
+        """Return a statement, whose last token was just taken, with the comments around its tokens added."""
         statement.above = [*first.above, *statement.above]
         statement.behind = statement.behind or self._tokens[self._at - 1].behind
         return statement
@@ -510,7 +512,7 @@ class Parser:
 
 
 def _is_short(value: Expression) -> bool:
-    """Whether a value can be written twice: a number, a name, or a part or the negative of one."""
+    """Whether a value is short enough to be written twice: a number or a name, with swizzles and unary operators."""
     while isinstance(value, Swizzle | Unary):
         value = value.value
     return isinstance(value, Literal | Name)

@@ -50,10 +50,10 @@ def reduced(
 
     Args:
         program: the whole program, which is changed.
-        roots: new names of functions by their present names.
+        roots: the new names of these functions, by their present names.
         prefix: the prefix of every name.
         own: the prefix of an encoding's own functions, which `prefix` replaces.
-        bound: the values of the encoder's and the decoder's settings that become constants.
+        bound: the values of those settings of the encoder and the decoder that become constants.
         pair: the new names of functions that are called with the same settings.
 
     Raises:
@@ -114,10 +114,10 @@ def _reached_names(program: Program, names: list[str]) -> set[str]:
 
 
 def _keep_changes_inside(functions: list[Function]) -> None:
-    """Make parameters plain if no caller uses their changed values.
+    """Make inout parameters plain if no caller uses their changed values.
 
-    Translators from SPIR-V write every parameter that is assigned to as an inout parameter with a variable of its
-    own, which is assigned before each call and not read after it.
+    Translators from SPIR-V turn every parameter that is assigned to into an inout parameter, and pass a separate
+    variable, which is assigned before each call and not read after it.
     """
     by_name = {f.name: f for f in functions}
     seen: set[tuple[str, int]] = set()
@@ -143,7 +143,7 @@ def _keep_changes_inside(functions: list[Function]) -> None:
 
 
 def _bind(function: Function, setting: str, value: float) -> None:
-    """Replace a function's parameter, to which nothing is assigned, by a number; ignore a missing parameter."""
+    """Replace a function's parameter, which is never assigned to, by a number; ignore a missing parameter."""
     if setting not in _parameter_names(function):
         return
     function.parameters = [parameter for parameter in function.parameters if parameter.name != setting]
@@ -151,7 +151,7 @@ def _bind(function: Function, setting: str, value: float) -> None:
 
 
 def _with_number(node: Any, name: str, text: str) -> Any:
-    """Return a part of a tree, changed in place, with a number for each use of a name; x * 1 and x / 1 become x."""
+    """Replace each use of a name in a part of a tree by a number, and return the part; x * 1 and x / 1 become x."""
     if isinstance(node, Name) and node.name == name:
         return Literal("float", text)
     if isinstance(node, list):
@@ -167,8 +167,7 @@ def _with_number(node: Any, name: str, text: str) -> Any:
 
 
 def _leave_out(setting: str, functions: list[Function], pair: set[str]) -> None:
-    """Remove a setting from functions that do not read it, and from their calls; from both functions of the pair or
-    neither."""
+    """Remove a setting from functions that do not read it, and from their calls; from both of the pair or neither."""
     indices = {f.name: _parameter_names(f).index(setting) for f in functions if setting in _parameter_names(f)}
     unread: set[str] = set()
     for function in functions:
@@ -188,7 +187,7 @@ def _parameter_names(function: Function) -> list[str]:
 
 
 def _reads(setting: str, function: Function, indices: Mapping[str, int], unread: set[str]) -> bool:
-    """Whether a function does more with a setting than hand it to functions that do not read it."""
+    """Whether a function uses a setting other than by passing it to functions that do not read it."""
     calls = (node for node in inside(function.body) if isinstance(node, Call) and node.name in unread)
     handed_on = {id(node) for call in calls for node in inside(call.arguments[indices[call.name]])}
     return any(isinstance(n, Name) and n.name == setting and id(n) not in handed_on for n in inside(function.body))
@@ -229,13 +228,13 @@ def _without(own: str, name: str) -> str:
 
 
 def _free_name(name: str, taken: Collection[str]) -> str:
-    """Return this name, with a number if it is taken."""
+    """Return a name, with a number appended if it is taken."""
     ways = (name, *(f"{name}_{number}" for number in range(2, len(taken) + 3)))
     return next(way for way in ways if way not in taken)
 
 
 def _shorter_name(own: str, name: str) -> str:
-    """Return a constant's name without the last words of the encoding's name `own` that begin it: COUNT for
+    """Return a constant's name without leading words that are the last words of the encoding's name `own`: COUNT for
     FIBONACCI_COUNT of spherical_fibonacci."""
     words = own.upper().split("_")
     for first in range(len(words)):
@@ -260,8 +259,7 @@ def _rename_constants(constants: list[Declare], functions: list[Function], prefi
 
 
 def _replace(functions: list[Function], names: Mapping[str, str]) -> None:
-    """Rename globals in functions, by new names for old ones, except in a function with a variable of the old
-    name."""
+    """Rename globals in functions, from old names to new ones, except where a variable has the old name."""
     for function in functions:
         own = {*_parameter_names(function), *(node.name for node in inside(function.body) if isinstance(node, Declare))}
         _replace_in(function.body, {old: new for old, new in names.items() if old not in own})
@@ -274,7 +272,7 @@ def _replace_in(nodes: object, names: Mapping[str, str]) -> None:
 
 
 def numbered(program: Program, word: str) -> None:
-    """Rename everything that has a name in a program, which is changed, to this word and a number."""
+    """Rename everything that has a name in a program, in place, to this word and a number."""
     numbers = count()
     _number_structs(program, word, numbers)
     outside = {definition.name: f"{word}_{next(numbers)}" for definition in [*program.constants, *program.functions]}
@@ -303,11 +301,11 @@ def _number_structs(program: Program, word: str, numbers: Iterator[int]) -> None
 
 
 def _rename_structs(program: Program, names: Mapping[str, str], fields: Mapping[tuple[str, str], str]) -> None:
-    """Rename structures and some of their fields, everywhere in the program, which is changed.
+    """Rename structures and some of their fields throughout a program, in place.
 
     Args:
-        names: the new name of each structure, by the old one.
-        fields: the new names of fields, by the old name of the structure and of the field."""
+        names: the structures' new names, by old name.
+        fields: the fields' new names, by the old names of the structure and the field."""
 
     def named(kind: str) -> str:
         plain, mark, length = kind.partition("[")

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Texels:
-    """A look-up table, as a texture has it.
+    """A lookup table, as a texture.
 
     Attributes:
         height, width, channels: its size.
-        is_bytes: whether every number is a whole multiple of 1/255, so that 8 bits are enough; else they are floats of
-            32 bits.
+        is_bytes: whether every number is a multiple of 1/255, so that 8 bits are enough; otherwise the numbers are
+            32-bit floats.
     """
 
     height: int
@@ -22,7 +22,7 @@ class Texels:
 
     @property
     def format(self) -> str:
-        """The texture's format as DXGI names it, such as R8G8_UNORM for bytes or R32G32_FLOAT for floats."""
+        """The texture's DXGI format, such as R8G8_UNORM for bytes or R32G32_FLOAT for floats."""
         letters = "RGBA"[: self.channels]
         bits = 8 if self.is_bytes else 32
         return "".join(f"{letter}{bits}" for letter in letters) + ("_UNORM" if self.is_bytes else "_FLOAT")

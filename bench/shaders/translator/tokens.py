@@ -1,4 +1,4 @@
-"""A shader's text as tokens, after its preprocessor: macros without arguments, and parts under conditions."""
+"""The tokens of a shader's text after preprocessing, with macros without arguments and conditional parts."""
 
 from __future__ import annotations
 
@@ -49,21 +49,21 @@ def said(comment: str) -> list[str]:
 
 
 def in_a_comment(text: str) -> str:
-    """Return a text as a line of a comment in any language: no letter ends the line, and nothing joins the next one."""
+    """Return a text that is safe as a one-line comment in any language: it neither ends the line nor continues it."""
     line = "".join(letter if letter.isprintable() else " " for letter in text)
     return re.sub(r"(\\|\?\?/)\s*$", r"\1.", line)
 
 
 def tokens(text: str, first: int = 1) -> list[Token]:
-    """Return the tokens of text without preprocessor lines, each with the comments above and behind it; a comment
-    followed by an empty line belongs to nothing.
+    """Return the tokens of a text without preprocessor lines, each with the comments above and behind it; a comment
+    followed by an empty line belongs to no token.
 
     Args:
         text: the text.
         first: the number of its first line.
 
     Raises:
-        TranslationError: a character that no token begins with, or too many tokens.
+        TranslationError: a character begins no token, or there are too many tokens.
     """
     stream: list[Token] = []
     above: list[str] = []
@@ -104,7 +104,7 @@ class Preprocessor:
     """A preprocessor for macros without arguments and conditions on whole numbers. Macros for numbers remain names.
 
     Attributes:
-        constants: macros that stand for a number or for an array of numbers, by name: their tokens.
+        constants: the tokens of the macros that stand for a number or an array of numbers, by name.
     """
 
     def __init__(self) -> None:
@@ -112,8 +112,8 @@ class Preprocessor:
         self.constants: dict[str, list[Token]] = {}
 
     def tokens(self, text: str) -> list[Token]:
-        """Return the tokens of a text without its directives and the branches that they exclude, and with macros
-        expanded; names of numbers stay. Raises TranslationError."""
+        """Return the tokens of a text, without directives and the branches that they exclude, and with macros
+        expanded, except those for numbers. Raises TranslationError."""
         kept: list[str] = []
         including: list[tuple[bool, bool]] = []  # whether this branch counts, and whether one has
         # Directives are what stands in no comment.
@@ -164,14 +164,14 @@ class Preprocessor:
             self.constants[match[1]] = self._macros.pop(match[1])
 
     def _holds(self, word: str, rest: str, line: int) -> bool:
-        """Whether the lines behind a directive are read.
+        """Whether the branch after a conditional directive is active.
 
         Args:
             word: "if", "ifdef" or "ifndef".
-            rest: the text behind it.
+            rest: the text after it.
 
         Raises:
-            TranslationError: an #if of anything but one name or number."""
+            TranslationError: the condition of an #if is not a single name or number."""
         if word != "if":
             name = rest.split()[0] if rest.split() else ""
             return (name in self._macros or name in self.constants) == (word == "ifdef")
@@ -187,7 +187,7 @@ class Preprocessor:
         return int(stands[0].text)
 
     def _expanded_tokens(self, token: Token) -> Iterator[Token]:
-        """Yield a token, or the tokens of the macro with its name, in its place."""
+        """Yield a token or, if it names a macro, the macro's tokens at its place."""
         if token.kind != "word" or token.text not in self._macros:
             yield token
             return
@@ -197,7 +197,7 @@ class Preprocessor:
             above = ()
 
     def _words(self, token: Token, depth: int) -> Iterator[Token]:
-        """Yield the tokens that a token expands to, one at a time: nested macros may expand to more than fits."""
+        """Yield the tokens to which a token expands, one at a time: nested macros may expand to too many tokens."""
         if token.kind != "word" or token.text not in self._macros:
             yield token
             return
@@ -212,13 +212,13 @@ def _blanked_comment(comment: re.Match[str]) -> str:
 
 
 def _open_comment(line: str, bare: str) -> str:
-    """Return the comment in a directive's line that began before it or ends after it; empty if it has none."""
+    """Return the comment in a directive's line that begins before the line or ends after it; empty without one."""
     only = "".join(" " if left == letter else letter for letter, left in zip(line, bare, strict=True))
     return only if only.count("/*") != only.count("*/") else ""
 
 
 def _is_number(words: Sequence[Token]) -> bool:
-    """Whether tokens are one number, with or without a minus sign, or an array of numbers."""
+    """Whether tokens are a single number, with or without a minus sign, or an array of numbers."""
     texts = [word.text for word in words if word.text != "-"]
     # Without numbers in brackets behind it, `float[4]` is a type.
     is_array = len(texts) > 1 and texts[0] in ("float", "int") and texts[1] == "[" and "(" in texts
@@ -226,11 +226,11 @@ def _is_number(words: Sequence[Token]) -> bool:
 
 
 def suffixed(text: str) -> tuple[str, str]:
-    """Return (type, text) of a number as GLSL and HLSL write it: "int", "uint" or "float", and its text without
-    suffix; a whole number in decimal, but a hexadecimal one stays hexadecimal.
+    """Return (type, text) of a GLSL or HLSL number: "int", "uint" or "float", and its text without suffix. Octal
+    numbers become decimal; hexadecimal numbers stay hexadecimal.
 
     Raises:
-        ValueError: no such number.
+        ValueError: the text is not such a number.
     """
     lower = text.lower()
     if lower.startswith("0x"):
@@ -242,12 +242,12 @@ def suffixed(text: str) -> tuple[str, str]:
 
 
 def _decimal_text(text: str) -> str:
-    """Return the text of a whole number in decimal; a number with a zero before it is octal."""
+    """Return the decimal text of a whole number; a number with a leading zero is octal."""
     return str(int(text, 8)) if text.startswith("0") else text
 
 
 def with_a_point(text: str) -> str:
-    """Return a number's text with a point and digits on both sides of it; an exponent stays."""
+    """Return a number's text with a decimal point and digits on both sides of it; an exponent is kept."""
     mantissa, mark, exponent = text.partition("e")
     whole, _, rest = mantissa.partition(".")
     return f"{whole or 0}.{rest or 0}{mark}{exponent}"

@@ -1,4 +1,4 @@
-"""The parts of functions, whatever language they were read from. Types have their GLSL names."""
+"""The nodes of a syntax tree, whatever language it was read from. Types have their GLSL names."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ UNEXPECTED = (ArithmeticError, AssertionError, AttributeError, LookupError, Recu
 
 
 class TranslationError(Exception):
-    """Something that cannot be read or written in another language; one line, with line and column if known."""
+    """Code that cannot be read, or written in another language; one-line message, with line and column if known."""
 
 
 @contextmanager
 def one_error_type(placed: Callable[[str], Exception] = TranslationError) -> Iterator[None]:
-    """Make room for deep trees, and raise any unexpected error of a reader or a writer as a TranslationError.
+    """Allow deep trees, and turn any unexpected error of a reader or a writer into a TranslationError.
 
     Args:
-        placed: makes the error from a message, with the place if it is known.
+        placed: a function that makes the error from a message, with the place if it is known.
     """
     with _room:
         try:
@@ -37,7 +37,7 @@ def one_error_type(placed: Callable[[str], Exception] = TranslationError) -> Ite
 
 
 class _Room:
-    """Room for deep trees as long as any thread needs it: the limit is one for all of them."""
+    """A higher recursion limit for deep trees, while any thread needs it: all threads share one limit."""
 
     def __init__(self) -> None:
         self._lock, self._users, self._before = Lock(), 0, 0
@@ -61,7 +61,7 @@ _room = _Room()
 
 @dataclass(frozen=True)
 class Place:
-    """The place of a token, counted from 1."""
+    """The line and column of a token, counted from 1."""
 
     line: int
     column: int
@@ -75,7 +75,7 @@ def scalar_of(kind: str) -> str:
 
 
 def size_of(kind: str) -> int:
-    """Return how many components a vector type has; 1 for any other type."""
+    """Return the number of components of a vector type; 1 for any other type."""
     return SIZES.get(kind, 1)
 
 
@@ -86,14 +86,14 @@ def vector(scalar: str, size: int) -> str:
 
 @dataclass
 class Expression:
-    """A value; `kind` is its type, and of an array its elements' type followed by [count]."""
+    """A value; `kind` is its type, for an array the type of its elements followed by [count]."""
 
     kind: str
 
 
 @dataclass
 class Literal(Expression):
-    """A number or a truth value; `text` is without suffix."""
+    """A number or a Boolean; `text` has no suffix."""
 
     text: str
 
@@ -118,7 +118,7 @@ class Binary(Expression):
 
 @dataclass
 class Choice(Expression):
-    """condition ? chosen : other, under one truth value or one for each component."""
+    """condition ? chosen : other, with a single Boolean as the condition or a Boolean per component."""
 
     condition: Expression
     chosen: Expression
@@ -127,7 +127,7 @@ class Choice(Expression):
 
 @dataclass
 class Call(Expression):
-    """A call of a built-in function, or of a function of the program if `is_own`."""
+    """A call of a built-in function or, if `is_own`, of one of the program's functions."""
 
     name: str
     arguments: list[Expression]
@@ -178,7 +178,7 @@ class Statement:
 
 @dataclass
 class Declare(Statement):
-    """A declaration; `is_precise` if compilers must compute the value exactly as written."""
+    """A declaration; `is_precise` if compilers must compute the value exactly as it is written."""
 
     kind: str
     name: str
@@ -189,7 +189,7 @@ class Declare(Statement):
 
 @dataclass
 class Assign(Statement):
-    """`operator` is =, +=, and so on."""
+    """An assignment; `operator` is =, += and so on."""
 
     target: Expression
     operator: str
@@ -205,7 +205,7 @@ class Perform(Statement):
 
 @dataclass
 class Block(Statement):
-    """Statements in a scope of their own."""
+    """Statements with their own scope."""
 
     body: list[Statement]
 
@@ -219,7 +219,7 @@ class If(Statement):
 
 @dataclass
 class For(Statement):
-    """A loop; `start` and `step` are None if they are empty."""
+    """A `for` loop; `start` and `step` are None if they are empty."""
 
     start: Statement | None
     condition: Expression
@@ -248,7 +248,7 @@ class Return(Statement):
 @dataclass
 class Parameter:
     """A parameter; `is_changed` if the caller sees assignments to it (GLSL's inout), and not `is_given` if it also
-    begins without a value (GLSL's out)."""
+    starts without the caller's value (GLSL's out)."""
 
     kind: str
     name: str
@@ -258,7 +258,7 @@ class Parameter:
 
 @dataclass
 class Function(Statement):
-    """A function; `unread` is why its body could not be read, which matters only if the function is needed."""
+    """A function; `unread` is the reason why its body could not be read, raised only if the function is needed."""
 
     kind: str
     name: str
@@ -276,7 +276,7 @@ class TexelTable:
 
 @dataclass
 class Struct:
-    """A structure: the types of its fields by their names."""
+    """A structure: the types of its fields, by name."""
 
     name: str
     kinds: dict[str, str]
@@ -284,7 +284,7 @@ class Struct:
 
 @dataclass
 class Program:
-    """Structures, constants, tables and functions, in an order in which each uses only those before it."""
+    """Structures, constants, tables and functions, each ordered so that it uses only what comes before it."""
 
     constants: list[Declare]
     tables: list[TexelTable]
@@ -292,7 +292,7 @@ class Program:
     structs: list[Struct] = field(default_factory=list)
 
     def function(self, name: str) -> Function:
-        """Return the function of this name. Raises ValueError unless exactly one has it."""
+        """Return the function with this name. Raises ValueError unless exactly one function has it."""
         (function,) = (f for f in self.functions if f.name == name)
         return function
 
@@ -303,7 +303,7 @@ def plain_name(function: Function) -> str:
 
 
 def inside(node: Any) -> Iterator[Any]:
-    """Yield a node and all nodes below it, also in lists, in the order of the text."""
+    """Yield a node and all nodes below it, including nodes in lists, in the order of the text."""
     left = [node]
     while left:
         node = left.pop()

@@ -1,7 +1,7 @@
-"""WGSL read as a tree: functions without side effects, and constants.
+"""A parser of WGSL into a tree: functions without side effects, and constants.
 
-A module may contain more: entry points, bindings, functions of pointers. They are left out, and a function that needs
-any of them has the reason in place of its body.
+A module may also contain entry points, bindings and functions of pointers. These are left out, and a function that
+needs any of them has the reason in place of its body.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def read_wgsl(text: str) -> Program:
 
 
 def _with_flat_comments(text: str) -> str:
-    """Return a text in which no comment contains another, as WGSL allows: inner marks become blanks."""
+    """Return a text without nested comments, which WGSL allows: the marks of inner comments become blanks."""
     depth = position = 0
     flat_text = ""
     while match := (INSIDE if depth else OUTSIDE).search(text, position):
@@ -131,7 +131,7 @@ class WgslParser(Parser):
         self._unread: dict[str, TranslationError] = {}
 
     def _program(self) -> Program:
-        """Read the whole program; each function comes after those that it calls."""
+        """Read the whole program, with each function after the functions that it calls."""
         declarations = list(self._declarations())
         self._know_all(declarations)
         for declared in declarations:
@@ -169,7 +169,7 @@ class WgslParser(Parser):
         return word, self._tokens[max(next(behind, declared.stop) - 1, self._at)].text
 
     def _skip_group(self) -> None:
-        """Skip a group in parentheses, if one begins here."""
+        """Skip a group in parentheses, if the next token opens one."""
         depth = 0
         while self._next_token is not END:
             depth += (self._next_token.text == "(") - (self._next_token.text == ")")
@@ -178,7 +178,7 @@ class WgslParser(Parser):
             self._at += 1
 
     def _know_all(self, declarations: Sequence[range]) -> None:
-        """Make everything outside functions known: WGSL may use a name before its declaration."""
+        """Declare everything outside functions, because WGSL may use a name before its declaration."""
         known = {declared: self._known_by(declared) for declared in declarations}
         for word, name in known.values():
             if word.text in SET_FROM_OUTSIDE:
@@ -213,7 +213,7 @@ class WgslParser(Parser):
         return text in self._unread or bool(OF_A_PIPELINE.fullmatch(text))
 
     def _know_types(self, declared: Mapping[str, range]) -> None:
-        """Make aliases and structures known, each after the types that it is made of."""
+        """Declare aliases and structures, each after the types that it uses."""
         for name, span in declared.items():
             self._known_by(span)
             self._types[name] = self._at
@@ -243,8 +243,8 @@ class WgslParser(Parser):
             self._aliases[name] = name
 
     def _leave_out(self, declared: range, error: TranslationError) -> None:
-        """Leave out a declaration that cannot be read; an error is kept for its name and raised where the name is
-        needed. Raises the error at once if the declaration has no end."""
+        """Leave out a declaration that cannot be read; its error is kept and raised where its name is needed. Raises
+        the error immediately if the declaration has no end."""
         if self._tokens[declared.stop - 1].text not in DECLARATION_ENDS:
             raise error
         word, name = self._known_by(declared)
@@ -301,7 +301,7 @@ class WgslParser(Parser):
         return super()._name_expression(token)
 
     def _read_constant(self, token: Token) -> None:
-        """Read the global constant that a name refers to, unless it was read already. Raises TranslationError."""
+        """Read the global constant that a name refers to, unless it has been read. Raises TranslationError."""
         if token.text in self._constants and token.text not in self._read:
             before, inner = self._at, self._scopes
             self._at, self._scopes = self._constants[token.text] + 1, self._scopes[:1]
@@ -405,7 +405,7 @@ class WgslParser(Parser):
         return statement
 
     def _simple(self, first: Token) -> Statement:
-        """Read a statement of one line, without the character that ends it."""
+        """Read a simple statement, without the character that ends it."""
         if first.text in ("break", "continue"):
             return Leave(self._take().text)
         if self._skip("return"):
@@ -451,7 +451,7 @@ class WgslParser(Parser):
         return statements
 
     def _switch(self) -> Statement:
-        """Read a switch without its first word, and return it as a block of nested choices on a variable."""
+        """Read a switch after its first word, and return it as a block of nested conditionals on a variable."""
         value = self._expression()
         name = self._unused("chosen_by")
         chosen_by = Name(value.kind, name)
@@ -466,8 +466,8 @@ class WgslParser(Parser):
         return Block([Declare(value.kind, name, value), *other])
 
     def _case(self, chosen_by: Name) -> tuple[Expression | None, list[Statement]]:
-        """Read a case of a switch. Return its condition, None for the default, and its body without a break at its
-        end. Raises TranslationError for any other break."""
+        """Read a case of a switch. Return its condition, which is None for the default, and its body without a final
+        break. Raises TranslationError for any other break."""
         condition: Expression | None = None
         is_default = self._skip("default")
         if not is_default:
@@ -563,7 +563,7 @@ class WgslParser(Parser):
         return Call(kind, BITS[pair], [value]) if pair in BITS else Construct(kind, [value])
 
     def _made_of(self, token: Token) -> Expression:
-        """Read a type's constructor. A missing element type is the type of the arguments."""
+        """Read a type's constructor. A missing element type is inferred from the arguments."""
         self._at -= 1
         if token.text in GENERIC and self._text_ahead(1) == "(":
             self._at += 2
@@ -592,7 +592,7 @@ class WgslParser(Parser):
         return Elements(kind, values or self._zero_elements(kind))
 
     def _array_of(self, values: list[Expression], token: Token) -> Expression:
-        """Return an array of these values, converted to one type. Raises TranslationError if that is impossible."""
+        """Return an array of these values, converted to one type. Raises TranslationError if this is impossible."""
         if len({value.kind for value in values}) > 1:
             values = self._all_alike(values)
         kinds = sorted({value.kind for value in values})
@@ -625,7 +625,7 @@ class WgslParser(Parser):
         return self._constructed(kind, [Literal("int", "0")])
 
     def _constructed(self, kind: str, arguments: list[Expression]) -> Expression:
-        """Return a constructor as in GLSL, but floats out of an integer's range become its nearest value."""
+        """Return a constructor as in GLSL, except that floats beyond an integer's range become its nearest end."""
         scalar, names = scalar_of(kind), CONVERSIONS
         if scalar in names and any(scalar_of(argument.kind) == "float" for argument in arguments):
             arguments = [
@@ -635,11 +635,10 @@ class WgslParser(Parser):
         return super()._constructed(kind, arguments)
 
     def _defined(self, name: str, scalar: str, given: list[Expression]) -> Expression:
-        """Return a call of a function of `wgsl_defined.glsl`, with the scalars among its arguments repeated to
-        vectors.
+        """Return a call of a function in `wgsl_defined.glsl`, with scalar arguments repeated to vectors.
 
         Args:
-            scalar: the type of its result's components."""
+            scalar: the type of the result's components."""
         size = max(size_of(argument.kind) for argument in given)
         given = [
             argument if size_of(argument.kind) == size else Construct(vector(argument.kind, size), [argument])
@@ -657,7 +656,7 @@ class WgslParser(Parser):
         return super()._member(value, word)
 
     def _index_expression(self, value: Expression, index: Expression) -> Expression:
-        """Return an element of a value; an index beyond the value, unless a literal, becomes the last one."""
+        """Return an element of a value; an index that is not a literal is clamped to the last element."""
         return super()._index_expression(
             value, index if isinstance(index, Literal) else self._clamped_index(value.kind, index)
         )
@@ -679,8 +678,8 @@ class WgslParser(Parser):
         return self._called(NAMES.get(name, name), arguments, token.place)
 
     def _converted(self, value: Expression, scalar: str) -> Expression:
-        """Return a value with components of another scalar type. Raises TranslationError unless it has this type
-        already, or is a literal or a constant without a type: WGSL converts nothing else."""
+        """Return a value with components of another scalar type. Raises TranslationError unless the value already has
+        this type, or is a literal or a constant without a type, because WGSL converts nothing else."""
         if scalar_of(value.kind) != scalar and not self._is_abstract(value):
             raise self._error(f"expected {scalar}, not {value.kind}; convert it with {SCALAR_NAMES[scalar]}()")
         return super()._converted(value, scalar)
@@ -690,8 +689,7 @@ class WgslParser(Parser):
         return all(isinstance(n, Literal) or (isinstance(n, Name) and n.name in self._abstract) for n in leaves)
 
     def _operation(self, mark: str, left: Expression, right: Expression) -> Expression:
-        """Return an operation as in GLSL, but with WGSL's defined results for quotients and remainders of whole
-        numbers, and for shifts."""
+        """Return an operation as in GLSL, but with WGSL's defined results for integer division and for shifts."""
         scalar = scalar_of(left.kind)
         if mark in SHIFTS:
             by = right if isinstance(right, Literal) else self._masked_shift(right)
@@ -722,7 +720,7 @@ class WgslParser(Parser):
 
 
 def _divides(value: Expression) -> bool:
-    """Whether a divisor is a literal above 0."""
+    """Whether a divisor is a positive literal."""
     return isinstance(value, Literal) and int(value.text, 0) > 0
 
 
@@ -751,7 +749,7 @@ def _number(text: str) -> Literal:
 
 
 def _callees_first(functions: list[Function]) -> list[Function]:
-    """Return functions in an order in which each calls only those before it."""
+    """Return functions in an order in which each calls only functions before it."""
     by_name, ordered, begun = {f.name: f for f in functions}, [], set()
 
     def add(function: Function) -> None:

@@ -39,7 +39,7 @@ RESERVED = words(
 
 
 class WgslWriter(Writer):
-    """WGSL; `group` is where tables are bound."""
+    """A writer of WGSL; `group` is the bind group of the tables."""
 
     has_templates = True
 

@@ -1,4 +1,4 @@
-"""A writer of a program's text in C-like languages. For GLSL no words are replaced."""
+"""A writer of a program's text in C-like languages. For GLSL, no names are replaced."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ BUILTINS = frozenset((*LIKE_GIVEN, *OF_VECTORS, *BITS, *COMPARISONS, FETCH, "cro
 
 
 class Writer:
-    """The text of a program. Subclasses define how their language differs.
+    """A writer of a program's text. Subclasses define how their languages differ.
 
     Args:
         prefix: the prefix of the program's names.
@@ -73,14 +73,14 @@ class Writer:
         head: the text before everything else.
         binding_advice: a sentence on how to bind a table.
         has_tables: whether tables are variables of the program.
-        splats: whether functions of vectors need vectors in place of scalar arguments.
+        splats: whether vector functions need vectors in place of scalar arguments.
         has_rich_parameters: whether functions can take and return arrays, and change their arguments.
         assigns_to_parts: whether several components of a vector can be assigned to at once.
-        has_precise: whether a variable can be declared to be computed as written.
+        has_precise: whether a variable can be declared to be computed as it is written.
         has_templates: whether `a < b, c > (d)` may be read as a template and a call.
-        kinds: types' names that differ from GLSL's.
-        functions: built-in functions' names that differ from GLSL's.
-        reserved: words that cannot be variables' names.
+        kinds: the type names that differ from GLSL's.
+        functions: the names of built-in functions that differ from GLSL's.
+        reserved: words that cannot be names of variables.
     """
 
     kinds: Mapping[str, str] = {}
@@ -137,11 +137,11 @@ class Writer:
         return {self._field(name): kind for name, kind in struct.kinds.items()}
 
     def _field(self, name: str) -> str:
-        """Return a field's name, with an underscore behind it if it is a reserved word of the language."""
+        """Return a field's name, with an underscore appended if it is a reserved word of the language."""
         return f"{name}_" if name in self.reserved else name
 
     def _table(self, table: TexelTable) -> str:
-        """Return a table's declaration, below a note on its texture. Tables are bound in the order of their names."""
+        """Return a table's declaration, after a note on its texture. Tables are bound in the order of their names."""
         declared = self._declared_table(table, self._bindings)
         self._bindings += 1
         return self._table_note(table.name) + declared
@@ -185,7 +185,7 @@ class Writer:
         return self._statements(function.body, INDENT)
 
     def _global_name(self, name: str) -> str:
-        """Return a new name with the program's prefix for something of the writer's own, and mark it as taken."""
+        """Return a new name with the program's prefix, for a definition of the writer's, and mark it as taken."""
         own_name = f"{self._prefix}_{name}"
         while own_name in self._taken:
             own_name += "_"
@@ -193,8 +193,7 @@ class Writer:
         return own_name
 
     def _unused(self, name: str) -> str:
-        """Return this name or one with a number behind it, which the function does not have yet, and count it as
-        taken."""
+        """Return this name, with a number appended if the function already uses it, and mark it as used."""
         ways = (name, *(f"{name.rstrip('_')}_{number}" for number in range(2, len(self._used) + 3)))
         unused_name = next(way for way in ways if way not in self._used)
         self._used.add(unused_name)
@@ -218,7 +217,7 @@ class Writer:
         return "".join(self._statement(self._plainer(each), indent) for each in statements)
 
     def _plainer(self, statement: Statement) -> Statement:
-        """Return a statement without features that the language lacks: assignments to several components at once."""
+        """Return a statement, rewritten if the language cannot assign to several components at once."""
         if self.assigns_to_parts:
             return statement
         match statement:
@@ -229,7 +228,7 @@ class Writer:
         return statement
 
     def _part_by_part(self, statement: Assign, target: Swizzle, value: Expression) -> Statement:
-        """Return `n.xy = VALUE` as a block with a variable, because VALUE may read the components that change."""
+        """Return `n.xy = VALUE` as a block with a variable, because VALUE may read the components that it changes."""
         name, scalar = self._unused("parts"), scalar_of(target.kind)
         parts: list[Statement] = [Declare(target.kind, name, value)]
         for to, field in zip(target.fields, FIELDS, strict=False):
@@ -239,7 +238,7 @@ class Writer:
 
     def _loop_without_head(self, loop: For) -> Statement:
         """Return a `for` loop as an endless loop in a block, for a condition or a step that is more than an
-        expression; `continue` goes on with the step."""
+        expression; `continue` proceeds to the step."""
         name = self._unused("is_first")
         first = Name("bool", name)
         self._assigned.add(name)
@@ -275,7 +274,7 @@ class Writer:
         return text.rstrip("\n") + self._block(" else", statement.other, indent).removeprefix(indent)
 
     def _simple_text(self, statement: Statement) -> str:
-        """Return the text of a statement of one line, without the semicolon."""
+        """Return the text of a simple statement, without the semicolon."""
         match statement:
             case Declare():
                 return self._local_text(statement)
@@ -371,8 +370,8 @@ class Writer:
         return f"{name}({self._arguments(value.arguments)})"
 
     def _arguments(self, values: Sequence[Expression]) -> str:
-        """Return the text of a call's arguments. A comparison `a < b` before others gets parentheses where `f(a < b,
-        c > (d))` may be read as a template's name and a call."""
+        """Return the text of a call's arguments. A comparison `a < b` before other arguments is put in parentheses if
+        `f(a < b, c > (d))` may be read as a template and a call."""
         return ", ".join([*map(self._argument_text, values[:-1]), *map(self._text, values[-1:])])
 
     def _argument_text(self, value: Expression) -> str:
@@ -389,7 +388,7 @@ class Writer:
         return f"{self._kind(kind)}[{count}({self._listed(value)})"
 
     def _listed(self, value: Elements) -> str:
-        """Return the text of an array's elements, separated by commas; in several lines if they are many."""
+        """Return the text of an array's elements, separated by commas; on several lines if there are many."""
         return self._rows_text(list(map(self._text, value.values)))
 
     def _rows_text(self, texts: list[str]) -> str:
@@ -405,13 +404,13 @@ def _applied(kind: str, assigned: Assign) -> Expression:
 
 
 def _splat(value: Expression, kind: str) -> Expression:
-    """Return a scalar as a vector of a kind, and a vector as it is."""
+    """Return a scalar expression as the constructor of a vector type, and a vector expression unchanged."""
     return value if size_of(value.kind) == size_of(kind) else Construct(kind, [value])
 
 
 def least_of(parent: Binary, child: Expression, least: int) -> int:
-    """Return how tightly an operand has to bind: `least`, but UNARY, for parentheses, if bitwise or logical operators
-    are mixed, because people and some languages want them."""
+    """Return how tightly an operand must bind to need no parentheses: `least`, or UNARY if bitwise or logical
+    operators are mixed, because readers and some languages expect parentheses there."""
     is_mixed = isinstance(child, Binary) and child.operator != parent.operator and _is_unclear(parent, child)
     return UNARY if is_mixed else least
 
@@ -423,12 +422,12 @@ def _is_unclear(parent: Binary, child: Binary) -> bool:
 
 
 def is_less(value: Expression) -> bool:
-    """Whether a value is a `<` comparison, whose text begins as the name of a template does."""
+    """Whether a value is a `<` comparison, whose text can look like the start of a template."""
     return isinstance(value, Binary) and value.operator == "<"
 
 
 def words(text: str) -> frozenset[str]:
-    """Return the set of the words of a text, which white space separates."""
+    """Return the set of words in a text, which are separated by white space."""
     return frozenset(text.split())
 
 
@@ -441,8 +440,7 @@ def base_of(assigned: Assign) -> str:
 
 
 def shortest(text: str) -> str:
-    """Return the text of the shortest number that is the same 32-bit float as a number's text; the given text if that
-    float is not finite."""
+    """Return the shortest text of the same 32-bit float as a number's text; the given text if that is not finite."""
     # Here, because reading a user's file needs no arrays.
     import numpy as np
 
@@ -453,12 +451,12 @@ def shortest(text: str) -> str:
 
 
 def commented(lines: Iterable[str], mark: str = "//") -> str:
-    """Return one text of lines as comments, each with the mark before it and an end of line."""
+    """Return lines as a text of comments, each line with the mark before it and a newline after it."""
     return "".join(f"{mark} {line}".rstrip() + "\n" for line in lines)
 
 
 def identifier(name: str) -> str:
-    """Return a name in lower case as every language takes it: ASCII letters, digits and single underscores; a name
-    that begins with a digit gets an n before it."""
+    """Return a name as a lower-case identifier for every language: ASCII letters, digits and single underscores, with
+    an n before a leading digit."""
     plain = re.sub(r"_+", "_", re.sub(r"\W", "_", name, flags=re.ASCII)).strip("_").lower()
     return f"n{plain}" if plain[:1].isdigit() else plain

@@ -1,1 +1,1 @@
-"""Codecs by name: the catalogue's, tuned variants of these, and users' own."""
+"""Codecs by name: from the catalogue, tuned variants of these, and users' own codecs."""

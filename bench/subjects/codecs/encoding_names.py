@@ -1,4 +1,4 @@
-"""Encodings by name: the catalogue's, those with settings, and users' files, whose readers are imported late."""
+"""Encodings by name: the catalogue's, with or without parameters, and users' files, whose reader is imported late."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from .looked_at import Looked, choose_or_look
 
 
 def encodings_named(names: Names) -> list[Encoding]:
-    """Return the encodings that names stand for: the catalogue's, tuned ones, or files that end in one of ENDINGS.
+    """Return the encodings with these names: the catalogue's, tuned variants, or files that end in one of ENDINGS.
 
-    A file's encoding gets a first look in a separate process: if it does not compile, does not end or is not finite,
-    it is named on standard error and left out.
+    A file's encoding gets a first look in a separate process. If the encoding does not compile, does not end or is
+    not finite, the file is reported on standard error and left out.
 
     Raises:
-        UsageError: an unknown name, or nothing left.
-        MissingError: nothing left, because a compiler is missing.
+        UsageError: a name is unknown, or no encoding is left.
+        MissingError: no encoding is left, because a compiler is missing.
     """
     for word in names:
         if isinstance(word, str):

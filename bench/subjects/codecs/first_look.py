@@ -1,19 +1,19 @@
-"""A first look at a user's code, in a process that may hang or die.
+"""A first look at a user's code, in a process that may hang or crash.
 
     python -m normalbench.bench.subjects.codecs.first_look FILE [DOMAIN]
 
-With DOMAIN the look is close: DOMAIN is the domain that the author made the encoding for, or "any".
+DOMAIN asks for a close look: it is the domain that the author made the encoding for, or "any".
 
-Prints a line of JSON on the GLSL, and another on the Python twin if there is one. On the GLSL: `error`, the
-compiler's message; `broken`, if it is not finite or does not end; `missing`, if there is no GL device; otherwise
-`domain`, the directions that round-trip, `half`, the axis and the side of a hemisphere that is not z >= 0, `wrong`,
-a list of likely mistakes, `hole`, a direction outside the domain where it is not finite, and `is_unit`, if its
-codes fill [0, 1]. A close look adds `like`, the encodings of the catalogue that both its functions match, `bad`,
-directions that decode to other directions, `spared`, lines on ranges that may be unused, and `lattice`, the bits
-that it rounds to by itself and whether in [0, 1]. A code that is an integer adds `packed_bits`, the number of its
-bits that are used. A translation adds `by`, the language whose compiler reads it correctly, `pair`, the only one of
-several pairs that round-trips, `language`, the language it is written in if its extension is another's, and `notes`,
-lines. On the twin: `error`, its exception; `apart`, where it contradicts the GLSL.
+Prints a line of JSON about the GLSL and, if there is a Python twin, a line about the twin. About the GLSL: `error`,
+the compiler's message; `broken`, why it is not finite or does not end; `missing`, the missing OpenGL device or
+compiler; otherwise `domain`, the directions that round-trip; `half`, the axis and the side of a hemisphere other than
+z >= 0; `wrong`, a list of likely mistakes; `hole`, where it is not finite outside the domain; and `is_unit`, if its
+codes fill [0, 1]. A close look adds `like`, the encodings in the catalogue that both functions match; `bad`,
+directions that decode to other directions; `spared`, lines about ranges that may be unused; and `lattice`, the bits
+that the encoder itself rounds to, and whether in [0, 1]. Integer codes add `packed_bits`, the number of bits used. A
+translation adds `by`, the language whose compiler reads it correctly; `pair`, the only one of several pairs that
+round-trips; `language`, its language if the extension is another language's; and `notes`, lines to report. About the
+twin: `error`, the exception it raised; `apart`, where it contradicts the GLSL.
 """
 
 from __future__ import annotations
@@ -74,10 +74,10 @@ APART, APART_SHARE = 1e-3, 0.01
 
 
 def first_look(file: UserFile, domain: str = "") -> dict[str, Any]:
-    """Return the findings on the GLSL of a file, as a dictionary: see the module.
+    """Return the findings on the GLSL of a file as a dictionary; the module describes its keys.
 
     Args:
-        domain: the domain that its author says it is made for, or ANY, to look closely; empty for a quick look.
+        domain: the domain that the author made the encoding for, or ANY, for a close look; empty for a quick look.
     """
     look = _first_look(file, domain, "")
     if "error" not in look or file.is_translated:
@@ -123,8 +123,8 @@ def _first_look(file: UserFile, domain: str, by: str) -> dict[str, Any]:
 
 
 def _alike(failing: Mapping[str, str]) -> dict[str, str]:
-    """Return the pairs, with why they do not round-trip, that are an encoder and its decoder by their names; pairs
-    without a reason were not tried and are left out."""
+    """Return the failing pairs whose names are those of an encoder and its decoder, each with the reason why it does
+    not round-trip. Pairs without a reason were not tried and are left out."""
     return {pair: why for pair, why in failing.items() if why and _is_pair(pair)}
 
 
@@ -135,10 +135,10 @@ def _is_pair(pair: str) -> bool:
 
 
 def _why_none(failing: Mapping[str, str]) -> str:
-    """Return a message on why none of a file's pairs can be measured, with the first reasons.
+    """Return a message that none of a file's pairs can be measured, with the first few reasons.
 
     Args:
-        failing: by pair, the reason; empty for a pair that was not tried."""
+        failing: the reason for each pair; empty for a pair that was not tried."""
     named = [f"{pair}: {why}" for pair, why in failing.items() if why][:MOST_REASONS]
     if len(failing) == 1:
         return named[0]
@@ -151,18 +151,18 @@ def _untried(failing: Mapping[str, str]) -> str:
 
 
 def _wirings_of(file: UserFile) -> list[Wiring]:
-    """Return the wirings of the two functions that a file's word names; empty if the word names none."""
+    """Return the wirings of the two functions that a file's word names; empty if the word names no functions."""
     return [wiring_of(text) for text in file.functions or ()]
 
 
 def _functions_of(file: UserFile) -> tuple[str, ...]:
-    """Return the names of the two functions that a file's word names; empty if the word names none."""
+    """Return the names of the two functions in a file's word; empty if the word names no functions."""
     return tuple(wiring.function for wiring in _wirings_of(file))
 
 
 def _that_undo_themselves(file: UserFile, pairs: Sequence[str], by: str) -> tuple[list[str], dict[str, str]]:
-    """Return the pairs that round-trip, each with the wiring that holds most normals; and by their functions' names,
-    why the other pairs do not, empty for those that were not tried."""
+    """Return the pairs that round-trip, each in its best wiring: the first for the whole sphere, else the first that
+    works. Also return why the other pairs fail, by function names; empty for pairs that were not tried."""
     kept: dict[tuple[str, ...], tuple[bool, str]] = {}
     failing: dict[tuple[str, ...], str] = {}
     tries = Counter()
@@ -183,8 +183,8 @@ def _that_undo_themselves(file: UserFile, pairs: Sequence[str], by: str) -> tupl
 
 
 def _undone(file: UserFile, by: str) -> tuple[str, str]:
-    """Return (domain, "") with the name of the domain on which the decoder undoes its encoder; if there is none, an
-    empty name and the reason."""
+    """Return the name of the domain on which a pair round-trips, with an empty reason; if the pair does not
+    round-trip, return an empty name with the reason."""
     try:
         encoding, gl = read_encoding(file, NOT_ASKED, by=by), device()
         with np.errstate(invalid="ignore"):
@@ -199,7 +199,7 @@ def _undone(file: UserFile, by: str) -> tuple[str, str]:
 
 
 def _look_at_one(file: UserFile, domain: str, by: str) -> dict[str, Any]:
-    """Return the findings on a file that has, or names, a single pair. Raises SeveralEncodersError."""
+    """Return the findings on a file with a single pair, or whose word names a pair. Raises SeveralEncodersError."""
     try:
         encoding, gl = read_encoding(file, NOT_ASKED, by=by), device()
         broken = _endless(gl, encoding)
@@ -227,8 +227,8 @@ def _look_at_one(file: UserFile, domain: str, by: str) -> dict[str, Any]:
 
 
 def _of_one(file: UserFile, translation: Translated) -> dict[str, Any]:
-    """Describe an encoder or a decoder without a partner; as `alone` give its side, its name, and the encodings of the
-    catalogue that it matches."""
+    """Describe an encoder or a decoder without a partner. The key `alone` gives its side, its name, and the encodings
+    in the catalogue that it matches."""
     side, (name, _) = next(
         (side, function) for side, function in zip(SIDES, translation.functions, strict=True) if function[0]
     )
@@ -243,7 +243,7 @@ def _of_one(file: UserFile, translation: Translated) -> dict[str, Any]:
 
 
 def _is_unit(probe: Probe) -> bool:
-    """Whether the codes of all directions, or of the directions that round-trip, fill [0, 1]."""
+    """Whether the codes of all directions, or else of the directions that round-trip, fill [0, 1]."""
     n = directions()
     codes = probe.encode(n)
     kept = np.isfinite(codes).all(axis=1)
@@ -263,8 +263,8 @@ def _second_look(file: UserFile, gl: Device, encoding: Encoding) -> dict[str, An
 
 
 def _of_compiler(file: UserFile, message: str) -> str:
-    """Return a compiler's message as one line of limited length that names the user's file; a hint follows for
-    HLSL."""
+    """Return a compiler's message as one line of limited length that names the user's file; add a hint if the GLSL
+    uses HLSL types."""
     line = " ".join(message.partition("=\n")[2].split()) or " ".join(message.split())
     if file.is_translated:
         message = re.sub(r"\S+\.glsl:(\d+)", r"line \1", line)[:LONGEST]
@@ -314,10 +314,11 @@ def _closely(probe: Probe, gl: Device, domain: Domain) -> dict[str, Any]:
 
 
 def twin_look(file: UserFile, findings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the findings on a file's Python twin: `error`, `apart`, or nothing if it agrees or without a device.
+    """Return the findings on a file's Python twin: `error` or `apart`; empty if the twin agrees with the GLSL, or if
+    there is no device to run the GLSL.
 
     Args:
-        findings: the first look's findings on its shader: the twin is of the same functions.
+        findings: the first look's findings on the shader, whose functions the twin must match.
     """
     n = directions()
     view = np.tile(np.array([*VIEW, 0.0], np.float32), (len(n), 1))
@@ -338,8 +339,8 @@ def twin_look(file: UserFile, findings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _by_twin(function: Callable[..., Any], given: np.ndarray, view: np.ndarray) -> np.ndarray:
-    """Return a twin function's results, of shape (count, components), for arrays of shape (count, 2 or 3), passed as
-    they are when it is measured."""
+    """Return a twin function's results, of shape (count, components), for inputs of shape (count, 2 or 3). The
+    function is called in the same way as in a measurement."""
     kind = {2: Vec2, 3: Vec3}[given.shape[1]]
     components = jax.jit(function)(kind(*map(jnp.asarray, given.T)), Vec3(*map(jnp.asarray, view.T[:3])))
     return np.stack(
@@ -370,7 +371,7 @@ def _widened(array: np.ndarray) -> np.ndarray:
 
 
 def _alone() -> int:
-    """Return a new file descriptor of standard output, for the answer; whatever users' code prints goes to stderr."""
+    """Return a new file descriptor of standard output, for the answer only; redirect users' own output to stderr."""
     descriptor = os.dup(1)
     os.dup2(2, 1)
     return descriptor
@@ -384,7 +385,7 @@ def _looks(file: UserFile, domain: str = "") -> Iterator[dict[str, Any]]:
 
 
 def main(words: Sequence[str]) -> None:
-    """Print the findings on a file as lines of JSON; `words` are the file and perhaps the domain: see the module."""
+    """Print the findings on a file as lines of JSON; `words` are the file and, optionally, the domain."""
     children.limit_this_process()
     answer = _alone()
     for look in _looks(UserFile(words[0]), *words[1:]):

@@ -32,10 +32,10 @@ _TABLE_FILE = re.compile(rf"(?<={MARK}{TABLE}=)(?:[^{MARK}]|{MARK}(?=[\\/]))+")
 
 
 def layouts_named(names: Names) -> list[Layout]:
-    """Return the layouts that names stand for: layouts of the catalogue, or files that end in .toml.
+    """Return the layouts with these names: layouts in the catalogue, or files that end in .toml.
 
     Raises:
-        UsageError: an unknown name, a file that is not a layout, or an encoder that cannot be measured.
+        UsageError: a name is unknown or not unique, a file is not a layout, or an encoder cannot be measured.
         MissingError: the compiler of an encoder's language is not installed.
     """
     # The first look at an encoder takes seconds: layouts that name the same one share it.
@@ -70,7 +70,7 @@ def _layout_from_file(path: Path, encoding_named: Callable[[str], Encoding]) -> 
 
 
 def _encoding_named(word: str) -> Encoding:
-    """Return the encoding that --encoding would take by this name, but not "all". Raises UsageError and
+    """Return the encoding that --encoding would select by this name; "all" is not accepted. Raises UsageError and
     MissingError."""
     if word == "all":
         raise UsageError(f"encoding {word!r}: a layout has one encoding")
@@ -80,11 +80,11 @@ def _encoding_named(word: str) -> Encoding:
 
 
 def _from_here(path: Path, word: str) -> str:
-    """Return the name of the encoding in a layout at `path`, with its files as seen from the working folder; a name
-    without a file is unchanged.
+    """Return the name of the encoding in the layout at `path`, with its files relative to the working folder; a name
+    without files is unchanged.
 
     Raises:
-        LayoutError: the file is outside the layout's folder, so it would not travel to workers with the layout.
+        LayoutError: a file is outside the layout's folder, so workers would not receive it with the layout.
     """
     if names_an_encoder(word) or lacks_a_function(word):
         named_file = UserFile(word)
@@ -101,7 +101,8 @@ def _from_here(path: Path, word: str) -> str:
 
 
 def _check_inside(folder: Path, file: str) -> None:
-    """Raise LayoutError if a file is outside a folder, by its name or by a link, as for an encoder's includes."""
+    """Raise LayoutError if a file is outside a folder, by its path or through a link; an encoder's includes have the
+    same restriction."""
     place = Path(os.path.normpath(file))
     if place.is_absolute() or place.parts[:1] == (os.pardir,) or not _leads_inside(folder, place):
         raise LayoutError(f"{file} is not in the layout's folder or below it; copy it there")
@@ -115,7 +116,7 @@ def _leads_inside(folder: Path, place: Path) -> bool:
 
 
 def files_of_layout(path: Path) -> list[Path]:
-    """Return the paths of the files that a layout's encoding is read from; empty if it has none, or the layout cannot
+    """Return the paths of the files that define a layout's encoding; empty if the layout has no such files or cannot
     be read."""
     try:
         word = _from_here(path, str(file_toml(path).get("encoding", "")))

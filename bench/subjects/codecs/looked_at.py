@@ -1,4 +1,4 @@
-"""Names of encodings of one kind. Users' files get a first look, and are left out if that fails."""
+"""Selection of encodings of one kind by name. Users' files get a first look and are left out if it fails."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ def choose_or_look(
     look: Callable[[UserFile], Looked[T]],
     what_names: Callable[[T], str] = lambda _: "the file",
 ) -> list[T]:
-    """Return the encodings that names stand for: known encodings, or users' files. A file with several pairs stands
-    for the pairs that round-trip, up to MOST_PAIRS. Faulty files are reported on standard error and left out.
+    """Return the encodings with these names: known encodings, or users' files. A file with several pairs stands for
+    the pairs that round-trip, up to MOST_PAIRS. Faulty files are reported on standard error and left out.
 
     Args:
-        look: takes a first look at a file; it is called for several files at once.
-        what_names: returns what gives a file's encoding its name, in words.
+        look: a function that takes a first look at a file; it is called for several files at once.
+        what_names: a function that describes where the name of a file's encoding comes from.
 
     Raises:
-        UsageError: an unknown name, or nothing left.
-        MissingError: nothing left, because a compiler or a device is missing.
+        UsageError: a name is unknown, or no encoding is left.
+        MissingError: no encoding is left, because a compiler or a device is missing.
     """
     files: dict[str, T] = {}
     complaints, notes = list[Exception](), list[str]()

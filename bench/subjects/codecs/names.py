@@ -32,13 +32,13 @@ def codecs_named(
     arithmetics: Names = (FLOAT,),
     known_roundings: Sequence[str] = ROUNDINGS,
 ) -> list[Codec]:
-    """Return a codec for every combination of names, including users' encodings from files.
+    """Return a codec for every combination of the names, including users' encodings from files.
 
     Args:
-        known_roundings: the valid names of roundings.
+        known_roundings: the valid names of rounding modes.
 
     Raises:
-        UsageError: an unknown name.
+        UsageError: a name is unknown.
     """
     named = _with_chains(encodings)
     has_no_half = arithmetics == (DECLARED,) and not _computes_halves(named)
@@ -54,7 +54,7 @@ def codecs_named(
 
 
 def _with_chains(words: Names) -> list[Encoding]:
-    """Return encodings by name; a name CODEC+ENCODING is an encoding of the normals that the codec decodes. Raises
+    """Return encodings by name; CODEC+ENCODING stands for ENCODING applied to the normals that CODEC decodes. Raises
     UsageError."""
     own = [word for word in words if isinstance(word, Given)]
     chains = [word for word in words if isinstance(word, str) and _is_chain(word)]
@@ -82,9 +82,10 @@ def _chained_encoding(word: str, own: Sequence[Given]) -> Encoding:
 
 
 def with_arithmetics(encodings: Sequence[Encoding], names: Iterable[Word]) -> list[Encoding]:
-    """Return encodings computed in each of some arithmetics; an encoding whose name says half appears once.
+    """Return the encodings in each of the named arithmetics; an encoding that is half by its own name appears once.
 
-    DECLARED means both for files that declare 16-bit numbers, and float for all others. Raises UsageError.
+    DECLARED means both arithmetics for files that declare 16-bit numbers, and float for all other encodings. Raises
+    UsageError.
     """
     chosen = choose("arithmetic", names, {word: word for word in (*ARITHMETICS, DECLARED)})
     named = [encoding for encoding in encodings if encoding.is_half or {FLOAT, DECLARED} & set(chosen)]
@@ -96,7 +97,7 @@ def with_arithmetics(encodings: Sequence[Encoding], names: Iterable[Word]) -> li
 
 
 def _computes_halves(encodings: Iterable[Encoding]) -> bool:
-    """Whether this machine computes encodings that declare 16-bit numbers in 16 bits; if not, report it in a line."""
+    """Whether this machine can compute in 16 bits the encodings that declare 16-bit numbers; if not, report it."""
     if any(encoding.is_also_half and not has_twin(encoding) for encoding in encodings):
         from .half.compute import half_device
 
@@ -109,8 +110,8 @@ def _computes_halves(encodings: Iterable[Encoding]) -> bool:
 
 
 def as_declared(codecs: Sequence[Codec]) -> list[Codec]:
-    """Return codecs in the arithmetic that their files declare, if this machine computes in it; else the same
-    codecs."""
+    """Return the codecs in the arithmetic that their files declare, if this machine can compute in it; otherwise
+    unchanged."""
     if not _computes_halves([codec.encoding for codec in codecs]):
         return list(codecs)
     return [
@@ -134,11 +135,12 @@ def fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
 
 
 def check_twin(encoding: Encoding) -> None:
-    """Trace the Python twin of a user's encoding on one normal; do nothing for the catalogue, whose twins tests
-    cover, or without a twin.
+    """Trace the Python twin of a user's encoding on one normal. Do nothing if the encoding is in the catalogue, whose
+    twins are tested, or has no twin.
 
     Raises:
-        UsageError: the twin raises an exception, or its code does not have the declared size; one line with its file.
+        UsageError: the twin raises an exception, or its code does not have the declared size. The message is one line
+            and names the twin's file.
     """
     if ENCODINGS.get(encoding.name) is encoding:
         return

@@ -1,4 +1,4 @@
-"""A comparison of a translated encoder, run by OpenGL, with its second way: see `languages/second.py`."""
+"""A comparison of a translated encoding, run by OpenGL, with a second way to run it (see `languages/second.py`)."""
 
 from __future__ import annotations
 
@@ -44,16 +44,16 @@ Function = Callable[[np.ndarray], np.ndarray]
 def second_look(
     file: UserFile, gl: Device, encoding: Encoding, hard: np.ndarray, read: Callable[[str], Encoding]
 ) -> dict[str, Any]:
-    """Compare a file's encoding with its second way; the result is cached by the file and both ways.
+    """Compare a file's encoding, as OpenGL runs it, with its second way. The result is cached.
 
     Args:
-        file: the file.
-        encoding: the encoding, by its first way.
-        hard: normals of shape (count, 3), in addition to random ones.
-        read: returns the encoding as read by a compiler that is named in `BY_NAME`.
+        file: the user's file.
+        encoding: the encoding as translated to GLSL.
+        hard: normals of shape (count, 3), in addition to random normals.
+        read: a function that returns the encoding as read by a compiler named in `BY_NAME`.
 
     Returns:
-        A dictionary: empty if they agree, else `error`, why the file is refused, or `notes`, lines to report.
+        A dictionary: empty if the results agree; else `error`, why the file is refused, or `notes`, lines.
     """
     source, language = Source(file), language_of(file)
     stamps = [tools.stamp_or_empty(tool) for tool in (tools.SLANG, *language.tools, *language.others)]
@@ -72,8 +72,8 @@ def second_look(
 
 
 def _unchecked_finding(file: UserFile, why: str) -> dict[str, Any]:
-    """Return findings on a file that only one compiler has read: `notes`; if that is glslang, `error` if it is known
-    to misread such a file, else nothing."""
+    """Return the findings on a file that only one compiler has read: `notes`. If that compiler is glslang, return
+    `error` if it is known to misread such a file, and nothing otherwise."""
     encoder = translated(file)
     if encoder.read_by == GLSLANG:
         if not (used := MISREAD.search(encoder.text)):
@@ -115,8 +115,8 @@ def _by_second_way(file: UserFile, difference: Callable[[Way, tuple[str, str]], 
 def _by_glslang(
     file: UserFile, gl: Device, read: Callable[[str], Encoding], difference: Callable[[Way, tuple[str, str]], str]
 ) -> str | None:
-    """Return a text on where glslang differs, empty if it agrees; None if it has not read the file, or if only
-    glslang has."""
+    """Return a description of a difference from glslang's results; empty if they agree. Return None if the file is
+    not HLSL, if glslang cannot read it, or if the encoding itself was read by glslang."""
     if name_of(file) != "HLSL" or translated(file).read_by:
         return None
     try:
@@ -135,7 +135,7 @@ def _by_glslang(
 def _difference(
     file: UserFile, gl: Device, encoding: Encoding, way: Way, n: np.ndarray, tolerance: float, ways: tuple[str, str]
 ) -> str:
-    """Describe where the two ways, which have these names, differ; empty if they agree."""
+    """Describe an input for which two ways, named by `ways`, give different results; empty if they agree."""
     size = encoding.components
 
     def encode(given: np.ndarray) -> np.ndarray:
@@ -162,8 +162,8 @@ def _difference(
 def _first_apart(
     function: Function, given: np.ndarray, mine: np.ndarray, theirs: np.ndarray, tolerance: float
 ) -> int | None:
-    """Return the index of a value whose two results differ by more than rounding; None if at most a few differ where
-    the function does not jump."""
+    """Return the index of an input whose two results differ by more than rounding. Return None if the results agree,
+    apart from a few and from inputs next to a jump of the function."""
     with np.errstate(all="ignore"):
         bound = tolerance * np.maximum(1, np.abs(theirs))
         is_near = (np.abs(mine - theirs) <= bound) | (mine == theirs) | (np.isnan(mine) & np.isnan(theirs))
@@ -176,8 +176,8 @@ def _first_apart(
 
 
 def _is_beside(function: Function, given: np.ndarray, theirs: np.ndarray, bound: np.ndarray) -> np.ndarray:
-    """Return a Boolean for each result: whether it is within the range of the function's results next to its value,
-    give or take `bound`."""
+    """Return for each result whether it is in the range of the function's results at neighbouring inputs, to within
+    `bound`; bool of shape (count,)."""
     steps = np.array(list(itertools.product((-1, 0, 1), repeat=3)), np.float32) * np.float32(BESIDE)
     neighbours = function((given[:, None, :] + steps).reshape(-1, 3)).reshape(len(given), len(steps), -1)
     with np.errstate(all="ignore"):

@@ -34,8 +34,8 @@ SIZE = re.compile(r"\[[^\]]*\]")
 
 
 class Encode(NamedTuple):
-    """The encode that a file defines: the encoding's name, and how many numbers its code has; and the names of the
-    other encodings in it."""
+    """The first encode function in a file: its encoding's name and component count, and the names of other encodings
+    in the file."""
 
     name: str
     components: int
@@ -43,11 +43,11 @@ class Encode(NamedTuple):
 
 
 def encode_of(file: UserFile, text: str) -> Encode:
-    """Return the name and component count of a text's first encoding, and the names of others that have a decode.
+    """Return the name and component count of the first encoding in GLSL code, and the names of others with a decode.
 
     Raises:
-        UsageError: no encode has the right form, its decode has the wrong types, or the text has main, #version or an
-            unclosed comment.
+        UsageError: no encode has the right form, its decode has the wrong types, or the code has a main function, a
+            #version line or an unclosed comment.
     """
     code = COMMENT.sub(" ", text)
     if "/*" in code:
@@ -66,12 +66,12 @@ def encode_of(file: UserFile, text: str) -> Encode:
 
 
 def check_given(file: UserFile, code: str) -> None:
-    """Raise UsageError if a shader reads input from outside: a uniform without a value, a texture or a buffer.
+    """Raise UsageError if a shader reads external input: a uniform without a value, a texture or a buffer.
 
-    Declarations that are not read are accepted.
+    Declarations that are not used are accepted.
 
     Args:
-        code: the file with its includes, without comments.
+        code: the text of the file and its includes, without comments.
     """
     if given := _given_and_read(code):
         raise UsageError(f"{file}: it reads {given}, which has no value here; use a constant instead")
@@ -92,7 +92,7 @@ def _given_and_read(code: str) -> str:
 
 
 def _is_read(name: str, code: str) -> bool:
-    """Whether a GLSL text uses a name, other than as a member (`n.x`), and neither declares nor #defines it."""
+    """Whether GLSL code uses a name, other than as a member (`n.x`), without declaring or #defining it."""
     own = rf"\b(?!return\b|else\b)\w+\s+{name}\s*[,)=;\[]|#\s*define\s+{name}\b"
     return bool(re.search(rf"(?<![.\w]){name}\b", code)) and not re.search(own, code)
 
@@ -102,13 +102,13 @@ def _is_encode(function: tuple[str, ...]) -> bool:
 
 
 def _types(parameters: str) -> list[str]:
-    """Return the types in a parameter list, without `in` and `const`: `in vec3 n, vec3 view` has vec3 twice."""
+    """Return the types in a parameter list, without `in` and `const`; for `in vec3 n, vec3 view`, vec3 twice."""
     words = [parameter.split() for parameter in parameters.split(",")]
     return [" ".join(word for word in parameter[:-1] if word not in ("in", "const")) for parameter in words]
 
 
 def _no_encode(signatures: list[tuple[str, ...]]) -> str:
-    """Return in words why no function is an encode: the first one and its right form, or that none was found."""
+    """Return why no function is a valid encode: the right form of the first candidate, or that none was found."""
     if not signatures:
         return NO_FUNCTION
     kind, name, _ = signatures[0]
@@ -117,7 +117,7 @@ def _no_encode(signatures: list[tuple[str, ...]]) -> str:
 
 
 def _check_decode(file: UserFile, code: str, name: str, kind: str) -> None:
-    """Raise UsageError if decode is defined, but not with the right types."""
+    """Raise UsageError if a decode is defined, but with the wrong types."""
     signatures = [match.groups() for match in re.finditer(FUNCTION.format(name=f"{name}_decode"), code)]
     if signatures and not any(
         signature[0] == "vec3" and _types(signature[2]) in ([kind], [kind, "vec3"]) for signature in signatures
@@ -127,7 +127,7 @@ def _check_decode(file: UserFile, code: str, name: str, kind: str) -> None:
 
 
 def _should_be(function: tuple[str, ...], wanted: str) -> str:
-    """Return a message with a function as it is and as it must be, and what is wrong with it."""
+    """Return a message with the actual and the required form of a function, and what is wrong with it."""
     kind, name, parameters = function
     signature = f"{kind} {name}({' '.join(parameters.split())})"
     signature = "".join(letter if letter.isprintable() else "?" for letter in signature)

@@ -17,12 +17,12 @@ from ...ground.spelling import spelled
 
 
 def tuned(word: str) -> Encoding:
-    """Return the encoding that a name with parameters stands for, such as `stereographic:scale=1.31`.
+    """Return the encoding for a name with parameters, such as `stereographic:scale=1.31`.
 
-    The parameter `table` names a file to use in place of an encoding's own lookup table.
+    The parameter `table` names a file that replaces the encoding's own lookup table.
 
     Raises:
-        UsageError: an unknown encoding or parameter, an invalid value, a value out of range, or a file that is not a
+        UsageError: the encoding or a parameter is unknown, a value is invalid or out of range, or the file is not a
             table.
     """
     typed_name = word.partition(MARK)[0]

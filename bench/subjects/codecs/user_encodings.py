@@ -1,4 +1,4 @@
-"""Users' own encodings, measured like any other: files of GLSL, HLSL or Slang, and a Python twin next to one."""
+"""Users' own encodings, measured like any other: shader files, each with an optional Python twin next to it."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ UNIT = "{} are in [0, 1]; every storage holds them unchanged, signed and float i
 
 
 def looked_at(file: UserFile) -> Looked[Encoding]:
-    """Return a file's encoding after the first look, and lines to report about it.
+    """Return a file's encoding after a first look, and lines to report about the file.
 
     Raises:
         UsageError, MissingError: the file has no encoding that can be measured here.
-        SeveralEncodersError: the file has several pairs that round-trip.
+        SeveralEncodersError: several pairs in the file round-trip.
     """
     looks = _look(file)
     if pairs := looks.glsl.get("pairs"):
@@ -70,12 +70,12 @@ def looked_at(file: UserFile) -> Looked[Encoding]:
 
 
 class OneFunctionError(UsageError):
-    """A file has an encoder or a decoder without a partner.
+    """The error for a file that has an encoder or a decoder without a partner.
 
     Attributes:
         side: "encode" or "decode".
-        function: its name.
-        like: the encodings of the catalogue that it is of.
+        function: the function's name.
+        like: the encodings in the catalogue that the function matches.
     """
 
     def __init__(self, message: str, side: str, function: str, *like: str):
@@ -88,15 +88,15 @@ class Examined(NamedTuple):
 
     Attributes:
         encoding: the file's encoding.
-        domain: the directions it is made for.
+        domain: the directions that the encoding is made for.
         wrong: likely mistakes, as lines.
         notes: other remarks, as lines.
-        is_measurable: whether it can be measured.
-        like: the name of the encoding of the catalogue that it matches, in any axes; empty if it matches none.
-        bad: directions that decode to other directions, in its own axes.
-        lattice: the steps that it rounds codes to by itself; None if it does not round.
-        functions: its encoder and its decoder, ENCODE:DECODE.
-        failing: by other pairs of the file, ENCODE:DECODE, why they do not round-trip.
+        is_measurable: whether the encoding can be measured.
+        like: the name of the encoding in the catalogue that it matches, in any axes; empty if it matches no encoding.
+        bad: directions that decode to other directions, in the file's own axes.
+        lattice: the steps that the encoder itself rounds codes to; None if it does not round.
+        functions: the names of the encoder and the decoder, as ENCODE:DECODE.
+        failing: the reason why each other pair in the file does not round-trip, by ENCODE:DECODE.
     """
 
     encoding: Encoding
@@ -112,15 +112,15 @@ class Examined(NamedTuple):
 
 
 def examined(file: UserFile, domain: str = ANY) -> Examined:
-    """Return the encoding of a file with the mistakes and notes that a first look finds.
+    """Return a file's encoding with the likely mistakes and the notes from a close look.
 
     Args:
-        domain: the domain that its author made it for; "any" to find out.
+        domain: the domain that the author made the encoding for; ANY to find out.
 
     Raises:
-        UsageError: the file is not an encoding, or does not compile; SeveralEncodersError or OneFunctionError for
-            several pairs or a single function.
-        MissingError: there is no GL device to run it on.
+        UsageError: the file is not an encoding, or does not compile.
+        SeveralEncodersError, OneFunctionError: the file has several pairs, or only one function.
+        MissingError: no compiler or OpenGL device can run the file here.
     """
     check_word(str(file), ENCODINGS)
     known = spelled("encoding", str(file), ENCODINGS)
@@ -152,7 +152,7 @@ def examined(file: UserFile, domain: str = ANY) -> Examined:
 
 
 def _functions_in(file: UserFile, by: str) -> str:
-    """Return the names of the two functions of a file that are examined, in GLSL as `NAME_encode:NAME_decode`."""
+    """Return the names of the two functions that are examined; for GLSL, `NAME_encode:NAME_decode`."""
     if by or file.is_translated:
         return translated(file).named
     name, *_ = encode_of(file, read_shader(file.path))
@@ -160,24 +160,24 @@ def _functions_in(file: UserFile, by: str) -> str:
 
 
 def what_names(encoding: Encoding) -> str:
-    """Return in words what gives an encoding its name: its file, or its two functions."""
+    """Return in words where an encoding's name comes from: its file, or its two functions."""
     return "the file" if encoding.source and encoding.name.startswith(encoding.source.name) else "its two functions"
 
 
 def read_encoding(file: UserFile, fault: str = "", is_unit: bool = False, by: str = "") -> Encoding:
-    """Return an encoding from its file, and from the Python file of the same name if there is one.
+    """Return the encoding in a file, with Python functions from the Python file of the same name if it exists.
 
     Without a usable Python file, the Python functions of the encoding raise NoTwinError.
 
     Args:
-        file: its name, followed by its functions if they are needed.
-        fault: why the Python file must not be used; any attempt to measure it reports this.
-        is_unit: whether its codes are in [0, 1].
-        by: the language whose compiler reads it, if not its own.
+        file: the shader file, with the names of its functions if they are needed.
+        fault: why the Python file must not be used, for the message of NoTwinError; empty to use it.
+        is_unit: whether the codes are in [0, 1].
+        by: the language whose compiler reads the file, if not the file's own language.
 
     Raises:
-        UsageError: it cannot be read, or does not define its two functions.
-        MissingError: the compiler of its language is missing.
+        UsageError: the file cannot be read, or does not define the two functions.
+        MissingError: the compiler of the language is missing.
     """
     text = _text(file, is_unit, by)
     encode, decode = _lacking_functions(fault) if fault else _twin_functions(file.twin)
@@ -188,7 +188,7 @@ def read_encoding(file: UserFile, fault: str = "", is_unit: bool = False, by: st
 
 
 def encoding_alone(file: UserFile, translation: Translated) -> Encoding:
-    """Return the encoding of a file that has only one of the two functions; the other function returns 0."""
+    """Return the encoding of a file with only an encoder or only a decoder; the missing function returns 0."""
     text = _Text(translation.name, translation.components, translation.glsl(False), translation.prefix)
     return _encoding(file, text, *_lacking_functions(NO_TWIN))
 
@@ -212,12 +212,12 @@ def _encoding(file: UserFile, text: _Text, encode: Callable[..., Any], decode: C
 
 
 def _of_unit(encode: Callable[..., Any], decode: Callable[..., Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Return an encode and a decode with codes in [-1, 1], made from functions with codes in [0, 1]."""
+    """Convert an encode and a decode with codes in [0, 1] to functions with codes in [-1, 1]."""
     return lambda n, view: encode(n, view) * 2.0 - 1.0, lambda e, view: decode(e * 0.5 + 0.5, view)
 
 
 class _Text(NamedTuple):
-    """An encoding's name, components, GLSL file and function prefix; and whether it is packed or declares halves."""
+    """An encoding's name, component count, GLSL file and function prefix; whether it is packed or declares halves."""
 
     name: str
     components: int
@@ -248,7 +248,7 @@ def _text(file: UserFile, is_unit: bool, by: str) -> _Text:
 
 def _of_unit_text(file: Path, name: str, components: int) -> _Text:
     """Write a GLSL file that includes a file with codes in [0, 1] and converts its functions to codes in [-1, 1];
-    return its text entry. Raises UsageError if the name of the included file has quotes or control characters."""
+    return its _Text. Raises UsageError if the path of the included file has quotes or control characters."""
     sizes = {"encode": (components, NORMAL), "decode": (NORMAL, components)}
     encoder, decoder = (
         Function(f"{name}_{side}", output_size, (given, NORMAL) if takes_view(file, f"{name}_{side}") else (given,))
@@ -263,8 +263,8 @@ def _of_unit_text(file: Path, name: str, components: int) -> _Text:
 
 
 def _with_includes(file: UserFile) -> str:
-    """Return the text of a file and its includes as its compiler gets it, without comments. Raises UsageError if it
-    cannot be read, or includes a file that is elsewhere."""
+    """Return the text of a file and its includes as the compiler receives it, without comments. Raises UsageError if
+    the file cannot be read, or includes a file from a folder that it may not read."""
     try:
         return bare(Shader(file.path, may_read=Source(file).may_read).text)
     except ShaderError as error:
@@ -272,7 +272,7 @@ def _with_includes(file: UserFile) -> str:
 
 
 def _lacking_functions(reason: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Return an encode and a decode that raise NoTwinError with a reason."""
+    """Return an encode and a decode that raise NoTwinError with this reason."""
     return lacking_twin(reason), lacking_twin(reason)
 
 
@@ -294,7 +294,7 @@ def _twin_functions(path: Path) -> tuple[Callable[..., Any], Callable[..., Any]]
 
 
 def _guarded(path: Path, function: Callable[..., Any], kinds: tuple[type, ...]) -> Callable[..., Any]:
-    """Return a user's function that raises NoTwinError if the call fails or returns another type than `kinds`."""
+    """Wrap a user's function to raise NoTwinError if the call fails or the result's type is not one of `kinds`."""
     wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
 
     def guarded(*given: Any) -> Any:
@@ -316,15 +316,15 @@ def _guarded(path: Path, function: Callable[..., Any], kinds: tuple[type, ...]) 
 
 @dataclass(frozen=True)
 class Looks:
-    """The findings of a first look, see first_look.py.
+    """The findings of a first look (see first_look.py).
 
     Attributes:
-        file: the file, with the names of its functions if they are needed.
+        file: the user's file, with the names of its functions if they are needed.
         glsl: findings on the shader.
-        said: remarks of a translation.
+        said: remarks from the translation.
         twin: findings on the Python twin; empty without a twin, or if the shader is unusable.
-        fault: why the twin cannot be measured; empty if it can be.
-        is_asked: whether the user says what it is made for.
+        fault: why the twin cannot be measured; empty if it can be measured.
+        is_asked: whether the user states what the encoding is made for.
     """
 
     file: UserFile
@@ -342,12 +342,12 @@ class Looks:
 
     @property
     def is_unit(self) -> bool:
-        """Whether its codes are in [0, 1]."""
+        """Whether the encoding's codes are in [0, 1]."""
         return self.glsl.get("is_unit", False)
 
     @property
     def domain(self) -> Domain:
-        """The domain that the shader is made for, as far as the directions that round-trip show it."""
+        """The domain that the shader is made for, judged by the directions that round-trip."""
         return Domain(self.glsl.get("domain") or SPHERE.name, *self.glsl.get("half", ()))
 
     @property
@@ -357,19 +357,19 @@ class Looks:
 
     @property
     def notes(self) -> list[str]:
-        """The guesses about the file, in sentences."""
+        """Remarks on the file and what was assumed about it, in sentences."""
         notes = [*self.said, *self.glsl.get("notes", []), *([self.unit_note] if self.is_unit else [])]
         return [*notes, *self._of_domain()]
 
     @property
     def unit_note(self) -> str:
-        """The note that codes are in [0, 1], and of which normals."""
+        """The note that codes are in [0, 1], and for which normals."""
         made_for = self.domain.made_for
         return UNIT.format(f"the codes of {made_for}" if made_for else "its codes")
 
     def _of_domain(self) -> Iterator[str]:
-        """Yield at most one sentence: the normals that the file is assumed to be made for, or, if the user gave a
-        domain, where outside of that domain a function is not finite."""
+        """Yield at most one sentence: the normals that the file is assumed to be made for or, if the user gave a
+        domain, where a function is not finite outside that domain."""
         domain, hole = self.domain, self.glsl.get("hole")
         if self.is_asked and hole:
             yield f"it is meant for {domain.made_for}; elsewhere {hole}"
@@ -406,15 +406,15 @@ def _look(file: UserFile, domain: str = "") -> Looks:
 
 
 def file_with(file: UserFile, findings: Mapping[str, Any]) -> UserFile:
-    """Return a file with the findings of a first look: its language, if the extension is another's, and the only pair
-    of several that round-trips. Without these findings the file is unchanged."""
+    """Return a file with what a first look found: its language, if its extension is another language's, and the only
+    pair of several that round-trips. Without these findings the file is unchanged."""
     if "language" in findings:
         file = file.with_language(findings["language"])
     return file.with_pair(findings["pair"]) if "pair" in findings else file
 
 
 def _said_of(file: UserFile, by: str) -> tuple[str, ...]:
-    """Return the notes of a file's translation; for GLSL, a remark on each encoding that is not measured."""
+    """Return the notes from a file's translation; for GLSL, a remark on each encoding that is not measured."""
     if by or file.is_translated:
         return tuple(translated(file).notes)
     name, _, others = encode_of(file, read_shader(file.path))
@@ -422,7 +422,7 @@ def _said_of(file: UserFile, by: str) -> tuple[str, ...]:
 
 
 def twin_is_looked_at(file: UserFile, findings: dict[str, Any]) -> bool:
-    """Whether a shader with these findings has a twin and is usable."""
+    """Whether a file has a Python twin, and a shader that is usable according to the findings."""
     return not {"error", "broken"} & set(findings) and file.twin.exists()
 
 
@@ -435,7 +435,7 @@ def _answers(output: str) -> Iterator[dict[str, Any]]:
 
 
 def _check(file: UserFile, findings: dict[str, Any]) -> None:
-    """Raise UsageError if findings on a shader have an error, such as of its compiler, or call it not finite."""
+    """Raise UsageError if the findings on a shader include an error or say that it cannot be measured."""
     if "error" in findings:
         raise UsageError(findings["error"])
     if "broken" in findings:

@@ -1,4 +1,4 @@
-"""Depths of users' images: their channel, the meaning of its numbers, and the pixels that are surface."""
+"""Depths from users' images: their channel, the meaning of its values, and the pixels that show a surface."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ class DepthReading:
     """Options for reading an image of depths.
 
     Attributes:
-        channel: its name; None for the channel named like depths, or the only channel.
+        channel: the name of the channel; None for the channel that is named like depths, or the only channel.
         depths_are: VIEW, or one of CODES.
         depth_unit: the length of 1 in a view depth, in the unit of the planes.
-        fov: vertical, in degrees; None if it is unknown.
+        fov: the vertical angle of view in degrees; None if it is unknown.
     """
 
     channel: str | None = None
@@ -40,17 +40,16 @@ class DepthReading:
 
 @dataclass(frozen=True, eq=False)
 class DepthImage:
-    """The depths of a frame.
+    """The depths in a frame.
 
     Attributes:
         name: the file's name.
-        numbers: the numbers in the file, whole numbers of a code as fractions of 1; float64 of shape (height,
-            width).
-        code: their meaning: VIEW, or a depth encoding's name.
-        channel: the channel that was asked for.
+        numbers: the values in the file, with integer codes as fractions of 1; float64 of shape (height, width).
+        code: the meaning of the values: VIEW, or a depth encoding's name.
+        channel: the requested channel.
         unit: the length of 1 in a view depth, in the unit of the planes.
-        fov: vertical, in degrees; None if it is unknown.
-        notes: remarks on them.
+        fov: the vertical angle of view in degrees; None if it is unknown.
+        notes: remarks on the depths.
     """
 
     name: str
@@ -76,7 +75,8 @@ class DepthImage:
             return np.abs(np.asarray(encoding.decode(self.numbers, np.float64(camera.near), np.float64(camera.far))))
 
     def surface(self, camera: Camera) -> np.ndarray:
-        """Return depths on surface, 0 elsewhere: float32 of shape (height, width). The far plane is not surface."""
+        """Return depths at pixels that show a surface, 0 elsewhere; float32 of shape (height, width). The far plane
+        does not count as a surface."""
         depths = self.depths(camera)
         with np.errstate(over="ignore"):
             float_depths = depths.astype(np.float32)
@@ -93,15 +93,16 @@ class DepthImage:
 
 
 def read_depths(path: Path, channel: str | None) -> Pixels:
-    """Read the depth channel of an image as Pixels of one plane, (1, height, width); if `channel` is None, the
-    channel is chosen by its name. Raises UsageError."""
+    """Read the depth channel of an image as Pixels with one plane, of shape (1, height, width). If `channel` is None,
+    the channel is chosen by its name. Raises UsageError."""
     if path.suffix.lower() not in READERS:
         raise UsageError(f"{path}: not an image of depths; supported: {', '.join(READERS)}")
     return read_plane(path, lambda names: [_channel(path, names, channel)])
 
 
 def depth_image(path: Path, pixels: Pixels, reading: DepthReading) -> DepthImage:
-    """Return the pixels of a file as depths, interpreted by `reading`. Raises UsageError if they do not fit it."""
+    """Return the pixels of a file as depths, interpreted according to `reading`. Raises UsageError if they do not
+    match `reading`."""
     code = reading.depths_are
     numbers = pixels.planes[0].astype(np.float64)
     if code != VIEW:
@@ -112,7 +113,7 @@ def depth_image(path: Path, pixels: Pixels, reading: DepthReading) -> DepthImage
 
 
 def _check_code(path: Path, numbers: np.ndarray, code: str) -> None:
-    """Raise UsageError if numbers are outside the range of a depth encoding, [0, 1]."""
+    """Raise UsageError if values are outside the range of a depth encoding, [0, 1]."""
     valid_numbers = numbers[~np.isnan(numbers)]
     if len(valid_numbers) and not 0 <= valid_numbers.min() <= valid_numbers.max() <= 1:
         what = f"its values are {valid_numbers.min():.3g} to {valid_numbers.max():.3g}, but {code} ranges from 0 to 1"
@@ -120,8 +121,8 @@ def _check_code(path: Path, numbers: np.ndarray, code: str) -> None:
 
 
 def _channel(path: Path, names: Sequence[str], asked: str | None) -> str:
-    """Return the channel of depths: the requested channel, the channel named like depths, or the only channel. Raises
-    UsageError if the requested channel is missing, or if several channels may be depths."""
+    """Return the name of the depth channel: the requested channel, the channel named like depths, or the only
+    channel. Raises UsageError if the requested channel is missing, or if several channels may contain depths."""
     shown = ", ".join(names[:40])
     if asked is not None:
         if asked not in names:
@@ -134,7 +135,7 @@ def _channel(path: Path, names: Sequence[str], asked: str | None) -> str:
 
 
 def _is_called_like_depths(name: str, names: Sequence[str]) -> bool:
-    """Whether a channel is named like depths: Z, Depth, ViewLayer.Depth.Z; but not the Z of three axes."""
+    """Whether a channel is named like depths, such as Z or ViewLayer.Depth.Z, but is not the Z of X, Y and Z."""
     *_, last = words = re.split(r"[._ ]", name.lower())
     has_axes = f"{name[:-1]}{'X' if name[-1:] == 'Z' else 'x'}" in names
     return any("depth" in word for word in words) or (last == "z" and not has_axes)

@@ -1,1 +1,1 @@
-"""The surroundings of scenes: environments by their names and from files."""
+"""Surroundings of scenes: environments by name and from files."""

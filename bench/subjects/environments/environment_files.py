@@ -1,4 +1,4 @@
-"""Environments from equirectangular .hdr and .exr files, no larger than is of use."""
+"""Environments from equirectangular .hdr and .exr files, reduced to a useful size."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ def environment_of(path: Path) -> Environment:
     """Return the environment in a file, averaged to at most 1024 x 512 texels and to a width that is a multiple of 8.
 
     Raises:
-        UsageError: it cannot be read, is not equirectangular, or its radiance is invalid; one line with a remedy.
+        UsageError: the file cannot be read, is not equirectangular, or has invalid radiance. The message is one line
+            with a remedy.
     """
 
     def choose(names: Sequence[str]) -> Sequence[str]:
@@ -43,7 +44,7 @@ def environment_of(path: Path) -> Environment:
 
 
 def _colours(path: Path, names: Sequence[str]) -> Sequence[str]:
-    """Return the names of the red, green and blue channels; others are ignored. Raises UsageError without them."""
+    """Return the names of the red, green and blue channels. Raises UsageError if any of these channels is missing."""
     channels = {name.upper(): name for name in reversed(names)}
     if not set(COLOURS) <= set(channels):
         raise refused(path, f"it has {', '.join(names[:40])}", "it must have channels R, G and B; save it in colour")
@@ -66,7 +67,7 @@ def _check(path: Path, sides: tuple[int, int], channels: int) -> None:
 
 
 def _check_light(path: Path, planes: np.ndarray) -> None:
-    """Raise UsageError for radiance that is negative or not finite, with the place of the first such value."""
+    """Raise UsageError for radiance that is negative or not finite, with the position of the first such value."""
     wrong = ~(np.isfinite(planes) & (planes >= 0))
     if wrong.any():
         raise _no_light(path, planes, wrong)

@@ -1,4 +1,4 @@
-"""Environments by name: those of the catalogue, and users' files."""
+"""Environments by name: from the catalogue, and from users' files."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ OTHERS: Mapping[str, str] = MappingProxyType(
 
 
 def environment_named(word: str) -> Environment:
-    """Return the environment that a word names: an entry of the catalogue, or a file. A sun in it becomes a light; a
-    lamp of the catalogue does not.
+    """Return the environment for a word: an entry in the catalogue, or a file. A sun in a file's environment becomes
+    a light; a lamp in the catalogue does not.
 
     Raises:
-        UsageError: an unknown name, or a file that is not an environment; one line.
+        UsageError: a name is unknown, or a file is not an environment; the message is one line.
     """
     ending = Path(word).suffix.lower()
     if ending in ENDINGS:

@@ -17,7 +17,7 @@ def scenes_under(word: str | None, makers: Iterable[SceneMaker]) -> Iterator[Sce
     """Yield scenes under the environment that a word names, with its sun as a light; unchanged if the word is None.
 
     Raises:
-        UsageError: an unknown environment, or a scene that is not metallic-roughness.
+        UsageError: the environment is unknown, or a scene does not use the metallic-roughness workflow.
     """
     if word is None:
         yield from makers

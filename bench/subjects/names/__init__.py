@@ -1,1 +1,1 @@
-"""The subjects that tables share, by the names that users give them."""
+"""Subjects that several tables share, by name."""

@@ -1,4 +1,4 @@
-"""Backends by name, and the choice of those that a table supports."""
+"""Backends by name, and the choice of backends that a table supports."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ BACKENDS = ("jax", "glsl", "wgsl")
 
 
 def backends_named(names: Names, has: Collection[str]) -> list[str]:
-    """Return the back ends that names stand for and that a table has, or all that it has for "all". Others are named
-    on standard error.
+    """Return the named backends that a table supports, or all of them for "all". Unsupported backends are reported on
+    standard error.
 
     Raises:
-        UsageError: an unknown name, or none that the table has.
+        UsageError: a name is unknown, or the table supports no named backend.
     """
     if "all" in names:
         return list(has)
@@ -34,8 +34,8 @@ def backends_here(names: Names, has: Collection[str]) -> list[str]:
     """Return the named backends that a table supports, after a check of this machine.
 
     Raises:
-        UsageError: as `backends_named`.
-        MissingError: JAX is broken, or only GLSL is requested and there is no OpenGL device.
+        UsageError: the same errors as in `backends_named`.
+        MissingError: JAX is broken, or only GLSL is requested and no OpenGL device is available.
     """
     # It imports JAX, which charts that name back ends do not need.
     from ...ground.machine.devices import require_device, require_jax

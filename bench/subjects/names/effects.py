@@ -15,10 +15,10 @@ from ...ground.output.errors import UsageError
 
 
 def effects_named(names: Names) -> list[ChosenEffect]:
-    """Return the effects that names stand for, each with its settings.
+    """Return the effects with these names, each with its settings.
 
     Raises:
-        UsageError: an unknown effect or setting, or a value out of range.
+        UsageError: an effect or a setting is unknown, or a value is out of range.
     """
     effects: dict[str, ChosenEffect] = {}
     for word in map(str, names or ("",)):
@@ -30,13 +30,13 @@ def effects_named(names: Names) -> list[ChosenEffect]:
 
 
 def name_of(effects: Iterable[ChosenEffect]) -> str | None:
-    """Return the names of the effects of an image, joined by commas; None if there are no effects."""
+    """Return the names of an image's effects, joined by commas; None without effects."""
     return ",".join(effect.name for effect in effects) or None
 
 
 def pipeline_with(pipeline: Pipeline, effects: Iterable[ChosenEffect], complaints: list[str]) -> Pipeline | None:
-    """Return a pipeline with the passes of effects added. If two effects produce the same result, or an effect does
-    not fit, append a line to `complaints` and return None."""
+    """Return a pipeline with the passes of effects added. If two effects produce the same result, or if an effect
+    does not fit the pipeline, append a line to `complaints` and return None."""
     makers: dict[str, str] = {}
     for effect in effects:
         twin = makers.setdefault(effect.effect.result.name, effect.name)
@@ -61,7 +61,7 @@ def _fits(pipeline: Pipeline, effect: ChosenEffect) -> bool:
 
 
 def lacking(effects: Iterable[ChosenEffect], name: str, scene: Scene) -> str | None:
-    """Return in words the first effect that lacks an input in a scene, and why; None if no effect does.
+    """Return in words the first effect that lacks an input in a scene, and why; None if no effect lacks any.
 
     Args:
         name: the scene's name in the message."""

@@ -1,4 +1,4 @@
-"""Light buffers by name, over the range that a name may give, and in the storage that it may give."""
+"""Light buffers by name, with an optional range and an optional storage in the name."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ PLAIN = "plain"
 
 
 def light_buffers_named(names: Iterable[Word]) -> list[LightCodec]:
-    """Return the light codecs that names stand for; `linear:1` and `linear:range=1` cover [0, 1], and
+    """Return the light codecs with these names; `linear:1` and `linear:range=1` cover [0, 1], and
     `linear/unorm:10:10:10` uses other bits. Bits alone, as in `ufloat:6:9`, store light unencoded.
 
     Raises:
-        UsageError: an unknown name, a range that is invalid or that the encoding does not have, or a storage that
-            does not fit the encoding.
+        UsageError: a name is unknown, a range is invalid or not supported by the encoding, or a storage does not fit
+            the encoding.
     """
     words = list(names)
     typed_codecs = {word: _said_codec(word) for word in words if isinstance(word, str) and (":" in word or "/" in word)}
@@ -33,7 +33,7 @@ def light_buffers_named(names: Iterable[Word]) -> list[LightCodec]:
 
 
 def _said_codec(word: str) -> LightCodec:
-    """Return the codec of a name with a range, a storage or both: `linear:1/unorm:10:10:10`. Raises UsageError."""
+    """Return the codec for a name with a range, a storage or both: `linear:1/unorm:10:10:10`. Raises UsageError."""
     name, is_in, storage = (PLAIN, "/", word) if RULE.match(word) else word.partition("/")
     codec = ranged_light_buffer(name) if ":" in name else LIGHT_BUFFERS.get(name) or _plain_codec(name, word)
     if not is_in:
@@ -48,7 +48,7 @@ def _said_codec(word: str) -> LightCodec:
 
 
 def _plain_codec(name: str, word: str) -> LightCodec:
-    """Return the codec that stores light unencoded. Raises UsageError if the name is not that of plain light."""
+    """Return the codec that stores light unencoded. Raises UsageError if the name is not the name of plain light."""
     if name != PLAIN:
         known = [*LIGHT_ENCODINGS]
         raise UsageError(f"light buffer {word}: expected one of {', '.join(known)}, as in linear/unorm:10:10:10")
@@ -56,10 +56,10 @@ def _plain_codec(name: str, word: str) -> LightCodec:
 
 
 def ranged_light_buffer(word: str) -> LightCodec:
-    """Return the light codec over the range that a name gives.
+    """Return the light codec over the range in a name, such as `linear:1`.
 
     Raises:
-        UsageError: a range that is invalid or that the encoding does not have.
+        UsageError: the range is invalid, or the encoding does not support ranges.
     """
     name, text = name_and_range(word)
     known = {name: codec for name, codec in LIGHT_BUFFERS.items() if codec.encoding.ranged}
@@ -70,14 +70,15 @@ def ranged_light_buffer(word: str) -> LightCodec:
 
 
 def name_and_range(word: str) -> tuple[str, str]:
-    """Return a name and the text of its range: `rgbm` and `8` of `rgbm:8` and of `rgbm:range=8`; the text is empty
+    """Return a name and the text of its range: `rgbm` and `8` for `rgbm:8` or `rgbm:range=8`. The text is empty
     without a range."""
     name, _, text = word.partition(":")
     return name.strip(), text.strip().removeprefix("range=")
 
 
 def range_in(what: str, text: str) -> float:
-    """Return the range that a text gives. Raises UsageError, which names `what`, for an invalid range."""
+    """Return the range that a text specifies. Raises UsageError, with a message that begins with `what`, for an
+    invalid range."""
     try:
         limit = float(text)
     except ValueError:

@@ -1,4 +1,4 @@
-"""The names to choose from. Imports nothing heavy."""
+"""Lists of the names to choose from. Imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _encodings() -> list[Row]:
 
 
 def _settings_of(encoding: Encoding) -> str | None:
-    """Return `settings:` and the settings that may follow an encoding's name, joined by commas; None if none."""
+    """Return `settings:` and the settings allowed after an encoding's name, joined by commas; None if it has none."""
     settings = ", ".join(known_settings(encoding))
     return f"settings: {settings}" if settings else None
 
@@ -89,12 +89,12 @@ def _storages() -> list[Row]:
 
 
 def _rule_text(storage: Storage) -> str:
-    """Return the bits of a storage as text; for floats after the number of channels, as in `4 x ...`."""
+    """Return the bits of a storage as text; for floats, with the number of channels in front, as in `4 x ...`."""
     return f"{storage.channels} x {rule_of(storage)}" if storage.kind == "float" else rule_of(storage)
 
 
 def _texel_text(storage: Storage) -> str:
-    """Return a phrase on how a storage places its numbers in a texel."""
+    """Return a phrase on the size of a storage's texel and how components are placed in it."""
     texel = f"{storage.texel_bytes} bytes"
     return f"{texel}, across channels" if storage.is_packed else f"{texel}, one channel each"
 
@@ -161,7 +161,7 @@ def _pipelines() -> list[Row]:
 
 
 def said(setting: Number | Choice) -> str:
-    """Return a number's usual value and range, such as `1 (0.5 to 2)`; for a choice, its words, joined by `|`."""
+    """Return a number's default and range as text, such as `1 (0.5 to 2)`; for a choice, its words, joined by `|`."""
     if isinstance(setting, Choice):
         return "|".join(setting.words)
     return f"{setting.usual:g} ({setting.least:g} to {setting.most:g})"
@@ -209,5 +209,5 @@ KINDS = {
 
 
 def listing(what: Names) -> list[Row]:
-    """Return rows for some of KINDS or "all". Raises UsageError."""
+    """Return the rows that list some of KINDS, or all of them for "all". Raises UsageError."""
     return [row for rows in choose("list", what, KINDS) for row in rows()]

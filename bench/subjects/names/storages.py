@@ -1,4 +1,4 @@
-"""Storages as named on the command line: by name, by an API's format name, or by their bits."""
+"""Storages as named on the command line: by name, by an API's format name, or by bits."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ VERTEX = re.compile(r"(?P<kind>unorm|snorm|float)(?:(?P<bits>\d+(?:-\d+)+)|(?P<s
 def storages_named(
     names: Iterable[Word], known: Mapping[str, Storage] = STORAGES, what: str = "storage"
 ) -> list[Storage]:
-    """Return the storages that names stand for. Bits are names too, and so are ranges of bits: unorm:4:4..8:8.
+    """Return the storages with these names. Bits count as names, and so do ranges of bits, such as unorm:4:4..8:8.
 
     Args:
         known: the storages that "all" stands for and that messages list.
         what: the word for a storage in messages.
 
     Raises:
-        UsageError: an unknown name, or invalid bits; one line.
+        UsageError: a name is unknown, or bits are invalid; the message is one line.
     """
     own = [word for word in names if isinstance(word, Given)]
     storages = storages_said(word for word in names if isinstance(word, str))
@@ -46,27 +46,27 @@ def storages_named(
 
 
 def roundings_named(names: Names, known: Collection[str] = ROUNDINGS) -> list[str]:
-    """Return ways to round by their names. Raises UsageError for a name that is not in `known`."""
+    """Return rounding modes by name. Raises UsageError for a name that is not in `known`."""
     if DITHERED not in known and DITHERED in names:
         raise UsageError(f"--rounding {DITHERED}: this command adds no noise; use quality or render")
     return choose("rounding", names, {name: name for name in known})
 
 
 def storages_said(names: Iterable[str], others: Collection[str] = ()) -> dict[str, Storage | None]:
-    """Return the storage that each name gives by its bits or format, with ranges expanded; None for any other name.
+    """Return by name the storage that its bits or format specify, with ranges expanded; None for any other name.
 
     Args:
-        others: names that stand for something else.
+        others: names that have a different meaning.
 
     Raises:
-        UsageError: invalid bits; one line.
+        UsageError: bits are invalid; the message is one line.
     """
     words = [word for name in names for word in _in_range(name)]
     return {word: None if word in others else _storage_of(word) for word in words}
 
 
 def _storage_of(word: str) -> Storage | None:
-    """Return the storage that a word gives by its bits or by a format; None for any other word. Raises UsageError."""
+    """Return the storage that a word specifies by bits or by a format; None for any other word. Raises UsageError."""
     try:
         return storage_of(word) or storage_of(_rule_of(word) or spelled("storage", word, FORMATS) or "")
     except ValueError as error:
@@ -74,7 +74,7 @@ def _storage_of(word: str) -> Storage | None:
 
 
 def _rule_of(word: str) -> str | None:
-    """Return the bits, as `unorm:5:6:5`, of a format that an API names and the catalogue lacks, such as B5G6R5_UNORM;
+    """Return the bits, such as `unorm:5:6:5`, of an API's format that is not in the catalogue, such as B5G6R5_UNORM;
     None for any other word."""
     if vertex := VERTEX.fullmatch(word):
         bits = vertex["bits"].split("-") if vertex["bits"] else [vertex["size"]] * int(vertex["count"])
@@ -90,12 +90,13 @@ def _floats_of(size: str | None, count: int) -> str | None:
 
 
 def _in_range(word: str) -> list[str]:
-    """Return the names of a range, `unorm:4:4..8:8`, in which numbers grow by a bit from one to the next; for a name
-    alone, a list of this name.
+    """Return the names in a range such as `unorm:4:4..8:8`, in which each bit count grows by one from name to name;
+    for a single name, a list of only this name.
 
     Raises UsageError for an invalid range.
     """
-    word = word.lower() if RULE.match(word) else word
+    # Bits alone are those of a UNORM target.
+    word = f"unorm:{word}" if re.fullmatch(r"\d+(:\d+)+", word) else word.lower() if RULE.match(word) else word
     match = RANGE.fullmatch(word)
     if not match and RULE.match(word) and not BY_RULE.fullmatch(word):
         raise UsageError(

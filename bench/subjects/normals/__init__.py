@@ -1,1 +1,1 @@
-"""Sets of normals: uniform ones, scenes and captured frames."""
+"""Sets of normals: uniform sets, scenes and captured frames."""

@@ -1,10 +1,10 @@
 """Likely mistakes in a captured frame, found from normals that no camera can see.
 
-A camera sees a surface from its front: n . ray < 0 for the ray from the eye through the pixel. In a frame that is
-read as intended, nearly all normals obey that at some angle of view. In a frame of another space, with a transposed
+A camera sees a surface from its front: n . ray < 0 for the ray from the eye through the pixel. If a frame is read as
+intended, nearly all normals satisfy this at some angle of view. If it is read in the wrong space, with a transposed
 matrix or with swapped channels, many do not.
 
-Arrays are float of shape (count, 3): unit normals as the file has them, before they are turned to view space.
+Arrays are float of shape (count, 3): unit normals as in the file, before the transform to view space.
 """
 
 from __future__ import annotations
@@ -43,13 +43,13 @@ IN_VIEW_SPACE: Mapping[str, np.ndarray] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Pixels:
-    """Some pixels of a frame.
+    """A sample of a frame's pixels.
 
     Attributes:
-        n: their normals.
-        across, up: their places in the image, each of shape (count,), in halves of its height from its middle; 0
-            for normals without places.
-        has_places: whether they have places.
+        n: the normals of the pixels.
+        across, up: the positions of the pixels relative to the image's centre, each of shape (count,), in half image
+            heights; 0 for normals without positions.
+        has_places: whether the pixels have positions.
     """
 
     n: np.ndarray
@@ -58,24 +58,24 @@ class Pixels:
     has_places: bool
 
     def away(self, to_view: np.ndarray, fov: float) -> float:
-        """Return the share of normals, turned by `to_view` (3, 3), that no camera of this angle of view sees."""
+        """Return the share of normals that a camera with this angle of view cannot see, after `to_view` (3, 3)."""
         half = math.tan(math.radians(fov) / 2)
         x, y, z = to_view @ self.n.T
         along = (x * self.across + y * self.up) * half - z
         return float(np.mean(along > BEYOND * np.sqrt(1 + half * half * (self.across**2 + self.up**2))))
 
     def least_away(self, to_view: np.ndarray, fov: float | None) -> tuple[float, float]:
-        """Return the smallest share by `away` and its angle of view: `fov`, or any of FIELDS if that is None."""
+        """Return the smallest share by `away` and its angle of view: `fov`, or any of FIELDS if it is None."""
         fields = FIELDS if fov is None and self.has_places else (fov or 0.0,)
         return min((self.away(to_view, field), field) for field in fields)
 
 
 def some_pixels(n: np.ndarray, covered: np.ndarray) -> Pixels:
-    """Return at most MOST of a frame's pixels, spread over it.
+    """Return at most MOST of a frame's pixels, spread over the frame.
 
     Args:
-        n: (height, width, 3) or (count, 3).
-        covered: which pixels count, of the shape before the 3.
+        n: normals of shape (height, width, 3) or (count, 3).
+        covered: which normals count, of shape (height, width) or (count,).
     """
     index = np.flatnonzero(covered)
     index = index[:: max(1, -(-len(index) // MOST))]
@@ -88,11 +88,11 @@ def some_pixels(n: np.ndarray, covered: np.ndarray) -> Pixels:
 
 
 class Finding(NamedTuple):
-    """A likely mistake in the space that normals are read in.
+    """A likely mistake in the space in which normals are read.
 
     Attributes:
         said: the message, one line without the remedy.
-        remedy: a matrix (3, 3) to use instead, an angle of view, or None if no known remedy helps.
+        remedy: the matrix (3, 3) or angle of view to use instead; None if no known remedy helps.
     """
 
     said: str
@@ -100,11 +100,11 @@ class Finding(NamedTuple):
 
 
 def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: bool) -> Finding | None:
-    """Return in words the share of normals that face away, with a correction if a known misreading explains them;
-    None if few normals face away.
+    """Return a message on the share of normals that face away, with a remedy if a known misreading explains it; None
+    if few normals face away.
 
     Args:
-        to_view: the matrix that turns the file's normals to view space, as the frame is read.
+        to_view: the matrix that transforms the file's normals to view space as the frame is read.
         fov: the vertical angle of view in degrees; None if it was not given.
         is_world: whether `to_view` is a view matrix.
     """
@@ -125,7 +125,7 @@ def which_way(pixels: Pixels, to_view: np.ndarray, fov: float | None, is_world: 
 
 
 def _of_a_matrix(to_view: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the possible misreadings of a frame in world space, with the matrices that correct them."""
+    """Return the possible mistakes in a world-to-view matrix: for each description, the matrix to use instead."""
     return {
         "the matrix is transposed (it may be for row vectors, or transform view space to world space)": to_view.T,
         "the matrix transforms to a left-handed view space, z into the screen": MIRRORED @ to_view,

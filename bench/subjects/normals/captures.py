@@ -1,4 +1,4 @@
-"""Captured frames as sets of normals: the choice and the meaning of channels, the background, and the checks."""
+"""Captured frames as sets of normals: choice and meaning of the channels, the background, and checks."""
 
 from __future__ import annotations
 
@@ -56,16 +56,16 @@ CURVES: Mapping[str, Callable[[np.ndarray], np.ndarray]] = MappingProxyType(
 
 @dataclass(frozen=True, eq=False)
 class Captured:
-    """The normals of an image file.
+    """The normals in an image file.
 
     Attributes:
-        normals: (3, height, width) or (3, count), in the space that they are encoded in; unit where they count,
-            else 0.
-        covered: which of them count.
-        not_finite: how many are NaN or infinite on surface.
+        normals: planes of shape (3, height, width) or (3, count), in the space in which normals are encoded; unit
+            length where `covered`, otherwise 0.
+        covered: which normals count.
+        not_finite: the number of surface normals that are NaN or infinite.
         own_error_deg: the mean angle of the file's own error; None if it is unknown.
-        turns: how they were turned.
-        notes: remarks on them.
+        turns: the transforms that were applied.
+        notes: remarks on the normals.
     """
 
     normals: np.ndarray
@@ -77,7 +77,7 @@ class Captured:
 
 
 def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
-    """Return the normals of an image file as a set, and remarks on them. Raises as `captured` does."""
+    """Return the normals in an image file as a set, and remarks on them. Raises UsageError like `captured`."""
     image = captured(path, reading)
     shape = image.covered.shape if image.covered.ndim == 2 else None
     n = np.moveaxis(image.normals, 0, -1).astype(np.float32)
@@ -89,13 +89,13 @@ def capture(path: Path, reading: Reading) -> tuple[NormalSet, list[str]]:
 
 
 def captured(path: Path, reading: Reading, within: np.ndarray | None = None) -> Captured:
-    """Return the normals of an image file.
+    """Return the normals in an image file.
 
     Args:
-        within: mask of the pixels that may show a surface, of the image's shape; None for all pixels.
+        within: a mask of the pixels that may show a surface, of the image's shape; None for all pixels.
 
     Raises:
-        UsageError: the file cannot be read, or does not hold unit normals as described by `reading`.
+        UsageError: the file cannot be read, or does not contain unit normals as described by `reading`.
     """
     reading = checked(reading)
     turns, notes = turns_of(reading)
@@ -125,28 +125,28 @@ def captured(path: Path, reading: Reading, within: np.ndarray | None = None) -> 
 
 
 def check_size(path: Path, shape: tuple[int, ...], wanted: tuple[int, ...]) -> None:
-    """Raise UsageError if an image does not have the (height, width) of another."""
+    """Raise UsageError if an image does not have the wanted size, (height, width), of the frame's depth."""
     if shape != wanted:
         sides, others = (" x ".join(map(str, size[::-1])) for size in (shape, wanted))
         raise refused(path, f"it is {sides}, but the depth is {others}", "save all images of a frame in the same size")
 
 
 def is_in_object_space(path: Path, reading: Reading) -> bool:
-    """Whether a file is a point cloud and no option says that a camera saw it."""
+    """Whether a file is a point cloud, and no option implies that a camera captured it."""
     usual = Reading()
     options = (reading.space, reading.code_space, reading.view_matrix, reading.fov)
     return path.suffix.lower() in CLOUDS and options == (usual.space, usual.code_space, usual.view_matrix, usual.fov)
 
 
 def _roundings(pixels: Pixels, reading: Reading) -> Sequence[Rounding]:
-    """Return the roundings of a file's normals; empty if they are unknown, as under a curve."""
+    """Return the roundings of a file's normals; empty if they are unknown, such as with a transfer curve."""
     if pixels.roundings or pixels.steps is None or reading.curve != "linear":
         return pixels.roundings
     return (Rounding(pixels.steps / 2),)
 
 
 def _of_roundings(roundings: Sequence[Rounding], own: float | None, is_image: bool) -> list[str]:
-    """Return remarks on normals that their file stores in few bits, with an error of `own` degrees; empty if the
+    """Return remarks on normals that a file stores in few bits, with a mean error of `own` degrees; empty if the
     error is unknown or small."""
     if is_image and roundings == (EIGHT_BITS,):
         return [
@@ -159,7 +159,8 @@ def _of_roundings(roundings: Sequence[Rounding], own: float | None, is_image: bo
 
 
 def checked(reading: Reading) -> Reading:
-    """Return a reading with the known names. Raises UsageError for unknown names and values out of range."""
+    """Return a reading with the names as the program spells them. Raises UsageError for unknown names and for values
+    out of range."""
     if not 0 <= reading.nan_share <= 1:
         raise UsageError(f"--nan-share {reading.nan_share}: out of range; use 0 to 1")
     if reading.fov is not None and not 1 <= reading.fov <= 175:
@@ -173,8 +174,8 @@ def checked(reading: Reading) -> Reading:
 
 
 def _layer_channels(names: Sequence[str]) -> Iterator[tuple[str, list[str]]]:
-    """Yield a layer's name with its three channels that belong together: N.X N.Y N.Z, normal.R .., Nx Ny Nz, 0 1 2.
-    The name is empty if the channels have only these letters or digits."""
+    """Yield each layer's name with its three channels, such as N.X N.Y N.Z, normal.R .., Nx Ny Nz or 0 1 2. The name
+    is empty if the channel names are only these letters or digits."""
     known = set(names)
     for name in names:
         stem, axis = name[:-1], name[-1:]
@@ -187,7 +188,8 @@ def _layer_channels(names: Sequence[str]) -> Iterator[tuple[str, list[str]]]:
 
 
 def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list[str]:
-    """Return three channels: the requested ones, or those named like normals, or the only ones, or R, G and B.
+    """Return the names of three channels: the requested channels, or else the channels that are named like normals,
+    the only three that belong together, or R, G and B.
 
     Raises:
         UsageError: channels are missing, or the choice is ambiguous.
@@ -216,8 +218,8 @@ def chosen_channels(path: Path, names: Sequence[str], asked: str | None) -> list
 
 
 def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the pixels that the mask of a reading, an image file or a channel of the image, marks as surface: bool
-    of the image's shape, all true without a mask. Raises UsageError if the mask has another size."""
+    """Return which pixels the reading's mask, an image file or a channel of the image, marks as surface: bool of the
+    image's shape, all true without a mask. Raises UsageError if the mask has the wrong size."""
     asked = reading.mask
     if asked is None:
         return np.ones(shape, bool)
@@ -234,7 +236,7 @@ def _mask(path: Path, reading: Reading, shape: tuple[int, ...]) -> np.ndarray:
 
 
 def _mask_of_file(path: Path) -> np.ndarray:
-    """Return the first channel of an image, (height, width)."""
+    """Return the first channel of an image, of shape (height, width)."""
     return read_plane(path, lambda names: names[:1]).planes[0]
 
 
@@ -247,7 +249,7 @@ def _one_channel(path: Path, names: Sequence[str], asked: str) -> list[str]:
 def _directions_and_remarks(
     path: Path, pixels: Pixels, surface: np.ndarray, reading: Reading
 ) -> tuple[np.ndarray, np.ndarray, list[str]]:
-    """Return normals as planes, unit where they count; where they count; and remarks on them."""
+    """Return normals as planes, which of them count and therefore have unit length, and remarks on them."""
     stored = pixels.planes if pixels.full is None else pixels.planes / pixels.planes.dtype.type(pixels.full)
     stored = CURVES[reading.curve](stored)
     unpack = pixels.full is not None if reading.unpack is None else reading.unpack
@@ -291,8 +293,8 @@ def _check_finite(path: Path, surface: np.ndarray, finite: np.ndarray, share: fl
 def _checked_unit(
     path: Path, stored: np.ndarray, length: np.ndarray, covered: np.ndarray, reading: Reading, unpacked: bool
 ) -> list[str]:
-    """Return remarks if a few normals are not unit. If more are not, raise UsageError with the option that would read
-    them."""
+    """Return remarks if a few normals do not have unit length. If more do not, raise UsageError with the option that
+    would read them correctly."""
     off = float(np.mean(abs(length[covered] - 1) > UNIT_WITHIN))
     complaint = f"{off:.1%} of the normals are not unit length"
     if off <= OFF_UNIT_SHARE:
@@ -314,11 +316,11 @@ def _checked_unit(
 
 
 def _readings_that_fit(components: np.ndarray, curve: str, unpacked: bool) -> Iterator[str]:
-    """Yield options, such as `--curve srgb --no-unpack`, with which nearly all normals have unit length, except the
-    current options; nothing unless the current curve is linear.
+    """Yield other options, such as `--curve srgb --no-unpack`, for which nearly all normals would have unit length;
+    nothing unless the current curve is linear.
 
     Args:
-        components: the components, (3, count), decoded by `curve`.
+        components: components decoded by `curve`, of shape (3, count).
     """
     if curve != "linear":
         return
@@ -341,12 +343,12 @@ def _readings_that_fit(components: np.ndarray, curve: str, unpacked: bool) -> It
 
 @dataclass(frozen=True, eq=False)
 class Turns:
-    """The transforms of a frame, (3, 3) for column vectors.
+    """The transforms of a frame, as (3, 3) matrices for column vectors.
 
     Attributes:
-        to_view: the file's normals to view space; None if it is unknown.
-        to_code: the file's normals to the space that they are encoded in.
-        of_rays: rays in view space to that space.
+        to_view: from the file's normals to view space; None if it is unknown.
+        to_code: from the file's normals to the space in which normals are encoded.
+        of_rays: from rays in view space to the space in which normals are encoded.
     """
 
     to_view: np.ndarray | None
@@ -358,8 +360,7 @@ def turns_of(reading: Reading) -> tuple[Turns, list[str]]:
     """Return the transforms of a frame, and remarks on them.
 
     Raises:
-        UsageError: two spaces without a matrix between them, a matrix that is not needed, or one that does not
-            rotate.
+        UsageError: the matrix between two spaces is missing, is not needed, or is not a rotation.
     """
     known, is_world, same = SPACES[reading.space], reading.code_space == CODE_SPACES[1], np.eye(3)
     if reading.view_matrix is None:
@@ -404,7 +405,7 @@ def _rotation_and_remarks(text: str) -> tuple[np.ndarray, list[str]]:
 
 
 def _numbers_of(text: str, option: str) -> np.ndarray:
-    """Return the matrix of 3 or 4 rows whose numbers are in a text, or in a file of that name. Raises UsageError."""
+    """Return the 3 x 3 or 4 x 4 matrix in a text, or in the text file of that name. Raises UsageError."""
     if re.search(r"[^-+0-9.eE,;\s]", text):
         try:
             text = file_text(Path(text))[:4096]
@@ -421,7 +422,7 @@ def _numbers_of(text: str, option: str) -> np.ndarray:
 
 
 def _check_affine(matrix: np.ndarray, option: str) -> None:
-    """Raise UsageError if a matrix of 4 x 4 numbers is for row vectors or contains a projection."""
+    """Raise UsageError if a 4 x 4 matrix is for row vectors or contains a projection."""
     below, beside = matrix[3, :3], matrix[:3, 3]
     if below.any() and not beside.any():
         turned = typed(matrix[:3, :3].T)
@@ -431,15 +432,15 @@ def _check_affine(matrix: np.ndarray, option: str) -> None:
 
 
 def typed(matrix: np.ndarray) -> str:
-    """Return a matrix as --view-matrix takes it: numbers row by row, joined by commas."""
+    """Return a matrix as text for --view-matrix: numbers row by row, separated by commas."""
     return ",".join(f"{value + 0.0:.7g}" for value in matrix.ravel())
 
 
 def _which_way(
     n: np.ndarray, covered: np.ndarray, to_view: np.ndarray | None, reading: Reading, chosen: Sequence[str]
 ) -> list[str]:
-    """Return a line on the likely mistake in the space of normals, (3, height, width) or (3, count), and its remedy;
-    empty if no mistake is found."""
+    """Return a line on the likely mistake in the space of normals, of shape (3, height, width) or (3, count), with
+    its remedy; empty if no mistake is found."""
     if to_view is None:
         return []
     is_world = SPACES[reading.space] is None
@@ -467,8 +468,8 @@ def _remedy_text(remedy: np.ndarray | float | None, is_world: bool, chosen: Sequ
 
 
 def _rays(n: np.ndarray, fov: float | None) -> np.ndarray:
-    """Return view-space positions at depth 1, (..., 3): through each pixel's centre, or straight ahead if `fov` is
-    None or the normals are a list."""
+    """Return view-space positions at depth 1, of shape (..., 3): through each pixel's centre, or straight ahead if
+    `fov` is None or the normals are a list."""
     view = np.broadcast_to(np.array([0, 0, -1], np.float32), n.shape)
     if fov is None or n.ndim != 3:
         return view

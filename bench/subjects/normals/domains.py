@@ -16,7 +16,7 @@ def in_domain(
     """Return which normals are in a domain: "sphere", "hemisphere" (z >= 0) or "view" (facing the viewer).
 
     Args:
-        views: from the viewer to the surface, of any length.
+        views: vectors from the viewer to the surface, of any length.
     """
     if domain == "hemisphere":
         return normals[..., 2] >= 0
@@ -28,10 +28,10 @@ def in_domain(
 def view_angles(
     normals: Float[np.ndarray, "*shape 3"], views: Float[np.ndarray, "*shape 3"]
 ) -> Float[np.ndarray, "*shape"]:
-    """Return the angles between unit normals and the lines of sight back to the viewer, in degrees.
+    """Return the angles between unit normals and the directions towards the viewer, in degrees.
 
     Args:
-        views: from the viewer to the surface, of any length but 0.
+        views: vectors from the viewer to the surface, of any length except 0.
     """
     facing = -np.sum(normals * views, axis=-1) / np.linalg.norm(views, axis=-1)
     return np.degrees(np.arccos(np.clip(facing, -1.0, 1.0)))

@@ -1,4 +1,4 @@
-"""Normals that are computed from their numbers, by the C compiler's code."""
+"""Normals computed from their indices, by code from the C compiler."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ LANE = np.dtype(np.uint32)
 
 
 class Fill:
-    """A compiled function that makes planes of normals.
+    """A compiled function that fills planes of normals.
 
     Args:
-        made: function (number, *given) -> a normal of float32; elementwise.
+        normal_of: an elementwise function (index, *given) that returns a float32 normal.
         types: the types of `given`, whose values a float64 can represent.
 
     Raises:
@@ -31,7 +31,7 @@ class Fill:
         self._library = library(source(SOURCE, function, [*map(c_type, types)]), "fill")
 
     def __call__(self, count: int, *given: int) -> Vec3:
-        """The normals of numbers 0 to count - 1."""
+        """Return the normals with indices 0 to count - 1."""
         numbers = np.array(given, np.float64)
         planes = Vec3(*(np.empty(count, np.float32) for _ in range(3)))
         self._library.fill(count, address(numbers), *map(address, planes))

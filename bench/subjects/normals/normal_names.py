@@ -1,4 +1,4 @@
-"""Sets of normals by name: those of the catalogue, and users' captures and meshes."""
+"""Sets of normals by name: from the catalogue, and from users' captures and meshes."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ OTHERS: Mapping[str, str] = MappingProxyType(
 def normal_sets_named(
     names: Names, count: int, seed: int, reading: Reading, needs_rays: bool = False
 ) -> list[NormalSet]:
-    """Return the sets that names stand for: those of the catalogue, captures, or meshes seen by a camera.
+    """Return the sets with these names: from the catalogue, captures, or meshes seen by a camera.
 
-    If `needs_rays`, a note on standard error names captures without an angle of view.
+    If `needs_rays`, captures without an angle of view are reported on standard error.
 
     Raises:
-        UsageError: an unknown name, a file that cannot be read, or an option that applies to no file.
+        UsageError: a name is unknown, a file cannot be read, or an option applies to no file.
     """
     typed = [word for word in names if isinstance(word, str)]
     for word in typed:
@@ -76,7 +76,7 @@ def normal_sets_named(
 
 
 def lacking_rays(pairs: Iterable[tuple[Encoding, NormalSet]]) -> list[str]:
-    """Return a line on each pair of an encoding and a set that cannot be measured, because the set has no rays."""
+    """Return a line for each pair of an encoding and a set that cannot be measured for lack of view rays."""
     return [
         f"{encoding.name} on {normal_set.name}: {LACKS_RAYS}"
         for encoding, normal_set in pairs
@@ -91,7 +91,7 @@ def check_rays(sets: Iterable[NormalSet], needs_rays: bool) -> None:
 
 
 def _check_kind(word: str) -> None:
-    """Raise UsageError for a file of an unsupported kind, for a folder, and for an unknown part of a file."""
+    """Raise UsageError for a file of an unsupported kind, a folder, or an unknown part of a file."""
     vertices.check_part(word)
     if (ending := Path(word).suffix.lower()) in OTHERS:
         raise UsageError(f"{word}: {OTHERS[ending]}")
@@ -100,7 +100,7 @@ def _check_kind(word: str) -> None:
 
 
 def say_count_is_unused(options: Any) -> None:
-    """Tell the user that --count has no effect if it is given and every normal set is a file."""
+    """Tell the user that --count has no effect, if it is given and every set of normals is a file."""
     known = fields_of(type(options))
     if not isinstance(options, Reading) or "count" not in known:
         return
@@ -112,17 +112,18 @@ def say_count_is_unused(options: Any) -> None:
 
 
 def _is_of_normals(options: type) -> bool:
-    """Whether the `count` of options is the number of normals in a set, not of something made from them."""
+    """Whether the option `count` is the number of normals in a set, not of something made from the normals."""
     return get_type_hints(options, include_extras=True)["count"] == Count
 
 
 def given(normal_set: NormalSet) -> Callable[[int, int], NormalSet]:
-    """Return a maker that returns a fixed set for any count and seed."""
+    """Return a function that returns this set for any count and seed."""
     return lambda *_: normal_set
 
 
 def mesh_set(path: Path, size: str) -> tuple[NormalSet, list[str]]:
-    """Return the meshes of a file as its camera sees them, or a camera that frames them; and remarks on them.
+    """Return the meshes in a file as the file's camera sees them, or as a camera that frames them does; and remarks
+    on the set.
 
     Raises UsageError.
     """

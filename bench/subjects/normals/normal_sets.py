@@ -1,4 +1,4 @@
-"""The sets of normals to measure on, made or read a chunk at a time so that any count fits in memory."""
+"""Sets of normals to measure, made or read in chunks so that any count fits in memory."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ SHIFTS = tuple(int(2**64 / PLASTIC**k) % TURN for k in (1, 2))
 
 
 class Chunk(NamedTuple):
-    """CHUNK normals: unit normals and view-space positions as planes, and which of them count."""
+    """CHUNK unit normals and their view-space positions, as planes, and which of the normals count."""
 
     n: Vec3
     view: Vec3
@@ -54,15 +54,15 @@ class NormalSet:
     Attributes:
         name: the catalogue's key.
         title: the name that people see.
-        area: steradians that the set covers uniformly, or None if it is not uniform.
+        area: the solid angle in steradians that the set covers uniformly; None if the set is not uniform.
         count: number of normals, including the background.
-        shape: (height, width) of a set that is an image, else None.
+        shape: (height, width) of a set that is an image; otherwise None.
         seed: the seed that the set was made with.
-        chunk: start index -> Chunk.
+        chunk: a function from a start index to a Chunk.
         background: number of normals that are not on a surface and do not count; None if that does not apply.
         not_finite: number of a file's normals that were NaN or infinite, which do not count either.
         code_space: for a file, the space that its normals are in: "view", "world" or "object".
-        own_error_deg: for a file whose normals are rounded, the mean angle of that error.
+        own_error_deg: for a file with rounded normals, the mean angle of the rounding error.
         of: for a part of a set, the indices of its chunks; None for all.
     """
 
@@ -81,11 +81,11 @@ class NormalSet:
 
     @property
     def has_rays(self) -> bool:
-        """Whether its normals have a view ray; those in object space have none."""
+        """Whether the normals have view rays; normals in object space do not."""
         return self.code_space != OBJECT
 
     def serves(self, encoding: Encoding) -> bool:
-        """Whether an encoding can be measured on it: it needs no view ray, or the normals have one."""
+        """Whether an encoding can be measured on the set: it needs no view rays, or the normals have them."""
         return self.has_rays or encoding.domain != "view"
 
     @property
@@ -96,14 +96,14 @@ class NormalSet:
 
     @cached_property
     def parts(self) -> Sequence[NormalSet]:
-        """The set in parts of at most PART normals, each with the count of all; empty if one part is enough."""
+        """The set in parts of at most PART normals, each with the total `count`; empty if one part is enough."""
         if self.of or self.count <= PART:
             return ()
         chunks = PART // CHUNK
         return [replace(self, of=range(start, start + chunks)) for start in range(0, len(self.starts), chunks)]
 
     def facing(self) -> NormalSet:
-        """Return the set with only those normals covered that face the viewer."""
+        """Return the set in which only normals that face the viewer count."""
 
         def chunk(start: int) -> Chunk:
             whole = self.chunk(start)
@@ -112,7 +112,7 @@ class NormalSet:
         return replace(self, name=f"{self.name}, facing the viewer", chunk=chunk)
 
     def loads(self) -> Iterator[Callable[[], Chunk]]:
-        """Yield, for each chunk in order, a function that returns it."""
+        """Return an iterator over functions that return the chunks, in order."""
         return (partial(self.chunk, start) for start in self.starts)
 
 
@@ -121,15 +121,16 @@ def _straight_ahead(like) -> Vec3:
 
 
 def _unit_interval(index, step: int, offset):
-    """Return (offset + index * step + 0.5) / 2^32, with the first sum modulo 2^32: exact in float64; never 0 or 1."""
+    """Return (offset + index * step + 0.5) / 2^32, with the first sum modulo 2^32; exact in float64, never 0 or 1."""
     fixed = index * jnp.uint32(step) + offset
     return (fixed.astype(jnp.float64) + 0.5) * 2.0**-32
 
 
 def _direction(lane, start, offset_u, offset_v, *, whole: bool) -> Vec3:
-    """Return directions uniform by area: z is uniform in [-1, 1] or [0, 1], as is the angle around it (Archimedes).
+    """Return directions distributed uniformly by area: z is uniform in [-1, 1] or [0, 1], and so is the angle around
+    the z axis (Archimedes).
 
-    Computed in float64 and rounded once, so that x, y and z have independent rounding errors, as any normal does.
+    Computed in float64 and rounded once, so that x, y and z have independent rounding errors, like any normal.
     Encodings that subtract z from 1 are sensitive to these errors.
     """
     u, v = (_unit_interval(start + lane, step, by) for step, by in zip(STEPS, (offset_u, offset_v), strict=True))
@@ -149,7 +150,7 @@ def _uniform_chunk(start, count, *offsets, whole: bool) -> Chunk:
 
 @cache
 def _fill(whole: bool) -> Fill | None:
-    """Return a function that makes directions faster than XLA's code; None if it cannot be compiled."""
+    """Return a function that makes directions faster than XLA's code does; None if it cannot be compiled."""
     try:
         return Fill(partial(_direction, whole=whole), [np.dtype(np.uint32)] * 3)
     except (NoCompilerError, NotElementwiseError):
@@ -158,7 +159,7 @@ def _fill(whole: bool) -> Fill | None:
 
 @cache
 def _ahead() -> Vec3:
-    """Return the view positions of a chunk, all straight ahead."""
+    """Return view positions straight ahead, for all normals in a chunk."""
     return Vec3(*map(np.asarray, _straight_ahead(jnp.zeros(CHUNK, jnp.float32))))
 
 
@@ -179,12 +180,12 @@ def _make_uniform(name: str, title: str, whole: bool, count: int, seed: int) -> 
 
 
 def sphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
-    """Return `count` directions spread evenly over the sphere, a low-discrepancy sequence shifted by the seed."""
+    """Return `count` directions spread evenly over the sphere: a low-discrepancy sequence shifted by the seed."""
     return _make_uniform("sphere", "uniform sphere", True, count, seed)
 
 
 def hemisphere(count: int = DEFAULT_COUNT, seed: int = 0) -> NormalSet:
-    """Return `count` directions spread evenly over z >= 0, a low-discrepancy sequence shifted by the seed."""
+    """Return `count` directions spread evenly over z >= 0: a low-discrepancy sequence shifted by the seed."""
     return _make_uniform("hemisphere", "uniform hemisphere, z >= 0", False, count, seed)
 
 
@@ -193,8 +194,8 @@ def from_arrays(name: str, title: str, n, view, covered, shape=None, not_finite:
 
     Args:
         n, view: float32 arrays of shape (..., 3).
-        covered: which of the normals count, bool of shape (...).
-        not_finite: number of normals that do not count because they are NaN or infinite in their file; None if
+        covered: which normals count, bool of shape (...).
+        not_finite: number of normals that do not count because they are NaN or infinite in their file; None if it is
             unknown.
     """
     count = covered.size
@@ -214,7 +215,7 @@ def from_arrays(name: str, title: str, n, view, covered, shape=None, not_finite:
 
 
 def _chunks(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> list[Chunk]:
-    """Return a set in whole chunks; the padding of the last chunk does not count."""
+    """Split normals into whole chunks; the padding in the last chunk does not count."""
     count, missing = len(n), -len(n) % CHUNK
     n, view = (np.pad(np.asarray(a, np.float32), ((0, missing), (0, 0)), mode="edge") for a in (n, view))
     planes = Chunk(
@@ -224,8 +225,8 @@ def _chunks(n: np.ndarray, view: np.ndarray, covered: np.ndarray) -> list[Chunk]
 
 
 def axes(count: int = 0, seed: int = 0) -> NormalSet:
-    """Return the six axis directions, with both zeros and one to three units in the last place of 1 around each;
-    `count` and `seed` have no effect."""
+    """Return the six axis directions, with both signed zeros and offsets of one to three units in the last place of 1
+    around each direction; `count` and `seed` have no effect."""
     ulp = float(np.spacing(np.float32(1)))
     near = [0.0, -0.0, *(s * k * ulp for k in (1, 2, 3) for s in (1, -1))]
     sides = itertools.product(range(3), (1.0, -1.0), near, near)
@@ -235,7 +236,7 @@ def axes(count: int = 0, seed: int = 0) -> NormalSet:
 
 
 def playground(count: int = 0, seed: int = 0) -> NormalSet:
-    """Return the article's scene as its camera sees it, 640 x 480; `count` and `seed` have no effect."""
+    """Return the article's scene as its camera sees it, at 640 x 480; `count` and `seed` have no effect."""
     return _playground_set()
 
 

@@ -1,8 +1,8 @@
-"""Errors that normals have because of how their file stores them.
+"""Errors in normals that are due to how their file stores them.
 
-The error of a rounding is estimated from the normals themselves: they are rounded again, to steps about four times
-as wide, and a quarter of the angle by which that turns them is the error of the file's own rounding. Normals that
-are on every grid, such as those along an axis, are exact in both.
+The error of a rounding is estimated from the normals themselves. They are rounded again, to steps about four times as
+wide; a quarter of the resulting angle is the estimated error of the file's own rounding. Normals that are on every
+grid, such as normals along an axis, are exact in both roundings.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ BITS, DIFFERENT, NEAR = range(5, 13), 64, 0.1
 
 
 def own_error_deg(n: np.ndarray, roundings: Sequence[Rounding]) -> float | None:
-    """Return the mean angular error in degrees that roundings have caused in unit normals, (count, 3); None without
-    roundings or normals.
+    """Return the mean angular error in degrees that roundings caused in unit normals of shape (count, 3); None
+    without roundings or normals.
 
     Args:
         roundings: the roundings of the normals, in the order in which they were applied.
@@ -48,18 +48,18 @@ def _some(n: np.ndarray) -> np.ndarray:
 
 
 def all_roundings(n: np.ndarray, roundings: Sequence[Rounding]) -> tuple[Rounding, ...]:
-    """Return the roundings that a file declares, and the octahedral map by which unit normals, (count, 3), were
-    evidently packed."""
+    """Return the roundings that a file declares and, if unit normals of shape (count, 3) show that they were packed
+    by an octahedral map, the rounding of that map."""
     if any(rounding.is_octahedral for rounding in roundings):
         return tuple(roundings)
     return (*octahedral_grid(_some(n), roundings), *roundings)
 
 
 def octahedral_grid(n: np.ndarray, roundings: Sequence[Rounding] = ()) -> list[Rounding]:
-    """Return a list of the grid of the octahedral map that packed the normals, as Draco does; empty if no map did.
+    """Return a list with the grid of the octahedral map that packed the normals, as in Draco; empty if none is found.
 
-    On the octahedron |x| + |y| + |z| = 1 the two numbers of a map's code are two of x, y and z, and the third makes
-    up the sum of 1. All three are therefore multiples of a step.
+    On the octahedron |x| + |y| + |z| = 1 the two components of the map's code are two of x, y and z, and the third
+    makes the sum 1. All three are therefore multiples of a step.
     """
     on = n / np.sum(np.abs(n), axis=1, keepdims=True)
     if len(np.unique(np.round(on, 6), axis=0)) < DIFFERENT:
@@ -71,7 +71,7 @@ def octahedral_grid(n: np.ndarray, roundings: Sequence[Rounding] = ()) -> list[R
 
 
 def _mean_angle(n: np.ndarray, rounding: Rounding) -> float:
-    """Return an estimate of the mean angle, in radians, by which a rounding has turned normals."""
+    """Return an estimate of the mean angle, in radians, by which a rounding has rotated normals."""
     wide = max(rounding.most // COARSER, 1)
     again = _rounded_on_octahedron(n, wide) if rounding.is_octahedral else np.round(n * wide)
     apart = np.linalg.norm(again / np.linalg.norm(again, axis=1, keepdims=True) - n, axis=1)
@@ -79,7 +79,7 @@ def _mean_angle(n: np.ndarray, rounding: Rounding) -> float:
 
 
 def _rounded_on_octahedron(n: np.ndarray, most: float) -> np.ndarray:
-    """Return directions, (count, 3), whose two octahedral numbers have been rounded to steps of 1 / most."""
+    """Return directions of shape (count, 3) with both octahedral components rounded to steps of 1 / most."""
     octahedral, view = ENCODINGS["octahedral"], Vec3(*np.zeros((3, len(n)), np.float32))
     code = octahedral.encode(Vec3(*np.ascontiguousarray(n.T, np.float32)), view)
     decoded = octahedral.decode(Vec2(*(jnp.round(number * most) / most for number in code)), view)
@@ -87,12 +87,12 @@ def _rounded_on_octahedron(n: np.ndarray, most: float) -> np.ndarray:
 
 
 def own_error_note(what: str, own: float) -> str:
-    """Return a remark that `what` are off by `own` degrees, and which mean errors waste bits on them."""
+    """Return a remark that `what` are off by `own` degrees, and which mean errors would waste bits on them."""
     finer = f"encodings with a mean error below {own * WASTED:.1g} degrees waste bits on them"
     return f"{what} are off by about {own:.2g} degrees themselves: {finer}"
 
 
 def bits_text(roundings: Iterable[Rounding]) -> str:
-    """Return the bits of roundings in words, such as `8 bits and 10 bits of an octahedral map`."""
+    """Return the bits of roundings as text, such as `8 bits and 10 bits of an octahedral map`."""
     kinds = {(rounding.is_octahedral, int(2 * rounding.most).bit_length()) for rounding in roundings}
     return " and ".join(f"{bits} bits{' of an octahedral map' * packed}" for packed, bits in sorted(kinds))

@@ -1,6 +1,6 @@
-"""Pixels of users' files by channel name: images, which OpenImageIO reads, and NPY files.
+"""Pixels from users' files by channel name: from NPY files, and from images that OpenImageIO reads.
 
-Sizes are read from headers and checked before anything is allocated.
+Sizes are read from headers and checked before memory is allocated.
 """
 
 from __future__ import annotations
@@ -69,11 +69,11 @@ Check = Callable[[Path, tuple[int, int], int], None]
 
 @dataclass(frozen=True, eq=False)
 class Pixels:
-    """Some channels of a file.
+    """Selected channels of a file.
 
     Attributes:
         planes: (channels, height, width) or (channels, count), float32; float64 if the file has float64.
-        full: the integer that stands for 1 in a file of integers; None in a file of floats.
+        full: the integer that represents 1 in an integer file; None for a float file.
         roundings: the roundings that a file declares for its normals.
     """
 
@@ -87,8 +87,8 @@ class Pixels:
 
     @cached_property
     def steps(self) -> int | None:
-        """The value of 1 in the whole numbers that the channels are, or were before they became floats in [0, 1]; None
-        for other floats."""
+        """The integer that represents 1 in the channels, including integers that were converted to floats in [0, 1];
+        None for other floats."""
         return self.full or next((full for full in STEPS if _are_shares(self.planes, full)), None)
 
 
@@ -96,13 +96,13 @@ def read_pixels(path: Path, choose: Choice) -> Pixels:
     """Return the channels of a file that `choose` selects by name.
 
     Raises:
-        UsageError: the file is damaged, too large or of an unsupported kind, or `choose` raises it.
+        UsageError: the file is damaged, too large or of an unsupported kind, or `choose` rejects it.
     """
     return {**READERS, **CLOUDS}[path.suffix.lower()](path, choose)
 
 
 def _are_shares(planes: np.ndarray, full: int) -> bool:
-    """Whether sampled finite numbers are multiples of 1 / full in [0, 1], and enough of them differ to tell."""
+    """Whether sampled finite values are multiples of 1 / full in [0, 1], with enough distinct values to tell."""
     flat = planes.reshape(-1)[:: max(1, planes.size // LOOKED_AT)]
     numbers = np.unique(flat[np.isfinite(flat)]).astype(np.float64) * full
     # A float32 is that close to what it stands for.
@@ -111,7 +111,7 @@ def _are_shares(planes: np.ndarray, full: int) -> bool:
 
 
 def has_normals_alone(path: Path) -> bool:
-    """Whether a file is an image or a list of normals, or a cloud of points that have some. Raises UsageError."""
+    """Whether a file is an image, a list of normals, or a point cloud with normals. Raises UsageError."""
     ending = path.suffix.lower()
     try:
         return ending in READERS or (ending in CLOUDS and path.is_file() and ply.is_cloud(path))
@@ -120,7 +120,7 @@ def has_normals_alone(path: Path) -> bool:
 
 
 def refused(path: Path, what: str, remedy: str = "save it again") -> UsageError:
-    """Return an error that describes in one line the problem with a file."""
+    """Return an error that describes the problem with a file, and the remedy, in one line."""
     return UsageError(f"{path}: {what}; {remedy}")
 
 
@@ -151,7 +151,7 @@ def read_image(path: Path, choose: Choice, check: Check = check_sides) -> Pixels
     """Return the channels of an image that `choose` selects by name; `check` tests the header before pixels are read.
 
     Raises:
-        UsageError: the image is damaged, too large or of an unsupported kind, or `choose` or `check` raises it.
+        UsageError: the image is damaged, too large or of an unsupported kind, or `choose` or `check` rejects it.
     """
     kind, start = FORMATS[path.suffix.lower()]
     data = _bytes(path)
@@ -176,10 +176,10 @@ def read_image(path: Path, choose: Choice, check: Check = check_sides) -> Pixels
 
 
 def _in_a_process(path: Path, kind: str, out: Path, mode: str, *names: str) -> None:
-    """Run `pixel_process.py` on a file; the answer is written to `out`. Raises UsageError if the file cannot be read.
+    """Run `pixel_process.py` on a file and write its answer to `out`. Raises UsageError if the file cannot be read.
 
     Args:
-        mode: "header" for the facts about its parts; any other for the channels in `names`."""
+        mode: "header" for the header's data on each part; otherwise the channels in `names` are read."""
     command = [*python(f"{__package__}.pixel_process"), mode, kind, str(path.resolve()), str(out), *names]
     try:
         done = subprocess.run(command, capture_output=True, timeout=SECONDS, env=environment())
@@ -210,7 +210,7 @@ def _checked_parts(path: Path, kind: str, parts: list[dict[str, Any]], check: Ch
 
 
 def _check_alike(path: Path, kind: str, parts: list[dict[str, Any]], chosen: Sequence[str]) -> None:
-    """Raise UsageError if channels are in parts that do not cover each other, or that store 1 as different values."""
+    """Raise UsageError if chosen channels are in parts of different positions, sizes or values that represent 1."""
     used = [part for part in parts if set(chosen) & set(part["names"])]
     layouts = [(part["place"], part["sides"], kind == EXR or part["types"]) for part in used]
     if any(layout != layouts[0] for layout in layouts):
@@ -218,7 +218,7 @@ def _check_alike(path: Path, kind: str, parts: list[dict[str, Any]], chosen: Seq
 
 
 def _planes(array: np.ndarray, chosen: Sequence[int]) -> np.ndarray:
-    """Return the chosen channels of (..., channels) as planes: float64 for numbers of 8 bytes, else float32."""
+    """Return the chosen channels of an array (..., channels) as planes: float64 for 8-byte values, else float32."""
     kind = np.float64 if array.dtype.itemsize == 8 else np.float32
     with np.errstate(invalid="ignore"):
         return np.stack([array[..., channel].astype(kind) for channel in chosen])
@@ -250,7 +250,7 @@ def _read_npy(path: Path, choose: Choice) -> Pixels:
 
 
 def read_plane(path: Path, choose: Choice) -> Pixels:
-    """Read one channel of an image, as `read_pixels` returns it; an array of (height, width) is one channel.
+    """Read one channel of an image, like `read_pixels`; an array of shape (height, width) counts as one channel.
 
     Raises:
         UsageError: see `read_pixels`.
@@ -262,7 +262,7 @@ def read_plane(path: Path, choose: Choice) -> Pixels:
 
 
 def _npy_pixels(path: Path, array: np.ndarray, choose: Choice) -> Pixels:
-    """Return channels of an array of (..., channels), chosen by their numbers as names: "0", "1", ..."""
+    """Return the chosen channels of an array (..., channels), whose channels are named by index: "0", "1", ..."""
     check_pixels(path, math.prod(array.shape[:-1]), array.shape[-1])
     names = [str(channel) for channel in range(array.shape[-1])]
     chosen = [names.index(name) for name in choose(names)]
@@ -270,7 +270,7 @@ def _npy_pixels(path: Path, array: np.ndarray, choose: Choice) -> Pixels:
 
 
 def _npy_array(path: Path) -> np.ndarray:
-    """Return the array of an NPY file, which has two or three sides and shares the file's bytes."""
+    """Return the array in an NPY file, which has two or three dimensions and shares the file's bytes."""
     stream = io.BytesIO(_bytes(path))
     shape, in_columns, kind = _npy_header(path, stream)
     if kind.kind not in "fub" or kind.itemsize > 8 or (kind.kind == "u" and kind.itemsize > 2):

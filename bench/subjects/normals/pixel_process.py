@@ -1,12 +1,12 @@
-"""A program that reads image files by OpenImageIO in a process of its own.
+"""A program that reads image files with OpenImageIO in a separate process.
 
-A crafted file may crash the library, fill the memory or never finish, and the library writes warnings of its own. The
-separate process contains all of that. As a program:
+A crafted file may crash the library, fill the memory or never finish, and the library writes warnings of its own.
+The separate process contains all of this. As a program:
 
     python -m normalbench.bench.subjects.normals.pixel_process header KIND FILE OUT   # a JSON list of the parts
-    python -m normalbench.bench.subjects.normals.pixel_process pixels KIND FILE OUT NAME ...   # an NPY file of channels
+    python -m normalbench.bench.subjects.normals.pixel_process pixels KIND FILE OUT NAME ...   # the channels as NPY
 
-KIND is the library's name of the format. The status is 0, or one of FAILURES.
+KIND is the library's name for the format. The exit status is 0, or one of FAILURES.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class UnreadableError(ValueError):
 
 
 def opened(kind: str, path: str) -> oiio.ImageInput:
-    """Open an image file of a format, without conversion of its values. Raises UnreadableError."""
+    """Open an image file in a format, without conversion of its values. Raises UnreadableError."""
     wishes = oiio.ImageSpec()
     for wish in AS_STORED:
         wishes.attribute(wish, 1)
@@ -50,7 +50,7 @@ def opened(kind: str, path: str) -> oiio.ImageInput:
 
 
 def parts_of(file: oiio.ImageInput) -> list[dict[str, Any]]:
-    """Return the header's facts about each part, layer or page: its name, sides, place, channels and their types."""
+    """Return the header's data on each part, layer or page: its name, size, position, channels and channel types."""
     parts: list[dict[str, Any]] = []
     while file.seek_subimage(len(parts), 0):
         spec = file.spec()
@@ -68,8 +68,8 @@ def parts_of(file: oiio.ImageInput) -> list[dict[str, Any]]:
 
 
 def full_names(parts: list[dict[str, Any]]) -> list[list[str]]:
-    """Return unique names of each part's channels: if there are several parts, each name begins with the part's name,
-    or with its number from 2 on."""
+    """Return unique names for each part's channels. If there are several parts, each name begins with the part's name
+    or, from the second unnamed part on, with its number."""
     stems = [part["name"] or (str(number) if number > 1 else "") for number, part in enumerate(parts, 1)]
     if len(parts) == 1:
         stems = [""]
@@ -80,7 +80,7 @@ def full_names(parts: list[dict[str, Any]]) -> list[list[str]]:
 
 
 def read_pixels(kind: str, path: str, wanted: list[str]) -> np.ndarray:
-    """Return channels by their full names, (channels, height, width). Raises UnreadableError if any fails."""
+    """Return channels by full name, of shape (channels, height, width). Raises UnreadableError if any fails."""
     file = opened(kind, path)
     parts = parts_of(file)
     places = {
@@ -101,7 +101,7 @@ def read_pixels(kind: str, path: str, wanted: list[str]) -> np.ndarray:
 
 
 def answer(mode: str, kind: str, path: str, out: Path, names: list[str]) -> None:
-    """Write to `out` the parts of a file as JSON, for the mode "header", or else the named channels as NPY."""
+    """Write to `out` the parts of a file as JSON if the mode is "header"; otherwise the named channels as NPY."""
     if mode == "header":
         parts = parts_of(opened(kind, path))
         named_parts = [part | {"names": full} for part, full in zip(parts, full_names(parts), strict=True)]

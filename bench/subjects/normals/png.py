@@ -1,7 +1,7 @@
-"""A check for rows beyond those that a PNG header declares (ISO/IEC 15948), which libpng ignores.
+"""A check for more rows than a PNG header declares (ISO/IEC 15948), which libpng ignores.
 
-The library refuses missing rows, wrong checksums and unknown filters. But if the header declares fewer or narrower
-rows than the file has, libpng reads the image without an error: sheared, or only a part of it.
+The library rejects missing rows, wrong checksums and unknown filters. But if the header declares fewer or narrower
+rows than the file has, libpng reads the image without an error, sheared or only in part.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ def sides(data: bytes) -> tuple[int, int]:
 
 
 def has_surplus(data: bytes) -> bool:
-    """Whether an image has more rows than its header declares; at most one byte beyond these rows is unpacked.
+    """Whether a PNG file has more rows than its header declares; at most one byte beyond those rows is decompressed.
 
-    Errors that OpenImageIO detects are not checked: read the file with it first.
+    Errors that OpenImageIO detects are not checked: read the file with OpenImageIO first.
     """
     size = _rows_size(data)
     try:
@@ -36,7 +36,7 @@ def has_surplus(data: bytes) -> bool:
 
 
 def _rows_size(data: bytes) -> int:
-    """Return the number of bytes of all rows of a PNG file after decompression, each with its filter's byte."""
+    """Return the size in bytes of all rows of a PNG file after decompression, including a filter byte per row."""
     width, height, depth, colour, _, _, interlaced = struct.unpack_from(">IIBBBBB", data, 16)
     bits = depth * CHANNELS[colour]
     passes = ADAM7 if interlaced else ((0, 0, 1, 1),)

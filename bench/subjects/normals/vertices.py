@@ -1,4 +1,4 @@
-"""The normals of a mesh's vertices as a set: in object space, as vertex buffers hold them, without a camera."""
+"""The vertex normals of a mesh as a set: in object space, as in vertex buffers, without a camera."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class OwnRounding:
     """The rounding of a file's normals.
 
     Attributes:
-        roundings: all roundings of its meshes.
-        error_deg: the mean angle by which they have turned its vertices' normals; None if it is unknown.
+        roundings: all roundings of the file's meshes.
+        error_deg: the mean angle by which the roundings have rotated the vertex normals; None if it is unknown.
     """
 
     roundings: tuple[Rounding, ...]
@@ -40,7 +40,7 @@ class OwnRounding:
 
     @property
     def notes(self) -> list[str]:
-        """Remarks on the rounding; empty if it is finer than any 24-bit encoding."""
+        """Remarks on the rounding; empty if the error is unknown or smaller than that of any 24-bit encoding."""
         own = self.error_deg
         if own is None or own < FINE:
             return []
@@ -49,11 +49,11 @@ class OwnRounding:
 
 @dataclass(frozen=True, eq=False)
 class Vertices:
-    """The vertices of a file.
+    """The vertices in a file.
 
     Attributes:
-        normals: the normals that have a direction, once per distinct vertex: unit, (count, 3), object space.
-        zero, not_finite: number of other normals without a length, and number of those that are NaN or infinite.
+        normals: the object-space unit normals of distinct vertices, of shape (count, 3), where they have a direction.
+        zero, not_finite: the number of finite normals without a direction, and of normals that are NaN or infinite.
         own: the rounding of the file's normals.
         notes: remarks on vertices and meshes that were left out.
     """
@@ -92,8 +92,8 @@ def vertex_set(path: Path) -> tuple[NormalSet, list[str]]:
 
 
 def drawn_error(path: Path) -> tuple[float, list[str]]:
-    """Return the mean error of a mesh file's vertex normals in degrees, and remarks on it; 0 if it is unknown. Normals
-    drawn between vertices have a smaller error, if the vertices' errors have different directions.
+    """Return the mean error of a mesh file's vertex normals in degrees (0 if it is unknown), and remarks on it.
+    Normals interpolated between vertices have a smaller error if the vertices' errors differ in direction.
 
     Raises UsageError.
     """
@@ -104,7 +104,7 @@ def drawn_error(path: Path) -> tuple[float, list[str]]:
 
 
 def vertices_of(path: Path) -> Vertices:
-    """Return the vertices that triangles or points of a mesh file use, each once. Raises UsageError."""
+    """Return the distinct vertices that triangles or points in a mesh file use. Raises UsageError."""
     all_meshes = _said(path)
     meshes = [mesh for mesh in all_meshes if mesh.normals is not None]
     if not meshes:
@@ -133,7 +133,7 @@ def _all_used(path: Path, meshes: Sequence[Stored]) -> list[np.ndarray]:
 
 
 def _used(path: Path, stored: Stored) -> np.ndarray:
-    """Return positions and normals of the vertices of a mesh that are used, (count, 6). Raises SceneFileError."""
+    """Return the positions and normals of a mesh's used vertices, of shape (count, 6). Raises SceneFileError."""
     corners = np.asarray(stored.corners, np.int64).ravel()
     used = np.unique(checked_indices(path, corners, len(stored.positions), stored.place))
     both = (np.asarray(numbers, np.float64)[used] for numbers in (stored.positions, stored.normals))
@@ -142,20 +142,20 @@ def _used(path: Path, stored: Stored) -> np.ndarray:
 
 
 def _lengths(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return which normals are finite, as far as their squares are, and their lengths; (count,) each."""
+    """Return which normals are finite and have finite squares, and the normals' lengths; both of shape (count,)."""
     with np.errstate(invalid="ignore"):
         finite = np.asarray((np.abs(normals) < TOO_LARGE).all(axis=1))
     return finite, np.linalg.norm(np.where(finite[:, None], normals, 0), axis=1)
 
 
 def _least(roundings: Sequence[Rounding]) -> float:
-    """Return the length below which a normal has no direction. Unsigned integers have no 0: the nearest value is half a
-    step away."""
+    """Return the length below which a normal has no direction. Unsigned integers cannot represent 0: the nearest
+    value is half a step away."""
     return max([NOTHING, *(1 / rounding.most for rounding in roundings if not rounding.is_octahedral)])
 
 
 def _own_rounding(used: Sequence[np.ndarray], meshes: Sequence[Stored]) -> OwnRounding:
-    """Return the roundings of all meshes' normals, with the mean error over all vertices; some may be exact."""
+    """Return the roundings of all meshes' normals, with the mean error over all vertices, even exact vertices."""
     known_roundings: dict[Rounding, None] = {}
     turned, known = 0.0, False
     for rows, mesh in zip(used, meshes, strict=True):

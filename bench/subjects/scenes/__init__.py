@@ -1,1 +1,1 @@
-"""Scenes by name, and captured frames as scenes."""
+"""Scenes by name, including captured frames as scenes."""

@@ -1,4 +1,4 @@
-"""Captured frames as scenes: the surface in each pixel, from images read in the same way as normals and depths."""
+"""Captured frames as scenes: the surface in each pixel, from images that are read like normals and depths."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ MOST_LIGHT = 1e6
 
 @dataclass(frozen=True, eq=False)
 class CapturedFrame:
-    """A frame as a scene.
+    """A captured frame as a scene.
 
     Attributes:
-        scene: the scene, under the environment that mesh files have.
-        sides: width and height in pixels of the drawn part.
-        notes: remarks on it, a line each.
+        scene: the scene, under the default environment of mesh files.
+        sides: width and height in pixels of the rendered part.
+        notes: remarks on the frame, as lines.
     """
 
     scene: Scene
@@ -47,7 +47,7 @@ class CapturedFrame:
 
 
 def captured_frame(frame: FrameFile) -> CapturedFrame:
-    """Return the frame that a file describes. Raises UsageError, in one line, for images that do not match."""
+    """Return the frame that a file describes. Raises UsageError, in one line, if the images do not match."""
     reader = _Reader(frame)
     pixels = reader.pixels()
     pixels, every, fov = _fewer(pixels, frame.fov)
@@ -60,13 +60,14 @@ def captured_frame(frame: FrameFile) -> CapturedFrame:
 
 
 def _view(frame: FrameFile, fov: float, to_world: np.ndarray) -> View:
-    """Return the view from the origin; the columns of `to_world` are its axes."""
+    """Return the view from the origin; the columns of `to_world` are the axes of view space."""
     (_, up, back) = (tuple(map(float, axis)) for axis in to_world.T)
     return View((0.0, 0.0, 0.0), (-back[0], -back[1], -back[2]), fov, frame.near, frame.far, (up[0], up[1], up[2]))
 
 
 def _fewer(pixels: PixelSurfaces, fov: float) -> tuple[PixelSurfaces, int, float]:
-    """Return a regular subset of pixels that is small enough to draw, its step, and its vertical angle of view."""
+    """Return a regular subset of pixels that is small enough to draw, its step in pixels, and its vertical angle of
+    view in degrees."""
     height, width = pixels.depth.shape
     every = math.isqrt(max(height * width - 1, 0) // MOST_PIXELS) + 1
     rows, columns = height // every, width // every
@@ -81,9 +82,9 @@ class _Reader:
     """The contents of a frame's images.
 
     Attributes:
-        notes: remarks on them.
-        to_world: (3, 3), view space to world space for column vectors; the identity if no matrix is known. The
-            world is right-handed, and y is up.
+        notes: remarks on the images.
+        to_world: the matrix (3, 3) from view space to a right-handed world space with y up, for column vectors; the
+            identity if no matrix is known.
     """
 
     def __init__(self, frame: FrameFile):
@@ -145,8 +146,8 @@ class _Reader:
         return np.moveaxis(image.normals, 0, -1).astype(np.float32), image.covered
 
     def _quantity(self, name: str, covered: np.ndarray) -> np.ndarray | None:
-        """Return a quantity of all pixels, 0 on the background and clipped to [0, 1] unless it is emissive; None if
-        the frame has none. Raises UsageError for impossible values."""
+        """Return a quantity for all pixels, 0 on the background and, unless it is emissive, clipped to [0, 1]; None
+        if the frame does not have the quantity. Raises UsageError for impossible values."""
         entry = self._frame.entries.get(name)
         if entry is None:
             return None
@@ -198,12 +199,12 @@ def _to_view(turns: Turns) -> np.ndarray:
 
 
 def upright(to_world: np.ndarray) -> np.ndarray:
-    """Return the matrix from view space to a right-handed world with y up, as environments are.
+    """Return the matrix from view space to a right-handed world with y up, as for environments.
 
-    Its axes are those of the original world, reordered and possibly mirrored.
+    The axes of this world are the axes of the original world, reordered and possibly mirrored.
 
     Args:
-        to_world: the matrix from view space to the original world, whose axis closest to the camera's up becomes y.
+        to_world: the matrix from view space to the original world; its axis closest to the camera's up becomes y.
     """
     axis = int(np.argmax(abs(to_world[:, 1])))
     y = np.sign(to_world[axis, 1]) * to_world[axis]
@@ -225,7 +226,7 @@ def _out_of_reach(path: Path, image: DepthImage, camera: Camera) -> UsageError:
 
 
 def _planes(path: Path, name: str, entry: dict[str, Any]) -> Pixels:
-    """Return the channels of a quantity: three of a colour, otherwise one. Raises UsageError."""
+    """Return the channels of a quantity: three for a colour, otherwise one. Raises UsageError."""
     if path.suffix.lower() not in READERS:
         raise UsageError(f"{path}: not an image; supported: {', '.join(READERS)}")
     if ENTRIES[name] is COLOUR:
@@ -261,7 +262,7 @@ def _check_finite(path: Path, planes: np.ndarray, covered: np.ndarray) -> None:
 
 
 def _check_range(name: str, numbers: np.ndarray) -> None:
-    """Raise UsageError for values that are impossible for a quantity."""
+    """Raise UsageError for values that a quantity cannot have."""
     low, high = float(numbers.min()), float(numbers.max())
     if name == "emissive":
         if not 0 <= low <= high <= MOST_LIGHT:

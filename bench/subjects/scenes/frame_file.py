@@ -1,4 +1,4 @@
-"""The description of a captured frame: which file and channels hold its depth, its normals and its materials."""
+"""The description of a captured frame: the files and channels that contain its depth, normals and materials."""
 
 from __future__ import annotations
 
@@ -54,13 +54,13 @@ NEEDED = (*CAMERA, "depth", "normal", "base_color", "roughness")
 
 @dataclass(frozen=True)
 class FrameFile:
-    """A checked description; none of its images has been read.
+    """A checked description of a frame; its images have not been read.
 
     Attributes:
-        path: the file it was read from.
-        fov, near, far: the camera's; fov is vertical, in degrees.
-        view_matrix: world to view space, as --view-matrix takes it; None if it is unknown.
-        entries: by name, the value of each: words with a file, or a number, or three.
+        path: the file that contains the description.
+        fov, near, far: the camera's vertical angle of view in degrees, and its planes.
+        view_matrix: world space to view space, as text for --view-matrix; None if it is unknown.
+        entries: by name, the value of each entry: options with a file, a number, or three numbers.
     """
 
     path: Path
@@ -71,12 +71,12 @@ class FrameFile:
     entries: Mapping[str, Any]
 
     def error(self, name: str, message: object) -> UsageError:
-        """Return a one-line error about an entry, in which options have their names as keys."""
+        """Return a one-line error about an entry, with options written as keys of the description."""
         return UsageError(f"{self.path}: {name}: {as_keys(str(message))}")
 
 
 def as_keys(text: str) -> str:
-    """Return a text about options as a text about a description's keys: --no-unpack is "unpack": false."""
+    """Return a text with options replaced by keys of a description: --no-unpack becomes "unpack": false."""
     flags = {name for name in OF_NORMALS if fields_of(Reading)[name].kind is bool}
 
     def key(match: re.Match[str]) -> str:
@@ -107,7 +107,7 @@ def read_frame_file(path: Path) -> FrameFile:
 
 
 def files_of_frame(path: Path) -> list[Path]:
-    """Return the files that a description names and that exist, sorted; empty if the description cannot be read."""
+    """Return the existing files that a description names, sorted; empty if the description cannot be read."""
     try:
         return sorted(set(filter(Path.is_file, _named_files(read_frame_file(path)))))
     except (UsageError, OSError):
@@ -140,7 +140,7 @@ def _check_names(path: Path, place: str, entries: Mapping[str, Any], known: tupl
 
 
 def _how(name: str) -> str:
-    """Return the instruction for writing a missing entry."""
+    """Return advice on how to write a missing entry."""
     if name in CAMERA:
         return f'write "{name}": NUMBER'
     return f'write "{name}": {{"file": "FILE", "{"channel" if "channel" in ENTRIES[name] else "channels"}": "..."}}'
@@ -165,8 +165,8 @@ def _check_camera(path: Path, fov: float, near: float, far: float) -> None:
 
 
 def _matrix(path: Path, value: object) -> str | None:
-    """Return the numbers of a matrix as comma-separated text, or the path of the file that holds them; None for None.
-    Raises UsageError for any other value."""
+    """Return the numbers of a matrix as comma-separated text, or the path of the file that contains them; None if
+    `value` is None. Raises UsageError for any other value."""
     if value is None:
         return None
     if isinstance(value, list):
@@ -179,8 +179,8 @@ def _matrix(path: Path, value: object) -> str | None:
 
 
 def _entry(path: Path, name: str, value: object) -> Any:
-    """Return the value of an entry: a number, a list of three numbers for a colour, or a dict of options with paths
-    in place of file names. Raises UsageError."""
+    """Return the value of an entry: a number, a list of three numbers for a colour, or a dictionary of options with
+    paths in place of file names. Raises UsageError."""
     kinds = ENTRIES[name]
     if kinds is NUMBER and not isinstance(value, dict):
         return _number(path, name, value)
@@ -209,7 +209,8 @@ def _word(path: Path, place: str, value: object, kind: type) -> Any:
 
 
 def _beside(path: Path, name: str, address: str) -> Path:
-    """Return the path of a file next to a description or below it. Raises UsageError if not there."""
+    """Return the path of a file in a description's folder or below it. Raises UsageError if the file is elsewhere or
+    does not exist."""
     try:
         file = checked_address(path, address, name)
         is_there = file is not None and file.is_file()

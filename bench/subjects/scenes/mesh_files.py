@@ -1,4 +1,4 @@
-"""Reading of mesh files, and remarks on them."""
+"""Reading mesh files, and reporting remarks on them."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ T = TypeVar("T")
 
 
 def mesh_file(path: Path) -> MeshFile:
-    """Read a mesh file. Raises UsageError, and MissingError if a package that would unpack it is not installed."""
+    """Read a mesh file. Raises UsageError, or MissingError if a package to unpack the file is not installed."""
     return read_or_refused(lambda: read_mesh_file(path))
 
 
 def read_or_refused(read: Callable[[], T]) -> T:
-    """Return the result of `read` for a mesh file. Raises as `mesh_file` does."""
+    """Return the result of `read`, which reads a mesh file. Raises the same exceptions as `mesh_file`."""
     try:
         return read()
     except MissingPackageError as error:
@@ -30,7 +30,8 @@ def read_or_refused(read: Callable[[], T]) -> T:
 
 
 def say_notes(notes: Mapping[Path, Sequence[str]]) -> None:
-    """Report remarks on files, a line each, on standard error, once all are read: an error must be the only line."""
+    """Report the remarks on files on standard error, one line per file. Call this after all files are read, because
+    an error must be the only line."""
     for path, lines in notes.items():
         if lines:
             tell(f"{path}: {'; '.join(lines)}")

@@ -1,4 +1,4 @@
-"""Scenes by name: those of the catalogue, users' mesh files, and captured frames."""
+"""Scenes by name: from the catalogue, users' mesh files, and captured frames."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ ENDINGS = (*READERS, ENDING)
 
 
 def scene_makers_named(names: Names) -> list[SceneMaker]:
-    """Return the scenes that names stand for: those of the catalogue, mesh files, or captured frames.
+    """Return the scenes with these names: from the catalogue, mesh files, or captured frames.
 
     Raises:
-        UsageError: an unknown name, or a file that cannot be read.
+        UsageError: a name is unknown, or a file cannot be read.
     """
     notes: dict[Path, Sequence[str]] = {}
     lines: list[str] = []
@@ -51,5 +51,5 @@ def scene_makers_named(names: Names) -> list[SceneMaker]:
 
 
 def _given(scene: Scene, _: Setting) -> Scene:
-    """Return a fixed scene, whatever the setting."""
+    """Return the given scene for any setting."""
     return scene

@@ -1,1 +1,1 @@
-"""The fewest bytes per pixel for an image quality."""
+"""The smallest number of bytes per pixel for an image quality."""

@@ -1,4 +1,4 @@
-"""The attributes that a G-buffer stores of a surface, their possible encodings, and the words for them in a layout."""
+"""The surface attributes that a G-buffer stores, their possible encodings, and the words for them in a layout."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ ITSELF = "linear"
 
 @dataclass(frozen=True)
 class Surfaces:
-    """The surfaces that pixels show, float32: world-space normals, base colours and emitted light (height, width,
-    3), the others (height, width). The fields are named like the attributes."""
+    """The surfaces visible in pixels, as float32: world-space normals, base colours and emitted light of shape
+    (height, width, 3), all others of shape (height, width). Each field is named like its attribute."""
 
     normal: np.ndarray
     base_color: np.ndarray
@@ -61,13 +61,13 @@ class Code:
     Attributes:
         attribute: name of the attribute.
         name: name of the encoding, such as `octahedral 11:11`.
-        words: words of a layout, without bits, in the order of their numbers.
-        bits: bits of each number.
-        kind: what a channel of its own must hold: UNORM, SRGB or FLOAT.
-        blends: whether the mean of two texels is the texel of the mean, so that decals may blend into it.
-        in_fields: whether it may share a channel with others, as a bit field.
-        is_exact: whether its bits must come back unchanged.
-        trip: function from surfaces to the surfaces that come back; None if the image does not read the attribute.
+        words: words of a layout, without bits, in the order of the components.
+        bits: number of bits of each component.
+        kind: the kind of channel that the encoding needs if it does not share one: UNORM, SRGB or FLOAT.
+        blends: whether the mean of two texels encodes the mean, so that decals may blend into the encoding.
+        in_fields: whether the encoding may share a channel with others, as a bit field.
+        is_exact: whether the bits must round-trip unchanged.
+        trip: a function that returns surfaces after a round trip; None if the image does not read the attribute.
     """
 
     attribute: str
@@ -147,7 +147,7 @@ def _on_curve(
 
 
 def in_halves(attribute: str) -> Iterator[Code]:
-    """Yield the one encoding of an attribute in 16-bit floats, for layouts that have such targets."""
+    """Yield the only encoding of an attribute in 16-bit floats, for layouts with float targets."""
     if attribute == "normal":
         yield _normal("octahedral", (16, 16), "rg16f", FLOAT)
         return
@@ -169,7 +169,7 @@ def _base_colors() -> Iterator[Code]:
 
 
 def _singles(attribute: str, sizes: Iterable[int], curve: str = ITSELF) -> Iterator[Code]:
-    """Yield the encodings of an attribute with one component, by bit count."""
+    """Yield the encodings of a one-component attribute, one per bit count."""
     (component,) = COMPONENTS[attribute]
     for bits in sizes:
         yield _on_curve(attribute, component, curve, (bits,))
@@ -177,13 +177,13 @@ def _singles(attribute: str, sizes: Iterable[int], curve: str = ITSELF) -> Itera
 
 @dataclass(frozen=True)
 class Attribute:
-    """An attribute of a surface that a G-buffer stores.
+    """A surface attribute that a G-buffer stores.
 
     Attributes:
         name: name of the attribute.
-        codes: possible encodings: the minimum and everything above it.
-        usual_bits: minimum number of bits if no scene shows the loss of its encodings.
-        is_seen: whether an image reads the attribute; if not, its bits are set by contract.
+        codes: possible encodings, from the minimum upwards.
+        usual_bits: minimum number of bits if no scene shows the errors of the encodings.
+        is_seen: whether an image reads the attribute; if not, its number of bits is fixed by contract.
     """
 
     name: str
@@ -193,7 +193,7 @@ class Attribute:
 
 
 def exact_bits(name: str, word: str, bits: int) -> Attribute:
-    """Return an attribute whose bits must come back unchanged, such as an ID."""
+    """Return an attribute whose bits must round-trip unchanged, such as an ID."""
     parts = tuple(min(bits - start, MOST_PART) for start in range(0, bits, MOST_PART))
     code = Code(name, f"{bits} bits", (word,) * len(parts), parts, is_exact=True)
     return Attribute(name, (code,), bits, False)
@@ -210,8 +210,8 @@ UP_TO_PIXELS: Mapping[Code, float] = MappingProxyType({HALF_MOTION: 100.0, FAST_
 
 
 def motion(speed: float, is_packed: bool = False) -> Attribute:
-    """Return motion with the encodings that suit a speed in pixels per frame: half floats, as upscalers read them, or
-    above their speed 16 bits per component; with `is_packed` also square roots, up to their speed."""
+    """Return the motion attribute with encodings for a speed in pixels per frame: half floats, as upscalers read
+    them, or 16 bits per component for higher speeds; with `is_packed` also square roots, if they suit the speed."""
     whole = next(code for code in (HALF_MOTION, FAST_MOTION) if speed <= UP_TO_PIXELS[code])
     packed = (ROOT_MOTION,) if is_packed and speed <= UP_TO_PIXELS[ROOT_MOTION] else ()
     codes = (whole, *packed)
@@ -251,7 +251,7 @@ def _reflectances() -> Iterator[Code]:
 
 
 def _short(limit: float) -> float:
-    """Return a range rounded to the digits with which a layout writes it."""
+    """Return a range rounded to the six digits with which a layout writes it."""
     return float(f"{limit:.6g}")
 
 
@@ -285,5 +285,6 @@ SEEN: Mapping[str, Attribute] = MappingProxyType(
 
 
 def usual(attribute: Attribute) -> Attribute:
-    """Return an attribute that no scene shows, with only its encodings of the usual bits or more."""
+    """Return an attribute with only its encodings of the usual number of bits or more, for an attribute that no scene
+    shows."""
     return replace(attribute, codes=tuple(c for c in attribute.codes if c.total_bits >= attribute.usual_bits))

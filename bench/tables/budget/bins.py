@@ -1,4 +1,4 @@
-"""The render targets that a G-buffer may have, as bins that fields are packed into."""
+"""The possible render targets of a G-buffer, as bins into which fields are packed."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ Channel = tuple[str, int]
 
 @dataclass(frozen=True, eq=False)
 class Bin:
-    """A render target.
+    """A render target that encodings can be packed into.
 
     Attributes:
-        name: name of the target here: its format, and how it is used.
+        name: name of the bin: the target's format and how it is used.
         format: format of the target in a layout.
         bytes: bytes per pixel.
-        channels: number of channels by kind and bits; empty if encodings share all of its bits.
-        fields: number of bits that encodings share in fields of any size; 0 if each number has a channel.
+        channels: number of channels by kind and bits; empty if encodings share all bits of the target.
+        fields: number of bits that encodings share as bit fields of any size; 0 if each component has a channel.
         copies: maximum number of such targets in a layout.
-        blends: whether decals blend into it; its fourth channel is then the blend factor and stores nothing else.
-        fuss: penalty for what an engineer would rather avoid: 0 for plain channels.
-        shares: whether encodings share, bit by bit, its UNORM channels of the first channel's size.
-        is_usual: whether it is tried if no formats are named.
+        blends: whether decals blend into the target; its fourth channel then stores only the blend factor.
+        fuss: penalty for features that engineers would rather avoid; 0 for plain channels.
+        shares: whether encodings share, bit by bit, the UNORM channels that are as large as the first channel.
+        is_usual: whether the target is tried if no formats are named.
     """
 
     name: str
@@ -42,11 +42,12 @@ class Bin:
 
     @property
     def part(self) -> int:
-        """The number of bits in each channel that holds bit fields."""
+        """The number of bits in each channel that contains bit fields."""
         return TARGET_FORMATS[self.format].bits[0]
 
     def need(self, code: Code) -> Mapping[Channel, float] | None:
-        """Return how many channels by kind, or how many bits, an encoding takes here; None if it does not fit."""
+        """Return the number of channels by kind, or of shared bits, that an encoding takes in this target; None if it
+        does not fit."""
         if self.blends and not code.blends:
             return None
         if self.fields:
@@ -65,15 +66,15 @@ class Bin:
         return self._need_of_exact(code) if code.is_exact else None
 
     def channels_of(self, code: Code) -> list[Channel]:
-        """Return the kind of channel for each number of an encoding, in a target with separate channels."""
+        """Return the kind of channel for each component of an encoding, in a target with separate channels."""
         if not code.is_exact:
             return [(code.kind, bits) for bits in code.bits]
         sizes = sorted(bits for kind, bits in self.channels if kind == UNORM)
         return [(UNORM, next(size for size in sizes if size >= bits)) for bits in code.bits]
 
     def _need_of_exact(self, code: Code) -> Mapping[Channel, float] | None:
-        """Return how many whole channels of each size the parts of an encoding take, the narrowest for each part;
-        None if they do not fit."""
+        """Return the number of whole channels of each size that the parts of an encoding take, with the narrowest
+        channel for each part; None if the parts do not fit."""
         sizes = sorted(bits for kind, bits in self.channels if kind == UNORM)
         taken: dict[Channel, float] = {}
         for bits in code.bits:
@@ -172,7 +173,7 @@ WEBGPU_BYTES = 32
 
 
 def webgpu_cost(formats: Sequence[str]) -> int | None:
-    """Return the bytes per sample that WebGPU counts for ordered targets; None if it cannot render to one."""
+    """Return the bytes per sample that WebGPU counts for ordered targets; None if it cannot render to all of them."""
     total = 0
     for name in formats:
         if name not in WEBGPU:

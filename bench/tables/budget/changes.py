@@ -1,4 +1,4 @@
-"""The loss from each attribute in a user's layout, and the encodings of a proposal that would improve it most."""
+"""The loss due to each attribute of a user's layout, and the proposed encodings that would improve it most."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def holds_other_quantities(layout: Layout) -> bool:
 
 
 def completed(layout: Layout) -> Layout:
-    """Return a layout with the metallic-roughness attributes that it lacks added in float targets; unchanged if
+    """Return a layout with its missing metallic-roughness attributes added in float targets; unchanged if
     `holds_other_quantities`."""
     if holds_other_quantities(layout):
         return layout
@@ -34,8 +34,8 @@ def completed(layout: Layout) -> Layout:
 
 
 def alone(layout: Layout, attribute: str) -> Layout:
-    """Return a layout's own words for one attribute, with everything else in 32-bit floats. If the layout lacks the
-    attribute, so does the result.
+    """Return a layout with its own words for one attribute, and everything else in 32-bit floats. If the layout lacks
+    the attribute, so does the result.
 
     Raises:
         LayoutError: the words cannot be used alone, such as a roughness that stores a sign of the normal.
@@ -56,7 +56,7 @@ def alone(layout: Layout, attribute: str) -> Layout:
 
 
 def _only(layout: Layout, index: int, target: Target, components: Sequence[str]) -> Target:
-    """Return a target with the words of some components only; the bits or channels of its other words become free."""
+    """Return a target with only the words of some components; the bits or channels of all other words become free."""
     words = []
     for text in spelt_out(place_of(layout.name, index, target), target):
         bits = text.partition(":")[2] if "(" not in text else text.rpartition(")")[2].partition(":")[2]
@@ -71,13 +71,13 @@ Errors = Mapping[str, Mapping[str, float]]
 def said(
     mine: Errors, proposal: Solution, errors_of: Callable[[str, str], Mapping[str, float]], classes: Sequence[str]
 ) -> str:
-    """Return in words the changes that improve the worst class the most, in order, each with the predicted PSNR after
-    it; or that no encoding of the proposal is better.
+    """Return as text the changes that improve the worst class most, in order, each with the PSNR predicted after it;
+    or that no encoding of the proposal is better.
 
     Args:
-        mine: by attribute, the error of each class.
+        mine: the error of each class, by attribute.
         proposal: a proposal of the same size.
-        errors_of: function from the names of an attribute and its encoding to the error of each class.
+        errors_of: a function from the names of an attribute and its encoding to the error of each class.
         classes: the classes whose worst error counts.
     """
     theirs = {
@@ -105,10 +105,10 @@ def said(
 
 
 def _is_less(mine: Mapping[str, float], theirs: Mapping[str, float]) -> bool:
-    """Whether an encoding's largest error, in `theirs`, exceeds that of a layout's own, in `mine`, and is visible.
+    """Whether the largest error of a proposed encoding is visible and exceeds that of the layout's own encoding.
 
     Args:
-        mine, theirs: the error of each class."""
+        mine, theirs: the errors of the layout's and of the proposed encoding, by class."""
     return max(theirs.values(), default=0.0) > max(max(mine.values(), default=0.0), UNSEEN)
 
 

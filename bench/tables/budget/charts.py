@@ -1,4 +1,4 @@
-"""The chart of budgets: the error of the worst class over bytes, with engines as points."""
+"""The chart of budgets: the PSNR of the worst class by bytes per pixel, with engines' layouts as points."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ NEAR_DB = 30.0
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield one chart if there are two proposals, or one and something to compare it with."""
+    """Yield one chart if at least two rows can be compared and at least one of them is a proposal."""
     usable = having(rows, "held_back_db", "contract_bytes")
     if len(usable) > 1 and any(row["kind"] == PROPOSAL for row in usable):
         yield budget_chart(usable)
 
 
 def budget_chart(rows: Sequence[Row]) -> Chart:
-    """Return a chart of the worst class's PSNR over bytes: a line of proposals, a point for each other layout.
+    """Return a chart of the worst class's PSNR by bytes per pixel: a line for proposals, a point per other layout.
 
     Args:
         rows: rows with figures.
@@ -72,7 +72,7 @@ def budget_chart(rows: Sequence[Row]) -> Chart:
 
 
 def _judged(scenes: str) -> str:
-    """Return the part of the subtitle on the class and the scenes of the figures."""
+    """Return the part of the subtitle that states which class and scenes the figures are for."""
     names = scenes.split(",")
     if len(names) == 1:
         return f"Worst class of surfaces in {scenes}, which also chose the proposals,"
@@ -81,18 +81,19 @@ def _judged(scenes: str) -> str:
 
 
 def _ticks(points: Sequence[Row]) -> tuple[tuple[float, str], ...]:
-    """Return a tick for each even number in the range of the points."""
+    """Return a tick for each even number of bytes in the range of the points."""
     low, high = (bound(point["x"] for point in points) for bound in (min, max))
     return tuple((float(tick), str(tick)) for tick in range(2 * math.ceil(low / 2), math.floor(high) + 1, 2))
 
 
 def _finding(ours: Sequence[Row], others: Sequence[Row]) -> str:
-    """Return the gain of the proposals over layouts of as many bytes or more, or else the PSNR of the proposals."""
+    """Return the title: the proposals' gain over layouts of the same size or larger, or else their PSNR."""
     gains = [
         max(point["y"] for point in ours if point["x"] <= other["x"]) - other["y"]
         for other in others
         if any(point["x"] <= other["x"] for point in ours)
     ]
     if gains:
-        return f"Proposals of at most as many bytes are {min(gains):.0f} to {max(gains):.0f} dB better"
+        worst = f"{min(gains):.0f}" if min(gains) >= 0 else f"{-min(gains):.0f} dB worse"
+        return f"Proposals of at most as many bytes are {worst} to {max(gains):.0f} dB better"
     return f"{ours[0]['y']:.0f} dB with {ours[0]['x']} bytes, {ours[-1]['y']:.0f} dB with {ours[-1]['x']}"

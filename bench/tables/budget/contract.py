@@ -37,7 +37,8 @@ NAMES = dict.fromkeys(name for word in (*KNOWN, *EXACT, "depth", "all", "none") 
 
 
 def as_known(words: Iterable[Word]) -> Names:
-    """Return words of attributes, joined by + or :, with each known name in its own spelling; others as is."""
+    """Return words of attributes, joined by + or :, with known names in their standard spelling; other names are
+    unchanged."""
     known = re.compile(r"[^+:]+")
     return tuple(
         known.sub(lambda match: spelled("attribute", match[0], NAMES) or match[0], str(word)) for word in words
@@ -45,11 +46,13 @@ def as_known(words: Iterable[Word]) -> Names:
 
 
 def attributes_held(words: Names, speed: float) -> list[Attribute]:
-    """Return the attributes that words of --hold stand for, without those in the light buffer or the stencil; motion
-    is up to a speed in pixels per frame.
+    """Return the attributes that the words of --hold name, without attributes in the light buffer or the stencil.
+
+    Args:
+        speed: the maximum motion, in pixels per frame.
 
     Raises:
-        UsageError: an unknown attribute, one named twice, or no normal.
+        UsageError: an attribute is unknown or named twice, or the normal is missing.
     """
     attributes = [_attribute(str(word), speed) for word in words]
     held = [attribute for attribute in attributes if attribute]
@@ -82,12 +85,12 @@ def _attribute(word: str, speed: float) -> Attribute | None:
 
 
 def held_in_stencil(words: Names) -> list[str]:
-    """Return the attributes that words put into the stencil."""
+    """Return the attributes that the words of --hold place in the stencil."""
     return [name for name in IN_STENCIL if f"{name}:{STENCIL}" in words]
 
 
 def names_held(option: str, words: Names | None, held: Sequence[str]) -> list[str]:
-    """Return the attributes that an option names, without depth. Raises UsageError if one is not held."""
+    """Return the attributes that an option names, without depth. Raises UsageError for an attribute not in --hold."""
     names = [str(word) for word in words or () if word != "depth"]
     for word in names:
         if word not in held:

@@ -1,5 +1,5 @@
-"""The cost of packing and unpacking a surface in a layout, in issue slots, and layouts that keep the sum within a
-limit."""
+"""The cost in issue slots of packing and unpacking a surface in a layout, and the search for layouts that keep the
+cost within a limit."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ Solve = Callable[[Problem], Collection[Solution]]
 
 @dataclass(frozen=True)
 class Price:
-    """The issue slots of a layout's code on a family: to pack a surface, and to unpack it."""
+    """The issue slots that a layout's code takes on a GPU family: to pack a surface, and to unpack it."""
 
     family: str
     pack: float
@@ -53,14 +53,14 @@ class Price:
 
 
 def check_compilers(families: Iterable[str]) -> None:
-    """Raise MissingError if a family's compiler is not on this machine."""
+    """Raise MissingError if the compiler for a family is not installed on this machine."""
     spirv.compiler()
     for reason in filter(None, (isa.missing(FAMILIES[family].library) for family in families)):
         raise MissingError(f"--most-instructions requires a compiler: {reason}")
 
 
 class Slots:
-    """Issue slots of layouts and of single codes on some families, each counted once."""
+    """The issue slots of layouts and of single encodings on several families, each counted once."""
 
     def __init__(self, families: Sequence[str]):
         self._families = families
@@ -68,7 +68,7 @@ class Slots:
         self._alone: dict[tuple[str, str, str], Layout] = {}
 
     def count(self, layouts: Iterable[Layout]) -> None:
-        """Count the slots of layouts that are not yet counted, all at once, which takes less time than one by one."""
+        """Count the slots of layouts that have not been counted yet; one call for many layouts is fastest."""
         new = {layout.summary: layout for layout in layouts if layout.summary not in self._known}
         make = {PACK: pack_operation, UNPACK: unpack_operation}
         cases = [
@@ -80,17 +80,17 @@ class Slots:
             self._known[key] = tuple(filter(None, prices))
 
     def of(self, layout: Layout) -> tuple[Price, ...]:
-        """Return the cost on each family, without the families on which it is not known."""
+        """Return the layout's cost on each family for which it is known."""
         self.count([layout])
         return self._known[layout.summary]
 
     def once(self, layout: Layout) -> float:
-        """Return the slots to pack and unpack once on the most expensive family; UNKNOWN if one is not counted."""
+        """Return the slots to pack and unpack once on the most expensive family; UNKNOWN if a family has no count."""
         prices = self.of(layout)
         return max(price.once for price in prices) if len(prices) == len(self._families) else UNKNOWN
 
     def count_codes(self, problem: Problem) -> None:
-        """Count the slots of every encoding of a problem for each way to store it in a target."""
+        """Count the slots of every encoding in a problem, for each way to store it in a target."""
         for code in (code for attribute in problem.attributes for code in attribute.codes):
             for target in problem.bins:
                 if target.need(code) is not None and _key(code, target) not in self._alone:
@@ -98,7 +98,7 @@ class Slots:
         self.count(self._alone.values())
 
     def of_code(self, code: Code, target_bin: Bin) -> float:
-        """Return the slots that an encoding takes by itself in a target, after `count_codes`."""
+        """Return the slots for an encoding alone in a target. Requires `count_codes`."""
         return self.once(self._alone[_key(code, target_bin)])
 
     def columns(self, layout: Layout, overdraw: float, readers: float) -> Row:
@@ -126,7 +126,7 @@ def _key(code: Code, target_bin: Bin) -> tuple[str, str, str]:
 
 
 def alone(code: Code, target_bin: Bin) -> Layout:
-    """Return a layout that stores one encoding in a target, and, unless it encodes the normal, a normal in floats."""
+    """Return a layout that stores one encoding in a target and, unless it encodes the normal, a normal in floats."""
     placed, name = Placed(code, target_bin, 0), f"{code.attribute} {code.name}"
     if code.attribute == NORMAL:
         return layout_of(name, Solution((placed,), {}))
@@ -135,10 +135,10 @@ def alone(code: Code, target_bin: Bin) -> Layout:
 
 
 def within(problem: Problem, most: float, slots: Slots, solve: Solve) -> list[Solution]:
-    """Return the best layouts that need at most `most` slots as a whole; empty if none is found.
+    """Return the best layouts whose whole code needs at most `most` slots; empty if no such layout is found.
 
-    A program knows the slots of each encoding by itself. A whole layout needs more slots, to join bits, or fewer, if
-    encodings share a byte. That difference is taken from the last layout that was found.
+    The solver knows only the slots of each encoding alone. The code of a whole layout needs more slots, to join bits,
+    or fewer, if encodings share a byte. This difference is taken from the last layout found.
     """
     slots.count_codes(problem)
     best: list[Solution] = []
@@ -165,8 +165,8 @@ def within(problem: Problem, most: float, slots: Slots, solve: Solve) -> list[So
 
 
 def least(problem: Problem, slots: Slots, solve: Solve) -> Solution | None:
-    """Return the layout that takes the fewest slots as a whole, among layouts whose encodings take the fewest
-    separately; None if no layout keeps to the rules."""
+    """Return the layout whose whole code takes the fewest slots, among layouts whose separate encodings take the
+    fewest or nearly the fewest; None if no layout satisfies the rules."""
     slots.count_codes(problem)
     first = cheapest(replace(problem, cost=slots.of_code))
     if first is None:
@@ -177,7 +177,7 @@ def least(problem: Problem, slots: Slots, solve: Solve) -> Solution | None:
 
 
 def _total(slots: Slots, solution: Solution) -> float:
-    """Return the sum of the slots that the encodings of a layout take separately."""
+    """Return the sum of the slots that a layout's encodings take separately."""
     return sum(slots.of_code(placed.code, placed.bin) for placed in solution.placed)
 
 

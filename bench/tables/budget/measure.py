@@ -1,4 +1,4 @@
-"""The budget table: for each size a layout, the quality of its images, and the sources of its error."""
+"""The budget table: a layout for each size, the quality of its images, and the sources of its error."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ HD, UHD = 1920 * 1080, 3840 * 2160
 
 
 def measure(device: Device, question: Question, tick: Tick) -> list[Row]:
-    """Return a row for each limit, or one for the threshold, then the rows of the layouts that are compared."""
+    """Return a row for each limit, or one for the threshold, followed by the rows of the layouts to compare."""
     with ExitStack() as stack:
         judges = [Exact(device, stack, stage) for stage in question.stages]
         judged = Judged(question, judges, tick)
@@ -83,7 +83,7 @@ def measure(device: Device, question: Question, tick: Tick) -> list[Row]:
 
 
 class Judged:
-    """The scenes of a question, and the errors that encodings cause in them."""
+    """The scenes of a question, with the errors that encodings cause in them."""
 
     def __init__(self, question: Question, judges: Sequence[Exact], tick: Tick):
         self._question, self._judges, self._tick = question, judges, tick
@@ -102,7 +102,7 @@ class Judged:
         ]
 
     def _take(self, attributes: Sequence[Attribute], tick: Tick) -> None:
-        """Measure the errors of the encodings of attributes that are not yet known, in every scene, and keep them."""
+        """Measure, in every scene, the errors of the attributes' encodings that are not yet known, and keep them."""
         for attribute in attributes:
             new = [code for code in attribute.codes if code.key not in self._errors]
             for judge in self._judges:
@@ -117,21 +117,21 @@ class Judged:
 
     @property
     def classes(self) -> list[str]:
-        """The classes whose worst error counts: the judging classes of surfaces in each scene, without its frame."""
+        """The classes whose worst error counts: the judging surface classes in each scene, not the whole frame."""
         names = dict.fromkeys(name for errors in self._errors.values() for name in errors)
         return [name for name in names if name.rpartition(" ")[2] in self._question.judging]
 
     def _usual(self, attributes: Sequence[Attribute]) -> list[Attribute]:
-        """Return attributes that no scene shows with only their encodings of the usual bits or more, and the others
-        without needlessly wide encodings."""
+        """Return the attributes with fewer encodings: at least the usual number of bits if no scene shows the
+        attribute, otherwise no needlessly wide encodings."""
         return [
             usual(attribute) if attribute.is_seen and not self._shows(attribute) else self._in_one_word(attribute)
             for attribute in attributes
         ]
 
     def _in_one_word(self, attribute: Attribute) -> Attribute:
-        """Return an attribute without encodings over 32 bits if a smaller one has no visible error in any class:
-        nobody spends 48 bits on a normal then. Attributes that decals blend into are unchanged, because these may
+        """Return an attribute without encodings over 32 bits if a smaller encoding has no visible error in any class:
+        48 bits for a normal would then be wasted. Attributes that decals blend into are unchanged, because they may
         need wide encodings."""
         if attribute.name in self._question.rules[0].blended:
             return attribute
@@ -148,19 +148,19 @@ class Judged:
         return next(filter(None, (self._kept(problem, count) for problem in self._problems(asked))), [])
 
     def _problems(self, asked: Own, classes: Sequence[str] = ()) -> Iterator[Problem]:
-        """Yield a problem with the usual bits for attributes that no scene shows, then one down to their minimum
-        bits, in case the usual bits do not fit.
+        """Yield a problem with the usual number of bits for attributes that no scene shows, then a problem with their
+        minimum, in case the usual bits do not fit.
 
         Args:
-            classes: classes that judge; empty for all.
+            classes: the classes that judge; empty for all.
         """
         usually = self._usual(asked.attributes)
         for held in (usually, *([asked.attributes] if usually != asked.attributes else [])):
             yield Problem(held, self._errors, classes or self.classes, asked.bins, asked.rules, self._together)
 
     def _held_back_db(self, asked: Own) -> float | None:
-        """Return the PSNR of the mean error over scenes. Each scene counts with its worst class, in a layout that the
-        other scenes chose. None if there is only one scene."""
+        """Return the PSNR of the mean error over scenes, with the worst class of each scene in a layout that was
+        chosen on the other scenes; None if there is only one scene."""
         errors = []
         for scene in dict.fromkeys(map(_scene_of, self.classes)):
             inside = [name for name in self.classes if _scene_of(name) == scene]
@@ -171,7 +171,7 @@ class Judged:
         return psnr_db(float(np.mean(errors))) if len(errors) > 1 else None
 
     def _kept(self, problem: Problem, count: int) -> list[Solution]:
-        """Return up to `count` of the best layouts; integer targets are used only if they gain much."""
+        """Return up to `count` of the best layouts; integer targets are used only if the gain is large."""
         plain = _in_channels(problem)
         solutions = self._in_slots(plain, count)
         if len(plain.bins) == len(problem.bins):
@@ -185,21 +185,21 @@ class Judged:
         return others
 
     def _in_slots(self, problem: Problem, count: int) -> list[Solution]:
-        """Return up to `count` of the best layouts, within --most-instructions if it is set."""
+        """Return up to `count` of the best layouts, within --most-instructions if that option is set."""
         most, best = self._question.most_instructions, partial(finalists, count=count)
         return best(problem) if most is None else within(problem, most, self._slots, best)
 
     def _best(self, name: str, asked: Own, depth: DepthEncoding | None = None) -> tuple[Solution, Layout, Row] | None:
         """Return the best layout and the row of its images; None if no layout fits. If the images differ from the
-        prediction, measure the layout's pairs of encodings and solve again with the results."""
+        prediction, measure pairs of the layout's encodings and solve again with the results."""
         best = self._best_drawn(name, asked, depth)
         if best and self._is_off(best[0], best[2]) and self._measure_pairs(best[0]):
             return self._best_drawn(name, asked, depth)
         return best
 
     def _best_drawn(self, name: str, asked: Own, depth: DepthEncoding | None) -> tuple[Solution, Layout, Row] | None:
-        """Return the layout with the lowest FLIP among those that count as equal, or the plainest if it is as good,
-        with its row; None if no layout fits."""
+        """Measure the solutions that count as equal; return the solution, layout and row with the lowest FLIP, or the
+        first and plainest if none is visibly better; None if no layout fits."""
         best = None
         for solution in self._finalists(asked, FINALISTS):
             layout = _with_depth(layout_of(name, solution), depth)
@@ -213,11 +213,11 @@ class Judged:
         return best
 
     def _is_off(self, solution: Solution, row: Row) -> bool:
-        """Whether the worst class in the image differs from its prediction by more than OFF_DB."""
+        """Whether the PSNR of the worst class in the images differs from the prediction by more than OFF_DB."""
         return not row["skipped"] and abs(psnr_db(solution.worst_of(self.classes)) - row["worst_db"]) > OFF_DB
 
     def _measure_pairs(self, solution: Solution) -> bool:
-        """Measure the joint errors of pairs of a layout's encodings; return whether any new pair counts."""
+        """Measure the joint errors of pairs of a layout's encodings; return whether any new pair matters."""
         codes, before = [placed.code for placed in solution.placed if placed.code.trip], len(self._together)
         for first, second in combinations(codes, 2):
             pair = frozenset((first.key, second.key))
@@ -232,7 +232,7 @@ class Judged:
         return len(self._together) > before
 
     def fewest(self) -> Iterator[Row]:
-        """Yield the row of the fewest bytes that keep the threshold; if none does, a row without figures."""
+        """Yield the row for the fewest bytes that keep to the FLIP threshold, or else a row without figures."""
         q, (low, high) = self._question, self._question.search
         first, last = q.rules[0], high
         while low < high:
@@ -245,7 +245,7 @@ class Judged:
         yield from self.proposals(replace(first, bytes=low))
 
     def _keeps(self, rules: Rules) -> bool:
-        """Whether the layout of a limit keeps the threshold in every scene."""
+        """Whether the best layout for a limit keeps to the FLIP threshold in every scene."""
         solution, threshold = self._solved(rules), self._question.threshold
         if solution is None or threshold is None:
             return False
@@ -253,7 +253,7 @@ class Judged:
         return all(flip <= threshold for flip in flips)
 
     def proposals(self, rules: Rules) -> Iterator[Row]:
-        """Yield the row of a limit; if no layout keeps to the rules, a row without figures."""
+        """Yield the row for a limit; a row without figures if no layout keeps to the rules."""
         asked = Own(self._question.attributes, self._question.bins, rules)
         enough = replace(rules, bytes=self._enough(asked))
         best = self._best(f"budget_{rules.bytes}", replace(asked, rules=enough))
@@ -271,14 +271,14 @@ class Judged:
         self._tick(layout.name)
 
     def _enough(self, asked: Own, unseen: float = HALF_STEP) -> int:
-        """Return the fewest bytes whose layout is as good as that of the limit, to half a decibel, or has an error of
-        at most `unseen`; the limit itself if no size is known, or if instructions are limited."""
+        """Return the fewest bytes whose layout is within half a decibel of the limit's layout, or has an error of at
+        most `unseen`; the limit itself if no such size is known, or if instructions are limited."""
         problems = self._problems(asked) if self._question.most_instructions is None else ()
         sizes = (enough_bytes(_in_channels(problem), unseen) for problem in problems)
         return next((size for size in sizes if size is not None), asked.rules.bytes)
 
     def mine(self, layout: Layout) -> Iterator[Row]:
-        """Yield the row of a user's layout, and of a proposal that holds the same in targets of the same formats."""
+        """Yield the row of a user's layout and, if one fits, of a proposal with the same attributes and formats."""
         row = self.row_of(MINE, layout)
         if changes.holds_other_quantities(layout):
             note = "not compared, because it stores no metallic; the encodings are for metallic-roughness materials"
@@ -301,7 +301,8 @@ class Judged:
         )
 
     def _next(self, rules: Rules, solution: Solution) -> Row:
-        """Return how many more bytes bring a gain, and the gain; empty if a few more bytes bring none."""
+        """Return the smallest number of additional bytes with a worthwhile gain, and the gain in dB; empty if no
+        number in MORE brings such a gain."""
         worst = solution.worst_of(self.classes)
         now = psnr_db(worst)
         for size in MORE if worst > HALF_STEP else ():
@@ -312,7 +313,7 @@ class Judged:
         return {}
 
     def _why(self, rules: Rules) -> str:
-        """Return why no layout fits a limit, and the minimum that is possible."""
+        """Return why no layout fits a limit, with the smallest size or cost that is possible."""
         q = self._question
         problem = Problem(q.attributes, self._errors, self.classes, q.bins, rules)
         least_bytes = fewest_bytes(problem)
@@ -326,8 +327,8 @@ class Judged:
         return f"{few}: {smallest}{self._dropped(problem)}"
 
     def _dropped(self, problem: Problem) -> str:
-        """Return `. It fits` and the attributes to leave out so that a layout fits, smallest loss first; empty if
-        nothing helps."""
+        """Return `. A layout fits` and the attributes to leave out, smallest loss first; empty if no choice of
+        attributes helps."""
         losses = {
             attribute.name: loss for attribute in problem.attributes if (loss := self._loss(attribute)) is not None
         }
@@ -345,7 +346,7 @@ class Judged:
 
     def _loss(self, attribute: Attribute) -> float | None:
         """Return the error of the worst class without an attribute: 0 if no image reads the attribute, None if images
-        cannot do without it."""
+        need it."""
         if not attribute.is_seen:
             return 0.0
         if attribute.name not in WITHOUT:
@@ -355,7 +356,7 @@ class Judged:
         return max(errors[name] for name in self.classes)
 
     def _why_never(self, rules: Rules) -> str:
-        """Return which attribute no target can hold, or that no targets can hold all of the attributes together."""
+        """Return which attribute fits no target, or that no set of targets can store all attributes together."""
         q = self._question
         for attribute in q.attributes:
             is_blended = attribute.name in rules.blended
@@ -375,7 +376,7 @@ class Judged:
         )
 
     def _predicted(self, solution: Solution, row: Row) -> Row:
-        """Return the predicted figures of a layout, and the sources of the error in the worst class of its image."""
+        """Return a layout's predicted figures, and the sources of the error in the worst class."""
         worst = row["worst_class"] or max(self.classes, key=lambda name: solution.errors.get(name, 0.0))
         total = solution.errors[worst]
         shares = {placed.code.attribute: self._errors.get(placed.key, {}).get(worst, 0.0) for placed in solution.placed}
@@ -395,8 +396,8 @@ class Judged:
         }
 
     def row_of(self, kind: str, layout: Layout) -> Row:
-        """Return the row of a layout: targets, bytes, traffic, and its PSNR and worst class in the scenes; `skipped`
-        says why it cannot be drawn."""
+        """Return the row of a layout: its targets, bytes, traffic and cost, and its PSNR and worst class in the
+        scenes. If the layout cannot be drawn, `skipped` says why."""
         row = self._empty(kind, layout.name) | {
             "targets": "; ".join(f"{target.format}: {target.holds}" for target in layout.targets),
             "bytes_per_pixel": layout.bytes_per_pixel,
@@ -427,14 +428,15 @@ class Judged:
         }
 
     def _by_scene_db(self, errors: Mapping[str, float]) -> float:
-        """Return the PSNR of the error of the worst class of a scene, as a mean over scenes."""
+        """Return the PSNR of the mean error over scenes, with the worst class of each scene."""
         worst: dict[str, float] = {}
         for name in self.classes:
             worst[_scene_of(name)] = max(worst.get(_scene_of(name), 0.0), errors[name])
         return psnr_db(float(np.mean(list(worst.values()))))
 
     def _beside(self, layout: Layout) -> float:
-        """Return the bytes of held attributes that a layout lacks, less those of emission that is not held."""
+        """Return the bytes per pixel for held attributes that a layout lacks, minus the bytes for emission that the
+        layout stores but that is not held."""
         kept = {word.component for word in layout.words}
         held = {
             attribute.name: min(code.total_bits for code in attribute.codes) for attribute in self._question.attributes
@@ -448,7 +450,7 @@ class Judged:
         return math.ceil(layout.bytes_per_pixel + self._beside(layout))
 
     def _changes(self, layout: Layout, proposal: Solution) -> str:
-        """Return the changes from a proposal that would improve a layout most."""
+        """Return as text the changes from a proposal that would improve a layout most."""
         whole, mine = changes.completed(layout), {}
         for name in COMPONENTS:
             # A number that carries a sign of the normal does not stand alone.
@@ -482,7 +484,8 @@ class Judged:
         }
 
     def others(self, device: Device) -> list[Layout]:
-        """Return the layouts compared, a user's and those of engines that the pipeline draws; count their slots."""
+        """Return the layouts to compare with: the user's layouts, and engines' layouts that the pipeline can draw;
+        count their slots."""
         layouts = [*self._question.against, *self._engines(device)]
         self._slots.count(layouts)
         return layouts
@@ -501,7 +504,7 @@ class Judged:
 
 
 def _fits_without(problem: Problem, names: Sequence[str]) -> bool:
-    """Whether a layout without some attributes keeps to the rules."""
+    """Whether a layout without these attributes can keep to the rules."""
     rules = problem.rules
     kept = [attribute for attribute in problem.attributes if attribute.name not in names]
     left = replace(
@@ -516,7 +519,7 @@ def _fits_without(problem: Problem, names: Sequence[str]) -> bool:
 
 
 def _constant(name: str, value: float, surfaces: Surfaces) -> Surfaces:
-    """Return surfaces with one value of an attribute everywhere."""
+    """Return surfaces with one attribute set to the same value everywhere."""
     return replace(surfaces, **{name: np.full_like(getattr(surfaces, name), value)})
 
 
@@ -532,7 +535,7 @@ def _in_channels(problem: Problem) -> Problem:
 
 
 def _with_depth(layout: Layout, depth: DepthEncoding | None) -> Layout:
-    """Return a layout with its depth in an encoding; unchanged if it stores no depth, or if `depth` is None."""
+    """Return a layout with depth in this encoding; unchanged if the layout stores no depth, or if `depth` is None."""
     return replace(layout, depth=depth) if depth and "depth" in layout.components else layout
 
 
@@ -541,13 +544,13 @@ def _class_of(judge: Exact, name: str) -> str:
 
 
 def _scene_of(name: str) -> str:
-    """Return the scene of a class, whose name is the scene's, a space and the class's own."""
+    """Return the scene of a class, whose name consists of the scene's name, a space and the class's own name."""
     return name.rpartition(" ")[0]
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Return rows sorted by kind: proposals by their limit, then a user's layouts, their improvements, and those of
-    engines by bytes and the worst class."""
+    """Return rows sorted by kind: proposals by limit, then a user's layouts, their improvements, and engines' layouts
+    by bytes and by the PSNR of the worst class."""
     kinds = (PROPOSAL, MINE, IMPROVED, ENGINE)
     return sorted(
         rows,

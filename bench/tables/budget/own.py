@@ -30,7 +30,8 @@ class Own:
 
 
 def own(layout: Layout, asked: Rules) -> Own:
-    """Return what a layout is compared on: its attributes, in as many targets of its formats.
+    """Return the attributes, targets and rules for a proposal in place of a layout, with as many targets of
+    each format as the layout has.
 
     Args:
         asked: rules of the question. Rules that the layout itself breaks are left out, except a WebGPU limit.
@@ -53,8 +54,8 @@ def own(layout: Layout, asked: Rules) -> Own:
 
 
 def _reads_little(layout: Layout, read: frozenset[str]) -> bool:
-    """Whether a layout itself lets a pass read some attributes alone: their targets hold nothing else large, and at
-    most READ_BYTES per attribute."""
+    """Whether a layout itself lets a pass read these attributes alone: their targets hold no other large attribute
+    and total at most READ_BYTES per attribute."""
     mine = {component for name in read for component in COMPONENTS.get(name, ())}
     homes = {word.target for word in layout.words if word.component in mine}
     beside = [word for word in layout.words if word.target in homes and word.component not in mine]
@@ -72,8 +73,7 @@ def _format(target: Target) -> str:
 
 
 def _bins(name: str, count: int) -> Iterator[Bin]:
-    """Yield the known bins of a format, each with as many copies as the layout has targets of it; if none is known, a
-    bin with the format's own channels."""
+    """Yield the known bins of a format with `count` copies each; if none is known, a bin with its own channels."""
     known = [replace(target_bin, copies=count) for target_bin in BINS.values() if target_bin.format == name]
     if known:
         yield from known
@@ -90,8 +90,8 @@ def _kind(storage: Storage, channel: int) -> str:
 
 
 def _attributes(layout: Layout) -> Iterator[Attribute]:
-    """Yield the attributes that an image shows, in all of their encodings; then the rest, in as many bits of the
-    same kind as the layout has."""
+    """Yield the attributes of a layout: attributes that an image shows, with all of their encodings; then the others,
+    with the bits and the kind of channel that the layout uses."""
     has_halves = any(t.storage.kind == "float" and max(t.storage.bits) == 16 for t in layout.targets)
     for name, attribute in SEEN.items():
         if layout.components & {*COMPONENTS[name]}:
@@ -117,7 +117,7 @@ def _texts(layout: Layout, index: int, target: Target) -> Iterator[tuple[str, Wo
 
 
 def _as_it_is(name: str, layout: Layout, pairs: Sequence[tuple[str, Word]]) -> Attribute:
-    """Return an attribute whose words keep their bits and their kind of channel."""
+    """Return an attribute with one encoding, which keeps the bits and the kind of channel of the layout's words."""
     kinds, bits = [], []
     for _, word in pairs:
         storage = layout.targets[word.target].storage

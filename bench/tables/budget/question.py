@@ -45,11 +45,12 @@ class Question:
     """The scenes, attributes, targets and limits of a budget.
 
     Attributes:
-        stages: scenes that judge.
+        stages: scenes whose images are compared.
         attributes: attributes to store.
-        bins: possible targets.
-        rules: rules for each limit.
-        overdraw, readers: how often a pixel is written, and the passes that fetch it.
+        bins: targets that may be used.
+        rules: the rules that a layout must keep to, once for each byte limit.
+        overdraw: number of times that a pixel is written.
+        readers: passes that read the G-buffer.
         against: layouts to compare with.
         engines: whether engine layouts of the same kind are measured as well.
         tile: bytes per pixel that a GPU tile has at full rate; None if not requested.
@@ -58,7 +59,7 @@ class Question:
         search: smallest and largest number of bytes to search.
         judging: classes of surfaces whose worst error counts.
         families: GPU families to count issue slots for.
-        most_instructions: most issue slots to pack and unpack once; None if not requested.
+        most_instructions: maximum number of issue slots to pack and unpack once; None if not requested.
     """
 
     stages: Sequence[Stage]
@@ -83,7 +84,7 @@ class Question:
 
 
 def question(options: BudgetOptions) -> Question:
-    """Return the question that the options ask. Raises UsageError for options that cannot be used."""
+    """Return the question that the options describe. Raises UsageError for options that cannot be used."""
     device = require_device()
     named = {name: as_known(getattr(options, name)) for name in OF_ATTRIBUTES if getattr(options, name)}
     options = _of_held(replace(options, **named))
@@ -138,7 +139,7 @@ def question(options: BudgetOptions) -> Question:
 
 
 def _of_held(options: BudgetOptions) -> BudgetOptions:
-    """Return options whose --read-alone and --readers, if they are the defaults, name only attributes held."""
+    """Return the options; --read-alone and --readers lose attributes that are not held, if they are the defaults."""
     usual, held = BudgetOptions(), {str(word).partition(":")[0] for word in options.hold}
     if options.read_alone == usual.read_alone:
         options = replace(options, read_alone=tuple(name for name in usual.read_alone if name in held) or ("none",))
@@ -148,13 +149,13 @@ def _of_held(options: BudgetOptions) -> BudgetOptions:
 
 
 def _read_alone(attributes: Names, names: Sequence[str]) -> frozenset[str]:
-    """Return the attributes that a pass reads without the rest; empty for `none`. Raises UsageError for attributes
-    that are not held."""
+    """Return the attributes of --read-alone, which a pass reads without the rest; empty for `none`. Raises UsageError
+    for attributes that are not held."""
     return frozenset() if attributes == ("none",) else frozenset(names_held("--read-alone", attributes, names))
 
 
 def _webgpu_cost(light: str) -> int:
-    """Return the bytes per sample of a light buffer in WebGPU. Raises UsageError if WebGPU does not render to it."""
+    """Return a light buffer's bytes per sample in WebGPU. Raises UsageError if WebGPU cannot render to it."""
     name = LIGHT_BUFFERS[light].storage.target.name
     if name not in WEBGPU:
         raise UsageError(f"--light {light}: WebGPU does not render to this format; use r11g11b10f or rgba16f")
@@ -162,7 +163,8 @@ def _webgpu_cost(light: str) -> int:
 
 
 def _limits(options: BudgetOptions) -> tuple[bool, int | None]:
-    """Return whether WebGPU's limit applies, and the bytes of a tile's pixel. Raises UsageError for unknown limits."""
+    """Return whether WebGPU's limit applies, and the tile's bytes per pixel, None without a tile limit. Raises
+    UsageError for unknown limits."""
     webgpu, tile = False, None
     for word in map(str, options.limit or ()):
         prefix, _, size = word.partition(":")

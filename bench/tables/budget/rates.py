@@ -67,7 +67,7 @@ class Stage:
 
 
 class Exact:
-    """The exact image of a stage, with which other images are compared. It stays open with the stack."""
+    """The exact image of a stage, with which other images are compared. Its rendering is closed with the stack."""
 
     def __init__(self, device: Device, stack: ExitStack, stage: Stage):
         self.stage, self._device = stage, device
@@ -89,7 +89,7 @@ class Exact:
         self.classes = self._masks(light[..., :3].max(axis=-1) > 0)
 
     def _masks(self, gives_light: np.ndarray) -> dict[str, np.ndarray]:
-        """Return the mask of each class, without classes of too few pixels, and of the frame: all covered pixels."""
+        """Return a mask for each class of surfaces with enough pixels, and a mask of all covered pixels (FRAME)."""
         roughness, masks, low = self.surfaces.roughness, {FRAME: self.covered}, -np.inf
         for name, high in UP_TO.items():
             masks[name] = self.covered & ~gives_light & (roughness > low) & (roughness <= high)
@@ -106,13 +106,13 @@ class Exact:
         return digest.hexdigest()
 
     def errors(self, shown: np.ndarray) -> dict[str, float]:
-        """Return the mean squared error of each class of a displayed image, (height, width, 3) in [0, 1]; values
-        that are not finite count as an error of 1."""
+        """Return the mean squared error of each class in a displayed image, (height, width, 3) in [0, 1]; values that
+        are not finite count as an error of 1."""
         apart = np.where(np.isfinite(shown), shown - self.shown, 1.0) ** 2
         return {name: float(apart[mask].mean()) for name, mask in self.classes.items()}
 
     def of(self, trip: Callable[[Surfaces], Surfaces]) -> dict[str, float]:
-        """Return the mean squared error of each class that `trip`, a round trip of the surfaces, makes by itself."""
+        """Return the mean squared error that `trip`, a round trip of the surfaces, causes in each class."""
         return self.errors(self.display.image(self._made.lit(self._texels(trip(self.surfaces)))))
 
     def of_layout(self, layout: Layout) -> ImageErrors:
@@ -144,15 +144,15 @@ class Exact:
 
 @dataclass(frozen=True)
 class ImageErrors:
-    """The errors of a layout's image: the mean squared error of each class, and the 99th percentile of FLIP over
-    covered pixels."""
+    """The errors of the image that is drawn with a layout: the mean squared error of each class, and the 99th
+    percentile of FLIP over covered pixels."""
 
     errors: Mapping[str, float]
     flip: float
 
 
 def rates_of_pair(exact: Exact, first: Code, second: Code) -> Mapping[str, float]:
-    """Return the mean squared error of each class that two encodings make together. Cached."""
+    """Return the mean squared error that two encodings cause together in each class. Cached."""
     trips = [code.trip for code in (first, second) if code.trip]
     key = cache.key_of("budget pair", exact.key, str(first.key), str(second.key))
     return cache.figures(key, lambda: exact.of(lambda seen: trips[1](trips[0](seen))))
@@ -162,8 +162,8 @@ Rates = Mapping[str, Mapping[str, float]]
 
 
 def rates(exact: Exact, codes: Sequence[Code], tick: Callable[[str], None]) -> Rates:
-    """Return the error of each class by the name of the encoding, without encodings that no image shows. Cached by
-    everything that the image is made from."""
+    """Return the mean squared error that each encoding causes in each class, by name of the encoding and then of the
+    class. Encodings that no image shows are left out. Cached by everything that the image is made from."""
     key, errors = exact.key, {}
     for code in codes:
         if code.trip is not None:

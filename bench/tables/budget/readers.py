@@ -38,8 +38,8 @@ class Readers:
     """The passes that read a G-buffer.
 
     Attributes:
-        full: how many of them read all of it.
-        parts: the attributes that each of the others reads.
+        full: number of passes that read all of it.
+        parts: the attributes that each other pass reads.
     """
 
     full: float
@@ -62,8 +62,8 @@ def times(count: float) -> str:
 
 
 def read_readers(words: Names) -> Readers:
-    """Return the passes of words: a number of those that read all, `all` for one of them, or attributes joined
-    by +. Raises UsageError for anything else."""
+    """Return the passes that the words of --readers describe: a number of passes that read everything, `all` for one
+    such pass, or the attributes that a pass reads, joined by +. Raises UsageError for anything else."""
     full, parts = 0.0, []
     for word in map(str, words):
         count = _count(word)
@@ -107,7 +107,7 @@ def _attributes(word: str) -> Iterator[str]:
 
 
 def _bytes_of(layout: Layout, part: Collection[str]) -> int:
-    """Return the bytes per pixel of the targets that hold some attributes."""
+    """Return the total bytes per pixel of the targets that hold any of these attributes."""
     names = {word for name in part for word in WORDS[name]}
     if "normal" in names:
         # A quantity that carries a sign of the normal is read with it.

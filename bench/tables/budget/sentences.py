@@ -27,8 +27,8 @@ NAMED = 3
 
 
 def told(row: Row) -> Iterator[str]:
-    """Yield texts on a row of the budget table: the answer, its sources of error and the gain of more bytes, its
-    rules and its cost; only the reason if the row was skipped."""
+    """Yield texts on a row of the budget table: the answer; its sources of error and the gain from more bytes; its
+    rules; its cost. If the row was skipped, yield only the reason."""
     if row["skipped"]:
         yield f"{row['skipped'].rstrip('.')}."
         return
@@ -39,18 +39,20 @@ def told(row: Row) -> Iterator[str]:
 
 
 def in_short(row: Row) -> Iterator[str]:
-    """Yield two texts on a row that has figures: the answer; then its cost and the gain of more bytes."""
+    """Yield two texts on a measured row: the answer; then its cost and the gain from more bytes."""
     yield _answer(row)
     slots = "not counted on this machine"
     if row["pack_slots"] is not None:
         parts = f"{row['pack_slots']:g} issue slots to pack and {row['unpack_slots']:g} to unpack"
         slots = f"{parts} on {row['dearest_family']}: {row['slots']:g} per pixel"
-    yield " ".join(filter(None, [f"Cost: {slots}. {row['mb_1080p']:.0f} MB per frame at 1080p.", _next(row)]))
+    yield " ".join(
+        filter(None, [f"Cost: {slots}. {row['mb_1080p']:.0f} MB written and read per frame at 1080p.", _next(row)])
+    )
 
 
 def targets(row: Row) -> list[Row]:
-    """Return a table row for each render target of a layout: `target` is its number, format and bytes, `holds` the
-    attributes that it stores and their codes, in words. Empty if the layout has no targets."""
+    """Return a table row for each render target of a budget row's layout: `target` is its number, format and bytes,
+    `holds` the attributes that it stores and their encodings, in words. Empty if the layout has no targets."""
     # The other words of a layout of yours are shown as they are.
     codes = dict(text.split(" ", 1) for text in row["codes"].split("; ") if text) if row["codes"] else {}
     if row["kind"] == IMPROVED:
@@ -66,7 +68,8 @@ def targets(row: Row) -> list[Row]:
 
 
 def _held(word: str, codes: Mapping[str, str]) -> str:
-    """Return what a word of a layout stores: an attribute and its encoding, or the word itself if it matches none."""
+    """Return the attribute that a word of a layout stores, and its encoding, in words; the word itself if it matches
+    no attribute in `codes`."""
     attribute = next((name for name in reversed(re.findall(r"[a-z_0-9]+", word)) if name in codes), None)
     return word if attribute is None else _code(f"{attribute} {codes[attribute]}")
 
@@ -78,7 +81,7 @@ def _subject(row: Row) -> str:
 
 
 def _answer(row: Row) -> str:
-    """Return two sentences: the recommended bytes with the PSNR of the worst class and of the frame; then whether
+    """Return two sentences: the bytes per pixel with the PSNR of the worst class and of the frame; then whether
     errors are visible."""
     fewer = f"{row['bytes_per_pixel']:g} bytes are enough, for " if row["bytes_per_pixel"] != row["limit"] else ""
     scene, _, surfaces = row["worst_class"].rpartition(" ")
@@ -88,8 +91,8 @@ def _answer(row: Row) -> str:
 
 
 def _free(row: Row) -> str:
-    """Return a sentence on the bytes that a limit leaves free, and the missing attributes that they could hold; empty
-    if less than a byte is free, or the row is not a recommendation."""
+    """Return a sentence on the bytes that a recommendation leaves free, and the missing attributes that would fit;
+    empty if less than a byte is free, or the row is not a recommendation."""
     free = (row["limit"] or 0) - row["bytes_per_pixel"] if row["kind"] == PROPOSAL else 0
     uses = [use for size, word, use in FREE_FOR if size <= free and word not in row["targets"]]
     which = f" for {' or '.join(uses)}" if uses else ""
@@ -161,7 +164,7 @@ def _unmeasured(row: Row) -> tuple[str, ...]:
 
 
 def conditions(row: Row) -> str:
-    """Return as one text the free bytes, the scenes and size of the images, and the unmeasured attributes."""
+    """Return one text on the free bytes, the scenes and size of the images and the unmeasured attributes."""
     images = f"Images: {row['scene'].replace(',', ', ')} at {row['size']}."
     return " ".join(filter(None, [_free(row), images, *_unmeasured(row)]))
 

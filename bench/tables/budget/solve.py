@@ -1,7 +1,8 @@
-"""The encoding of each attribute and its target, with the smallest error of the worst class, by an integer program.
+"""The choice of an encoding and a target for each attribute that minimises the error of the worst class: an integer
+program.
 
-With y = 1 if an encoding is in a target, z = 1 if a target is used, d the error that an encoding makes in a class,
-and e the error that two encodings make together beyond that, which counts if w = 1, that is, if both are used:
+With y = 1 if an encoding is in a target, z = 1 if a target is used, d the error that an encoding causes in a class,
+and e the error that two encodings cause together beyond that, which counts if w = 1, that is, if both are used:
 
     minimise t   where for each class   sum of d y + sum of e w <= t
     each attribute has one encoding in one target that it fits; the targets' bytes fit the limit
@@ -80,7 +81,7 @@ Terms = Mapping[int, float]
 
 @dataclass(frozen=True)
 class Placed:
-    """A code in a target: the bin, and which copy of it."""
+    """An encoding in a target: the bin, and the number of its copy."""
 
     code: Code
     bin: Bin
@@ -93,13 +94,13 @@ class Placed:
 
 @dataclass(frozen=True)
 class Solution:
-    """A layout by its codes, and the error that is predicted of each class."""
+    """A layout as encodings placed in targets, and the error predicted for each class."""
 
     placed: tuple[Placed, ...]
     errors: Mapping[str, float]
 
     def worst_of(self, names: Sequence[str]) -> float:
-        """Return the largest error of the classes with these names; a class without an error counts as 0."""
+        """Return the largest error of these classes; a class without an error counts as 0."""
         return max((self.errors.get(name, 0.0) for name in names), default=0.0)
 
 
@@ -109,14 +110,14 @@ class Problem:
 
     Attributes:
         attributes: attributes to store.
-        errors: error of each class, by attribute and name of the encoding; an encoding that no image shows has no
+        errors: error in each class, by attribute and name of the encoding; an encoding that no image shows has no
             entry.
-        together: error of two encodings together beyond their own errors, by class.
+        together: error in each class of two encodings together, beyond their own errors.
         classes: classes whose worst error is minimised.
-        bins: possible targets.
+        bins: targets that may be used.
         rules: rules that the layout must keep to.
         cost: cost of an encoding in a target; None if not requested.
-        most_cost: maximum cost of all encodings together.
+        most_cost: maximum total cost of the encodings.
     """
 
     attributes: Sequence[Attribute]
@@ -134,8 +135,8 @@ class Problem:
 
 
 class _Program:
-    """The integer program of a problem: variables are placements, then targets, then shared bytes, then targets that a
-    pass reads, then pairs, then t."""
+    """The integer program of a problem. Its variables are, in this order: placements, targets, shared bytes, targets
+    that a pass reads, pairs, and t."""
 
     def __init__(self, problem: Problem):
         self.problem = problem
@@ -173,8 +174,8 @@ class _Program:
         self._rows.append((dict(terms), low, high))
 
     def _hold(self) -> None:
-        """Require one encoding in one target for each attribute, a shared target for attributes that are read
-        together, and a separate target for those that must be apart."""
+        """Require one encoding in one target for each attribute, a shared target for each set of attributes that must
+        be together, and a separate target for each attribute that must be apart."""
         for attribute in self.problem.attributes:
             self.row({i: 1 for i, (code, *_) in enumerate(self.choices) if code.attribute == attribute.name}, 1, 1)
         for slot in range(len(self.slots)):
@@ -227,7 +228,7 @@ class _Program:
             self.row(self.costs(), 0, self.problem.most_cost)
 
     def _fetch(self) -> None:
-        """Limit the bytes that a pass fetches for the attributes that it reads by themselves."""
+        """Limit the bytes that a pass fetches for the attributes that it reads without the rest."""
         read = self.problem.rules.read
         if not read:
             return
@@ -250,7 +251,7 @@ class _Program:
         self.row(sizes, 0, READ_BYTES * len(read))
 
     def _pair(self) -> None:
-        """Constrain the variable of each pair of codes to 1 where both are taken, else to 0."""
+        """Constrain the variable of each pair of encodings to 1 if both are used, otherwise to 0."""
         for index, pair in enumerate(self.pairs):
             taken = [{i: 1.0 for i, (code, *_) in enumerate(self.choices) if code.key == key} for key in sorted(pair)]
             self.row({**taken[0], **taken[1], self.both(index): -1.0}, -np.inf, 1)
@@ -281,7 +282,7 @@ class _Program:
         }
 
     def costs(self) -> Terms:
-        """Return the terms that sum the costs of the encodings, each by itself; all 0 if no cost is requested."""
+        """Return the terms that sum the costs of the encodings in their targets; all 0 if no cost is requested."""
         cost = self.problem.cost
         return {i: cost(code, self.slots[slot][0]) if cost else 0.0 for i, (code, slot, _) in enumerate(self.choices)}
 
@@ -293,7 +294,7 @@ class _Program:
         }
 
     def solved(self, unit: float, most: float | None = None, least: Terms | None = None) -> np.ndarray | None:
-        """Return the variables that minimise a sum; None if there are no such variables.
+        """Return the variables that minimise a sum; None if the program has no solution.
 
         Args:
             unit: the error that counts as 1.
@@ -348,7 +349,7 @@ def _least(
     cost: np.ndarray, matrix: csr_array, lows: np.ndarray, highs: np.ndarray, upper: np.ndarray, integral: np.ndarray
 ) -> np.ndarray | None:
     """Return the variables from 0 to ``upper`` that minimise ``cost`` while ``matrix`` times the variables is within
-    bounds; None if there are no such variables. Solutions are cached.
+    bounds; None if the program has no solution. Solutions are cached.
 
     Raises:
         UsageError: no solution was found in time.
@@ -388,7 +389,7 @@ WORST = 1e3
 
 
 def fuss(code: Code, target_bin: Bin) -> float:
-    """Return the penalty for what an engineer would rather avoid about an encoding in a target."""
+    """Return the penalty for properties of an encoding in a target that an engineer would rather avoid."""
     is_shared = target_bin.fields or SHARED in (target_bin.need(code) or {})
     curve = CURVE_FUSS * any("(" in word for word in code.words)
     if not is_shared:
@@ -398,15 +399,16 @@ def fuss(code: Code, target_bin: Bin) -> float:
 
 
 def solved(problem: Problem) -> Solution | None:
-    """Return the plainest of the best layouts; None if no layout keeps to the rules."""
+    """Return the plainest layout among the best; None if no layout keeps to the rules."""
     return next(iter(finalists(problem, 1)), None)
 
 
 def finalists(problem: Problem, count: int) -> list[Solution]:
-    """Return up to `count` layouts of different encodings, the plainest first; empty if no layout keeps to the rules.
+    """Return up to `count` layouts with different encodings, the plainest first; empty if no layout keeps to the
+    rules.
 
-    No layout is worse than the best by more than EQUAL_DB, in the worst class and then in the sum of all classes,
-    unless its error stays below UNSEEN."""
+    Each layout is within EQUAL_DB of the best, first in the worst class and then in the sum of all classes; a
+    worst-class error of up to UNSEEN is always allowed."""
     program = _Program(problem)
     best = _best(program)
     if best is None:

@@ -63,8 +63,8 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
 
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield for each limit the recommendation, in sentences and target by target, and possible changes to a user's
-    layout; then all layouts."""
+    """Yield the recommendation for each limit, in sentences and target by target, and possible changes to a user's
+    layout; then a comparison of all layouts."""
     for row in rows:
         if row["kind"] == MINE and row["changes"]:
             yield Sheet("", [], said=(f"{row['layout']}: {row['changes']}",))
@@ -90,7 +90,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield for each limit the answer in a dozen lines, then all layouts if there are several."""
+    """Yield a short answer for each limit, then all layouts if there are several."""
     answered: set[str] = set()
     rest = [f"{row['layout']}: {row['changes']}" for row in rows if row["kind"] == MINE and row["changes"]]
     for row in rows:

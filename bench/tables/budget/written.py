@@ -1,4 +1,4 @@
-"""A solution as a layout that the renderer draws by, and as a file."""
+"""Conversion of a solution to a layout for the renderer and to a layout file."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def layout_of(name: str, solution: Solution) -> Layout:
 
 
 def _by_target(solution: Solution) -> Iterator[tuple[Bin, list[Placed]]]:
-    """Yield each target with its placed encodings, wide targets first, so that WebGPU loses no bytes to their
-    alignment; of equally wide targets the one with the normal comes first."""
+    """Yield each target with its placed encodings, wide targets first, so that WebGPU loses no bytes to alignment;
+    among equally wide targets, the target with the normal comes first."""
     groups: dict[tuple[str, int], list[Placed]] = {}
     for placement in solution.placed:
         groups.setdefault((placement.bin.name, placement.copy), []).append(placement)
@@ -48,8 +48,8 @@ def target_of(target_bin: Bin, placed: Sequence[Placed]) -> Target:
 
 
 def _in_fields(target_bin: Bin, placed: Sequence[Placed]) -> list[str]:
-    """Return the words of a target with integer fields, each with its bits: every encoding inside one channel if they
-    fit in this way; otherwise one after the other without gaps."""
+    """Return the words of a target with integer fields, each with its bits. Each encoding is kept within one channel
+    if all of them fit in this way; otherwise they follow each other without gaps."""
     channels: list[list[Code]] = []
     for p in placed:
         home = next((c for c in channels if sum(code.total_bits for code in (*c, p.code)) <= target_bin.part), None)
@@ -97,7 +97,7 @@ def _in_channels(target_bin: Bin, placed: Sequence[Placed]) -> Iterator[str]:
 
 
 def file_of(row: Mapping[str, Any]) -> str:
-    """Return the text of a layout file for `--layout`, in TOML, with the scores of the row in comments."""
+    """Return the text of a layout file for `--layout`, in TOML, with the scores of a budget row in comments."""
     normal = next(code for code in row["codes"].split("; ") if code.startswith(f"{NORMAL} "))
     lines = [
         f"# {row['bytes_per_pixel']} bytes per pixel; {row['scene']} at {row['size']}: {row['worst_class']} "

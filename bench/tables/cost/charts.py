@@ -16,9 +16,10 @@ HEIGHT = 420
 
 
 def front_chart(name: str, label: str, panels: Sequence[Panel]) -> Chart:
-    """Return a chart of cost against error. Dominated points are grey; steps join the others of the same bit count.
+    """Return a chart of cost against error. Dominated points are grey; a stepped line joins the other points of the
+    same bit count.
 
-    Panels of one kind and several machines are one panel, with a switch between the machines.
+    Panels of the same kind for several machines are shown as one panel, with a switch between the machines.
 
     Args:
         label: the quantity that the decibels measure.
@@ -55,7 +56,7 @@ def front_chart(name: str, label: str, panels: Sequence[Panel]) -> Chart:
 
 
 def _rows(panel: Panel) -> list[Row]:
-    """Return a row for each point of a panel: first the Pareto front by cost, then the others, with `rest`."""
+    """Return a row for each point of a panel: first the Pareto front by cost, then the others, with `rest` set."""
     front = pareto_front(panel.points)
     points = [*front, *(point for point in panel.points if point not in front)]
     return [_point_row(panel, point) | {"rest": point not in front} for point in points]
@@ -67,7 +68,7 @@ def _point_row(panel: Panel, point: Point) -> Row:
 
 
 def _switch(panels: Sequence[Panel]) -> Switch | None:
-    """Return a switch between the machines of panels; None if there are fewer than two machines."""
+    """Return a switch between the machines that the panels show; None if there are fewer than two machines."""
     machines = tuple(dict.fromkeys(panel.machine for panel in panels))
     if len(machines) < 2:
         return None
@@ -75,7 +76,7 @@ def _switch(panels: Sequence[Panel]) -> Switch | None:
 
 
 def _finding_sentence(panels: Sequence[Panel]) -> str:
-    """Return how many codecs of each panel are Pareto-optimal, on the machine that is shown first."""
+    """Return a sentence on how many codecs in each panel are Pareto-optimal, on the machine that is shown first."""
     parts = []
     for panel in (panel for panel in panels if panel.is_usual):
         front = pareto_front(panel.points)

@@ -35,10 +35,10 @@ PROCESSOR = "processor time of each finished pass"
 
 
 def clock(device: Device) -> Clock:
-    """Return a device's clock: its timer queries; for a software rasteriser the processor time of its threads.
+    """Return a device's clock: its timer queries, or for a software rasteriser the processor time of its threads.
 
-    A wall clock counts whatever else the machine does: on two busy cores medians of nine differences were apart by
-    40% from run to run, and by 4% on this clock.
+    A wall clock counts all other load on the machine as well: on two busy cores, medians of nine differences varied
+    by 40% from run to run, and by 4% with this clock.
     """
 
     def by_processor_time(run: Callable[[], object]) -> float:
@@ -51,8 +51,8 @@ def clock(device: Device) -> Clock:
 
 
 class Field:
-    """The targets and input textures that passes of one size share, the textures by their number of components.
-    Released with the stack."""
+    """The targets and input textures that all passes of one size share. The textures are kept by their number of
+    components. All are released with the stack."""
 
     def __init__(self, device: Device, stack: ExitStack, size: tuple[int, int]):
         self.device, self.stack, self.size = device, stack, size
@@ -60,18 +60,19 @@ class Field:
         self._points: dict[int, Texture] = {}
 
     def points(self, numbers: int) -> Texture:
-        """Return a texture of random directions (three numbers) or codes, uploaded once for each count of numbers."""
+        """Return a texture of random directions (three numbers) or codes, uploaded once per number of components."""
         if numbers not in self._points:
             self._points[numbers] = self.device.owned(self.stack, self.device.upload(_points(self.size, numbers)))
         return self._points[numbers]
 
 
 class Pair:
-    """The pass of an operation next to the empty pass: enough turns to tell both from the time to start them, and
-    the additional time that the operation takes.
+    """A timed pass of an operation and the empty pass, with enough turns for both to take far longer than their
+    start.
 
     Args:
-        milliseconds: time of one pass with a number of turns: the operation's for 0, the empty pass's for 1.
+        milliseconds: time of one pass, given 0 for the operation's pass or 1 for the empty pass, and the number of
+            turns.
         pixels: number of pixels that a pass computes.
     """
 
@@ -94,7 +95,7 @@ class Pair:
 
 
 class Passes:
-    """The passes of an operation and of the empty one over a field. Raises ShaderError where one does not compile."""
+    """The pass of an operation and the empty pass, over a field. Raises ShaderError if either does not compile."""
 
     def __init__(self, field: Field, operation: Operation):
         device, stack = field.device, field.stack
@@ -113,7 +114,7 @@ class Passes:
 
     def render(self, which: int, turns: int, nothing: float = 0.0) -> None:
         """Draw the operation's pass (`which` 0) or the empty pass (`which` 1) into the field's targets. `nothing` is
-        added to the inputs at each turn, and is 0 except in a test."""
+        added to the inputs at each turn; only a test passes a value other than 0."""
         passed = self._passes[which]
         for name, value in (("kernel_turns", turns), ("kernel_nothing", nothing)):
             if name in passed.program:
@@ -122,7 +123,8 @@ class Passes:
 
 
 def _points(size: tuple[int, int], numbers: int) -> np.ndarray:
-    """Return directions, or codes if not of three numbers; float32 of shape (height, width, 4), 0 where unused."""
+    """Return random directions for three numbers, otherwise random codes; float32 of shape (height, width, 4), with 0
+    in unused components."""
     points = np.random.default_rng(0).normal(size=(size[1], size[0], numbers)).astype(np.float32)
     # Codes of two numbers lie within the circle, where no method is at its limit.
     points *= (1.0 if numbers == 3 else 0.7) / np.linalg.norm(points, axis=-1, keepdims=True)
@@ -168,7 +170,7 @@ def time_rows(
 
 
 def summary(column: str, taken: Sequence[float]) -> dict[str, float]:
-    """Return the median of the samples as `column`, and the width of its confidence interval as `spread`."""
+    """Return the median of samples as `column`, and the width of its confidence interval as `spread`."""
     low, high = median_interval(taken)
     return {column: float(np.median(taken)), "spread": high - low}
 

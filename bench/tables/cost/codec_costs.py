@@ -14,12 +14,12 @@ KEY = ("measure", "family", "stage", "operation", "encoding", "storage")
 
 
 class LeftOutError(Exception):
-    """Why a codec's cost is not known; a few words."""
+    """The reason why a codec's cost is not known, in a few words."""
 
 
 @dataclass(frozen=True)
 class Where:
-    """The measure of a cost, and the GPU family and stage that compilers generate code for."""
+    """The measure of a cost, and the GPU family and shader stage that the compilers target."""
 
     measure: str
     family: str | None
@@ -28,23 +28,24 @@ class Where:
 
 @dataclass(frozen=True)
 class CostSum:
-    """A sum, and whether it counts both sides of a branch."""
+    """A total cost, and whether it counts both sides of a branch."""
 
     cost: float
     branches: bool
 
 
 class Costs:
-    """Rows of the cost table, to be added up by one of their columns."""
+    """Rows of the cost table, from which the costs of codecs are added up."""
 
     def __init__(self, rows: Iterable[Row]):
         self._rows = {tuple(row.get(part) for part in KEY): row for row in rows}
 
     def of(self, codec: Codec, where: Where, operation: str, column: str) -> CostSum:
-        """Return the cost of a codec's encode or decode.
+        """Return the cost of encoding or decoding with a codec, as the sum of a column over its parts.
 
         Raises:
-            LeftOutError: the cost of a part is not known, or counts a loop only once.
+            LeftOutError: the codec does not fit in its storage, or the cost of a part is not known or counts a loop
+                only once.
         """
         rows = [(sign, self._known_row(key, column)) for sign, key in self._parts(codec, where, operation)]
         cost = sum(sign * row[column] for sign, row in rows)
@@ -52,7 +53,7 @@ class Costs:
 
     def _parts(self, codec: Codec, where: Where, operation: str) -> list[tuple[int, tuple[Any, ...]]]:
         """Return the keys of the rows whose sum is the cost of a codec's operation, each with its sign, 1 or -1.
-        Raises LeftOutError if the code does not fit in the storage."""
+        Raises LeftOutError if the codec does not fit in its storage."""
         kind, packed = (where.measure, where.family, where.stage), PACKING_OPERATIONS[operation]
         if codec.misfit:
             raise LeftOutError(f"it does not fit in {codec.storage.name}: {codec.misfit}")

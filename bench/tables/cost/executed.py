@@ -1,4 +1,4 @@
-"""The number of times that the loops of an encoding run, and the issue slots that a kernel then executes."""
+"""The number of times that the loops of an encoding run, and the issue slots that a kernel takes as a result."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ VIEW = (0.0, 0.0, -5.0, 0.0)
 
 @cache
 def turns_of(encoding: Encoding) -> Mapping[str, Sequence[Sequence[float]]] | None:
-    """Return the mean number of turns and its standard deviation, by operation and for each loop that runs.
+    """Return the mean and the standard deviation of the number of turns, by operation, for each loop that runs.
 
     None if no device can count the turns, or the shader code cannot be counted.
     """
@@ -59,14 +59,14 @@ def _mean_turns(turns: np.ndarray) -> list[list[float]]:
 def executed_slots(
     kinds: Sequence[str], rates: Mapping[str, int], loops: Sequence[range], turns: Sequence[Sequence[float]]
 ) -> float | None:
-    """Return the issue slots that a lane of a kernel takes when its loops run; None if the listing has more loops
+    """Return the issue slots that a lane of a kernel takes, with its loops run; None if the listing has more loops
     than the source.
 
     Args:
         kinds: the kind of each instruction, in the order of the listing.
         rates: slots by kind; a kind without a rate takes no slots.
         loops: the positions of each loop's instructions in the listing.
-        turns: mean and standard deviation of the turns of each loop of the source, in its order.
+        turns: mean and standard deviation of the turns of each loop, in source order.
     """
     if len(loops) > len(turns):
         return None

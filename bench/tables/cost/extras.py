@@ -1,4 +1,4 @@
-"""Costs that the page shows besides their rows: cost against error, disassemblies, and differences in ranking."""
+"""Costs that the page shows besides the rows: cost against error, disassemblies and differences in ranking."""
 
 from __future__ import annotations
 
@@ -52,8 +52,9 @@ def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]
 
 
 def _fronts(tables: Mapping[str, Sequence[Row]], usual: str, remarks: list[str]) -> Iterator[Front]:
-    """Yield a front for the first set of normals and one for the first scene: PSNR against the instructions of each
-    GPU family. A front without points is left out; remarks name the codecs that the fronts leave out, and why."""
+    """Yield a front for the first set of normals and a front for the first scene: PSNR against the instructions of
+    each GPU family. A front without points is left out; remarks name the codecs that the fronts leave out, and
+    why."""
     known = _counted(tables)
     families = dict.fromkeys(row["family"] for row in known)
     costs = {family: [row for row in known if row["family"] == family] for family in families}
@@ -70,7 +71,7 @@ def _fronts(tables: Mapping[str, Sequence[Row]], usual: str, remarks: list[str])
 
 
 def _errors(rows: Sequence[Row], lost: dict[str, dict[str, None]]) -> dict[Codec, float]:
-    """Return the PSNR of each codec, in decibels; add codecs that cannot be drawn to `lost`, grouped by reason."""
+    """Return each codec's PSNR in decibels; codecs that cannot be drawn are added to `lost`, grouped by reason."""
     errors: dict[Codec, float] = {}
     for key, row in _row_of_each(rows).items():
         codec = _codec(row)
@@ -88,7 +89,7 @@ def _errors(rows: Sequence[Row], lost: dict[str, dict[str, None]]) -> dict[Codec
 
 
 def _row_of_each(rows: Sequence[Row]) -> dict[CodecKey, Row]:
-    """Return one row for each codec: a row with a PSNR if there is one, by JAX before GLSL before other backends."""
+    """Return one row for each codec: rows with a PSNR come first, then JAX before GLSL before other backends."""
     order = list(dict.fromkeys([*BACKENDS, *(row.get("backend", "jax") for row in rows)]))
     ranks: dict[CodecKey, tuple[bool, int]] = {}
     by_codec: dict[CodecKey, Row] = {}
@@ -100,14 +101,14 @@ def _row_of_each(rows: Sequence[Row]) -> dict[CodecKey, Row]:
 
 
 def _counted(tables: Mapping[str, Sequence[Row]]) -> list[Row]:
-    """Return the rows with instruction counts for the usual stage of their family: fragment shaders if possible."""
+    """Return the rows with instruction counts at their family's usual stage: fragment shaders if supported."""
     rows = [r for r in tables.get(TABLE.name, ()) if r.get("family") and is_number(r.get("instructions"))]
     return [row for row in rows if row.get("stage") == usual_stage(str(row["family"]))]
 
 
 def usual_family(tables: Mapping[str, Sequence[Row]]) -> str:
-    """Return the GPU family that the page shows first: the last counted family of the vendor that was counted first;
-    empty if no fragment shader was counted."""
+    """Return the GPU family that the page shows first: of the first vendor in the rows, the last family; empty if no
+    fragment shader was counted."""
     families = list(dict.fromkeys(str(row["family"]) for row in _counted(tables) if row["stage"] == STAGE))
     vendor_of = {name: FAMILIES[name].vendor if name in FAMILIES else "" for name in families}
     return [name for name in families if vendor_of[name] == vendor_of[families[0]]][-1] if families else ""
@@ -116,8 +117,8 @@ def usual_family(tables: Mapping[str, Sequence[Row]]) -> str:
 def _panels(
     costs: Mapping[str, Sequence[Row]], errors: Mapping[Codec, float], usual: str, lost: dict[str, dict[str, None]]
 ) -> Iterator[Panel]:
-    """Yield for each GPU family a panel of instructions to encode and one to decode, unless it has no points; add
-    codecs of unknown cost to `lost`, grouped by reason."""
+    """Yield two panels for each GPU family, instructions to encode and to decode, except panels without points.
+    Codecs of unknown cost are added to `lost`, grouped by reason."""
     for family, rows in costs.items():
         machine = f"{FAMILIES[family].title} ({family})" if family in FAMILIES else as_text(family)
         for operation in OPERATIONS:
@@ -129,7 +130,7 @@ def _panels(
 def _points(
     costs: Sequence[Row], operation: str, errors: Mapping[Codec, float], lost: dict[str, dict[str, None]]
 ) -> Iterator[Point]:
-    """Yield a point for each codec whose cost is known; add the other codecs to `lost`, grouped by reason."""
+    """Yield a point for each codec whose cost is known; other codecs are added to `lost`, grouped by reason."""
     known, where = Costs(costs), Where("isa", costs[-1].get("family"), costs[-1].get("stage"))
     for codec, error in errors.items():
         label = CodecKey(codec.encoding.name, codec.storage.name, codec.rounding).label
@@ -143,7 +144,7 @@ def _points(
 
 
 def _codec(row: Row) -> Codec | None:
-    """Return the codec of a row, for its cost and its bits; None if the row's storage or encoding is not known."""
+    """Return the codec of a row, for its cost and its bits; None if the storage or the encoding is not known."""
     try:
         storage = storage_of(str(row.get("storage")))
     except ValueError:
@@ -155,8 +156,8 @@ def _codec(row: Row) -> Codec | None:
 def _encoding(row: Row, storage: Storage) -> Encoding | None:
     """Return the encoding of a row; None for a user's encoding whose bits do not fill channels of the storage.
 
-    A user's encoding, whose file the report does not read, gets its number of components from the bits: apart from
-    the name, its cost depends on nothing else."""
+    The report does not read the file of a user's encoding. The number of components is derived from the bits: apart
+    from the name, the cost depends on nothing else."""
     name = str(row.get("encoding"))
     # octahedral:axis=y has as many numbers as octahedral, and a chain as many as its last encoding.
     if base := ENCODINGS.get(name.rpartition(CHAIN)[2].partition(MARK)[0]):
@@ -174,8 +175,8 @@ def _kernels(folder: Path, family: str) -> Mapping[str, Path]:
 
 
 def _listings(folder: Path, family: str) -> dict[str, Listing]:
-    """Return the disassemblies of a GPU family's kernels of the usual stage by title, each with its encoding's GLSL;
-    kernels beyond LISTED characters in total are left out."""
+    """Return the disassemblies of a GPU family's kernels at its usual stage, by title, each with its encoding's GLSL.
+    Kernels beyond LISTED characters in total are left out."""
     sources = _kernels(folder, SOURCES)
     listed, size = {}, 0
     for name, path in sorted(_kernels(folder, family).items()):

@@ -1,4 +1,4 @@
-"""The cost of an encoding: the rows, and the number of instructions that compilers generate for it."""
+"""Measurement of the cost of an encoding: the rows, and the number of instructions that compilers generate for it."""
 
 from __future__ import annotations
 
@@ -62,12 +62,13 @@ GLSLANG_STAGES = {"fragment": "frag", "compute": "comp"}
 
 @dataclass(frozen=True, eq=False)
 class CostCase:
-    """An encoding's operation, a packing's or a layout's.
+    """An operation whose cost is measured, of an encoding, a packing or a layout.
 
     Attributes:
-        encoding, storage: an encoding or the name of a packing or of a layout, and None for the other.
+        encoding: the encoding; None for a packing or a layout.
+        storage: the name of the packing or layout; None for an encoding.
         operation: "encode", "decode", "pack" or "unpack".
-        make: makes it; raises ShaderError.
+        make: returns the operation; raises ShaderError.
     """
 
     encoding: Encoding | None
@@ -80,7 +81,7 @@ class CostCase:
         return f"{self.encoding.name if self.encoding else self.storage} {self.operation}"
 
     def row(self, measure: str, **more: Any) -> Row:
-        """Return a row of the cost table about the case, with this measure and more columns; all others are empty."""
+        """Return a row of the cost table for the case, with this measure and more columns; the rest are empty."""
         name = self.encoding.name if self.encoding else None
         about = {"encoding": name, "storage": self.storage, "operation": self.operation}
         return TABLE.empty() | {"measure": measure} | about | more
@@ -103,7 +104,7 @@ def _operation(encoding: Encoding, operation: str) -> Operation:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A case and the empty kernel in the form that compilers accept: as SPIR-V, and as CUDA on request.
+    """The kernel of a case and the empty kernel, in the form that compilers accept: SPIR-V, and CUDA on request.
 
     `cuda` is a Failure if there is no CUDA version.
     """
@@ -114,13 +115,13 @@ class Prepared:
     cuda: tuple[Job, Job] | Failure = NOT_ASKED
 
     def jobs(self, family: str) -> tuple[Job, Job] | Failure:
-        """Return the kernel and the empty kernel for a family's compiler, or why they could not be made."""
+        """Return the kernel and the empty kernel for a family's compiler, or the reason why neither exists."""
         return self.cuda if _takes_cuda(family) else (self.job, self.empty)
 
 
 def prepare(case: CostCase, stage: str, as_cuda: bool = False) -> Prepared | Failure:
-    """Return a case's kernels, with CUDA on request, or the reason why there are none. Raises MissingError if there
-    is no SPIR-V compiler."""
+    """Return a case's kernels, with CUDA on request, or the reason why they cannot be made. Raises MissingError if
+    there is no SPIR-V compiler."""
     try:
         operation = case.make()
         (job, count), (empty, empty_count) = (
@@ -205,13 +206,13 @@ def isa_rows(
 
 
 def _jobs(prepared: Iterable[Prepared | Failure], family: str) -> list[Job]:
-    """Return the jobs to compile for a family."""
+    """Return the jobs to compile for a GPU family, each once."""
     pairs = (build.jobs(family) for build in prepared if isinstance(build, Prepared))
     return list(dict.fromkeys(job for pair in pairs if isinstance(pair, tuple) for job in pair))
 
 
 def _no_stage(family: str, stages: Sequence[str]) -> str:
-    """Return why a family can compile none of these stages, and which stages to use; empty if it can compile any."""
+    """Return the message that a family supports none of these stages, and which to use; empty if it supports any."""
     known = FAMILIES[family].stages if family in FAMILIES else stages
     if set(known) & set(stages):
         return ""
@@ -220,7 +221,7 @@ def _no_stage(family: str, stages: Sequence[str]) -> str:
 
 
 def _all_failed(outcomes: dict[tuple[str, Job], Outcome], family: str) -> str:
-    """Return the first reason why a family compiled nothing; empty if it compiled something or had no jobs."""
+    """Return the first reason why a family compiled nothing; empty if any job compiled or there were no jobs."""
     stages = FAMILIES[family].stages if family in FAMILIES else tuple(kernels.STAGES)
     attempts = [outcome for (name, job), outcome in outcomes.items() if name == family and job.stage in stages]
     failures = [outcome for outcome in attempts if isinstance(outcome, Failure)]
@@ -251,13 +252,13 @@ def _figures(row: Row, outcome: Outcome, empty: Outcome) -> tuple[Row, str]:
 
 
 def _driver_text(outcome: Compiled, family: str) -> str:
-    """Return the name and version of the compiler that counted; Mesa itself reports only the version."""
+    """Return the name and version of the compiler that made the kernel; Mesa itself reports only the version."""
     return outcome.version if _takes_cuda(family) else f"Mesa {outcome.version}"
 
 
 def alike(kernels: Sequence[Kernel], empties: Sequence[Kernel]) -> tuple[Kernel, Kernel] | None:
-    """Return a kernel and the empty kernel for the same number of lanes: the largest number for which the kernel
-    does not spill, or the largest of all if it always spills. None if there is no such number."""
+    """Return a kernel and the empty kernel for the same number of lanes: the largest number for which the kernel does
+    not spill, or the largest number if it always spills. None if the two have no number of lanes in common."""
     widths = {empty.simd_width: empty for empty in empties}
     pairs = [(kernel, widths[kernel.simd_width]) for kernel in kernels if kernel.simd_width in widths]
     return max(pairs, key=lambda pair: (not _total(pair[0], SPILLS), pair[0].simd_width), default=None)
@@ -269,7 +270,7 @@ def _width_mismatch(kernels: Iterable[Kernel], empties: Iterable[Kernel]) -> str
 
 
 def _total(kernel: Kernel, names: Iterable[tuple[str, ...]]) -> float | None:
-    """Return the sum of the first set of statistics that the driver reports in full; None if there is no such set."""
+    """Return the sum of the first set of statistics that the driver reports in full; None if it reports none."""
     sets = ([kernel.statistics.get(name) for name in some] for some in names)
     return next((sum(numbers) for numbers in sets if None not in numbers), None)  # type: ignore[arg-type]
 
@@ -280,7 +281,7 @@ def _difference(a: float | None, b: float | None) -> float | None:
 
 @cache
 def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] | None:
-    """Return the columns that a kernel's disassembly gives: issue slots, instructions by kind, branches and loops.
+    """Return the columns to read from a kernel's disassembly: issue slots, instructions by kind, branches and loops.
     None if there is no disassembly, or it cannot be parsed."""
     read = listings_of(family)
     counts = read.kinds(assembly, total, family)
@@ -294,8 +295,8 @@ def _listed(assembly: str, total: int, family: str) -> Mapping[str, int | None] 
 
 
 def _executed_slots(case: CostCase, row: Row, assembly: str) -> float | None:
-    """Return the issue slots of a case when its loops run, minus those of the empty kernel; equal to the static slots
-    without loops, None if not known."""
+    """Return the issue slots that a case takes with its loops run, minus those of the empty kernel. Without loops,
+    these are the static slots. None if not known."""
     read, family = listings_of(row["family"]), row["family"]
     if (rates := read.rates(family)) is None or any(row[kind] is None for kind in read.KINDS):
         return None
@@ -312,15 +313,16 @@ def _executed_slots(case: CostCase, row: Row, assembly: str) -> float | None:
 
 
 def listings_of(family: str) -> Any:
-    """Return the module that parses the disassemblies of a family's vendor: `names`, `kinds`, `jumps`,
-    `issue_slots`, `rates`, for some vendors `packed`, and `loops` with `kinds_in_order`."""
+    """Return the module that parses the disassemblies for a family's vendor. It has `names`, `kinds`, `jumps`,
+    `issue_slots` and `rates`; for some vendors also `packed`, or `loops` with `kinds_in_order`."""
     known = FAMILIES.get(family)
     return READERS[known.vendor] if known else disassembly
 
 
 def counted(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tuple[str, str], Row]:
-    """Return the rows of one family with instruction counts, by encoding, packing or layout, and operation. If
-    nothing can be compiled here, they are counts recorded on another machine, and have `recorded_by`."""
+    """Return a family's rows with instruction counts, by the name of the encoding, packing or layout and the
+    operation. If nothing can be compiled here, the counts were recorded on another machine, and the rows have
+    `recorded_by`."""
     try:
         pairs = isa_rows(chosen, [stage], [family], [], nobody)
         rows = [row for row, _ in pairs if row["family"] == family and row["instructions"] is not None]
@@ -331,8 +333,8 @@ def counted(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tuple[s
 
 
 def known_counts(chosen: Sequence[CostCase], family: str, stage: str) -> dict[tuple[str, str], Row]:
-    """Return the rows of `counted` with only `recorded.COLUMNS`. Recorded figures are used if one operation shows
-    that this machine has the compilers that recorded them."""
+    """Return rows as `counted` does. Recorded rows, with only `recorded.COLUMNS`, are used instead of compiling if
+    one operation shows that this machine has the compilers that recorded them."""
     known = dict(recorded(chosen, family, stage))
     if not known:
         return counted(chosen, family, stage)
@@ -351,11 +353,11 @@ def _operation_of(case: CostCase) -> tuple[str, str]:
 
 
 def nobody(_: str) -> None:
-    """Do nothing, for ticks that no progress bar shows."""
+    """Do nothing: a tick for measurements without a progress bar."""
 
 
 def static_notes(rows: Iterable[Row]) -> list[str]:
-    """Return why the counts of some rows differ from what a lane runs: a line for loops and a line for branches."""
+    """Return the reasons why some counts differ from what a lane runs: a line for loops and a line for branches."""
     notes = {
         "loops": "each loop body counts once, however often it runs",
         "branches": "both sides of each branch count",
@@ -376,7 +378,7 @@ def file_name(name: Any) -> str:
 
 
 def listing(row: Row, assembly: str) -> tuple[Path, str]:
-    """Return the file name of a row's disassembly, and the text: the cost, then the whole kernel."""
+    """Return the file name for a row's disassembly, and the file's text: the cost, then the whole kernel."""
     name = file_name(row["encoding"] or row["storage"])
     costs = ", ".join(f"{row[column]} {column}" for column in ("instructions", *LISTED) if row[column] is not None)
     head = f"; {row['encoding'] or row['storage']} {row['operation']}, {row['stage']}, {row['family']}\n"

@@ -1,6 +1,6 @@
 """Recorded instruction counts of the catalogue's encodings and packings, for machines without compilers.
 
-`python -m tests.recorded_costs` counts them again, and writes recorded.json next to this file.
+`python -m tests.recorded_costs` counts the instructions again and writes recorded.json next to this file.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ COLUMNS = ("instructions", "executed_slots", "loops")
 
 
 class Counted(Protocol):
-    """An operation of an encoding or of a packing, by its name."""
+    """A named operation of an encoding or a packing, whose instructions are counted."""
 
     @property
     def name(self) -> str: ...
@@ -30,8 +30,9 @@ class Counted(Protocol):
 
 
 def recorded(chosen: Sequence[Any], family: str, stage: str) -> Iterator[tuple[Any, dict[str, Any]]]:
-    """Yield operations with their `COLUMNS`, and with the compiler that counted them as `recorded_by`. Operations
-    whose GLSL has changed since, or whose family was not counted, are left out."""
+    """Yield each operation of `chosen` that has recorded counts, with its `COLUMNS` and, as `recorded_by`, the
+    compiler that counted it. Operations whose GLSL has changed since, or whose family was not counted, are left
+    out."""
     known = _kept()["families"].get(family, {"stage": "", "by": "", "counts": {}})
     for case in chosen if known["stage"] == stage else ():
         counts = known["counts"].get(case.name)
@@ -40,7 +41,7 @@ def recorded(chosen: Sequence[Any], family: str, stage: str) -> Iterator[tuple[A
 
 
 def source_key(case: Counted, stage: str) -> str:
-    """Return a key that changes whenever the GLSL of an operation's kernel does. Raises ShaderError."""
+    """Return a key that changes whenever the GLSL source of an operation's kernel changes. Raises ShaderError."""
     return key_of(case.make().source(kernels.STAGES[stage]).text)[:16]
 
 

@@ -1,4 +1,4 @@
-"""The cost table for people: instructions of an operation by compiler, next to the article's own figures."""
+"""The cost table as displayed: instructions of each operation by compiler, next to the article's own figures."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from .table import TABLE
 
 
 def article_rows(encodings: Iterable[str], operations: Iterable[str]) -> list[Row]:
-    """Return the article's figures of these operations, if it has them: for each a row with instruction slots, then
-    one for each GPU with registers and cycles."""
+    """Return the article's figures for these operations, if it has them: for each operation a row with instruction
+    slots, then a row for each GPU with registers and cycles."""
     operations = tuple(operations)
     rows = []
     for key in ((encoding, operation) for encoding in encodings for operation in operations):
@@ -25,8 +25,8 @@ def article_rows(encodings: Iterable[str], operations: Iterable[str]) -> list[Ro
 
 
 def isa_sheet(rows: Sequence[Row], article: Sequence[Row]) -> list[Row]:
-    """Return a row for each stage and operation, with a column of instructions for each family, for SPIR-V and,
-    unless `article` is empty, for the article."""
+    """Return a row for each stage and operation, with instructions in a column for each family, a column for SPIR-V
+    and, unless `article` is empty, a column for the article."""
     slots = {(r["encoding"], r["operation"]): r["instructions"] for r in article if not r["device"]}
     lines: dict[tuple, Row] = {}
     for row in rows:

@@ -45,7 +45,7 @@ def measures(options: CostOptions) -> list[str]:
 
 
 def packings(names: Names) -> list[Packing]:
-    """Return the packings that `--storage` names, by name or by the bits of a storage. Raises UsageError."""
+    """Return the packings that `--storage` names, by their names or by the bits of a storage. Raises UsageError."""
     storages = storages_said(map(str, names), PACKINGS)
     known = {**PACKINGS, **{word: packings_of(storage) for word, storage in storages.items() if storage}}
     if few := next((word for word, several in known.items() if not several), None):
@@ -57,8 +57,8 @@ def packings(names: Names) -> list[Packing]:
 
 
 def chosen_families(names: Names) -> list[str]:
-    """Return the families that `--family` names; a vendor stands for all of its families. `all` includes those of
-    NVIDIA, whose compiler people install themselves, only if that compiler is present. Raises UsageError."""
+    """Return the GPU families that `--family` names; a vendor stands for all of its families. `all` includes NVIDIA's
+    families only if their compiler, which users install themselves, is present. Raises UsageError."""
     chosen = families_named(names)
     if names != ("all",) or not isa.missing(families.NVRTC):
         return chosen
@@ -67,7 +67,7 @@ def chosen_families(names: Names) -> list[str]:
 
 @dataclass
 class Costing:
-    """The request as values, and what this machine is found to lack."""
+    """The checked options of `cost`, and the results and missing tools that the measurement adds."""
 
     options: CostOptions
     encodings: list[Encoding]
@@ -80,17 +80,17 @@ class Costing:
 
     @property
     def cases(self) -> list[measure.CostCase]:
-        """The cases to compile or time: encodings, and the additional work of packings."""
+        """The cases to compile or time: the encodings' operations and the packings'."""
         return measure.cases(self.encodings, self.packings, self.operations)
 
     @cached_property
     def texts(self) -> dict[str, str]:
-        """The disassemblies in which rows were counted, by the rows' names; to be read only after the count."""
+        """The disassemblies from which rows were counted, by row name. Read it only after counting."""
         return {TABLE.name_of(row): text for row, text in self.listed if text}
 
 
 def costing(options: CostOptions) -> Costing:
-    """Return the request that the options name. Raises UsageError for values that are unknown or out of range."""
+    """Return the options as values. Raises UsageError for values that are unknown or out of range."""
     in_range("--repeats", options.repeats, 2, MAX_REPEATS)
     asked = Costing(
         options,
@@ -153,7 +153,7 @@ class CostMeasure:
     rows: Callable[[Costing], Iterable[Row]]
 
     def measured(self) -> list[Row]:
-        """Return the rows; if this machine lacks what the measure needs, one row with the reason."""
+        """Return the rows; if this machine lacks a tool for the measure, one row with the reason."""
         try:
             return list(self.rows(self.asked))
         except MissingError as error:
@@ -167,7 +167,7 @@ def _isa(asked: Costing) -> list[Row]:
 
 
 def _listings(asked: Costing, missing: list[str]) -> Iterator[tuple[Row, str]]:
-    """Yield the rows of instruction counts with their disassembly; `missing` receives what this machine lacks."""
+    """Yield the rows of instruction counts with their disassembly; `missing` receives the tools that are missing."""
     return measure.isa_rows(asked.cases, asked.stages, asked.families, missing, measure.nobody)
 
 
@@ -198,8 +198,8 @@ def _lacking(done: Measured) -> list[str]:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    """Yield a sheet of instructions for each stage, with families side by side if there are several, then the sheets
-    of times and of the article's figures, if any."""
+    """Yield a sheet of instructions for each stage, with families side by side if there are several, then a sheet of
+    times and a sheet of the article's figures, if any."""
     by_measure = {
         name: [r for r in done.rows if r["measure"] == name and r["operation"]] for name in (*MEASURES, "article")
     }
@@ -217,14 +217,14 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _texts(done: Measured) -> list[tuple[Row, str]]:
-    """Return the rows of instruction counts with their disassembly, from the cache if the rows were measured before;
-    empty if instructions were not requested."""
+    """Return the rows of instruction counts with their disassembly; if the rows came from the cache, count again.
+    Empty if instructions were not requested."""
     asked = next((step.case.asked for step in done.steps if step.case.name == "isa"), None)
     return [] if not asked else asked.listed or list(_listings(asked, []))
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a sentence with the instructions on one family of the cheapest encodings and of the most expensive;
+    """Yield a sentence with the instruction counts of the cheapest encodings and of the most expensive on one family;
     nothing if no encoding has several operations."""
     listed = [row for row in rows if row["measure"] == "isa" and row["encoding"] and row["instructions"] is not None]
     family = next((row["family"] for row in sorted(listed, key=lambda row: row["family"] != families.USUAL)), None)
@@ -241,7 +241,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
     """Yield a sheet of instructions for each GPU vendor, with its families side by side: the encodings at the first
-    stage of the rows, with the article's figures."""
+    stage in the rows, with the article's figures."""
     first = next((row for row in rows if row["stage"]), None)
     chosen = [row for row in rows if first and row["stage"] == first["stage"] and row["encoding"]]
     article = sheets.article_rows(dict.fromkeys(row["encoding"] for row in chosen), measure.OPERATIONS)
@@ -271,19 +271,19 @@ def _front_charts(run: Any) -> Iterator[Chart]:
 
 
 def _listing(step: Step, row: Row) -> str | None:
-    """Return the disassembly in which a row was counted; None if no compiler made a kernel for the row."""
+    """Return the disassembly from which a row was counted; None if no compiler made a kernel for the row."""
     return step.case.asked.texts.get(TABLE.name_of(row))
 
 
 def write_listings(folder: Path, listed: Iterable[tuple[Row, str]]) -> None:
-    """Write each row's disassembly to a file with its cost at the top, in a folder for each family."""
+    """Write each row's disassembly, with its cost at the top, to a file in the folder of its GPU family."""
     for path, text in (measure.listing(row, text) for row, text in listed if text):
         with whole_file(folder / path) as partial:
             partial.write_text(text, encoding="utf-8", newline="\n")
 
 
 def write_sources(folder: Path, encodings: Iterable[Encoding]) -> None:
-    """Write each encoding's own GLSL, to be read next to its disassemblies."""
+    """Write each encoding's own GLSL to a file, for reading next to the disassemblies."""
     for encoding in encodings:
         if encoding.glsl.is_file():
             with whole_file(folder / f"{file_name(encoding.name)}.glsl") as partial:
@@ -291,7 +291,7 @@ def write_sources(folder: Path, encodings: Iterable[Encoding]) -> None:
 
 
 def _missing() -> str:
-    """Return why `run` leaves the table out on this machine; empty if it does not."""
+    """Return the reason why `run` leaves the table out on this machine; empty if it measures the table."""
     return spirv.NO_COMPILER if spirv.version(spirv.COMPILER) is None else isa.missing()
 
 

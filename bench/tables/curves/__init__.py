@@ -1,1 +1,1 @@
-"""The accuracy of roughness, metallic, ambient occlusion and the channels of colours."""
+"""The accuracy of stored roughness, metallic, ambient occlusion and colour channels."""

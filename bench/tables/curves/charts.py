@@ -10,15 +10,15 @@ from ..table import Row
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield the chart of the largest error on the sRGB curve over the bits, a line for each curve; nothing unless
-    rows have several numbers of bits."""
+    """Yield the chart of the largest error on the sRGB curve by bit count, with a line for each curve and rounding;
+    nothing if all rows have the same bit count."""
     usable = [row for row in one_backend(having(rows, "bits", "display_max")) if row["display_max"] > 0]
     if len({row["bits"] for row in usable}) > 1:
         yield curves_chart(sorted(usable, key=lambda row: row["bits"]))
 
 
 def curves_chart(rows: Sequence[Row]) -> Chart:
-    """Return the chart of the largest error on the sRGB curve over the bits.
+    """Return the chart of the largest error on the sRGB curve by bit count.
 
     Args:
         rows: rows of the curves table for one backend: encoding, rounding, range, bits, display_max.
@@ -60,5 +60,5 @@ def _curve(row: Row) -> str:
 
 
 def _called(row: Row) -> str:
-    """Return the name of a row's curve, with the rounding unless it is to the nearest."""
+    """Return the name of a row's curve, with the rounding unless it is to nearest."""
     return _curve(row) + ("" if row["rounding"] == "nearest" else f", {row['rounding']}")

@@ -68,7 +68,7 @@ BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _trip_by_jax, "glsl":
 
 
 def measure(case: CurveCase) -> Row:
-    """Return one row; a row that the device cannot measure has its reason in `skipped` and no figures."""
+    """Return the row of a case; if the device cannot measure it, with the reason in `skipped` and no figures."""
     codec = case.codec
     row = TABLE.empty() | {
         "encoding": codec.encoding.name,
@@ -112,7 +112,7 @@ def _display_columns(case: CurveCase, trip: Trip, shown: np.ndarray) -> Row:
     """Return `display_mean` and `display_max`: the errors of colours on the sRGB curve, in steps of 1/255.
 
     Args:
-        shown: values on that curve, 0 to 1."""
+        shown: values on the sRGB curve, 0 to 1."""
     largest = case.codec.range
     x = np.asarray(from_srgb(shown.astype(np.float32))) * np.float32(largest)
     back = _through(case, trip, x.astype(np.float32)) / np.float32(largest)
@@ -121,7 +121,7 @@ def _display_columns(case: CurveCase, trip: Trip, shown: np.ndarray) -> Row:
 
 
 def _through(case: CurveCase, trip: Trip, x: np.ndarray, is_still: bool = False) -> np.ndarray:
-    """Return float32 quantities after a codec's round trip, dithered if the codec is and `is_still` is false."""
+    """Return float32 quantities after a codec's round trip, dithered if the codec is, unless `is_still` is true."""
     noise = np.zeros_like(x)
     if case.codec.is_dithered and not is_still:
         tile = Dither((case.codec.step,), 0).added[..., 0].ravel()
@@ -132,7 +132,7 @@ def _through(case: CurveCase, trip: Trip, x: np.ndarray, is_still: bool = False)
 
 def _least(case: CurveCase, trip: Trip, zero: np.float32) -> float | None:
     """Return the smallest quantity in the codec's range that does not decode to `zero`, the decoded 0, accurate to a
-    thousandth; None if every quantity does."""
+    thousandth; None if every quantity that was tried decodes to it."""
     low, high = LEAST * case.codec.range, case.codec.range
     for _ in range(2):
         tried = np.geomspace(low, high, WIDTH * 4).astype(np.float32)

@@ -1,4 +1,4 @@
-"""The table of curves: the error of stored material numbers, such as a roughness or a channel of a colour."""
+"""The table of curves: the error of stored material numbers, such as a roughness or a colour channel."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class CurvesOptions(SourceOptions):
-    """Options for what `curves` measures. Names and numbers are comma-separated; without a storage, each curve uses
-    its usual one."""
+    """Options for what `curves` measures. Names and numbers are comma-separated; without a storage, each curve is
+    measured in its usual storage."""
 
     encoding: Annotated[Names, Option("--encoding", f"Curves or your own files, {NAMED}.", files=True)] = ("all",)
     storage: Annotated[

@@ -28,7 +28,7 @@ def cases(options: CurvesOptions) -> list[measure.CurveCase]:
     """Return one case for each curve, range, storage, rounding and backend.
 
     Raises:
-        UsageError: unknown names, numbers out of range, or nothing that fits.
+        UsageError: unknown names, numbers out of range, or no codec that fits its storage.
         MissingError: only GLSL is requested and there is no OpenGL device.
     """
     check_seed(options.seed)
@@ -39,7 +39,7 @@ def cases(options: CurvesOptions) -> list[measure.CurveCase]:
 
 
 def codecs(options: CurvesOptions) -> list[CurveCodec]:
-    """Return the codecs asked for; those that do not fit are named on standard error."""
+    """Return the requested codecs; codecs that do not fit their storage are named on standard error."""
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
     ranges = None if options.range is None else checked_numbers("--range", options.range, float, *RANGES)
     return that_fit(
@@ -59,7 +59,7 @@ def _key(case: measure.CurveCase) -> Row:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows by bits, then by largest error, smallest first; rows without figures come last."""
+    """Return the rows by bits, then by largest error in ascending order; rows without figures come last."""
     return sorted(rows, key=lambda row: (row["bits"], math.inf if row["error_max"] is None else row["error_max"]))
 
 

@@ -11,15 +11,15 @@ from ..table import Row
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield the chart of the largest position error over the distance; nothing if no row has figures."""
+    """Yield the chart of the largest position error by distance; nothing if no row has figures."""
     usable = one_backend(having(rows, "distance", "error_max", "near", "far", "fov"))
     if usable:
         yield depth_chart(usable)
 
 
 def depth_chart(rows: Sequence[Row]) -> Chart:
-    """Return the chart of the largest position error over the distance, with a line for each depth encoding in its
-    storage and a panel for each range of near and far.
+    """Return the chart of the largest position error by distance, with a line for each depth encoding in its storage
+    and a panel for each pair of near and far planes.
 
     Args:
         rows: rows of depth encodings, whose distances are numbers.
@@ -61,7 +61,7 @@ def _range_text(row: Row) -> str:
 
 
 def _line_name(row: Row, rows: Sequence[Row]) -> str:
-    """Return the name of a line, with the way to rebuild positions if an encoding has several."""
+    """Return the name of a line, with the way to rebuild positions if any encoding has several."""
     several = len({(other["depth"], other["rebuilt"]) for other in rows}) > len({other["depth"] for other in rows})
     rounding = "" if row["rounding"] == "nearest" else row["rounding"]
     words = (row["depth"], row["storage"], rounding, row["rebuilt"] if several else "")

@@ -1,4 +1,4 @@
-"""The frames of `depth --depths`: the files, the surfaces that a camera sees in them, and the notes on both."""
+"""The frames of `depth --depths`: the files, the surfaces that a camera sees in them, and notes on both."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MOST_PIXELS = 2**22
 
 @dataclass(frozen=True, eq=False)
 class DepthFrame:
-    """A frame through a camera.
+    """A depth image as seen through a camera.
 
     Attributes:
         points: the measured points: at pixel centres, or on the view axis if the angle of view is unknown.
@@ -41,8 +41,8 @@ class DepthFrame:
 
 @lru_cache(maxsize=4)
 def seen(frame: DepthImage, camera: Camera) -> DepthFrame:
-    """Return a frame's points between near and far, the number of background pixels, and the interval between
-    measured pixels, which keeps the points within MOST_PIXELS."""
+    """Return a frame's points between near and far, its number of background pixels, and the interval between
+    measured pixels. The interval keeps the number of points within MOST_PIXELS."""
     surface = frame.surface(camera)
     index = np.flatnonzero(surface)
     every = max(1, -(-len(index) // MOST_PIXELS))
@@ -74,8 +74,8 @@ def _read(word: Word, reading: DepthReading) -> Pixels:
 
 
 def _checked(words: Names, options: DepthOptions) -> DepthOptions:
-    """Return the options with the known spelling of `depths_are`. Raises UsageError if no file is named, two files
-    share a name, or an option does not suit depth images."""
+    """Return the options with `depths_are` in the spelling of the catalogue. Raises UsageError if no file is named,
+    two files share a name, or an option does not suit depth images."""
     names = [Path(str(word)).name for word in words]
     if not words:
         raise UsageError("--depths: no file named; name at least one, such as depth.exr")
@@ -107,12 +107,12 @@ def _check_unused(options: DepthOptions) -> None:
 
 
 def _pixels_of(array: np.ndarray) -> Pixels:
-    """Return a caller's own array, (height, width), in the form in which files are read."""
+    """Return a caller's array, of shape (height, width), in the form that reading a file gives."""
     return Pixels(array[None], np.iinfo(array.dtype).max if array.dtype.kind == "u" else None)
 
 
 def check_and_say(frames: Sequence[DepthImage], cameras: Sequence[Camera]) -> None:
-    """Print the notes on the frames, once all are checked. Raises UsageError if a camera sees nothing of a frame."""
+    """Check all frames, then print the notes on them. Raises UsageError if a camera sees nothing of a frame."""
     lines = {}
     for frame in frames:
         lines[Path(frame.name)] = [*frame.notes, *(line for camera in cameras for line in _left_out(frame, camera))]
@@ -125,7 +125,7 @@ def _left_out(frame: DepthImage, camera: Camera) -> list[str]:
     finite = depths[np.isfinite(depths)]
     reach = f"{finite.min():.4g} to {finite.max():.4g}" if len(finite) else "not finite"
     if not len(sample.points.depths):
-        remedy = "--depth-unit -1 inverts them" if len(finite) and finite.max() <= 0 else "see --depths-are"
+        remedy = "--depth-unit -1 negates them" if len(finite) and finite.max() <= 0 else "see --depths-are"
         raise UsageError(f"{frame.name}: no depth is within {planes}; depths are {reach}; {remedy}")
     notes = [f"1 pixel in {sample.every} is measured"] * (sample.every > 1)
     if sample.background:

@@ -33,7 +33,7 @@ BLOCK = 2**14
 
 
 def points(camera: Camera, distance: float | None, count: int, seed: int) -> Points:
-    """Return points anywhere on the screen, their depths spread evenly over the band around a distance, or over the
+    """Return points anywhere on the screen, with depths spread evenly over a band around a distance, or over the
     camera's whole range if the distance is None. Both ends and two corners of the screen are included."""
     low, high = (camera.near, camera.far) if distance is None else (distance * (1 - BAND), distance * (1 + BAND))
     low, high = np.float32(max(low, camera.near)), np.float32(min(high, camera.far))
@@ -48,23 +48,23 @@ def points(camera: Camera, distance: float | None, count: int, seed: int) -> Poi
 
 @lru_cache(maxsize=4)
 def all_points(camera: Camera, distances: tuple[float | None, ...], count: int, seed: int) -> Points:
-    """Return the points of `points` for each distance, one distance after the other."""
+    """Return the points that `points` gives for each distance, joined in the order of the distances. Cached."""
     parts = [points(camera, distance, count, seed) for distance in distances]
     return Points(np.concatenate([p.places for p in parts]), np.concatenate([p.depths for p in parts]))
 
 
 @dataclass(frozen=True)
 class DepthCase:
-    """A case with one row for each distance; a distance of None stands for the whole range.
+    """A measurement of depth, with one row for each distance; a distance of None stands for the whole range.
 
     Attributes:
         codec: encoding and storage of the depth.
-        rebuilt: way to the position, a key of REBUILDS.
+        rebuilt: way to rebuild positions, a key of REBUILDS.
         backend: "jax" or "glsl".
         camera: near, far and field of view.
         distances: distances in the unit of near and far.
         count: number of points in each row.
-        seed: seed of the points.
+        seed: seed for the points.
         frame: frame whose depths are measured in one row, if any; `distances` is then (None,) and `count` is not
             used.
     """
@@ -85,26 +85,26 @@ class DepthCase:
 
     @property
     def points(self) -> Points:
-        """The points to measure: those of all distances in order, or those of the frame."""
+        """The points to measure: the frame's points, or otherwise the points at all distances, in order."""
         if self.frame:
             return seen(self.frame, self.camera).points
         return all_points(self.camera, self.distances, self.count, self.seed)
 
 
 def ways(codec: DepthCodec) -> list[str]:
-    """Return the names of the ways in which positions can be rebuilt from a codec's numbers."""
+    """Return the names of all ways to rebuild positions from a codec's numbers."""
     return [name for name, way in REBUILDS.items() if codec.is_window or not way.by_projection]
 
 
 def usual_ways(codec: DepthCodec) -> list[str]:
     """Return the names of the ways in which renderers rebuild positions from a codec's numbers: by the projection if
-    the codec stores what a depth buffer does, otherwise directly."""
+    the codec stores depth-buffer values, otherwise directly."""
     return [name for name, way in REBUILDS.items() if way.by_projection == codec.is_window]
 
 
 def _in_blocks(function: Callable[..., Sequence[Any]], *arrays: np.ndarray) -> list[np.ndarray]:
-    """Return the arrays that a function gives for the rows of arrays. It is called with BLOCK rows at a time, because
-    JAX compiles every operation for every shape."""
+    """Return the arrays that a function computes from the rows of other arrays. The function is called with BLOCK
+    rows at a time, because JAX compiles every operation for every shape."""
     count, blocks = len(arrays[0]), []
     for start in range(0, count, BLOCK):
         parts = [array[start : start + BLOCK] for array in arrays]
@@ -146,14 +146,14 @@ BACKENDS: Mapping[str, Callable[[DepthCase, np.ndarray, Points], tuple[Rebuilt, 
 
 @dataclass(frozen=True)
 class Measured:
-    """The results of points through a codec, float64 arrays of shape (count,).
+    """The results for points after a codec's round trip: float64 arrays of shape (count,).
 
     Attributes:
-        errors: distance between the true position and the rebuilt one; infinite if that is not a position.
+        errors: distance between the true and the rebuilt position; infinite if the rebuilt position is not finite.
         half_steps: how far rounding may move the position: half a step for rounding to nearest, otherwise a step.
         bounds: the same with float32 arithmetic.
-        relative: error of the depth along the axis, as a share of it; infinite likewise.
-        lost: bool, whether the depth's sign came back inverted; never if the encoding keeps no sign.
+        relative: error of the depth along the axis, relative to the depth; infinite if the position is not finite.
+        lost: bool, whether the depth's sign came back inverted; false if the encoding keeps no sign.
         positions: rebuilt positions, of shape (count, 3).
         how: the device, and what did the rounding.
     """
@@ -170,7 +170,7 @@ class Measured:
 @lru_cache(maxsize=1)
 def _limits(codec: DepthCodec, camera: Camera, on: Points) -> tuple[np.ndarray, np.ndarray]:
     """Return how far each position may move, without and with float32 arithmetic; the same for every backend. NaN for
-    an encoding that exists only in shaders: the exact maps are in JAX."""
+    an encoding that exists only in shaders, because the exact maps are computed by JAX."""
     if codec.storage.code:
         unknown = np.full(len(on.depths), np.nan)
         return unknown, unknown
@@ -185,7 +185,7 @@ def _limits(codec: DepthCodec, camera: Camera, on: Points) -> tuple[np.ndarray, 
 
 
 def through(case: DepthCase, on: Points) -> Measured:
-    """Return the errors and the rebuilt positions of points after a case's round trip. Every other normal faces away
+    """Return the errors and the rebuilt positions of points after a case's round trip. Every second normal faces away
     from the viewer, if the encoding stores that.
 
     Raises:
@@ -203,7 +203,7 @@ def through(case: DepthCase, on: Points) -> Measured:
 
 
 def measure(case: DepthCase) -> list[Row]:
-    """Return a row for each distance of a case; if the device cannot measure the case, its rows have the reason in
+    """Return a row for each distance of a case. If the device cannot measure the case, the rows have the reason in
     `skipped` and no figures."""
     camera, codec = case.camera, case.codec
     shared = TABLE.empty() | {

@@ -58,7 +58,8 @@ USUAL_FOV = 60.0
 
 
 def cases(options: DepthOptions) -> list[measure.DepthCase]:
-    """Return one case for each backend, encoding with a way to rebuild positions, and camera or depth image.
+    """Return one case for each backend, each encoding with a way to rebuild positions, and each camera or depth
+    image.
 
     Raises:
         UsageError: unknown names, or numbers out of range.
@@ -109,7 +110,7 @@ def codecs(options: DepthOptions) -> list[tuple[DepthCodec, str]]:
 
 
 def _ranges(options: DepthOptions) -> list[tuple[float, float]]:
-    """Return every near plane with every far plane. Raises UsageError if a far plane is too close."""
+    """Return all pairs of a near and a far plane. Raises UsageError if a far plane is too close to a near plane."""
     nears, fars = _numbers("--near", options.near), _numbers("--far", options.far)
     for far in fars:
         for near in nears:
@@ -119,8 +120,8 @@ def _ranges(options: DepthOptions) -> list[tuple[float, float]]:
 
 
 def _distances(options: DepthOptions, camera: Camera) -> tuple[float | None, ...]:
-    """Return the requested distances, or every power of ten in the camera's range; then None, for the whole range.
-    Raises UsageError for a distance outside the range."""
+    """Return the requested distances; by default every power of ten in the camera's range, then None for the whole
+    range. Raises UsageError for a distance outside the range."""
     if options.distance is None:
         powers = range(math.ceil(math.log10(camera.near) - 1e-9), math.floor(math.log10(camera.far) + 1e-9) + 1)
         return (*(10.0**power for power in powers), None)
@@ -159,7 +160,7 @@ def _key(case: measure.DepthCase) -> Row:
 
 
 def _write(done: Measured, tick: Tick) -> None:
-    """Write the images of all cases, if a folder for images was given."""
+    """Write the images of the cases, if a folder for images was given."""
     chosen, folder = [step.case for step in done.steps], done.outputs.images
     if folder:
         _write_pictures(_for_drawing(chosen), _pictured(folder, chosen), folder, tick)
@@ -179,8 +180,8 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield for each range of near and far up to two sentences with the smallest error relative to the distance: for
-    depth buffers and for other targets."""
+    """Yield up to two sentences for each pair of near and far planes, for depth buffers and for other targets: the
+    best encodings by their largest error relative to the distance."""
     ranges = dict.fromkeys((row["near"], row["far"]) for row in rows)
     for near, far in ranges:
         worst: dict[tuple[Any, ...], Row] = {}
@@ -215,7 +216,7 @@ def _is_at(row: Row, near: float, far: float) -> bool:
 
 def _beside(rows: Sequence[Row]) -> list[Row]:
     """Return a row for each codec, camera, way to rebuild positions and backend: the largest error at each distance,
-    and the largest and the mean error of points spread evenly over the range."""
+    and the largest and mean error of points spread evenly over the range."""
     lines: dict[tuple[object, ...], Row] = {}
     names = ("depth", "storage", "rounding", "bits", "rebuilt", "backend", "near", "far", "fov")
     for row in rows:
@@ -245,13 +246,13 @@ def _said(value: object) -> object:
 
 
 def _for_drawing(cases: Iterable[measure.DepthCase]) -> list[measure.DepthCase]:
-    """Return one case for each encoding, camera and way to the position: the GLSL case if it was requested."""
+    """Return one case for each codec, camera, rebuild and frame: the GLSL case if it was requested."""
     chosen = {(c.codec, c.camera, c.rebuilt, c.frame): c for c in sorted(cases, key=lambda c: c.backend, reverse=True)}
     return [case for case in cases if case in chosen.values()]
 
 
 def _curve(case: measure.DepthCase) -> list[Row]:
-    """Return the rows of a case at many distances, close to each other, measured by JAX if the device cannot."""
+    """Return the rows of a case at many closely spaced distances, measured by JAX if the device cannot do so."""
     distances = np.geomspace(case.camera.near, case.camera.far, CURVE).tolist()
     fine = replace(case, distances=tuple(distances), count=CURVE_COUNT)
     rows = measure.measure(fine)
@@ -260,11 +261,11 @@ def _curve(case: measure.DepthCase) -> list[Row]:
 
 @dataclass(frozen=True)
 class Surface:
-    """The depths of a scene or of a frame.
+    """The depths of a scene or of a frame, as an image.
 
     Attributes:
         name: name in the file names of pictures.
-        depths: view depth, float32 of shape (height, width), row 0 on top; 0 where there is no surface.
+        depths: view depth, float32 of shape (height, width), row 0 at the top; 0 where there is no surface.
         fov: the camera's vertical field of view in degrees.
     """
 
@@ -279,11 +280,11 @@ class Surface:
         return width / height
 
     def within(self, camera: Camera) -> np.ndarray:
-        """Return which pixels are between near and far, bool of shape (height, width)."""
+        """Return a mask of the pixels between near and far, bool of shape (height, width)."""
         return (self.depths >= np.float32(camera.near)) & (self.depths <= np.float32(camera.far))
 
     def points(self, camera: Camera) -> measure.Points:
-        """Return the centres of all pixels at their visible depths; at the far end if not in the camera's range."""
+        """Return the centres of all pixels at their visible depths; at the far plane if outside the range."""
         height, width = self.depths.shape
         x, y = (np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2
         places = np.stack(np.meshgrid(x, y), axis=-1).astype(np.float32).reshape(-1, 2)
@@ -293,7 +294,7 @@ class Surface:
 
 @cache
 def _seen(device: Device) -> Surface:
-    """Return the surface of the images' scene, rendered once for the checks and for the images."""
+    """Return the surface of the scene in the images, rendered once for the checks and for the images."""
     plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, False, 1.0)
     scene = SCENE.make(Setting())
     with rendering(device, PIPELINES["prepass"], scene, plan) as drawing:
@@ -322,7 +323,7 @@ def _scene(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface:
 
     Raises:
         MissingError: there is no OpenGL device.
-        UsageError: the folder cannot be written to, or a range contains nothing of the scene.
+        UsageError: the folder cannot be written to, or a camera's range contains nothing of the scene.
     """
     device = require_device()
     check_folder(folder)
@@ -340,7 +341,7 @@ def _scene(folder: Path, cases: Iterable[measure.DepthCase]) -> Surface:
 def _write_pictures(
     cases: Iterable[measure.DepthCase], pictured: Surface | None, folder: Path, tick: Callable[[str], None]
 ) -> None:
-    """Write two images of each case: the position errors in colour, and the rebuilt surface, shaded."""
+    """Write two images for each case: the position errors in colour, and the rebuilt surface, shaded."""
     for case in cases:
         scene = _seen_by(case, pictured)
         camera = replace(case.camera, fov=scene.fov, aspect=scene.aspect)

@@ -1,4 +1,4 @@
-"""Agreement and differences between devices' codes and the run's: sentences and tables, from rows alone."""
+"""Agreement and differences between the codes of devices and the codes of the run: sentences and tables from rows."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_NAMED = 4
 
 
 def device_of(row: Row) -> str:
-    """Return the name of a row's device for sentences and columns."""
+    """Return the name of a row's device, for sentences and column headings."""
     return called(row["device"], row["browser"])
 
 
@@ -26,17 +26,17 @@ def codec_of(row: Row) -> tuple[Any, ...]:
 
 
 def differs(row: Row) -> bool:
-    """Whether any of a row's codes differs from the run's."""
+    """Whether any code in a row differs from the run's code."""
     return bool(row["one_step"] or row["further"])
 
 
 def codec_name(row: Row) -> str:
-    """Return the name of a codec for sentences, without the usual rounding."""
+    """Return the name of a row's codec for sentences, without the rounding if it is the usual one."""
     return CodecKey.of(row).label
 
 
 def by_device(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """Return rows grouped by the name of their device."""
+    """Return the rows grouped by the name of their device."""
     groups: dict[str, list[Row]] = {}
     for row in rows:
         groups.setdefault(device_of(row), []).append(row)
@@ -44,13 +44,13 @@ def by_device(rows: Sequence[Row]) -> dict[str, list[Row]]:
 
 
 def many(count: int, what: str) -> str:
-    """Return a number with its noun, such as `3 codecs` or `1 codec`."""
+    """Return a count with its noun, such as `3 codecs` or `1 codec`."""
     return f"{count} {what}" + ("" if count == 1 else "s")
 
 
 def sentences(rows: Sequence[Row]) -> list[str]:
-    """Return sentences: which devices agree with the run in every code, then one for each other device, the worst
-    first, and last a warning if the codes come from several versions of the program."""
+    """Return sentences: first which devices agree with the run in every code, then a sentence for each other device,
+    the worst first, and last a warning if the codes come from several versions of the program."""
     parts = by_device(rows)
     off = {name: part for name, part in parts.items() if any(map(differs, part))}
     whole = [name for name in parts if name not in off]
@@ -61,7 +61,7 @@ def sentences(rows: Sequence[Row]) -> list[str]:
 
 
 def _other_runs(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a warning if devices were compared with codes of several versions, which may differ themselves."""
+    """Yield a warning if the devices ran several versions of the program, whose codes may differ by themselves."""
     versions = len({row.get("sources") for row in rows})
     if versions > 1:
         yield f"The pages come from {versions} versions of the program, whose codes may differ."
@@ -74,12 +74,12 @@ def _agreement_sentence(names: Sequence[str], rows: Sequence[Row]) -> str:
 
 
 def _listed(names: Sequence[str]) -> str:
-    """Return names in one text, with semicolons, because names contain commas, and "and" before the last."""
+    """Return names as one text, joined by semicolons, because names contain commas, and "and" before the last."""
     return "; ".join(names[:-1]) + (" and " if len(names) > 1 else "") + names[-1]
 
 
 def difference(rows: Sequence[Row]) -> str:
-    """Return how a device's codes differ from the run's, or that they agree, as a sentence without its subject."""
+    """Return a sentence without its subject: how a device's codes differ from the run's codes, or that they agree."""
     off = [row for row in rows if differs(row)]
     if not off:
         return f"agrees with the run in every code of {many(len(rows), 'codec')}"
@@ -89,7 +89,7 @@ def difference(rows: Sequence[Row]) -> str:
 
 
 def share_of(row: Row) -> str:
-    """Return the percentage of a row's codes that differ, as text; "less than 0.001%" for every smaller share."""
+    """Return the percentage of a row's codes that differ, as text; "less than 0.001%" if it is smaller than that."""
     share = SAME - row["same_percent"]
     return f"{share:.3g}%" if share >= 0.001 else "less than 0.001%"
 
@@ -99,7 +99,7 @@ def _distance_text(row: Row) -> str:
 
 
 def pivot(rows: Sequence[Row]) -> list[Row]:
-    """Return a row for each codec in which a device differs, with a column for each such device: the percentage of
+    """Return a row for each codec for which any device differs, with a column for each such device: the percentage of
     its codes that differ.
 
     Rounding and target are columns only if they distinguish codecs.
@@ -125,7 +125,7 @@ def sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def overview(rows: Sequence[Row]) -> list[Row]:
-    """Return a row for each device: in how many codecs it agrees with the run, and where it differs most."""
+    """Return a row for each device: for how many codecs it agrees with the run, and where it differs most."""
     return [_overview_row(part) for part in by_device(rows).values()]
 
 
@@ -147,6 +147,6 @@ def time_of(row: Row) -> float | None:
 
 
 def fastest(rows: Sequence[Row]) -> Row | None:
-    """Return the row of the codec that encodes and decodes the fastest; None if no time was measured."""
+    """Return the row of the codec that encodes and decodes fastest; None if no time was measured."""
     timed = [(time, index) for index, row in enumerate(rows) if (time := time_of(row)) is not None]
     return rows[min(timed)[1]] if timed else None

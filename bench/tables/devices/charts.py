@@ -1,4 +1,4 @@
-"""The chart of encoding and decoding times on readers' devices."""
+"""The chart of encoding and decoding times on the devices of readers."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def timed(rows: Sequence[Row]) -> list[Row]:
-    """Return the codecs, devices and milliseconds of the chart, the codec with the lowest geometric mean first.
+    """Return a row for each codec and device with its milliseconds, the codec with the lowest geometric mean first.
 
     Times that are not above 0 are left out, because the axis is logarithmic.
     """
@@ -50,7 +50,7 @@ def timed(rows: Sequence[Row]) -> list[Row]:
 
 
 def _finding_sentence(drawn: Sequence[Row]) -> str:
-    """Return which codec is the fastest and which the slowest, with their times."""
+    """Return a sentence that names the fastest and the slowest codec, with their times."""
     first, last = drawn[0]["codec"], drawn[-1]["codec"]
     least, most = (min(row["ms"] for row in drawn if row["codec"] == codec) for codec in (first, last))
     devices = many(len(distinct(drawn, "device")), "device")

@@ -1,6 +1,6 @@
-"""Files that the page's live section saves on a reader's device. They come from strangers: everything is checked.
+"""Files that the page's live section saves on a reader's device. Strangers submit them, so everything is checked.
 
-A file is one JSON object in UTF-8. `FORMAT` counts its versions.
+A file is one JSON object in UTF-8. `FORMAT` is the version of the file format.
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ def _plain_line(text: str) -> str:
 
 
 def _utc_time(text: str) -> str:
-    """Return a time as UTC text, to the second, so that the order of texts is that of times. Raises ValueError if it
-    is not an ISO 8601 time, or is in the future."""
+    """Return a time as UTC text, to the second, so that sorting the texts sorts the times. Raises ValueError if the
+    text is not an ISO 8601 time, or the time is in the future."""
     try:
         moment = datetime.fromisoformat(text)
         moment = moment.replace(tzinfo=moment.tzinfo or UTC).astimezone(UTC)
@@ -128,12 +128,12 @@ class CodecRow(BaseModel):
 
     @property
     def key(self) -> tuple[str, str, str, str]:
-        """The fields that no two rows of a file share."""
+        """The fields that identify a row: no two rows of a file have the same."""
         return self.encoding, self.storage, self.rounding, self.target
 
 
 class DeviceFile(BaseModel):
-    """The contents of one file.
+    """The contents of a device file.
 
     Attributes:
         renderer, vendor, browser: the GPU and the browser as the browser reports them; plain text.
@@ -156,7 +156,7 @@ class DeviceFile(BaseModel):
 
     @model_validator(mode="after")
     def has_each_codec_once(self) -> DeviceFile:
-        """Return the file unchanged. Raises ValueError if two rows are of the same codec and target."""
+        """Return the file unchanged. Raises ValueError if two rows have the same codec and target."""
         key, count = Counter(row.key for row in self.codecs).most_common(1)[0]
         if count > 1:
             raise ValueError(f"codecs lists {' '.join(key)} twice")
@@ -169,23 +169,24 @@ class DeviceFile(BaseModel):
 
     @property
     def identity(self) -> tuple[str, str]:
-        """The GPU as the browser names it, and the browser's name with its major version."""
+        """The GPU as the browser reports it, and the browser's name with its major version."""
         return self.renderer, browser_name(self.browser)
 
 
 @dataclass(frozen=True)
 class Read:
-    """A file that was read, and its path."""
+    """The contents of a device file, and its path."""
 
     path: Path
     file: DeviceFile
 
 
 def read_device_file(path: Path) -> Read:
-    """Return the contents of a device file, checked, with its path.
+    """Return the checked contents of a device file, with its path.
 
     Raises:
-        UsageError: it cannot be read or is not a device file; the message names the file, and the place in it.
+        UsageError: the file cannot be read or is not a device file; the message names the file and the place in
+            it.
     """
     try:
         return Read(path, _checked_file(_parsed(file_bytes(path, MOST_BYTES))))
@@ -194,7 +195,7 @@ def read_device_file(path: Path) -> Read:
 
 
 def file_of_rows(codecs: Sequence[Mapping[str, Any]], facts: Mapping[str, Any]) -> DeviceFile:
-    """Return the device file that rows of a device came from, except that its browser has only the short name.
+    """Return the device file from which the rows of a device came; its browser has only the short name.
 
     Raises:
         ValueError: the rows do not form a valid device file.
@@ -205,7 +206,7 @@ def file_of_rows(codecs: Sequence[Mapping[str, Any]], facts: Mapping[str, Any]) 
 
 
 def _parsed(data: bytes) -> Any:
-    """Return the contents of JSON data. Raises ValueError if the data is not JSON, repeats a name or contains NaN."""
+    """Return the value of JSON data. Raises ValueError if the data is not JSON, repeats a name or contains NaN."""
     if data.startswith(BOM):
         raise ValueError("it starts with a byte-order mark; save it as UTF-8 without one")
     if not data.strip():
@@ -226,7 +227,7 @@ def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _checked_file(content: Any) -> DeviceFile:
-    """Return JSON content as a checked device file. Raises ValueError if the content or the version is wrong."""
+    """Return parsed JSON as a checked device file. Raises ValueError if the contents or the version is wrong."""
     if not isinstance(content, dict) or "normalbench_device" not in content:
         raise ValueError('not a device file; use one that "Save this device" saved in the live section of a page')
     version = content["normalbench_device"]
@@ -260,7 +261,7 @@ WRONG = {
 
 
 def _first_fault(error: ValidationError) -> str:
-    """Return the message for the first error of a validation: its place in the file, the value and what is wrong."""
+    """Return a message on the first error of a validation: its place in the file, the value and what is wrong."""
     first = error.errors(include_url=False)[0]
     names = [f"row {part + 1}" if isinstance(part, int) else _short_text(part) for part in first["loc"] if part != KEY]
     where, context = ", ".join(names), first.get("ctx", {})

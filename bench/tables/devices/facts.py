@@ -1,4 +1,4 @@
-"""The facts of readers' devices, side by side."""
+"""Facts about readers' devices, side by side."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .agreement import by_device, device_of, many
 
 
 def side_by_side(rows: Sequence[Row]) -> list[Row]:
-    """Return a row for each fact, with a column for each device; facts in which devices differ come first."""
+    """Return a row for each fact, with a column for each device; facts that differ between devices come first."""
     values = {(row["name"], device_of(row)): row["value"] for row in rows}
     names, devices = dict.fromkeys(row["name"] for row in rows), list(by_device(rows))
     table = [{"fact": name, **{device: values.get((name, device)) for device in devices}} for name in names]
@@ -21,7 +21,7 @@ def _is_told_apart(row: Row) -> bool:
 
 
 def sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield the sheet of facts by device, with a sentence on how many differ; nothing without rows."""
+    """Yield the sheet of facts by device, with a sentence on how many facts differ; nothing without rows."""
     if not rows:
         return
     table, devices = side_by_side(rows), len(by_device(rows))

@@ -1,7 +1,7 @@
-"""Short names of devices and browsers, from what a browser reports.
+"""Short names for devices and browsers, from the text that a browser reports.
 
-A browser gives the GPU as text: the driver's own name or, on most systems, ANGLE's, `ANGLE (vendor, GPU, API)`. The
-version of the API and of the driver are left out of the short name, unless devices would share it.
+A browser reports the GPU as text: the driver's own name or, on most systems, ANGLE's form, `ANGLE (vendor, GPU,
+API)`. The short name leaves out the versions of the API and of the driver, unless devices would share it.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ BROWSERS = (
 
 
 def device_name(renderer: str) -> str:
-    """Return a GPU's short name from its renderer's name: `GeForce RTX 4090` from `ANGLE (NVIDIA, NVIDIA GeForce RTX
-    4090 Direct3D11 vs_5_0, D3D11)`."""
+    """Return a GPU's short name from the name of its renderer: `GeForce RTX 4090` from `ANGLE (NVIDIA, NVIDIA GeForce
+    RTX 4090 Direct3D11 vs_5_0, D3D11)`."""
     wrapped = ANGLE.fullmatch(renderer.strip())
     parts = _comma_parts(wrapped[1]) if wrapped else [renderer]
     name = parts[1] if len(parts) > 1 else parts[0]
@@ -50,7 +50,7 @@ def device_name(renderer: str) -> str:
 
 
 def _comma_parts(text: str) -> list[str]:
-    """Return the parts of a text that commas separate, except commas inside parentheses."""
+    """Return the parts of a text between commas; commas inside parentheses do not count."""
     parts, depth = [""], 0
     for letter in text:
         depth += {"(": 1, ")": -1}.get(letter, 0)
@@ -71,9 +71,9 @@ def browser_name(agent: str) -> str:
 
 
 def told_apart(renderers: Iterable[str]) -> dict[str, str]:
-    """Return a short name for each renderer, which no other renderer has. The order does not matter.
+    """Return a unique short name for each renderer, whatever the order of the renderers.
 
-    Renderers that share a name get their API appended; if that is the same too, four digits of a hash.
+    The API is appended to names that renderers share; if they share that too, four digits of a hash are appended.
     """
     every = sorted(set(renderers))
     short_names = {renderer: device_name(renderer) for renderer in every}

@@ -1,4 +1,4 @@
-"""Device files by their names, each device and browser once, and their rows."""
+"""Reading of device files: the files by name, each combination of device and browser once, and their rows."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SAVED = 'to save one, use "Save this device" in the live section of a page'
 
 @dataclass(frozen=True)
 class Device:
-    """A device's file, and the name of the device in rows."""
+    """A device's file, and the name of the device as rows show it."""
 
     name: str
     file: DeviceFile
@@ -32,23 +32,23 @@ class Device:
 
     @property
     def called(self) -> str:
-        """The device and its browser as text, as sentences name them."""
+        """The device and its browser in words, for sentences."""
         return called(self.name, self.browser)
 
     def key(self, row_of: str) -> Row:
-        """Return the columns that distinguish the device's rows of a kind from all others."""
+        """Return the columns that identify the device's rows of one kind, CODEC or FACT."""
         file = self.file
         known = {"renderer": file.renderer, "browser": self.browser, "made": file.made, "digest": file.digest}
         return {"device": self.name, "row_of": row_of, **known}
 
 
 def called(device: Any, browser: Any) -> str:
-    """Return a device's name and its browser's, with a comma between them."""
+    """Return the names of a device and its browser, with a comma between them."""
     return f"{device}, {browser}"
 
 
 def files_named(words: Names) -> list[Path]:
-    """Return the files that words name; a folder stands for its *.json.
+    """Return the paths of the device files that words name; a folder stands for its *.json files.
 
     Raises:
         UsageError: no file is named, a folder contains no *.json file, or there are too many files.
@@ -79,8 +79,7 @@ def checked_number(paths: list[Path]) -> list[Path]:
 
 
 def devices(read_files: Iterable[Read]) -> list[Device]:
-    """Return the devices of files; of files from the same GPU and browser only the newest, and the others are named
-    on standard error."""
+    """Return a device for each GPU and browser, from its newest file; older files are named on standard error."""
     newest: dict[tuple[str, str], Read] = {}
     for read in read_files:
         other = newest.setdefault(read.file.identity, read)
@@ -92,8 +91,8 @@ def devices(read_files: Iterable[Read]) -> list[Device]:
 
 
 def reads_of_rows(rows: Iterable[Row], path: Path) -> list[Read]:
-    """Return the device files that a run's rows came from, with the path; a device whose rows form no valid file is
-    left out and named on standard error."""
+    """Return the device files from which a run's rows came, all with this path. A device whose rows form no valid
+    file is left out and named on standard error."""
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault((row.get("device"), row.get("renderer"), row.get("browser")), []).append(row)
@@ -113,21 +112,21 @@ def _file_of(rows: Sequence[Row]) -> DeviceFile:
 
 
 def named(files: Sequence[DeviceFile]) -> list[Device]:
-    """Return the device of each file, with a short name that no other GPU has."""
+    """Return a device for each file, with a short name that no other GPU has."""
     names = told_apart(file.renderer for file in files)
     return [Device(names[file.renderer], file) for file in files]
 
 
 def steps_of(words: Names, is_of_facts: bool) -> list[Step]:
-    """Return a step for each device in the files that words name: for its facts, or for its codecs. Raises UsageError
-    for a file that cannot be read or is not a device file."""
+    """Return a step for each device in the named files, which yields its facts or its codecs. Raises UsageError for a
+    file that cannot be read or is not a device file."""
     reads = devices(read_device_file(path) for path in files_named(words))
     row_of = FACT if is_of_facts else CODEC
     return [Step(device.key(row_of), (device, row_of), device.called) for device in reads]
 
 
 def rows_of(device: Device, row_of: str) -> list[Row]:
-    """Return the rows of a device: of its facts if `row_of` is FACT, otherwise of its codecs."""
+    """Return the rows on a device: on its facts if `row_of` is FACT, otherwise on its codecs."""
     return fact_rows(device) if row_of == FACT else codec_rows(device)
 
 
@@ -159,7 +158,7 @@ def _device_row(device: Device, row_of: str) -> Row:
 
 
 def newest(rows: Sequence[Row], keys: Sequence[str]) -> list[Row]:
-    """Return the newest row for each combination of `keys`: a run may also hold rows of an older file."""
+    """Return the newest row for each combination of `keys`; a run may also contain rows from an older file."""
     latest: dict[tuple[Any, ...], Row] = {}
     for row in rows:
         key = tuple(row.get(name) for name in keys)

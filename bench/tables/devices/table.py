@@ -1,4 +1,4 @@
-"""The table of readers' devices: their results for each codec next to the run's codes, and facts about them."""
+"""The table of readers' devices: each codec's results compared with the run's codes, and facts about the devices."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CODEC, FACT = "codec", "fact"
 
 @dataclass(frozen=True, kw_only=True)
 class DevicesOptions(Options):
-    """Options for `devices`: the device files to read, and what is shown of them."""
+    """Options for `devices`: the device files to read, and whether to show codecs or facts."""
 
     devices: Annotated[
         Names,
@@ -42,7 +42,7 @@ COLUMNS = (
         unit="%",
         better="more",
     ),
-    Column("one_step", "Codes with one number that is one step away from the run's code.", better="less"),
+    Column("one_step", "Codes that differ from the run's by one step in one component.", better="less"),
     Column("further", "Codes that differ from the run's codes by more than one step.", better="less"),
     Column(
         "mean_deg",
@@ -78,7 +78,8 @@ COLUMNS = (
 TABLE = Table(
     package=__package__ or "",
     group=Group.KEEP,
-    help="Show how readers' devices encode and decode each codec.\n\nWith --facts it shows how devices round, "
+    help="Show how readers' devices encode and decode normals with each codec.\n\n"
+    "With --facts it shows how devices round, "
     'filter, resolve and compute.\n\nA device file is saved by "Save this device" in the live section of a page.',
     example="normalbench devices --devices phone.json",
     options=DevicesOptions,

@@ -1,4 +1,4 @@
-"""Construction of the table of readers' devices from their files, and its display."""
+"""Construction and display of the table of readers' devices."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _warnings(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield the sentences on devices whose codes differ by more than one step, which rounding does not explain."""
+    """Yield the sentences on devices whose codes differ by more than one step, which rounding cannot explain."""
     for sheet in agreement.sheets(_of_codecs(rows)):
         yield from (line for line in sheet.said if "more than one step" in line)
 

@@ -11,7 +11,7 @@ from ..table import Row
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield the chart of each effect's PSNR over the mean angle of its normals; nothing without rows."""
+    """Yield the chart of each effect's PSNR by the mean angular error of the normals; nothing without rows."""
     usable = having([row for row in rows if not row["depth"]], "effect_psnr_db", "normal_mean_deg")
     points = [
         {
@@ -41,7 +41,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:
-    """Return which effect has the lowest PSNR and which the highest, each with its codec."""
+    """Return a sentence that names the effects with the lowest and the highest PSNR, each with its codec."""
     worst = min(points, key=lambda point: point["y"])
     best = max(points, key=lambda point: point["y"])
     return (

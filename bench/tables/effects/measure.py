@@ -1,4 +1,4 @@
-"""The effects table: how encodings in the G-buffer affect effects that read it."""
+"""Measurement of the effects table: how encodings in the G-buffer affect effects that read it."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from .table import TABLE
 
 @dataclass(frozen=True)
 class EffectsCase:
-    """One row to measure.
+    """A row of the effects table to measure.
 
     Attributes:
         effect: effect that reads the G-buffer.
         pipeline: pipeline with the effect in it.
-        plan: plan by which it is rendered.
-        maker, setting: the scene, and the setting that it is made with.
-        depth: name of the depth encoding if the row is about one.
+        plan: plan with which the scene is rendered.
+        maker, setting: the scene, and the setting with which it is made.
+        depth: name of the depth encoding if the row measures one, otherwise None.
     """
 
     effect: ChosenEffect
@@ -52,13 +52,13 @@ class EffectsCase:
 
     @property
     def reference(self) -> EffectsCase:
-        """The case of the same effect from a G-buffer in 32-bit floats."""
+        """The case of the same effect with a G-buffer of 32-bit floats."""
         return replace(self, plan=replace(self.plan, layout=LAYOUTS["fp32"]), depth=None)
 
 
 @dataclass(frozen=True)
 class Drawn(Frame):
-    """A frame.
+    """A rendered frame, with the effect's own image.
 
     Attributes:
         own: the effect's own image, (height, width, channels).
@@ -75,11 +75,11 @@ class Drawn(Frame):
 
 
 class EffectsBench(Bench[EffectsCase, Drawn]):
-    """Measures cases, each reference once.
+    """The bench of the effects table, which renders each reference once.
 
     Args:
-        device, repeats, with_flip: as of every bench.
-        rays: rays a point of the method's own error; 0 for none.
+        device, repeats, with_flip: as for every bench.
+        rays: rays per point for measuring the method's own error; 0 to leave it out.
     """
 
     def __init__(self, device: Device, repeats: int, rays: int, with_flip: bool):
@@ -115,8 +115,8 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
         return row | {"invalid": max(image["invalid"], int(lost))} | self._method(case.reference)
 
     def _method(self, case: EffectsCase) -> Row:
-        """Return the columns on how far the effect from exact normals is from ray casting; empty without a ray
-        caster, or if the effect is not ambient occlusion."""
+        """Return columns with the effect's error against ray casting, from exact normals; empty without a ray caster,
+        or if the effect is not ambient occlusion."""
         if not self._rays or not isinstance(case.effect.effect, AmbientOcclusion):
             return {}
         if case not in self._methods:
@@ -134,7 +134,7 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
 
 
 def _effect_times(case: EffectsCase, rendered: Rendering, repeats: int) -> Row:
-    """Return the milliseconds of each of the effect's passes, of all of them and of the frame, and the clock."""
+    """Return the milliseconds of each pass of the effect, of all its passes and of the frame, and the clock."""
     columns = time_columns(*rendered.timings(repeats))
     names = [f"ms_{stage.name}" for stage in case.effect.passes()]
     row: Row = {name: columns[name] for name in (*names, "ms_frame", "clock")}
@@ -142,13 +142,13 @@ def _effect_times(case: EffectsCase, rendered: Rendering, repeats: int) -> Row:
 
 
 def drawn_at(own: np.ndarray, surfaces: np.ndarray) -> np.ndarray:
-    """Return where an effect is, bool of shape (height, width): where alpha is above 0; without alpha, on all
-    surfaces."""
+    """Return a mask of the pixels that an effect covers, bool of shape (height, width): pixels with alpha above 0, or
+    all surfaces if the image has no alpha."""
     return own[..., 3] > 0 if own.shape[-1] == 4 else surfaces
 
 
 def _distance_columns(drawn: Drawn, exact: Drawn) -> Row:
-    """Return the errors of the effect's own image and of the normals, compared with the exact ones."""
+    """Return the errors of the effect's own image and of the normals, compared with the exact frame."""
     covered = exact.covered
     own, other = (frame.own[covered].astype(np.float64) for frame in (drawn, exact))
     peak = float(np.max(np.abs(np.nan_to_num(other))))
@@ -166,11 +166,11 @@ def _distance_columns(drawn: Drawn, exact: Drawn) -> Row:
 
 
 def moved_percent(hits: np.ndarray, exact: np.ndarray) -> float | None:
-    """Return the percentage of pixels whose ray hits nothing, or something more than a pixel away, among those whose
-    ray hits something in the exact frame; None if no ray hits anything.
+    """Return the percentage of pixels whose ray misses, or hits a point more than a pixel away from the exact hit,
+    among pixels whose ray hits something in the exact frame; None if no exact ray hits anything.
 
     Args:
-        hits, exact: arrays of shape (height, width, 4), as described by `Effect.hits`.
+        hits, exact: arrays of shape (height, width, 4), as described in `Effect.hits`.
     """
     there = exact[..., 3] > 0
     if not np.any(there):
@@ -180,8 +180,8 @@ def moved_percent(hits: np.ndarray, exact: np.ndarray) -> float | None:
 
 
 def _angles(drawn: Drawn, exact: Drawn) -> np.ndarray:
-    """Return the degrees between the normals of two frames at the pixels where the exact frame has a normal, 180 for
-    a normal that is not a number; a single 0 if there are no such pixels."""
+    """Return the angles in degrees between the normals of two frames, at covered pixels where the exact frame has a
+    normal; 180 for a normal that is not a number. A single 0 if there are no such pixels."""
     normals, other = drawn.normals[exact.covered], exact.normals[exact.covered]
     there = np.any(other != 0, axis=-1)
     return np.nan_to_num(angles_deg(other[there], normals[there]), nan=180.0) if np.any(there) else np.zeros(1)
@@ -202,8 +202,8 @@ def _case_columns(case: EffectsCase) -> Row:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Return rows by effect, pipeline and scene in their first order: encodings of normals by bits, the best first,
-    then those of depth."""
+    """Return the rows grouped by effect, pipeline and scene, in the order in which these first occur. In each group,
+    encodings of normals come first, by bits and then by error, followed by encodings of depth."""
     groups = list(dict.fromkeys(group_of(row) for row in rows))
 
     def place(row: Row) -> tuple[int, bool, int, bool, float]:
@@ -215,5 +215,5 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
 
 
 def group_of(row: Row) -> tuple[str, ...]:
-    """Return the key that rows share if they are compared with each other."""
+    """Return the effect, pipeline and scene of a row: rows that share all three are compared with each other."""
     return row["effect"], row["pipeline"], row["scene"]

@@ -1,4 +1,4 @@
-"""Pictures of effects: written into a folder, and found there again."""
+"""Pictures of effects: writing them into a folder, and finding them there again."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ WHITE = 0.99
 
 
 def _file_stem(row: Row, of_reference: bool = False) -> str:
-    """Return the part of a row's file names that comes before the kind of image."""
+    """Return the start of the names of a row's picture files, without the kind of picture."""
     start = [name_of_file(row["effect"]), row["scene"], row["pipeline"]]
     code = [row["depth"].replace("/", "-")] if row["depth"] else [row["encoding"], row["storage"], row["rounding"]]
     return "-".join([*start, *([] if of_reference else [row["layout"], *code])])
 
 
 def write(folder: Path, row: Row, drawn: Drawn, exact: Drawn) -> None:
-    """Write the effect's own image and the final image of a row, and those of the reference, which rows share."""
+    """Write the effect's own image and the final image for a row and for the reference, which rows share."""
     # What few pixels mirror of a lamp would leave all others black.
     peak = float(np.quantile(exact.own, WHITE)) or float(np.max(exact.own)) or 1.0
     for stem, frame in ((_file_stem(row), drawn), (f"{_file_stem(row, True)}-{REFERENCE}", exact)):
@@ -40,9 +40,10 @@ def write(folder: Path, row: Row, drawn: Drawn, exact: Drawn) -> None:
 
 
 def own_picture(own: np.ndarray, peak: float) -> np.ndarray:
-    """Return an effect's own image for display, uint8 of shape (height, width, 3): sRGB, white from `peak` upward.
+    """Return an effect's own image for display, uint8 of shape (height, width, 3): in sRGB, with values of `peak` and
+    above white.
 
-    An image of one channel, such as visibility, is a linear grey.
+    An image with one channel, such as visibility, becomes linear grey.
     """
     share = np.clip(np.nan_to_num(own) / peak, 0.0, 1.0)
     if own.shape[-1] == 1:
@@ -51,8 +52,9 @@ def own_picture(own: np.ndarray, peak: float) -> np.ndarray:
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """Yield a subject for each effect, scene and pipeline of the rows, with the images in a folder; no subject if the
-    reference image or all others are missing. Names are looked up, so that they cannot lead out of the folder."""
+    """Yield a subject for each effect, scene and pipeline in the rows, with its pictures from a folder; no subject if
+    the reference picture or all other pictures are missing. File names are looked up in the folder, so that they
+    cannot lead out of it."""
     there = files_of(folder)
     groups: dict[str, list[Row]] = {}
     for row in rows:

@@ -44,10 +44,10 @@ NO_GBUFFER = "has no G-buffer for an effect to read"
 
 
 def contents(options: EffectsOptions) -> list[tuple[Layout, str | None]]:
-    """Return the layout of the G-buffer of each row, and the depth encoding if the row is about one.
+    """Return a G-buffer layout for each row, with the name of the depth encoding if the row measures one.
 
     Raises:
-        UsageError: unknown names, or nothing left.
+        UsageError: unknown names, or nothing left to measure.
     """
     complaints: list[str] = []
     layouts = [(layout, None) for layout in layouts_named(options.layout)] if options.layout else []
@@ -88,11 +88,11 @@ def _depth_codec(name: str) -> DepthCodec:
 
 
 def cases(options: EffectsOptions, device: Device) -> list[EffectsCase]:
-    """Return a case for each effect, pipeline, scene and content of the G-buffer; impossible cases are named on
-    standard error.
+    """Return a case for each effect, pipeline, scene and G-buffer content; impossible cases are named on standard
+    error.
 
     Raises:
-        UsageError: unknown names, counts and sizes beyond what is possible, or nothing left.
+        UsageError: unknown names, counts or sizes out of range, or nothing left to measure.
     """
     size, _ = checked_target(options.size, 1, 1, device)
     setting = checked_setting(options.objects, options.lights, options.seed)
@@ -116,8 +116,8 @@ def cases(options: EffectsOptions, device: Device) -> list[EffectsCase]:
 def _suitable(
     effect: ChosenEffect, names: Names | None, setting: Setting, complaints: list[str]
 ) -> dict[SceneMaker, bool]:
-    """Return the requested scenes, or the effect's own, and whether each is metallic-roughness; scenes that lack what
-    the effect needs are left out, with the reason in `complaints`."""
+    """Return the requested scenes, by default the effect's own, and whether each has metallic-roughness materials.
+    Scenes that lack what the effect needs are left out, with the reason in `complaints`."""
     suitable: dict[SceneMaker, bool] = {}
     for maker in scene_makers_named(names or (effect.effect.scene,)):
         scene = maker.make(setting)

@@ -1,9 +1,9 @@
-"""The limit of tangent frames: the smallest possible errors of any N codes.
+"""The theoretical limit for tangent frames: the smallest possible errors of any N codes.
 
-By Haar's measure the rotations by up to theta are a share of (theta - sin theta) / pi of all rotations. At best each
-code is the nearest to a ball with a share of 1 / N, so no N codes have a maximum error below the theta of this ball,
-or a mean or mean square error below the ball's own. A mirrored frame is not a rotation: each handedness has half of
-the codes.
+By Haar's measure, rotations by up to theta make up a share of (theta - sin theta) / pi of all rotations. At best,
+each code is the nearest to a ball with a share of 1 / N, so no N codes have a maximum error below the theta of this
+ball, or a mean or mean square error below the ball's own. A mirrored frame is not a rotation: each handedness gets
+half of the codes.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ def ball_moment(theta: float, power: int) -> float:
 
 
 def _root_angle(function: Callable[[float], float], least: float) -> float:
-    """Return the root of an increasing function between `least`, where it is not above 0, and pi, to the precision
+    """Return the root of an increasing function between `least`, at which it is not above 0, and pi, to the precision
     of float64."""
     return float(root_scalar(function, bracket=(least, math.pi), method="brentq", xtol=1e-30).root)
 
 
 def frame_limit(codes: int, hands: int = HANDS) -> CodeLimit:
-    """Return the smallest possible mean, RMS and maximum of the angle for this number of codes (2 or more), over all
-    frames, or over all rotations if the codes are of one handedness."""
+    """Return the smallest possible mean, RMS and maximum angle for this number of codes (2 or more), over all frames,
+    or over all rotations if `hands` is 1."""
     share = hands / codes
     # theta - sin theta is below theta^3 / 6.
     least = min((6 * math.pi * share) ** (1 / 3), math.pi)
@@ -63,9 +63,9 @@ def frame_effective_bits(rms_deg: float, hands: int = HANDS) -> float:
 
 
 def frames_broken(codes: int, count: int, mean_deg: float, rms_deg: float, hands: int = HANDS) -> str:
-    """Return which figure of a measurement over uniform frames, the RMS or the mean, is below the bound for this
-    number of codes, apart from scatter; empty if neither is. A lower figure means a wrong measurement or a set that
-    is not uniform."""
+    """Return a message if the RMS or the mean angle measured over uniform frames is below the bound for this number
+    of codes by more than scatter explains; empty otherwise. Such a figure means a wrong measurement or a set that is
+    not uniform."""
     least, spared = frame_limit(codes, hands), 1 - SCATTER / math.sqrt(count)
     for what, figure, bound in (("RMS", rms_deg, least.rms_deg), ("mean", mean_deg, least.mean_deg)):
         if figure < bound * spared:

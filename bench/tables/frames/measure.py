@@ -1,4 +1,5 @@
-"""The frames table: the errors of tangent frame encodings in normals, tangents and rotations, by JAX and by GLSL."""
+"""Measurement of the frames table: the errors of encoded tangent frames in normals, tangents and rotations, by JAX
+and by GLSL."""
 
 from __future__ import annotations
 
@@ -90,8 +91,8 @@ BACKENDS: Mapping[str, Callable[[FrameCodec], AbstractContextManager[tuple[Trip,
 
 @dataclass
 class FrameTotal:
-    """Totals over chunks: angles of normals, tangents and rotations in degrees, decodes that are not finite, each of
-    which counts as 180 degrees, and inverted handedness."""
+    """Totals over chunks: the angles of normals, tangents and rotations in degrees, the number of decodes that are
+    not finite, which count as 180 degrees, and the number of inverted hands."""
 
     count: int = 0
     invalid: int = 0
@@ -114,8 +115,8 @@ class FrameTotal:
 
 
 def frame_angles(given: Frames, other: Frames) -> np.ndarray:
-    """Return the angles between normals, between tangents, and of the rotation between the two frames, whatever
-    their handedness: float64 degrees of shape (3, count), NaN where a value is not a number.
+    """Return the angles between the normals, between the tangents, and of the rotation from one frame to the other,
+    regardless of handedness: float64 degrees of shape (3, count), NaN where a value is not a number.
 
     A rotation by theta moves the three axes by 8 sin^2(theta / 2) in total, the sum of their squared distances.
     """
@@ -134,7 +135,8 @@ def _unit_axes(frames: Frames) -> tuple[np.ndarray, np.ndarray]:
 
 
 def measure(case: FrameCase) -> Row:
-    """Return one row; a row that the device cannot measure has its reason in `skipped` and no figures."""
+    """Return the row with a codec's errors over a set of tangent frames; if the device cannot measure the codec, the
+    row has the reason in `skipped` and no figures."""
     row = TABLE.empty() | {
         "encoding": case.codec.encoding.name,
         "storage": case.codec.storage.name,
@@ -171,7 +173,8 @@ def _supremum_columns(case: FrameCase) -> Row:
 
 
 def _whole_chunk(frames: Frames) -> Frames:
-    """Return a chunk with its last frame repeated up to CHUNK frames: compiled once, and a rectangle of pixels."""
+    """Return a chunk padded to CHUNK frames with its last frame, so that code is compiled once and the frames fill a
+    rectangle of pixels."""
     missing = CHUNK - len(frames.normals)
     return Frames(*(np.pad(a, ((0, missing), (0, 0)), mode="edge") for a in (frames.normals, frames.tangents)))
 
@@ -187,8 +190,8 @@ def _figures(total: FrameTotal, codec: FrameCodec) -> Row:
 
 
 def _limit_columns(case: FrameCase, total: FrameTotal, figures: Row) -> Row:
-    """Return the limits of theory and how closely the row approaches them; empty for a set that is not uniform.
-    Without percentages if errors as small as the limit are lost in float32."""
+    """Return the theoretical limits and how closely the row approaches them; empty for a set that is not uniform. The
+    percentages are left out if errors as small as the limit are lost in float32."""
     if not case.frame_set.is_uniform:
         return {}
     hands = 1 if case.codec.encoding.hand_in is None else HANDS

@@ -1,4 +1,4 @@
-"""Sets of tangent frames to measure on: rotations at random, and the vertices of users' meshes."""
+"""Sets of tangent frames to measure: random rotations, and the vertices of users' meshes."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Frames:
     """Tangent frames.
 
     Attributes:
-        normals: with the hand, 1 or -1, as the fourth; (count, 4).
-        tangents: with nothing as the fourth; (count, 4).
+        normals: (count, 4), with the handedness, 1 or -1, as the fourth component.
+        tangents: (count, 4), with 0 as the fourth component.
     """
 
     normals: np.ndarray
@@ -36,14 +36,14 @@ class Frames:
 
 @dataclass(frozen=True)
 class FrameSet:
-    """A set of frames.
+    """A set of tangent frames, made chunk by chunk.
 
     Attributes:
         name: the catalogue's key, or a file's name.
         count: number of frames.
-        seed: the seed that the set was made with.
+        seed: the seed with which the set was made.
         is_uniform: whether it covers all frames evenly.
-        chunk: start index -> float32 Frames: CHUNK frames, or the rest.
+        chunk: returns the chunk that starts at an index: CHUNK frames in float32, or fewer at the end.
     """
 
     name: str
@@ -58,13 +58,13 @@ class FrameSet:
         return range(0, self.count, CHUNK)
 
     def chunks(self) -> Iterator[Frames]:
-        """Return the frames, a chunk at a time."""
+        """Return an iterator over the frames, one chunk at a time."""
         return map(self.chunk, self.starts)
 
 
 def rotations(count: int, seed: int) -> FrameSet:
     """Return a set of random rotations, uniform by Haar's measure (K. Shoemake, Uniform Random Rotations, Graphics
-    Gems III, 1992), half of them left-handed on average."""
+    Gems III, 1992). On average, half of the frames are left-handed."""
 
     def chunk(start: int) -> Frames:
         random = np.random.default_rng([seed, start])
@@ -79,9 +79,11 @@ def rotations(count: int, seed: int) -> FrameSet:
 
 
 def frames_from(normals: np.ndarray, with_hands: np.ndarray) -> Frames:
-    """Return frames of unit normals (count, 3) and of tangents with their bitangents' signs (count, 4), as in glTF.
+    """Return frames from unit normals (count, 3) and from tangents with the sign of the bitangent (count, 4), as in
+    glTF.
 
-    Tangents are made orthogonal to the normal; a tangent along the normal is replaced by an orthogonal direction.
+    Tangents are made orthogonal to the normal; a tangent parallel to the normal is replaced by an orthogonal
+    direction.
     """
     across = with_hands[:, :3] - normals * np.sum(normals * with_hands[:, :3], axis=1, keepdims=True)
     lost = np.linalg.norm(across, axis=1) < 1e-9
@@ -96,7 +98,7 @@ FRAME_SETS: Mapping[str, Callable[[int, int], FrameSet]] = MappingProxyType({"ro
 
 
 def frame_sets_named(names: Names, count: int, seed: int) -> list[FrameSet]:
-    """Return the frame sets with these names: sets of the catalogue, or the vertices of mesh files.
+    """Return the frame sets with these names: sets from the catalogue, or the vertices of mesh files.
 
     Raises:
         UsageError: an unknown name, or a file that cannot be read.
@@ -115,12 +117,12 @@ def frame_sets_named(names: Names, count: int, seed: int) -> list[FrameSet]:
 
 
 def _as_in_files(mesh: Mesh) -> np.ndarray:
-    """Return tangents and hands for `frames_from`; the bitangents of a file's own tangents point against v."""
+    """Return a mesh's tangents and hands for `frames_from`; the bitangents of authored tangents point against v."""
     return tangents(mesh) * (1.0, 1.0, 1.0, 1.0 if mesh.authored is None else -1.0)
 
 
 def mesh_frames(name: str, meshes: list[Mesh]) -> FrameSet:
-    """Return the frames of all vertices as a set: with authored tangents, or else the direction in which u grows."""
+    """Return the frames at all vertices as a set, with authored tangents or else the direction of increasing u."""
     normals, with_hands = (
         np.concatenate(parts) for parts in zip(*((m.normals, _as_in_files(m)) for m in meshes), strict=True)
     )

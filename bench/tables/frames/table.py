@@ -1,4 +1,4 @@
-"""The table of tangent frames: the errors of their encodings."""
+"""The frames table: the errors of encoded tangent frames."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class FramesOptions(SourceOptions):
-    """Options for what `frames` measures. Names are comma-separated; by default each encoding uses its usual
-    storage."""
+    """Options for what `frames` measures. Names are comma-separated; by default each encoding is measured in its
+    usual storage."""
 
     encoding: Annotated[
         Names, Option("--encoding", f"Tangent frame encodings or your own files, {NAMED}.", files=True)

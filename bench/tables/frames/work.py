@@ -25,7 +25,7 @@ def cases(options: FramesOptions) -> list[measure.FrameCase]:
     """Return one case for each frame set, codec and backend.
 
     Raises:
-        UsageError: unknown names, a file that cannot be read, or nothing that fits.
+        UsageError: unknown names, a file that cannot be read, or no codec that fits its storage.
         MissingError: only GLSL is requested and there is no OpenGL device.
     """
     check_seed(options.seed)
@@ -42,7 +42,7 @@ def cases(options: FramesOptions) -> list[measure.FrameCase]:
 
 
 def codecs(options: FramesOptions) -> list[FrameCodec]:
-    """Return the codecs asked for; those that do not fit are named on standard error."""
+    """Return the requested codecs; codecs that do not fit their storage are named on standard error."""
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
     chosen = codecs_of_kind(FRAME, options.encoding, options.storage, roundings)
     return that_fit(without_noise(chosen, not_with_noise("--worst-case")) if options.worst_case else chosen)
@@ -66,7 +66,7 @@ def _failures(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows by set, then by bits, then by the codec's smallest RMS angle; codecs without figures last."""
+    """Return the rows by set, bits and the codec's smallest RMS angle; codecs without figures come last."""
     sets = list(dict.fromkeys(row["frame_set"] for row in rows))
     best: dict[tuple, float] = {}
     for row in rows:

@@ -15,7 +15,7 @@ RANDOM = "coloured lights with falloff, worst pixel and order"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield the chart of the error in light over the number of lights; nothing without rows."""
+    """Yield the chart of the error in accumulated light by the number of lights; nothing without rows."""
     equal = [r for r in having(rows, "sum", "lights", "error", "bound") if r.get("experiment") == "equal"]
     random = [r for r in having(rows, "lights", "model_max", "bound") if r.get("experiment") == "random"]
     points = [*_equal_rows(equal), *_random_rows(random)]
@@ -24,8 +24,8 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
-    """Return the chart with a line for each light buffer, and panels for equal and for coloured lights; dotted: the
-    error's bound."""
+    """Return the chart, with a line for each light buffer, a dotted line for the bound on its error, and panels for
+    equal and for coloured lights."""
     looks: dict[str, Any] = {"by": ("light_buffer", "panel"), "colour": "light_buffer"}
     tips = (("light_buffer", "light buffer"), ("x", "lights"), ("error", "error"), ("bound", "bound"))
     counts = sorted({point["x"] for point in points})
@@ -51,19 +51,19 @@ def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
 
 
 def _equal_rows(rows: Sequence[Row]) -> list[Row]:
-    """Return the points of equal lights with the smallest sum: the error of each buffer's worst channel."""
+    """Return the points for equal lights with the smallest sum: the error in each buffer's worst channel."""
     total = min((row["sum"] for row in rows), default=0.0)
     panel = f"equal lights that sum to {total:g}, worst channel"
     return _worst(panel, [(row, abs(row["error"])) for row in rows if row["sum"] == total])
 
 
 def _random_rows(rows: Sequence[Row]) -> list[Row]:
-    """Return the points of coloured lights: the largest error of each buffer's worst order."""
+    """Return the points for coloured lights: the largest error of each buffer, in its worst order of lights."""
     return _worst(RANDOM, [(row, row["model_max"]) for row in rows])
 
 
 def _worst(panel: str, errors: Sequence[tuple[Row, float]]) -> list[Row]:
-    """Return a point for each buffer and number of lights, with the largest of the errors, sorted by the number."""
+    """Return a point with the largest error for each buffer and number of lights, sorted by the number of lights."""
     largest: dict[tuple[str, int], tuple[float, float]] = {}
     for row, error in errors:
         key = (row["light_buffer"], row["lights"])
@@ -75,7 +75,8 @@ def _worst(panel: str, errors: Sequence[tuple[Row, float]]) -> list[Row]:
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:
-    """Return which buffers have the smallest and the largest error with the most lights, in the last panel."""
+    """Return a sentence that names the buffers with the smallest and the largest error for the most lights, in the
+    last panel."""
     panel, most = points[-1]["panel"], max(point["x"] for point in points)
     last = sorted((p for p in points if (p["panel"], p["x"]) == (panel, most)), key=lambda p: p["y"])
     best, worst = last[0], last[-1]

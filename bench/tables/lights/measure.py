@@ -1,4 +1,4 @@
-"""The rows of `lights`: each experiment on each light buffer, by the model and by the GL device."""
+"""The rows of `lights`: each experiment on each light buffer, by the model and by the OpenGL device."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ UNMEASURABLE = (ShaderError, FormatError)
 
 @dataclass(frozen=True)
 class Sums:
-    """The values to add up: sums of light, numbers of lights, peaks of falloff, and a seed."""
+    """The inputs of the experiments: sums of light, numbers of lights, falloff peaks, and a seed."""
 
     sums: tuple[float, ...]
     counts: tuple[int, ...]
@@ -38,15 +38,15 @@ class Sums:
         return equal_lights(adder, self.sums, self.counts)
 
     def random(self, adder: Adder) -> Iterator[Row]:
-        """Return the rows of coloured lights with falloff, in three orders; their sum is the smallest of the sums."""
+        """Return the rows of coloured lights with falloff, in three orders; they add up to the smallest sum."""
         return random_lights(adder, min(self.sums), self.counts, self.seed)
 
     def banding(self, adder: Adder) -> Iterator[Row]:
-        """Return the rows of banding in a lamp's falloff, for each peak."""
+        """Return the rows of banding in a lamp's falloff, one set for each peak."""
         return banding(adder, self.peaks)
 
     def chromaticity(self, adder: Adder) -> Iterator[Row]:
-        """Return the rows of a highlight's rebuilt colour; empty if the encoding lacks the channel for that."""
+        """Return the rows of a highlight's rebuilt colour; empty if the encoding has no channel for the highlight."""
         return chromaticity(adder) if adder.encoding.has_alpha else iter(())
 
 
@@ -67,7 +67,7 @@ CONDITIONS = (
 
 
 def check_light_twin(encoding: LightCodec) -> None:
-    """Trace a light encoding's Python version. Raises UsageError if tracing fails, in one line with the file; an
+    """Trace a light encoding's Python version. Raises UsageError, one line that names the file, if tracing fails; an
     encoding that exists only in shaders passes."""
     light = Vec4(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 4)
     try:
@@ -87,8 +87,8 @@ def _filled_row(experiment: str, encoding: LightCodec, device: Device | None, **
 
 
 def sum_rows(names: list[str], encoding: LightCodec, sums: Sums, device: Device | None) -> Iterator[Row]:
-    """Yield the rows of the named EXPERIMENTS; if the device cannot measure them, with figures of the model alone and
-    the reason in `skipped`."""
+    """Yield the rows of the named EXPERIMENTS; if the device cannot measure them, rows with figures of the model
+    alone and the reason in `skipped`."""
     try:
         with Adder(encoding, device) as adder:
             rounding = adder.rounding
@@ -103,7 +103,7 @@ def sum_rows(names: list[str], encoding: LightCodec, sums: Sums, device: Device 
 
 
 def sorted_rows(rows: list[Row]) -> list[Row]:
-    """Return the rows by experiment and then by CONDITIONS, whose values are in the order of their first row."""
+    """Return the rows by experiment and then by CONDITIONS, whose values keep the order in which they first occur."""
     places = {
         column: {value: i for i, value in enumerate(dict.fromkeys(row[column] for row in rows))}
         for column in CONDITIONS
@@ -113,7 +113,8 @@ def sorted_rows(rows: list[Row]) -> list[Row]:
 
 
 def banded(encoding: LightCodec, peak: float, device: Device | None) -> np.ndarray:
-    """Return a lamp's falloff as a light buffer stores it by the model, (width, 3); on the device if there is no model.
+    """Return a lamp's falloff as a light buffer stores it, (width, 3): by the model, or by the device if there is no
+    model.
 
     Raises:
         MissingError: there is neither a model nor a device.

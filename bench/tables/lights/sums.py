@@ -1,4 +1,4 @@
-"""The loss from adding up light: the model of each light buffer next to the OpenGL device's own result."""
+"""The error from adding up light: the model of each light buffer next to the OpenGL device's own result."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _sum_and_texels(encoding: LightCodec, lights: Vec4, count, blending: Blendin
 
 @dataclass(frozen=True)
 class Rounding:
-    """The way in which the device adds up, in words, and the share of pixels that a model of it reproduces."""
+    """The device's rounding when it adds up light, in words, and the share of pixels that a model reproduces."""
 
     name: str
     share: float
@@ -89,7 +89,7 @@ class Adder:
         return 4 if self.encoding.has_alpha else 3
 
     def model(self, lights: np.ndarray, count: int | None = None, blending: Blending = IDEAL) -> Sum | None:
-        """Return the sum of the first `count` lights by the model, of all lights by default; None for an encoding
+        """Return the sum of the first `count` lights by the model, by default of all lights; None for an encoding
         that exists only in shaders.
 
         Args:
@@ -107,7 +107,7 @@ class Adder:
 
     @cached_property
     def rounding(self) -> Rounding | None:
-        """The plainest way that best explains how the OpenGL device adds up; None without a device or a model."""
+        """The plainest rounding that best explains the OpenGL device's sums; None without a device or a model."""
         lights = (np.random.default_rng(0).uniform(0, 1, (64, PIXELS, 4)) ** 2 * 0.05).astype(np.float32)
         got = self.device(lights) if self._has_model else None
         if not got:
@@ -135,8 +135,8 @@ class Adder:
         return float(np.mean(np.all(apart <= allowed, axis=-1)))
 
     def _conversion_error(self) -> str:
-        """Return text on the largest error of a fixed-point number that the device stores, at best half a step: `,
-        0.50 steps off`; empty for other formats."""
+        """Return text on the largest error of the fixed-point numbers that the device stores, such as `, 0.50 steps
+        off`, which is the best possible; empty for other formats."""
         if self.encoding.storage.kind != "unorm":
             return ""
         lights = np.repeat(np.linspace(0, self.encoding.limit, 2**14, dtype=np.float32)[:, None], 4, axis=1)[None]
@@ -148,7 +148,7 @@ class Adder:
 
 
 def steps_apart(storage: Storage, texels: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the distances of texels in steps of the format, of shape (..., channels of the format)."""
+    """Return the distances between texels in steps of the format, of shape (..., channels of the format)."""
     if storage.kind == "unorm":
         return np.abs(steps_of(storage, texels) - steps_of(storage, other))
     apart = []
@@ -161,7 +161,7 @@ def steps_apart(storage: Storage, texels: np.ndarray, other: np.ndarray) -> np.n
 
 
 def steps_of(storage: Storage, texels: np.ndarray) -> np.ndarray:
-    """Return fixed-point texels in steps of the format, whole or not, of shape (..., channels)."""
+    """Return fixed-point texels in steps of the format, not necessarily whole, of shape (..., channels)."""
     curved = [np.asarray(to_srgb(jnp.asarray(texels[..., i], jnp.float32))) for i in range(storage.curved)]
     straight = [texels[..., i] for i in range(storage.curved, storage.channels)]
     scales = [storage.scale(channel) for channel in range(storage.channels)]
@@ -169,7 +169,7 @@ def steps_of(storage: Storage, texels: np.ndarray) -> np.ndarray:
 
 
 def has_light_twin(codec: LightCodec) -> bool:
-    """Whether a light encoding has a JAX version. Raises the errors of its Python code."""
+    """Whether a light encoding has a JAX version. Raises any error of its Python code."""
     try:
         jax.eval_shape(codec.encode, Vec4(*[jax.ShapeDtypeStruct((1,), jnp.float32)] * 4))
     except NoTwinError:
@@ -178,10 +178,10 @@ def has_light_twin(codec: LightCodec) -> bool:
 
 
 def worst_rounding(adder: Adder, light: np.ndarray) -> np.ndarray | None:
-    """Return the largest change of each channel when light is stored once; None without a model.
+    """Return the largest change in each channel when light is stored once; None without a model.
 
     Args:
-        light: array of shape (width, 4); light above the encoding's limit does not count."""
+        light: array of shape (width, 4); pixels above the encoding's limit do not count."""
     below = np.where(np.max(light, axis=1, keepdims=True) <= adder.encoding.limit, light, 0.0).astype(np.float32)
     # A light that multiplies is stored beside none.
     stored = adder.model(below[None])
@@ -200,7 +200,7 @@ def _channel_labels(by_channel: list[tuple[Any, ...]]) -> dict[tuple[Any, ...], 
 
 
 def equal_lights(adder: Adder, sums: Sequence[float], counts: Sequence[int]) -> Iterator[Row]:
-    """Yield rows with the result of blending N equal lights of sum S one by one, its error and the error's bound."""
+    """Yield rows for blending N equal lights with sum S one by one: the result, its error and the error's bound."""
     for total in sums:
         ramp = np.repeat(np.linspace(0, min(total, adder.encoding.limit), GRADIENT)[:, None], 4, axis=1)
         half_step = worst_rounding(adder, ramp)
@@ -224,16 +224,17 @@ def _off(summed: float | None, total: float) -> float | None:
 
 
 def falloff(distance: np.ndarray, radius: float) -> np.ndarray:
-    """Return a lamp's share of light at a distance, with the formula of `light.glsl`: 1 at 0, and 0 at the radius."""
+    """Return a lamp's share of light at a distance, by the formula in `light.glsl`: 1 at 0, and 0 at the radius."""
     window = np.maximum(1 - (distance / radius) ** 4, 0)
     return window**2 / (distance**2 + 1)
 
 
 def coloured_lights(count: int, total: float, seed: int) -> np.ndarray:
-    """Return random lamps over a field of pixels, (count, PIXELS, 4); the brightest pixel's largest channel sums to
-    `total`.
+    """Return the light of random lamps over a field of pixels, (count, PIXELS, 4), scaled so that the largest sum in
+    any channel and pixel is `total`.
 
-    Three channels are diffuse light, the fourth is a highlight's luminance; brightness spreads over a factor of 30.
+    Three channels are diffuse light, the fourth is a highlight's luminance; brightness varies by a factor of up to
+    30.
     """
     rng = np.random.default_rng(seed)
     pixels, lamps = rng.uniform(-3, 3, (PIXELS, 2)), rng.uniform(-3, 3, (count, 2))
@@ -246,13 +247,13 @@ def coloured_lights(count: int, total: float, seed: int) -> np.ndarray:
 
 
 def ordered(lights: np.ndarray, order: str) -> np.ndarray:
-    """Return lights in one of ORDERS, the same order for every pixel."""
+    """Return lights sorted in one of ORDERS, the same for every pixel."""
     by_brightness = np.argsort(lights.sum(axis=(1, 2)), kind="stable")
     return lights[{ORDERS[0]: np.arange(len(lights)), ORDERS[1]: by_brightness, ORDERS[2]: by_brightness[::-1]}[order]]
 
 
 def random_lights(adder: Adder, total: float, counts: Sequence[int], seed: int) -> Iterator[Row]:
-    """Yield rows with the errors, over pixels and channels, of coloured lights in three orders, and their bound."""
+    """Yield rows with the errors from summing coloured lights in three orders, and the bound on the errors."""
     for count in counts:
         lights = coloured_lights(count, total, seed)
         exact = lights.sum(axis=0, dtype=np.float64)[:, : adder.channels]
@@ -270,7 +271,7 @@ def random_lights(adder: Adder, total: float, counts: Sequence[int], seed: int) 
 
 
 def _partial_sums(light: np.ndarray) -> np.ndarray:
-    """Return partial sums to the brightest pixel of each channel, (GRADIENT, 4), of light of shape (width, 4)."""
+    """Return ramps from 0 to the brightest pixel of each channel, (GRADIENT, 4), for light of shape (width, 4)."""
     shares = np.linspace(0, 1, GRADIENT // 4)[:, None, None]
     return (shares * light[light.argmax(axis=0)]).reshape(-1, 4)
 
@@ -282,7 +283,7 @@ def gradient(peak: float) -> np.ndarray:
 
 
 def banding(adder: Adder, peaks: Sequence[float]) -> Iterator[Row]:
-    """Yield rows with the levels left of a lamp's falloff, and the largest step, in light and as displayed."""
+    """Yield rows with the levels that remain of a lamp's falloff, and the largest step, in light and as displayed."""
     for peak in peaks:
         light = gradient(peak)
         by_channel: list[tuple[Any, ...]] = []
@@ -306,8 +307,8 @@ def _band_figures(light: np.ndarray) -> tuple[int, float, float]:
 
 
 def chromaticity(adder: Adder) -> Iterator[Row]:
-    """Yield rows with the error of a highlight's colour that is rebuilt from the diffuse light's, and how many times
-    larger it is than the error of the stored value."""
+    """Yield rows with the error of a highlight's colour, which is rebuilt from the colour of the diffuse light, and
+    the ratio of this error to the error of the stored value."""
     for name, colour in COLOURS.items():
         lights = np.zeros((GRADIENT, 4), np.float32)
         lights[:, :3] = colour

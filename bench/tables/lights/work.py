@@ -39,7 +39,7 @@ def experiments(options: LightsOptions) -> list[str]:
 
 
 def encodings(options: LightsOptions) -> list[LightCodec]:
-    """Return the requested light buffers, checked. Raises UsageError for an unknown name or faulty Python code."""
+    """Return the requested light buffers. Raises UsageError for an unknown name or faulty Python code."""
     chosen = light_codecs_named(options.light_buffer)
     for encoding in chosen:
         measure.check_light_twin(encoding)
@@ -47,7 +47,7 @@ def encodings(options: LightsOptions) -> list[LightCodec]:
 
 
 def added(options: LightsOptions) -> measure.Sums:
-    """Return the sums, counts, peaks and seed that the options name. Raises UsageError if they are out of range."""
+    """Return the sums, counts, peaks and seed from the options. Raises UsageError if a value is out of range."""
     check_seed(options.seed)
     return measure.Sums(
         checked_numbers("--sum", options.sums, float, 1e-6, MOST_LIGHT),
@@ -58,7 +58,7 @@ def added(options: LightsOptions) -> measure.Sums:
 
 
 def _check(outputs: LightsOutputs, names: Sequence[str]) -> None:
-    """Raise UsageError for an image folder that cannot be written to, or output that needs another experiment."""
+    """Raise UsageError if the image folder cannot be written to, or an output requires another experiment."""
     if outputs.plot and not PLOTTED & set(names):
         raise UsageError("--plot: plots only the experiments equal and random; add one of them to --experiment")
     if outputs.images:
@@ -103,8 +103,8 @@ def _finish(rows: Sequence[Row]) -> list[Row]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a sentence with the errors of sums of the most random lights, in buffers that blend and in those that are
-    read first; nothing without such rows."""
+    """Yield a sentence on the errors of summing the most random lights, for buffers that blend and for buffers that
+    are read first; nothing without such rows."""
     sums = _random(rows)
     most = max((row["lights"] for row in sums), default=0)
     errors: dict[str, list[str]] = {}
@@ -120,14 +120,14 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _random(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of random lights with the smallest sum, in the order in which the lights were drawn."""
+    """Return the rows on random lights with the smallest sum, with the lights added up in the order as drawn."""
     drawn = [row for row in rows if row["experiment"] == "random" and row["order"] == ORDERS[0] and _errors(row)]
     darkest = min((row["sum"] for row in drawn), default=None)
     return [row for row in drawn if row["sum"] == darkest]
 
 
 def _errors(row: Row) -> list[float]:
-    """Return the known errors of the model and of the device, the smaller error first."""
+    """Return the known RMS errors of the model and of the device, in ascending order."""
     return sorted(row[name] for name in ("model_rms", "gl_rms") if row[name] is not None)
 
 

@@ -26,8 +26,8 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def _chart(index: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
-    """Return the chart of an image and a decoder: a line of angles for each encoding and format, in the order of the
-    rows, the first on top."""
+    """Return the chart for an image and a decoder: a line of angles for each encoding and format, in the order of the
+    rows from the top."""
     lines = [
         {"codec": f"{row['encoding']} {row['block']}", "line": _line_name(row)}
         | {column: max(row[column], LEAST_DEG) for column in COLUMNS}
@@ -55,7 +55,7 @@ def _chart(index: int, group: tuple[str, str], rows: Sequence[Row]) -> Chart:
 
 
 def _finding_sentence(name: str, rows: Sequence[Row]) -> str:
-    """Return the encoding and format with the smallest mean angle for each number of bits."""
+    """Return a sentence that names the encoding and format with the smallest mean angle for each number of bits."""
     best: dict[float, Row] = {}
     for row in sorted(rows, key=lambda row: (row["bits_per_texel"], row["angle_mean_deg"])):
         best.setdefault(row["bits_per_texel"], row)

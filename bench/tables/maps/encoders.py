@@ -1,4 +1,4 @@
-"""Encoders of blocks: packages, which are imported when they are used."""
+"""Texture encoders: packages that compress blocks, imported on first use."""
 
 from __future__ import annotations
 
@@ -40,8 +40,9 @@ class Encoder:
         package: name of the package in pip; empty if there is no package.
         modules: modules to import.
         said: effort of the compression, as shown in a row.
-        make: (the modules, texels) -> blocks, row by row.
-        undo: (the modules, blocks, size) -> texels, float32 of shape (height, width, 4); None if nothing needs it.
+        make: returns blocks, row by row, given the modules and the texels.
+        undo: returns texels, float32 of shape (height, width, 4), given the modules, the blocks and the size; None if
+            not needed.
     """
 
     package: str
@@ -62,7 +63,7 @@ class Encoder:
 
     @property
     def missing(self) -> str:
-        """Why the encoder cannot be used, and how to install its package; empty if it can be used."""
+        """The reason why the encoder cannot be used, and how to install its package; empty if it can be used."""
         try:
             self._modules()
         except ImportError as error:
@@ -74,8 +75,8 @@ class Encoder:
         return self.make(self._found_modules(), given)
 
     def decoded(self, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
-        """Return the texels of blocks, float32 of shape (height, width, 4) in [0, 1]. Raises MissingError if the
-        package is not installed."""
+        """Return the texels of compressed blocks, float32 of shape (height, width, 4) in [0, 1]. Raises MissingError
+        if the package is not installed."""
         assert self.undo
         return self.undo(self._found_modules(), blocks, size)
 
@@ -134,8 +135,8 @@ def _astc_bytes(modules: Sequence[Any], given: Texels) -> bytes:
 
 
 def _astc_texels(modules: Sequence[Any], blocks: bytes, size: tuple[int, int]) -> np.ndarray:
-    """Return the texels of ASTC blocks, float32 of shape (height, width, 4), decoded in the precision of the
-    specification, 16-bit floats."""
+    """Return the texels of ASTC blocks, float32 of shape (height, width, 4), decoded with the precision that the
+    specification requires, 16-bit floats."""
     (astc,) = modules
     image = astc.ASTCImage(astc.ASTCType.F32, *size)
     _astc_context(astc, "rgba").decompress(blocks, image, astc.ASTCSwizzle())

@@ -22,12 +22,12 @@ CHANNELS, ONE = "rgba", 255
 
 @dataclass(frozen=True)
 class Swizzle:
-    """The channels of a texel that hold the numbers of a code.
+    """The layout of a code's numbers in the channels of a texel.
 
     Attributes:
         name: key in the catalogue.
         laid: content of each channel: the first, second or third number as `r`, `g` and `b`, or 0 or 1.
-        read: channel that each number is read from.
+        read: the channel from which each number is read.
     """
 
     name: str
@@ -35,13 +35,13 @@ class Swizzle:
     read: str
 
     def texels(self, numbers: np.ndarray) -> np.ndarray:
-        """Return numbers, uint8 of shape (height, width, components), as texels of shape (height, width, 4)."""
+        """Return texels of shape (height, width, 4) that hold numbers, uint8 of shape (height, width, components)."""
         full = np.full(numbers.shape[:2], ONE, np.uint8)
         planes = {"0": 0 * full, "1": full, **{CHANNELS[i]: numbers[..., i] for i in range(numbers.shape[-1])}}
         return np.ascontiguousarray(np.stack([planes[letter] for letter in self.laid], axis=-1))
 
     def numbers(self, texels: np.ndarray) -> np.ndarray:
-        """Return the channels of texels that hold the numbers, of shape (height, width, components)."""
+        """Return the numbers in texels, of shape (height, width, components)."""
         return texels[..., [CHANNELS.index(letter) for letter in self.read]]
 
 
@@ -57,17 +57,17 @@ SWIZZLES: Mapping[str, Swizzle] = MappingProxyType(
 
 @dataclass(frozen=True)
 class BlockFormat:
-    """A format of textures.
+    """A texture format.
 
     Attributes:
         name: the catalogue's key.
-        title: the name that people see.
+        title: display name.
         channels: number of channels.
         encoder: encoder from images to blocks.
         decode: function from blocks, uint8 of shape (count, 16), to texels in [0, 1], (count, 16, channels), as
             specified; None if the encoder's package decodes.
         internal_format: the OpenGL enum; 0 if the format is uncompressed.
-        swizzles: names of the swizzles that are usual for it.
+        swizzles: names of the swizzles that are usual for the format.
     """
 
     name: str
@@ -88,7 +88,7 @@ class BlockFormat:
         return 8 if self.is_compressed else 16 if components == 2 else 32
 
     def by_specification(self, blocks: bytes, size: tuple[int, int]) -> np.ndarray:
-        """Return the texels of blocks that are stored row by row, decoded as specified: float32 of shape (height,
+        """Return the texels of blocks in row order, decoded according to the specification: float32 of shape (height,
         width, channels) in [0, 1].
 
         Args:
@@ -104,8 +104,8 @@ class BlockFormat:
 
 
 def _bc_texels(number: int, blocks: np.ndarray) -> np.ndarray:
-    """Return the texels of BC3 or BC7 blocks, float32 of shape (blocks, 16, 4), as Pillow decodes them: BC3's
-    interpolated ends in whole numbers."""
+    """Return the texels of BC3 or BC7 blocks, float32 of shape (blocks, 16, 4), as Pillow decodes them: it
+    interpolates BC3's end points in integers."""
     image = Image.frombytes("RGBA", (SIDE, SIDE * len(blocks)), blocks.tobytes(), "bcn", (number,))
     return np.asarray(image, np.float32).reshape(-1, TEXELS, len(CHANNELS)) / np.float32(ONE)
 
@@ -123,11 +123,11 @@ FORMATS: Mapping[str, BlockFormat] = MappingProxyType(
 
 
 def swizzles_of(block_format: BlockFormat, components: int, asked: list[Swizzle]) -> list[Swizzle]:
-    """Return the swizzles with which to measure an encoding; empty if the format has too few channels.
+    """Return the swizzles with which to measure an encoding; empty if none fits its number of components.
 
     Args:
         components: number of numbers in a code.
-        asked: the requested swizzles; empty for those that are usual for the format.
+        asked: the requested swizzles; empty for the usual swizzles of the format.
     """
     if block_format.channels < components:
         return []

@@ -1,4 +1,4 @@
-"""The maps table: the error of block-compressed normal maps."""
+"""Measurement of the maps table: the error of block-compressed normal maps."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ MEGATEXEL = 2**20
 
 @dataclass(frozen=True)
 class MapCase:
-    """One row to measure; `decoder` is a key of `table.DECODERS`."""
+    """A row of the maps table to measure; `decoder` is a key of `table.DECODERS`."""
 
     encoding: Encoding
     block: BlockFormat
@@ -54,18 +54,18 @@ class MapCase:
 
     @property
     def codec(self) -> Codec:
-        """The encoding in `rgba8`: encoders take 8 bits per channel."""
+        """The encoding in `rgba8`, because encoders take 8 bits per channel."""
         return Codec(self.encoding, STORAGES["rgba8"])
 
 
 @dataclass(frozen=True)
 class Band:
-    """Some rows of an image, padded to whole blocks.
+    """A band of an image's rows, padded to whole blocks.
 
     Attributes:
         n, view: float32 of shape (height, width, 3).
         real: height and width without the padding.
-        covered: which real texels have a surface, bool of that shape.
+        covered: mask of the real texels that have a surface, bool of shape `real`.
     """
 
     n: np.ndarray
@@ -76,7 +76,7 @@ class Band:
 
 @dataclass
 class Clock:
-    """Totals over the bands of an image: seconds of encoding, texels, and squared errors of the code's numbers."""
+    """Totals over the bands of an image: encoding seconds, texels and squared errors of the codes' numbers."""
 
     seconds: float = 0.0
     texels: int = 0
@@ -85,7 +85,7 @@ class Clock:
 
 
 def bands(normals: NormalSet) -> Iterator[Band]:
-    """Yield an image in bands of whole blocks, of at most CHUNK texels unless a single row of blocks has more."""
+    """Yield the bands of an image, in whole blocks, with at most CHUNK texels unless one row of blocks has more."""
     assert normals.shape
     height, width = normals.shape
     n, view, covered = planes_of(normals)
@@ -124,12 +124,12 @@ def _vectors(pixels: np.ndarray) -> list[jax.Array]:
 
 
 def _pixels(planes: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """Return planes as pixels again, of shape (height, width, planes)."""
+    """Return planes as pixels, of shape (height, width, planes): the inverse of `_vectors`."""
     return np.stack([np.asarray(p).ravel()[: math.prod(shape)].reshape(shape) for p in planes], axis=-1)
 
 
 def code_texels(codec: Codec, band: Band) -> np.ndarray:
-    """Return the code of each normal in 8 bits, uint8 of shape (height, width, components): c/2 + 1/2 of 255."""
+    """Return each normal's code in 8 bits, uint8 of shape (height, width, components): 255 (c / 2 + 1/2), rounded."""
     code = _encoder(codec)(*(Vec3(*_vectors(a)) for a in (band.n, band.view)))
     numbers = _pixels(code, band.n.shape[:2])
     return np.rint((numbers * 0.5 + 0.5) * ONE).astype(np.uint8)
@@ -158,7 +158,7 @@ DECODERS: Mapping[str, Callable[[MapCase, bytes, tuple[int, int]], np.ndarray]] 
 
 
 def through(case: MapCase, band: Band, clock: Clock) -> np.ndarray:
-    """Return the normals of a band after encoding, compression and decoding: float32 of shape (*band.real, 3). Add
+    """Return a band's normals after encoding, compression and decoding, float32 of shape (*band.real, 3), and add the
     times and errors to the clock."""
     given = code_texels(case.codec, band)
     height, width = given.shape[:2]
@@ -176,7 +176,7 @@ def through(case: MapCase, band: Band, clock: Clock) -> np.ndarray:
 
 
 def measure(case: MapCase) -> list[Row]:
-    """Return a list of one row; a row that cannot be measured here has its reason in `skipped` and no figures."""
+    """Return a list of one row; if it cannot be measured here, it has the reason in `skipped` and no figures."""
     row, clock, whole = _case_columns(case), Clock(), case.normal_set
 
     def loads() -> Iterator[Callable[[], Decoded]]:

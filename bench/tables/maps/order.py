@@ -1,4 +1,4 @@
-"""The order of the rows of compressed normal maps."""
+"""The order of the rows on compressed normal maps."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..table import Row
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows by set and decoder, smallest RMS angle first; rows without figures come last."""
+    """Return the rows by set and decoder, then by RMS angle in ascending order; rows without figures come last."""
     groups = list(dict.fromkeys(group_of(row) for row in rows))
 
     def place(row: Row) -> tuple[int, bool, float]:
@@ -19,5 +19,5 @@ def in_order(rows: Sequence[Row]) -> list[Row]:
 
 
 def group_of(row: Row) -> tuple[str, str]:
-    """Return the set of normals and the decoder of a row."""
+    """Return the set of normals and the decoder of a row, by which rows are grouped."""
     return row["normals"], row["decoder"]

@@ -16,14 +16,14 @@ KINDS = ("decoded", "error")
 
 
 def stem(case: MapCase) -> str:
-    """Return the part of a case's file names that comes before the kind of image."""
+    """Return the start of the names of a case's picture files, without the kind of picture."""
     parts = (case.normal_set.name, case.encoding.name, case.block.name, case.swizzle.name, case.decoder)
     return "-".join(parts).replace("/", "_in_")
 
 
 def write(cases: Iterable[MapCase], folder: Path) -> None:
-    """Write images of the decoded normals and of their error, times `pictures.GAIN`, for each case that can be
-    measured here. Raises OSError."""
+    """Write pictures of the decoded normals and of their error, multiplied by `pictures.GAIN`, for each case that can
+    be measured here. Raises OSError."""
     for case in cases:
         try:
             images = _case_pictures(case)

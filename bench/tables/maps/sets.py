@@ -1,4 +1,4 @@
-"""Two tangent-space normal maps that are always there: one smooth, one as rough as can be."""
+"""Two built-in tangent-space normal maps: a smooth map and a map of noise."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SEED = 0
 
 
 def _bumps() -> np.ndarray:
-    """Return the slopes along x and y of a sum of waves, of shape (SIZE, SIZE, 2), as a map that may be repeated."""
+    """Return the slopes along x and y of a sum of waves, of shape (SIZE, SIZE, 2); the map can be tiled."""
     random = np.random.default_rng(SEED)
     periods = random.integers(-MOST_PERIODS, MOST_PERIODS + 1, (WAVES, 2))
     periods = periods[np.any(periods != 0, axis=1)]
@@ -32,7 +32,7 @@ def _bumps() -> np.ndarray:
 
 
 def _grain() -> np.ndarray:
-    """Return independent, normally distributed slopes for every texel, of shape (SIZE, SIZE, 2)."""
+    """Return normally distributed slopes, independent for every texel, of shape (SIZE, SIZE, 2)."""
     return np.random.default_rng(SEED).normal(size=(SIZE, SIZE, 2))
 
 
@@ -46,13 +46,13 @@ def _normal_map(name: str, title: str, slopes: np.ndarray) -> NormalSet:
 
 @cache
 def bumps() -> NormalSet:
-    """Return a smooth normal map, made of waves, as a set of normals."""
+    """Return a smooth normal map made of waves."""
     return _normal_map("bumps", "a smooth normal map", _bumps())
 
 
 @cache
 def grain() -> NormalSet:
-    """Return a normal map of noise, different in every texel, as a set of normals."""
+    """Return a normal map of noise, independent for every texel."""
     return _normal_map("grain", "a normal map of noise", _grain())
 
 

@@ -33,7 +33,7 @@ def cases(options: MapsOptions) -> list[MapCase]:
     """Return one case for each row; combinations that do not fit are named on standard error.
 
     Raises:
-        UsageError: unknown names, a file that cannot be read, no image, or nothing that fits.
+        UsageError: unknown names, a file that cannot be read, no image, or no combination that fits.
         MissingError: a requested encoder is not installed, or there is no OpenGL device to decode with.
     """
     blocks, asked = _blocks(options.block), choose("swizzle", options.swizzle, SWIZZLES) if options.swizzle else []
@@ -58,8 +58,9 @@ def cases(options: MapsOptions) -> list[MapCase]:
 
 
 def _blocks(names: Names) -> list[BlockFormat]:
-    """Return the requested formats. With "all", formats whose encoder is not installed are left out and named; if
-    they are requested by name, or nothing else is left, MissingError is raised."""
+    """Return the requested formats. With "all", formats whose encoder is not installed are left out and named on
+    standard error. Raises MissingError if such a format is requested by name, or no other compressed format is
+    left."""
     chosen = choose("block format", names, FORMATS)
     missing = {block.name: why for block in chosen if (why := block.encoder.missing)}
     left = [block for block in chosen if block.name not in missing]
@@ -97,7 +98,7 @@ def _swizzles(encoding: Encoding, block: BlockFormat, asked: list[Any], complain
 
 
 def _images(options: MapsOptions, needs_rays: bool) -> list[NormalSet]:
-    """Return the sets that --normals names. Raises UsageError if a set is not an image."""
+    """Return the sets of normals that --normals names. Raises UsageError if a set is not an image."""
     words = tuple(
         Given(word, MAPS[word]()) if isinstance(word, str) and word in MAPS else word for word in options.normals
     )
@@ -122,7 +123,7 @@ def _key(case: MapCase) -> Row:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a sentence for each set of normals with the best encoding of each format, the most accurate first."""
+    """Yield a sentence for each set of normals with the best encoding in each format, the most accurate first."""
     known = having(rows, "angle_rms_deg")
     for normals in dict.fromkeys(row["normals"] for row in known):
         part = [row for row in known if row["normals"] == normals]
@@ -150,7 +151,7 @@ def _write(done: Measured, _: Any) -> None:
 
 
 def _missing() -> str:
-    """Return why a run leaves the table out, if none of the encoders is installed; otherwise empty."""
+    """Return the reason why a run leaves the table out if no encoder is installed; empty otherwise."""
     compressed = [block for block in FORMATS.values() if block.is_compressed]
     if all(block.encoder.missing for block in compressed):
         return "compressed normal maps require encoders; run: pip install normalbench[maps]"

@@ -1,1 +1,1 @@
-"""The effect on codes of mixing texels: filtering, mip levels, resolve and blending."""
+"""The effect of mixing texels on stored codes: filtering, mip levels, resolving and blending."""

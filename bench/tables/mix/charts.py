@@ -15,11 +15,12 @@ LEAST, MOST, BRIGHT = 0.1, 180.0, 10.0
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield a chart of mixing with one cell for each codec and operation, coloured by the largest error, with its
-    garbage as text.
+    """Yield a chart of mixing with a cell for each codec and operation, coloured by the largest error and labelled
+    with the share of garbage.
 
     Args:
-        rows: rows of the mix table; the worst of those that decide are drawn, or of all rows if none decides.
+        rows: rows of the mix table. The worst row of each cell is drawn: of the rows that decide verdicts, if any,
+            otherwise of all rows.
     """
     cells = _cells(_deciding_rows(rows))
     tips = (("codec", "codec"), ("operation", "operation"), ("angle", "largest error (degrees)"))
@@ -44,7 +45,7 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def _cells(rows: Sequence[Row]) -> list[Row]:
-    """Return one cell for each codec and operation, with the largest error of a mix and its garbage as text; the
+    """Return a cell for each row, a codec and an operation, with the largest error and the share of garbage as text;
     codecs with the most garbage come last."""
     cells: list[Row] = [
         {
@@ -77,7 +78,7 @@ def _garbage_text(percent: float) -> str:
 
 
 def _finding_sentence(cells: Sequence[Row]) -> str:
-    """Return a sentence: how many codecs give no garbage, and which codec gives the most, with the operation."""
+    """Return a sentence on how many codecs give no garbage, and which codec gives the most, with the operation."""
     codecs = distinct(cells, "codec")
     bad = {cell["codec"] for cell in cells if cell["garbage"]}
     worst = max(cells, key=lambda cell: (cell["garbage"], cell["angle"]))

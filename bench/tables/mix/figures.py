@@ -1,4 +1,4 @@
-"""The figures of a row: the error of mixed normals, and the share of garbage."""
+"""The figures in a row: the error of mixed normals, and the share of garbage."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .table import GARBAGE_DEG, MOST_ALONE_DEG
 
 
 class Figures:
-    """The results of mixes, over those that an encoding can represent.
+    """The results of mixing, over the mixes that an encoding can represent.
 
     Args:
         mixes: the mixes.
         domain: domain of the encoding.
-        power: specular power that Toksvig's formula starts from.
+        power: specular power to which Toksvig's formula is applied.
         texels: decoded texels of the patches, (TEXELS, patches, 3).
         mixed: result of each operation, decoded, not renormalised, (patches, 3).
     """
@@ -38,7 +38,7 @@ class Figures:
         return self._held & self._mixes.held_by(operation, self._domain)
 
     def of(self, operation: str) -> Row:
-        """Return the figures of an operation; only the reason, as `skipped`, if no mix can be represented."""
+        """Return the figures for an operation; if no mix can be represented, only the reason in `skipped`."""
         held = self._held_mask(operation)
         if not held.any():
             return {"skipped": outside(self._mixes.patches.name, self._domain)}
@@ -66,7 +66,8 @@ class Figures:
         return row | (self._power_columns(operation, held, right.mean[held], mixed) if operation in AVERAGES else {})
 
     def _power_columns(self, operation: str, held: np.ndarray, mean: np.ndarray, mixed: np.ndarray) -> Row:
-        """Return the errors in percent of the specular power that Toksvig's formula gives."""
+        """Return the errors of the specular power from Toksvig's formula, in percent: after mixing codes, and after
+        mixing decoded texels."""
         texels = np.nan_to_num(self._texels.astype(np.float64))
         decoded = MEANS[operation](texels, self._mixes)[held]
         exact, mixed_power, after = (toksvig_power(_lengths(v), self._power) for v in (mean, mixed, decoded))
@@ -77,13 +78,14 @@ class Figures:
 
 
 def excused(operation: str, alone_deg: float) -> float:
-    """Return the part of the largest error of the texels alone that excuses a result: all of it if each texel is
-    decoded first, which adds no error; otherwise at most that of a good encoding."""
+    """Return the part of the unmixed texels' largest error that excuses a result. All of it is excused if the
+    operation mixes decoded normals; otherwise at most the error of a good encoding."""
     return alone_deg if operation in BY_NORMALS else min(alone_deg, MOST_ALONE_DEG)
 
 
 def _worst_columns(texels: np.ndarray, right: np.ndarray, mixed: np.ndarray) -> Row:
-    """Return the two texels, of (count, 3), that are farthest apart, the right normal and the result, as text."""
+    """Return the two texels that are farthest apart among texels of shape (count, 3), the right normal and the
+    result, as text columns."""
     first, other = np.unravel_index(np.argmin(texels @ texels.T), (len(texels), len(texels)))
     named = {"worst_first": texels[min(first, other)], "worst_second": texels[max(first, other)]}
     named |= {"worst_right": right, "worst_result": mixed}
@@ -95,19 +97,20 @@ def _lengths(v: np.ndarray) -> np.ndarray:
 
 
 def outside(name: str, domain: str) -> str:
-    """Return the reason, in words, why a set has nothing to mix for an encoding: every patch leaves the domain."""
+    """Return the reason why an encoding cannot be measured on a set: every patch leaves the encoding's domain."""
     return f"no patch of {name} is entirely in the domain of the encoding ({domain})"
 
 
 def error_of_percent(which: np.ndarray) -> float:
-    """Return the standard error of a share, in percent, by the rule of succession: not 0 even if the count is 0.
+    """Return the standard error of the share of true values, in percent, by the rule of succession: it is not 0 even
+    if no value is true.
 
-    For k of n it is the standard error of a share of (k + 1) / (n + 2), whose uncertainty is a beta distribution's.
+    For k of n values, this is the standard error of the share (k + 1) / (n + 2) under a beta distribution.
     """
     count, share = which.size, (np.count_nonzero(which) + 1) / (which.size + 2)
     return 100.0 * float(np.sqrt(share * (1 - share) / (count + 3)))
 
 
 def percent(which: np.ndarray) -> float:
-    """Return the percentage of true values, 0 to 100."""
+    """Return the percentage of true values in an array."""
     return 100.0 * float(np.mean(which))

@@ -1,4 +1,4 @@
-"""Whether a codec can be filtered, blended or resolved, for who has no table of mixes: a few thousand of them."""
+"""Whether a codec can be filtered, blended or resolved, judged from a few thousand mixes without the mix table."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _usual_mixes(seed: int) -> tuple[Mixes, ...]:
 
 
 def _mixes_of_set(normals: NormalSet) -> tuple[Mixes, ...]:
-    """Return the mixes of an image's own neighbours; for any other set the usual mixes with its seed."""
+    """Return the mixes of neighbouring pixels if the set is an image, otherwise the usual mixes with its seed."""
     if not normals.shape:
         return _usual_mixes(normals.seed)
     return tuple(mixes_of(patches, SAMPLES) for patches in patches_of(normals, ANGLES, COUNT, normals.seed))
@@ -57,9 +57,10 @@ class Judgement:
     """The effect of mixing on a codec.
 
     Attributes:
-        inside, across: by use, why the codec cannot be used inside a surface and across an edge; empty if it can.
-        mean_deg, max_deg: errors of mixes inside a surface: the mean of all operations at all distances, and the
-            largest; None if nothing was measured.
+        inside, across: reasons why the codec cannot be used inside a surface and across an edge, by use; empty if it
+            can.
+        mean_deg, max_deg: mean over all operations and distances, and maximum, of the errors of mixes inside a
+            surface; None if nothing was measured.
         count: number of errors in the mean.
     """
 
@@ -71,7 +72,7 @@ class Judgement:
 
 
 def judgement(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> Judgement:
-    """Return the effect of several uses together on a codec; the arguments are those of `judgements`."""
+    """Return the combined effect of several uses on a codec; the arguments are those of `judgements`."""
     parts = judgements(codec, uses, normals, domain).values()
     count = sum(part.count for part in parts)
     inside, across = ({use: why for part in parts for use, why in of(part).items()} for of in (_INSIDE, _ACROSS))
@@ -85,14 +86,14 @@ def judgement(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str
 
 
 def judgements(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> dict[str, Judgement]:
-    """Return the effect of each of several uses on a codec.
+    """Return the effect of each use on a codec, from recorded results if possible.
 
     Args:
-        uses: some of table.USES.
-        normals: an image whose neighbours are mixed; of any other set only the seed counts.
+        uses: keys of table.USES.
+        normals: an image whose neighbouring pixels are mixed; for any other set only the seed matters.
         domain: domain of the normals that are mixed: "sphere", "hemisphere" or "view".
 
-    A codec without a twin in JAX is measured in GLSL; a codec that cannot be measured has no fault.
+    A codec without a twin in JAX is measured in GLSL; a codec that cannot be measured has no faults.
     """
     is_usual = not normals.shape and not normals.seed and domain == codec.encoding.domain
     if is_usual and (known := RECORDED.find(codec.name, codec)):
@@ -101,7 +102,7 @@ def judgements(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: st
 
 
 def judged_now(codec: Codec, uses: Sequence[str], normals: NormalSet, domain: str) -> dict[str, Judgement]:
-    """Measure the effects that `judgements` returns, without recorded results."""
+    """Return what `judgements` returns, always measured and never from recorded results."""
     rows = _measured_rows(codec, uses, normals, domain)
     return {use: _judged(codec, [use], [row for row in rows if row["operation"] in USES[use]]) for use in uses}
 
@@ -124,7 +125,7 @@ def _judged(codec: Codec, uses: Sequence[str], rows: Sequence[Row]) -> Judgement
 
 
 def _is_of_codes(use: str) -> bool:
-    """Whether a use mixes stored codes, and not the normals that they decode to."""
+    """Whether a use mixes stored codes instead of decoded normals."""
     return any(operation in BY_MODEL for operation in USES[use])
 
 

@@ -1,4 +1,4 @@
-"""Mixes of decoded normals, which are the right results of every operation if the normals are exact; in NumPy."""
+"""Mixing of decoded normals in NumPy; with exact normals, it gives the correct result of every operation."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ def _blended_normals(texels: np.ndarray, mixes: Mixes) -> np.ndarray:
 
 
 def _bilinear_weights(shares: np.ndarray) -> np.ndarray:
-    """Return the bilinear weights of the first four texels, of shape (4, patches, 1)."""
+    """Return the bilinear weights of a patch's first 2 x 2 texels, of shape (4, patches, 1)."""
     x, y = shares.T
     return np.stack([(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y])[..., None]
 
 
 def _upsampled_normals(texels: np.ndarray, mixes: Mixes) -> np.ndarray:
-    """Return the mean normals, (patches, 3), weighed as gbuffer/glsl/filter.glsl weighs light: bilinear, only over
-    texels whose normal is close to that of the texel with the largest weight."""
+    """Return the mean normals, (patches, 3), with the weights that gbuffer/glsl/filter.glsl applies to light:
+    bilinear, over texels whose normal is close to the normal of the texel with the largest weight."""
     quad, weights = unit_rows(texels[QUAD, :]), _bilinear_weights(mixes.quarters)
     nearest = np.take_along_axis(quad, weights.argmax(axis=0)[None], axis=0)
     weights = weights * (np.sum(quad * nearest, axis=-1, keepdims=True) > CONSTANTS["FILTER_COSINE"])
@@ -81,10 +81,11 @@ class Right:
     """The correct result of an operation, whatever the encoding.
 
     Attributes:
-        mean: mix of exact normals, not renormalised, (patches, 3); `normals` is the same at length 1.
+        mean: mix of exact normals, not renormalised, (patches, 3).
+        normals: `mean` renormalised to length 1.
         used: exact normals that are mixed, (texels, patches, 3).
-        reach_deg: angle between the correct normal and the farthest of those that are mixed, (patches,).
-        geometry_deg: error of exact normals, (patches,).
+        reach_deg: largest angle between the correct normal and a mixed normal, (patches,).
+        geometry_deg: error of the operation on exact normals, (patches,).
     """
 
     mean: np.ndarray
@@ -96,7 +97,7 @@ class Right:
 
 @lru_cache(maxsize=128)
 def right_of(mixes: Mixes, operation: str) -> Right:
-    """Return the correct result of an operation on mixes; cached for the next codec."""
+    """Return the correct result of an operation on mixes. Cached, because all codecs share it."""
     texels = mixes.patches.normals
     mean = MEANS[operation](texels, mixes)
     normals, straight = unit_rows(mean), STRAIGHT.get(operation, MEANS[operation])(texels, mixes)

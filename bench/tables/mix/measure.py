@@ -35,12 +35,12 @@ SAME = 2.0**-20
 
 @dataclass(frozen=True)
 class MixCase:
-    """A codec on one set of patches by one backend, with a row for each operation.
+    """A codec on one set of patches by one backend, measured in a row for each operation.
 
     Attributes:
         codec, mixes, backend, operations: what is measured.
         power: the specular power to which Toksvig's formula is applied.
-        domain: the domain of the normals to mix, if it is smaller than that of the encoding.
+        domain: the domain of the normals to mix, if smaller than the encoding's domain; otherwise empty.
         worst_case: whether to search for the worst mix.
     """
 
@@ -62,12 +62,12 @@ class MixCase:
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """The results of operations.
+    """The results of the operations of a case.
 
     Attributes:
         texels: decoded texels of the patches, (TEXELS, patches, 3).
         mixed: result of each operation, decoded, not renormalised, (patches, 3).
-        how: by operation, columns on how it was mixed.
+        how: columns on how the texels were mixed, by operation.
         said: columns on the device.
     """
 
@@ -86,7 +86,7 @@ class Modelled:
         self._views = mixes.patches.views
 
     def decoded(self, codes: np.ndarray) -> np.ndarray:
-        """Return the normals of codes (numbers, ..., patches), of shape (..., patches, 3)."""
+        """Return the normals decoded from codes (numbers, ..., patches), of shape (..., patches, 3)."""
         shape = codes.shape[1:]
         views = np.broadcast_to(self._views, (*shape, 3)).reshape(-1, 3)
         return self._programs.normals(codes.reshape(len(codes), -1), views).reshape(*shape, 3)
@@ -103,14 +103,14 @@ class Modelled:
         return self._raw_and_stored(self._mixes.patches.normals)[1]
 
     def given(self, codes: np.ndarray) -> Given:
-        """Return the input of the model: stored codes of the texels, and the values that shaders write over them."""
+        """Return the input of the model: stored codes of the texels, and the values that shaders write onto them."""
         over = np.stack([self._mixes.patches.normals[1], self._mixes.decals])
         written = self._texels.of(self._raw_and_stored(over)[0])
         # What was stored is written once more: float32 has moved it by a unit, and means of texels lie on ties.
         return Given(self._texels.written(self._texels.of(codes), self._codec.rounding), written[:, 0], written[:, 1])
 
     def mixed(self, operation: str, given: Given, way: Way) -> np.ndarray:
-        """Return the numbers to which an operation mixes stored codes by the model, of shape (numbers, patches)."""
+        """Return the numbers that an operation on stored codes gives in the model, of shape (numbers, patches)."""
         return self._texels.code(BY_MODEL[operation](self._texels, given, self._mixes, way))
 
     def of_normals(self, operation: str, texels: np.ndarray) -> np.ndarray:
@@ -146,14 +146,14 @@ def _result_by_glsl(case: MixCase) -> Result:
 
 
 def _blocked_image(image: np.ndarray, height: int, width: int) -> np.ndarray:
-    """Return an image of `height` by `width` patches in the shape (TEXELS, patches, channels)."""
+    """Return an image of `height` by `width` patches, rearranged to the shape (TEXELS, patches, channels)."""
     split = image.reshape(height, SIDE, width, SIDE, -1)
     return split.transpose(1, 3, 0, 2, 4).reshape(TEXELS, height * width, -1)
 
 
 def _compared(case: MixCase, codes: np.ndarray, decoded: Mapping[str, Decoded]) -> dict[str, Row]:
-    """Return for each operation the columns with the way of mixing that best explains the device's numbers, and the
-    percentage that agrees; no columns for an encoding that exists only in shaders.
+    """Return columns for each operation: the way of mixing that best explains the device's numbers, if codes are
+    mixed, and the percentage of results that agree. Empty for an encoding that exists only in shaders.
 
     The model mixes the codes that the device stored.
     """
@@ -210,7 +210,7 @@ def measure(case: MixCase) -> list[Row]:
 
 
 def _measured(case: MixCase, domain: str) -> list[Row]:
-    """Return a row for each operation of a case; the reason is in `skipped` if the backend cannot measure it."""
+    """Return a row for each operation of a case; if the backend cannot measure it, with the reason in `skipped`."""
     described = _case_columns(case)
     try:
         outcome = BACKENDS[case.backend](case)
@@ -229,8 +229,8 @@ def _measured(case: MixCase, domain: str) -> list[Row]:
 
 
 def _worst_columns(case: MixCase, figures: Figures, operation: str) -> Row:
-    """Return the largest error of an operation on codes that a search by the model finds, and its normals; empty if
-    no search is requested, or the case is not by the model."""
+    """Return the largest error that a search with the model finds for an operation on codes, and the normals of that
+    mix; empty if no search is requested, or the case is not measured by the model."""
     is_searched = case.worst_case and operation in BY_MODEL and case.backend == BY_THE_MODEL
     errors = figures.errors(operation) if is_searched else np.array([-1.0])
     if errors.max() < 0:

@@ -1,6 +1,6 @@
-"""The model of a device that mixes texels: the result of a filter, a mip level, a resolve and a blend in a channel.
+"""The model of a device that mixes texels: the results of filtering, mip levels, resolving and blending in a channel.
 
-Stored numbers are mixed in a device's float32 arithmetic, and written results are rounded as the format requires. If
+Stored numbers are mixed in float32 arithmetic, and results that are written are rounded as the format requires. If
 numbers are packed across channels, their bytes are mixed. A `Way` describes how a device mixes.
 """
 
@@ -34,9 +34,9 @@ class Way:
     Attributes:
         is_fixed: whether fixed-point numbers are mixed as integers: each step of a filter is rounded, and a blend's
             products use shifts, p + p / 256 + 1/2 for p / 255.
-        fraction_bits: bits of a filter's position between two texels; 0 for those of a float32.
-        rounding: rounding of what is written, one of storage.ROUNDINGS; CUT rounds to 16 bits and truncates the
-            lowest.
+        fraction_bits: bits of a filter's position between two texels; 0 for the full precision of a float32.
+        rounding: rounding on writing, one of storage.ROUNDINGS; CUT rounds to 16 bits and truncates the lowest of
+            them.
         rounds_source: whether a shader's output is rounded as the codec requires before it is blended.
     """
 
@@ -84,10 +84,10 @@ def _stored_planes(planes, storage: Storage, rounding: str):
 
 
 class Texels:
-    """Numbers of a codec as a target keeps them: planes of its channels, and of the depth's sign where it has one.
+    """Conversion between a codec's numbers and texels: a plane for each channel, and for the sign of depth, if any.
 
     Args:
-        codec: whose.
+        codec: the codec whose numbers are stored.
     """
 
     def __init__(self, codec: Codec):
@@ -96,7 +96,7 @@ class Texels:
         self._signs = codec.encoding.sign_bits
 
     def of(self, code: np.ndarray) -> np.ndarray:
-        """Return the texels of a code's numbers, float32 of shape (numbers, ...), before or after storage.
+        """Return the texels that hold a code's numbers, float32 of shape (numbers, ...), before or after storage.
 
         Returns:
             planes (channels and sign, ...); the sign is a depth of 1 or -1.
@@ -108,7 +108,7 @@ class Texels:
         return np.concatenate([numbers * F32(0.5) + F32(0.5) if self._codec.storage.is_biased else numbers, signs])
 
     def code(self, texels: np.ndarray) -> np.ndarray:
-        """Return the numbers in texels as floats: a row for each number, signs last, not decoded."""
+        """Return the code in texels, as floats, without decoding the normal: a row for each number, signs last."""
         signs = np.where(np.signbit(texels[len(texels) - self._signs :]), F32(-1), F32(1))
         if self._codec.storage.is_packed:
             return np.concatenate([self._unpacked_numbers(texels), signs])
@@ -144,7 +144,7 @@ class Texels:
         return np.stack(numbers[: self._components])
 
     def written(self, texels: np.ndarray, rounding: str) -> np.ndarray:
-        """Return texels as the target stores them; the depth's sign is unchanged."""
+        """Return texels as the target stores them with a rounding; the depth's sign is unchanged."""
         channels = len(texels) - self._signs
         if rounding == CUT:
             return np.concatenate([self._cut_planes(texels[:channels]), texels[channels:]])
@@ -152,7 +152,8 @@ class Texels:
         return np.concatenate([np.stack([np.asarray(p) for p in kept]), texels[channels:]])
 
     def _cut_planes(self, texels: np.ndarray) -> np.ndarray:
-        """Return UNORM from the upper bits of 16-bit numbers, for planes without a sign; other formats unchanged."""
+        """Return UNORM planes rounded to 16 bits and then truncated to the format's bits, given planes without the
+        sign; other formats are unchanged."""
         if self._storage.kind != "unorm":
             return texels
         scales = [self._storage.scale(channel) for channel in range(len(texels))]
@@ -161,14 +162,14 @@ class Texels:
         return (np.floor(sixteen * (scale + 1) / 2**16) / scale).astype(F32)
 
     def _whole_values(self, texels: np.ndarray) -> np.ndarray:
-        """Return the integer that represents 1 in each plane, of a shape that broadcasts; 0 for floats and signs."""
+        """Return the integer that represents 1 in each plane, in a shape that broadcasts; 0 for floats and signs."""
         channels = len(texels) - self._signs
         is_float = self._storage.kind == "float"
         scales = [0 if is_float else self._storage.scale(c) for c in range(channels)] + [0] * self._signs
         return np.array(scales, np.float64).reshape(-1, *[1] * (texels.ndim - 1))
 
     def lerped(self, a: np.ndarray, b: np.ndarray, share: np.ndarray, way: Way) -> np.ndarray:
-        """Return a + (b - a) share, computed as `way` describes: with a rounded share, or in integers."""
+        """Return a + (b - a) share, computed as `way` describes: with a rounded `share`, or in integers."""
         step = 2.0**way.fraction_bits
         share = np.rint(share * step) / step if way.fraction_bits else share
         mixed = a + (b - a) * share.astype(F32)
@@ -197,7 +198,7 @@ class Texels:
 
 
 def _scaled_product(a: np.ndarray, b: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Return a b / one for integers as shifts compute it, which round down: negative products too."""
+    """Return a b / scale for integers, computed with shifts that round down, also for negative products."""
     product = a * b
     return np.floor((product + np.floor(product / (scale + 1)) + np.copysign((scale + 1) / 2, product)) / (scale + 1))
 
@@ -216,7 +217,7 @@ def _averaged_texels(texels: Texels, quad: np.ndarray, way: Way) -> np.ndarray:
 
 
 def _reduced_texels(texels: Texels, planes: np.ndarray, way: Way) -> np.ndarray:
-    """Return the next smaller mip level of texels of shape (planes, side, side, patches)."""
+    """Return the next mip level of texels of shape (planes, side, side, patches), with half the side."""
     quad = np.stack([planes[:, y::2, x::2] for y in (0, 1) for x in (0, 1)], axis=1)
     return _averaged_texels(texels, quad, way)
 
@@ -230,7 +231,8 @@ def _mip_texel(level: int, texels: Texels, planes: np.ndarray, way: Way) -> np.n
 
 
 def _resolved_texels(texels: Texels, planes: np.ndarray, mixes: Mixes, way: Way) -> np.ndarray:
-    """Return the mean of a pixel's samples as written; the first `counts` samples are the first texel."""
+    """Return the mean of a pixel's samples as the target stores it; `counts` samples have the first texel, the others
+    the second."""
     total = np.zeros_like(planes[:, 0])
     for sample in range(mixes.samples):
         total = total + np.where(sample < mixes.counts, planes[:, 0], planes[:, 1])
@@ -239,10 +241,10 @@ def _resolved_texels(texels: Texels, planes: np.ndarray, mixes: Mixes, way: Way)
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """Stored codes that a model mixes, float32.
+    """Input of the model, float32.
 
     Attributes:
-        planes: texels of the patches, (planes, TEXELS, patches).
+        planes: stored texels of the patches, (planes, TEXELS, patches).
         second, detail: a shader's output for the second normal and the detail, not yet rounded, (planes, patches).
     """
 

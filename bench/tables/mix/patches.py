@@ -1,4 +1,4 @@
-"""Patches of 4 x 4 texels, built around directions or cut out of images, and the mixing of their texels."""
+"""Patches of 4 x 4 texels, built around directions or cut from images, and the weights for mixing their texels."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ SPHERE = 4 * math.pi
 
 @dataclass(frozen=True, eq=False)
 class Patches:
-    """Patches of one set.
+    """The patches of one set.
 
     Attributes:
         name: name of the set.
-        angle_deg: angle between neighbours; None if they are an image's own.
+        angle_deg: angle between neighbours; None for patches cut from an image.
         edge_deg: angle across an edge through each patch; None if there is no edge.
-        count: number of patches that count; the others fill the image.
+        count: number of patches that are measured; the others pad the image.
         normals: unit normals, float64 of shape (TEXELS, patches, 3), row by row from the first texel.
         views: float32 of shape (patches, 3).
         seed: seed of the set.
-        code_space: for a captured frame, the space of its normals.
-        is_anywhere: whether patches may be anywhere on the sphere in any rotation: those of the whole sphere.
+        code_space: the space of the normals in a captured frame.
+        is_anywhere: whether patches may be anywhere on the sphere, in any rotation, because the set is the sphere.
     """
 
     name: str
@@ -59,7 +59,7 @@ class Patches:
         return 1 << (bits + 1) // 2, 1 << bits // 2
 
     def held_by(self, domain: str) -> np.ndarray:
-        """Return which patches have all texels in a domain, bool of shape (patches,)."""
+        """Return a mask of the measured patches whose texels are all in a domain, bool of shape (patches,)."""
         is_held = np.arange(self.normals.shape[1]) < self.count
         return np.logical_and(is_held, np.all(in_domain(self.normals, self.views, domain), axis=0))
 
@@ -70,10 +70,12 @@ class Mixes:
 
     Attributes:
         patches: the patches.
+        samples: samples per pixel.
         shares, quarters: positions that a filter and an upsampling read, float64 of shape (patches, 2).
-        counts: number of a pixel's `samples` that have the first normal, (patches,).
+        counts: number of a pixel's samples that have the first normal, (patches,).
         alphas: blend factors, (patches,).
-        decals: normals laid over the first texel, unit, (patches, 3); `details` has the right result of each alpha.
+        decals: unit normals laid over the first texel, (patches, 3).
+        details: the correct result of blending each decal with its alpha, (patches, 3).
     """
 
     patches: Patches
@@ -86,15 +88,15 @@ class Mixes:
     details: np.ndarray
 
     def held_by(self, operation: str, domain: str) -> np.ndarray:
-        """Return which mixes an encoding of a domain can represent, bool of shape (patches,); the patches' own texels
-        are not checked. Only details may be outside the domain."""
+        """Return a mask of the mixes that an encoding of a domain can represent, bool of shape (patches,). Only the
+        decals and results of `detail` are checked; `Patches.held_by` checks the texels."""
         if operation != "detail":
             return np.ones(len(self.alphas), bool)
         both = np.stack([self.decals, self.details])
         return np.all(in_domain(both, self.patches.views, domain), axis=0)
 
     def meetings(self) -> Meetings:
-        """Return the mixes as images for a device."""
+        """Return the texels and weights as images for a device."""
         width, height = self.patches.size
         blocks = _with_fourth(self.patches.normals).reshape(SIDE, SIDE, height, width, 4)
 
@@ -117,7 +119,7 @@ def _with_fourth(vectors: np.ndarray) -> np.ndarray:
 
 
 def mixes_of(patches: Patches, samples: int) -> Mixes:
-    """Return the patches with random weights, decals and details; the same for the same seed."""
+    """Return the patches with random weights, decals and details, reproducible from their seed."""
     random = np.random.default_rng([patches.seed, 1])
     width, height = patches.size
     count = width * height
@@ -142,8 +144,8 @@ def mixes_of(patches: Patches, samples: int) -> Mixes:
 def patches_of(
     normals: NormalSet, angles_deg: tuple[float, ...], count: int, seed: int, edges_deg: tuple[float, ...] = ()
 ) -> Iterator[Patches]:
-    """Yield the patches of a set: of an image its own neighbours; otherwise for each angle patches about the set's
-    directions, then for each edge the patches of the first angle with that edge through them."""
+    """Yield the patches of a set. If the set is an image, these are squares of its pixels. Otherwise they are patches
+    around the set's directions for each angle, then the patches of the first angle with each edge through them."""
     if normals.shape:
         yield from _own_neighbours(normals, count, seed)
         return
@@ -157,7 +159,7 @@ def patches_of(
 
 
 def _patch_indices(count: int) -> np.ndarray:
-    """Return the indices of `count` patches, repeated from 0 up to a power of two."""
+    """Return the indices of `count` patches, repeated from 0 up to a power of two or LEAST_SIDE^2, if larger."""
     whole = max(1 << (count - 1).bit_length(), LEAST_SIDE**2)
     return np.arange(whole) % count
 
@@ -174,17 +176,18 @@ def _set_arrays(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def _chosen_directions(normals: NormalSet, count: int, seed: int) -> np.ndarray:
-    """Return `count` of a set's normals, evenly chosen or repeated, in random order, because alphas depend on the
-    row of a patch."""
+    """Return `count` of a set's normals, evenly chosen or repeated, in random order because alphas depend on a
+    patch's row."""
     n, _, covered = _set_arrays(normals)
     n = unit_rows(n[covered].astype(np.float64))
     return n[np.random.default_rng([seed, 2]).permutation(np.arange(count) * len(n) // count)]
 
 
 def _turned_patches(name: str, directions: np.ndarray, angle_deg: float, seed: int) -> Patches:
-    """Return randomly rotated patches with an angle between neighbours, their direction somewhere in the first quad.
+    """Return randomly rotated patches with an angle between neighbours; each direction is at a random place in the
+    first 2 x 2 texels.
 
-    n(w) = cos |w| n + sin |w| w / |w|, w a step on the tangent plane.
+    n(w) = cos |w| n + sin |w| w / |w|, where w is a step on the tangent plane.
     """
     count, random = len(directions), np.random.default_rng([seed, 0])
     within, turn = random.random((count, 2)), random.uniform(0, 2 * np.pi, count)
@@ -200,8 +203,8 @@ def _turned_patches(name: str, directions: np.ndarray, angle_deg: float, seed: i
 
 
 def _with_edge(patches: Patches, edge_deg: float, seed: int) -> Patches:
-    """Return patches whose texels on one side of a line are turned by an angle about a tangent, as on another
-    surface. The line runs between the first texel and the second, at any angle, so that every mix has texels of both
+    """Return patches whose texels on one side of a line are rotated by an angle about a tangent, as if on another
+    surface. The line runs between the first two texels, at a random angle, so that every mix has texels from both
     sides.
 
     n' = n cos a + (t x n) sin a + t (t . n) (1 - cos a), with t unit (Rodrigues).
@@ -222,8 +225,8 @@ def _with_edge(patches: Patches, edge_deg: float, seed: int) -> Patches:
 
 
 def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patches]:
-    """Yield up to two sets of squares of an image's pixels at random places, all covered: first those inside a
-    surface, then those across an edge, with the median angle of the edges. Nothing if no square is covered."""
+    """Yield up to two sets of fully covered squares at random places of an image: first squares inside a surface,
+    then squares across an edge, with the median angle of the edges. Nothing if no square is covered."""
     assert normals.shape
     height, width = normals.shape
     n, view, covered = (a.reshape(height, width, -1) for a in _set_arrays(normals))
@@ -249,7 +252,7 @@ def _own_neighbours(normals: NormalSet, count: int, seed: int) -> Iterator[Patch
 
 
 def _steepest_deg(normals: np.ndarray) -> np.ndarray:
-    """Return the largest angle between adjacent texels of each patch, in degrees, of shape (patches,).
+    """Return the largest angle between adjacent texels in each patch, in degrees, of shape (patches,).
 
     Args:
         normals: array of shape (TEXELS, patches, 3)."""
@@ -259,5 +262,5 @@ def _steepest_deg(normals: np.ndarray) -> np.ndarray:
 
 
 def rounded(n: np.ndarray) -> np.ndarray:
-    """Return normals rounded to the precision of float32, the input of encoders, but as float64."""
+    """Return normals rounded to float32, the precision of an encoder's input, as float64."""
     return n.astype(np.float32).astype(np.float64)

@@ -1,4 +1,4 @@
-"""Codes and normals by JAX: two programs for each encoding, compiled once for all storages, sets and operations."""
+"""Encoding and decoding by JAX: two programs per encoding, compiled once for all storages, sets and operations."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from ....encodings.vec import Vec2, Vec3, direction_or_forward
 
 @cache
 def _encoder(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Any]:
-    """Return a compiled function from normals to codes before storage (precisely rounded if the encoding requires
-    it) and as they come back from the storage."""
+    """Return a compiled function from normals to two codes: the code before storage, precisely rounded if the
+    encoding requires it, and the code as read back from storage."""
 
     def encode(n: Vec3, view: Vec3, *scales: Any):
         codec = Codec(encoding, fixed(like, scales), rounding)
@@ -43,11 +43,11 @@ def _decoder(encoding: Encoding) -> Callable[..., Any]:
 
 
 class Programs:
-    """A codec's two halves on arrays, a block of one size at a time.
+    """A codec's encoder and decoder for arrays, applied to blocks of one size.
 
     Args:
-        codec: whose.
-        block: how many normals at once; fewer are filled up, so that each half is compiled once.
+        codec: the codec.
+        block: number of normals per block; the last block is padded, so that each program is compiled once.
     """
 
     def __init__(self, codec: Codec, block: int):
@@ -55,7 +55,7 @@ class Programs:
         self._like, self._scales = shared(codec.storage, codec.encoding.components)
 
     def codes(self, normals: np.ndarray, views: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the codes of unit normals (count, 3), as encoded and as stored: two float32 arrays of shape
+        """Return the codes of unit normals (count, 3) before storage and as stored: two float32 arrays of shape
         (numbers, count)."""
         encode = _encoder(self._codec.encoding, self._like, self._codec.rounding)
         parts = [
@@ -66,7 +66,7 @@ class Programs:
         return code, stored
 
     def normals(self, codes: np.ndarray, views: np.ndarray) -> np.ndarray:
-        """Return the normals that codes (numbers, count) decode to, float32 of shape (count, 3), not renormalised."""
+        """Return the normals decoded from codes (numbers, count), float32 of shape (count, 3), not renormalised."""
         decode = _decoder(self._codec.encoding)
         parts = [
             np.asarray(decode(tuple(code), Vec3(*view)))[:, :count].T
@@ -75,8 +75,8 @@ class Programs:
         return np.concatenate(parts)
 
     def _blocks(self, *planes: np.ndarray):
-        """Yield planes, arrays of shape (rows, count), in padded blocks: how many columns are real, then JAX's rows
-        of each array."""
+        """Yield arrays of shape (rows, count) in padded blocks: the number of real columns, then the rows of each
+        array in JAX."""
         total = planes[0].shape[1]
         for start in range(0, total, self._block):
             cut = [a[:, start : start + self._block].astype(np.float32) for a in planes]

@@ -1,4 +1,4 @@
-"""The right normal of each operation, and the effect of mixing on length and on specular power; float64 in NumPy."""
+"""The correct normal for each operation, and the effect of mixing on length and specular power; float64 in NumPy."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ def unit_rows(v: np.ndarray) -> np.ndarray:
 
 
 def lerp_angle(theta, t):
-    """Return the angle in radians between a mix of two unit normals and the first; any shapes that broadcast.
+    """Return the angle in radians between the first of two unit normals and their mix; the arguments broadcast.
 
-    theta is the angle between the two normals, t the share of the second. A filter gives this angle, not the t theta
-    of a rotation at constant speed (slerp): the difference comes from geometry alone.
+    theta is the angle between the two normals, t the share of the second. Linear filtering gives this angle, whereas
+    a rotation at constant speed (slerp) gives t theta: the difference comes from geometry alone.
     """
     # |a (1 - t) + b t| leans from a by atan2(t sin theta, 1 - t + t cos theta)
     return np.arctan2(t * np.sin(theta), 1.0 - t + t * np.cos(theta))
 
 
 def lerp_length(theta, t):
-    """Return the length of the mix in `lerp_angle`, before it is normalised: 1 if both normals are the same."""
+    """Return the length of the mix in `lerp_angle` before normalisation: 1 if both normals are the same."""
     # |a (1 - t) + b t|^2 = 1 - 2 t (1 - t) (1 - cos theta)
     return np.sqrt(1.0 - 2.0 * t * (1.0 - t) * (1.0 - np.cos(theta)))
 
@@ -35,11 +35,11 @@ def tilted(tilt: np.ndarray, turn: np.ndarray) -> np.ndarray:
 
 
 def reoriented(base: np.ndarray, detail: np.ndarray) -> np.ndarray:
-    """Return a detail's normal laid over a base's: rotated as +z is rotated to the base along the shortest way. The
-    result has length 1, shape (..., 3).
+    """Return a detail's normal laid over a base's normal: rotated by the shortest rotation from +z to the base. The
+    result has length 1 and shape (..., 3).
 
     Source: C. Barre-Brisebois and S. Hill, Blending in Detail, 2012 (reoriented normal mapping). For a base of -z,
-    where no way is the shortest, the detail is rotated about x.
+    for which no rotation is the shortest, the detail is rotated about x.
     """
     # t = base + z, r = t (t . d') / t.z - d' with d' = (-d.x, -d.y, d.z)
     flipped = detail * np.array([-1.0, -1.0, 1.0])
@@ -62,7 +62,7 @@ def toksvig_power(length: np.ndarray, power: float) -> np.ndarray:
 
 
 def angles_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the angles between rows in degrees; 180 if a row is not a direction."""
+    """Return the angles between the vectors of two arrays in degrees; 180 if either vector is not a direction."""
     a, b = a.astype(np.float64), b.astype(np.float64)
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
         angles = angles_deg(unit_rows(a), unit_rows(b))

@@ -1,4 +1,4 @@
-"""Whether a codec can be filtered, blended or resolved, from its rows alone; the thresholds are in table.py."""
+"""Verdicts on filtering, blending and resolving a codec, from rows alone; the thresholds are in table.py."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ DONE: Mapping[str, str] = {
 
 
 def _excess(row: Row) -> float:
-    """Return a row's largest error in degrees, minus that of geometry, and minus twice the part of the texels' own
-    error that is excused: a read and a write."""
+    """Return a row's largest error in degrees, minus the error of geometry, and minus twice the excused part of the
+    texels' own error: once for reading and once for writing."""
     return row["angle_max_deg"] - row["geometry_max_deg"] - 2 * excused(row["operation"], row["alone_max_deg"])
 
 
@@ -32,12 +32,12 @@ def _allowed_deg(row: Row) -> float:
 
 
 def is_faulty(row: Row) -> bool:
-    """Whether a row counts against its codec: it has garbage, or more error in excess than is allowed."""
+    """Whether a row counts against its codec: it has garbage, or its excess error is larger than allowed."""
     return bool(row["garbage_percent"]) or _excess(row) > _allowed_deg(row)
 
 
 def summed_up(row: Row) -> str:
-    """Return a few words on what a row measures and how large its error is."""
+    """Return a phrase on what a row measures and how large its error is."""
     angle = row["angle_deg"]
     apart = "neighbours" if angle is None else f"normals {angle:g} degree{'s' * (angle != 1)} apart"
     apart = f"an edge of {row['edge_deg']:g} degrees" if row["edge_deg"] else apart
@@ -48,7 +48,8 @@ def summed_up(row: Row) -> str:
 
 
 def _fault_reason(row: Row) -> str:
-    """Return the words of `summed_up` and the pair that shows the fault, or the error without mixing."""
+    """Return the phrase of `summed_up` with the pair of normals that gives garbage or, without garbage, with the
+    error without mixing."""
     if not row["garbage_percent"]:
         return f"{summed_up(row)}, {row['alone_max_deg']:.3g} without mixing"
     return f"{summed_up(row)}: {row['worst_first']} with {row['worst_second']} gives {row['worst_result']}"
@@ -60,7 +61,7 @@ def _severity(row: Row) -> tuple[bool, float]:
 
 
 def judged(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows with the verdicts of their codec and backend; a use is judged only if all of its operations
+    """Return the rows with the verdicts for their codec and backend; a use is judged only if all of its operations
     were measured."""
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
@@ -70,7 +71,7 @@ def judged(rows: Sequence[Row]) -> list[Row]:
 
 
 def codec_of(row: Row) -> tuple[str, ...]:
-    """Return the key of a verdict: encoding, storage and backend."""
+    """Return the encoding, storage and backend of a row, for which verdicts are given."""
     return row["encoding"], row["storage"], row["backend"]
 
 
@@ -94,29 +95,29 @@ def _verdict_columns(rows: Sequence[Row]) -> Row:
 
 
 def _is_integer(row: Row, is_across: bool) -> bool:
-    """Whether a row with an edge (`is_across`), or without, has no figures because its code is an integer."""
+    """Whether a row with an edge (`is_across`), or without an edge, has no figures because its code is an integer."""
     return row.get("skipped") == OF_INTEGER and bool(row["edge_deg"]) == is_across
 
 
 def decides(row: Row) -> bool:
-    """Whether a row decides inside a surface: it has figures and no edge, and its neighbours are as close as those
-    of a surface."""
+    """Whether a row decides the verdict inside a surface: it has figures and no edge, and its neighbours are as close
+    as on a surface."""
     return row["angle_max_deg"] is not None and not row["edge_deg"] and (row["angle_deg"] or 0) <= MOST_JUDGED_DEG
 
 
 def decides_across(row: Row) -> bool:
-    """Whether a row decides across an edge: it has figures and an edge."""
+    """Whether a row decides the verdict across an edge: it has figures and an edge."""
     return row["angle_max_deg"] is not None and bool(row["edge_deg"])
 
 
 def worst_fault(rows: Sequence[Row]) -> Row | None:
-    """Return the worst of the rows that count against their codec; None if no row does."""
+    """Return the worst row among those that count against their codec; None if no row does."""
     faulty = [row for row in rows if row["angle_max_deg"] is not None and is_faulty(row)]
     return max(faulty, key=_severity) if faulty else None
 
 
 def lines(rows: Sequence[Row]) -> Iterator[Row]:
-    """Yield a row for each codec and backend: its verdicts, and the worst figures of the rows that decide."""
+    """Yield a row for each codec and backend: its verdicts, and the worst figures of its deciding rows."""
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         if decides(row):
@@ -133,7 +134,8 @@ def lines(rows: Sequence[Row]) -> Iterator[Row]:
 
 
 def worst_of_each(rows: Sequence[Row]) -> list[Row]:
-    """Return for each operation on a codec by a backend the row with the most garbage, or with the largest error."""
+    """Return the worst row for each operation, codec and backend: the row with the most garbage, then with the
+    largest error."""
     worst: dict[tuple[Any, ...], Row] = {}
     for row in rows:
         key = (row["operation"], row["encoding"], row["storage"], row["backend"])

@@ -36,7 +36,7 @@ def cases(options: MixOptions) -> list[MixCase]:
     """Return one case for each codec, set, angle and backend.
 
     Raises:
-        UsageError: unknown names, numbers out of range, a file that cannot be read, or nothing that fits.
+        UsageError: unknown names, numbers out of range, a file that cannot be read, or no codec that fits.
         MissingError: only GLSL is requested and there is no OpenGL device.
     """
     in_range("--count", options.count, 1, MOST_COUNT)
@@ -90,7 +90,7 @@ def _patches(
 
 
 def _samples(asked: int, backends: Sequence[str]) -> dict[str, int]:
-    """Return the samples per pixel by backend: the device may have more than were requested."""
+    """Return the samples per pixel by backend: the device may provide more samples than requested."""
     gl, _ = found_device()
     return {name: gl.given_samples(asked) if gl and name == "glsl" else asked for name in backends}
 
@@ -108,7 +108,8 @@ def _key(case: MixCase) -> Row:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows by set, angle and operation, smallest share of garbage first, each with its codec's verdicts."""
+    """Return the rows by set, angle, edge and operation, then by share of garbage in ascending order, each with its
+    codec's verdicts."""
     groups = list(dict.fromkeys(_group(row) for row in rows))
 
     def place(row: Row) -> tuple[Any, ...]:
@@ -124,8 +125,8 @@ def _group(row: Row) -> tuple[Any, ...]:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    """Yield the sheets of verdicts, of each operation's worst figures by one backend, and of how the device mixes;
-    files have every row."""
+    """Yield the sheets of verdicts, of the worst figures for each operation by one backend, and of how the device
+    mixes; files contain every row."""
     yield from _summary(done.rows)
     shown = ("encoding", "storage", "backend", "operation", "normals", "angle_deg", "edge_deg", "alone_max_deg")
     shown += ("angle_mean_deg", "angle_max_deg", "angle_worst_deg", "garbage_percent", "garbage_error_percent")
@@ -140,7 +141,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _ways(rows: Sequence[Row]) -> list[Row]:
-    """Return a row for each storage, operation and device arithmetic, with its lowest agreement with the model."""
+    """Return a row for each storage, operation and device arithmetic, with the lowest agreement with the model."""
     agreed: dict[tuple[str, ...], float] = {}
     for row in rows:
         if row["mixed_by"] and row["agree_percent"] is not None:
@@ -151,7 +152,7 @@ def _ways(rows: Sequence[Row]) -> list[Row]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a sentence on the encodings that survive each use by every backend."""
+    """Yield a sentence on the encodings that survive each use with every backend."""
     verdict_lines = list(lines(rows))
     uses = {"filtering": "filterable", "blending": "blendable", "MSAA resolve": "resolvable"}
     uses["filtering across an edge"] = f"filterable{ACROSS}"
@@ -168,7 +169,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _surviving(rows: Sequence[Row], column: str) -> str:
-    """Return in one text the encodings whose verdict is "yes" by every backend, or "none of them"."""
+    """Return one text that names the encodings whose verdict is "yes" with every backend, or "none of them"."""
     failing = {codec_name(line) for line in rows if line[column] != "yes"}
     surviving = {codec_name(line): line for line in rows if codec_name(line) not in failing}
     halves = [line["encoding"] for line in surviving.values() if _is_of_half(line["encoding"])]
@@ -177,7 +178,7 @@ def _surviving(rows: Sequence[Row], column: str) -> str:
 
 
 def _is_of_half(name: str) -> bool:
-    """Whether a name is that of an encoding in the catalogue that represents only a hemisphere."""
+    """Whether this is the name of an encoding in the catalogue that represents only a hemisphere."""
     return name in ENCODINGS and ENCODINGS[name].domain == "hemisphere"
 
 

@@ -1,7 +1,7 @@
-"""A search for the worst mix of an operation from the worst of a sample: the largest error of a sample is not a bound.
+"""A search for the worst mix of an operation, from the worst mixes of a sample: a sample's largest error is no bound.
 
-Patches are turned as a whole, so that the angles between neighbours are unchanged, and their weights are varied. A
-larger error is kept; steps grow after a success and shrink otherwise. The model computes the mixes.
+Patches are rotated as a whole, so that the angles between neighbours are unchanged, and their weights are varied. A
+mix with a larger error is kept; steps grow after a success and shrink otherwise. The model computes the mixes.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ Errors = Callable[[Mixes], np.ndarray]
 
 
 def climbed(mixes: Mixes, errors: np.ndarray, of: Errors, seed: int) -> Mixes:
-    """Return the worst mix that a random search finds, alone.
+    """Return the worst mix that a random search finds, as `Mixes` with a single patch.
 
     Args:
-        mixes: the sample; if its patches may be anywhere on the sphere, they are turned.
-        errors: errors of the sample.
-        of: function that measures other mixes.
+        mixes: the sample; its patches are rotated if they may be anywhere on the sphere.
+        errors: error of each mix in the sample.
+        of: function that returns the errors of other mixes.
     """
     random = np.random.default_rng([seed, 3])
     best = chosen(mixes, np.argsort(errors)[::-1][:STARTS])
@@ -58,7 +58,7 @@ OF_EACH = ("shares", "quarters", "counts", "alphas", "decals", "details")
 
 
 def _moved(mixes: Mixes, steps: np.ndarray, random: np.random.Generator) -> Mixes:
-    """Return mixes with other rotations and weights, changed by steps in degrees, (patches,)."""
+    """Return mixes with randomly changed rotations and weights; `steps` are the changes in degrees, (patches,)."""
     count, patches = len(steps), mixes.patches
     turn = _random_rotations(steps * random.standard_normal(count) * patches.is_anywhere, random)
     moved = mixes.shares + SHARE_OF_STEP * steps[:, None] * random.standard_normal((count, 2))
@@ -78,7 +78,7 @@ def _moved(mixes: Mixes, steps: np.ndarray, random: np.random.Generator) -> Mixe
 
 
 def _between(base: np.ndarray, detail: np.ndarray, alpha: np.ndarray) -> np.ndarray:
-    """Return details over a base with their tilt scaled by alpha, on the arc between the two; (patches, 3)."""
+    """Return the normals at a share `alpha` of the arc from a base to a detail, (patches, 3)."""
     tilt = np.radians(angles_between(base, detail))[:, None]
     # slerp: (sin((1 - a) t) base + sin(a t) detail) / sin t
     a, whole = alpha[:, None], np.sin(tilt)
@@ -99,7 +99,7 @@ def _random_rotations(degrees: np.ndarray, random: np.random.Generator) -> np.nd
 
 
 def _chosen_mixes(first: np.ndarray, mixes: Mixes, other: Mixes) -> Mixes:
-    """Return the mixes of `mixes` where `first`, (patches,), is true, and those of `other` elsewhere."""
+    """Return mixes taken from `mixes` where `first`, (patches,), is true, and from `other` elsewhere."""
     normals = np.where(first[:, None], mixes.patches.normals, other.patches.normals)
     patches = replace(mixes.patches, normals=normals)
     named = {name: (getattr(mixes, name), getattr(other, name)) for name in OF_EACH}

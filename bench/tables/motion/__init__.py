@@ -1,1 +1,1 @@
-"""The motion table: how much a code's error changes from frame to frame."""
+"""The motion table: how much an encoding's error changes from frame to frame."""

@@ -1,4 +1,4 @@
-"""The chart of how much codes wobble."""
+"""The chart of wobble: how much each codec's error changes from frame to frame."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CONDITIONS = ("space", "moves", "axis")
 
 
 def wobble_chart(rows: Sequence[Row]) -> Chart:
-    """Return the chart of the wobble over the turn, a line for each code, coloured by its codec.
+    """Return the chart of the wobble by turn, with a line for each codec and its conditions, coloured by codec.
 
     Args:
         rows: rows of the motion table; without rows the chart is empty.
@@ -53,12 +53,12 @@ def _line_name(row: Row, rows: Sequence[Row]) -> str:
 
 
 def _conditions_text(row: Row, rows: Sequence[Row]) -> str:
-    """Return the conditions that distinguish lines of one codec; empty if there are no such conditions."""
+    """Return the conditions that distinguish the lines of one codec; empty if all rows have the same conditions."""
     return " ".join(str(row.get(name)) for name in CONDITIONS if len({other.get(name) for other in rows}) > 1)
 
 
 def _finding_sentence(points: Sequence[Row]) -> str:
-    """Return a sentence with the codec that wobbles the most; "No codec wobbles" without points."""
+    """Return a sentence that names the codec with the largest wobble; "No codec wobbles" without points."""
     if not points:
         return "No codec wobbles"
     worst = max(points, key=lambda point: point["y"])

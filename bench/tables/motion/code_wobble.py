@@ -1,8 +1,8 @@
-"""The wobble of a code alone: no renderer, and no light.
+"""The wobble of encoded normals alone, without a renderer or light.
 
-e_t is the decoded normal less the true one at frame t, on the surface: in the space that the surface is fixed in. The
-wobble is W = RMS over points and frames of |e_{t+1} - e_t|. Where the errors of two frames have nothing to do with each
-other, W is sqrt(2) times the RMS of |e_t|.
+e_t is the decoded normal minus the true normal at frame t, in the space in which the surface is fixed. The wobble is
+W = RMS over points and frames of |e_{t+1} - e_t|. If the errors of two frames are independent, W is sqrt(2) times the
+RMS of |e_t|.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from .trips import Trip
 
 @dataclass(frozen=True)
 class Frame:
-    """The results of points in a frame.
+    """The results for all points in a frame.
 
     Attributes:
         error: decoded minus true normal on the surface, both of length 1, float64 of shape (count, 3).
         codes: stored codes, (count, numbers).
-        counts: whether the encoding is made for the normal, bool of shape (count,).
+        counts: whether the normal is in the encoding's domain, bool of shape (count,).
     """
 
     error: np.ndarray
@@ -37,7 +37,7 @@ class Frame:
 
 @dataclass
 class WobbleTotal:
-    """Totals over pairs of frames; angles are small, so that a difference of unit vectors is an angle in radians."""
+    """Totals over frames and pairs of frames; angles are small, so unit vectors differ by an angle in radians."""
 
     points: int = 0
     squares: float = 0.0
@@ -63,7 +63,7 @@ class WobbleTotal:
         self.jump_sum += float(np.sum(change[jumped]))
 
     def row(self) -> Row:
-        """Return the figures; only `invalid` if no normal was followed from a frame to the next."""
+        """Return the figures as columns; only `invalid` if no normal was followed from one frame to the next."""
         if not self.pairs:
             return {"invalid": self.invalid}
         static = math.degrees(math.sqrt(self.squares / self.points))
@@ -98,24 +98,26 @@ class Motion:
         return (self.space, self.moves) == ("world", "camera")
 
     def matrices(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield the matrices that turn normals and positions in each frame, (3, 3) each; only two for a still code."""
+        """Yield the matrices that rotate normals and positions in each frame, (3, 3) each; only two pairs if every
+        frame has the same codes."""
         turned = turning.rotations(self.axis, self.turn, 2 if self.is_still else self.frames)
         still = np.broadcast_to(np.eye(3), turned.shape)
         yield from zip(still if self.is_still else turned, turned if self.moves == "camera" else still, strict=True)
 
     def followed(self, count: int) -> int:
-        """Return how many normals are followed if `count` are requested: more in the two frames of a still code."""
+        """Return the number of normals to follow if `count` are requested: more if only two frames are needed."""
         return count * max(self.frames // 2, 1) if self.is_still else count
 
 
 def code_wobble(trip: Trip, domain: str, motion: Motion, count: int, seed: int) -> Row:
-    """Return the columns of a codec's normals that are followed during a rotation.
+    """Return the columns on a codec's normals that are followed during a rotation.
 
     Args:
         trip: round trip of the codec.
-        domain: domain of its encoding; normals outside it do not count.
+        domain: domain of the encoding; normals outside it do not count.
         motion: the rotation.
-        count, seed: arguments of turning.points.
+        count: requested number of normals.
+        seed: seed for turning.points.
     """
     total, followed = WobbleTotal(), motion.followed(count)
     for points in turning.points(motion.space, followed, seed):
@@ -144,7 +146,7 @@ def _frame(trip: Trip, domain: str, n: np.ndarray, view: np.ndarray, matrix: np.
 
 
 def _row_lengths(v: np.ndarray) -> np.ndarray:
-    """Return the lengths of rows, computed by columns: NumPy takes longer to add up each row of three."""
+    """Return the length of each row, computed by columns because NumPy sums rows of three numbers more slowly."""
     x, y, z = v.T
     return np.sqrt(x * x + y * y + z * z)
 

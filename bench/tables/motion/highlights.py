@@ -1,4 +1,4 @@
-"""Highlights on the spheres of scene gloss: their positions in a frame, and their brightness."""
+"""Highlights on the spheres in scene gloss: their positions in a frame, and their brightness."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ LIGHTS = (
 
 
 def lit_scene(scene: Scene) -> Scene:
-    """Return scene gloss with nothing but highlights: only its spheres, in black, under LIGHTS."""
+    """Return scene gloss reduced to its highlights: only the spheres, in black, under LIGHTS."""
     spheres = tuple(replace(material, albedo=(0.0,) * 3) for material in scene.materials[: len(POWERS)])
     return replace(scene, parts=scene.parts[:1], materials=spheres, lights=LIGHTS, ambient=(0.0,) * 3)
 
 
 @dataclass(frozen=True)
 class Spots:
-    """The highlights of a frame, for each sphere and light.
+    """The highlights in a frame, for each sphere and light.
 
     Attributes:
-        centroids: x and y in pixels, float64 of shape (spheres, lights, 2); NaN where a sphere has no light.
+        centroids: x and y in pixels, float64 of shape (spheres, lights, 2); NaN if no light reaches a sphere.
         peaks: the brightest pixel, float64 of shape (spheres, lights).
     """
 
@@ -38,14 +38,14 @@ class Spots:
 
 
 def spheres_of(power: np.ndarray, covered: np.ndarray) -> np.ndarray:
-    """Return the sphere in each pixel, int of shape (height, width): 0 for none, 1 for the first of POWERS, and so
-    on."""
+    """Return the sphere that each pixel shows, int of shape (height, width): 0 for no sphere, 1 for the first of
+    POWERS, and so on."""
     match = np.abs(power[..., None] - np.array(POWERS)) < 0.01 * np.array(POWERS)
     return np.where(covered & match.any(axis=-1), match.argmax(axis=-1) + 1, 0)
 
 
 def spots(linear: np.ndarray, spheres: np.ndarray) -> Spots:
-    """Return the highlights of a frame: centroids weighted by light, and peaks.
+    """Return the highlights in a frame: centroids weighted by light, and peaks.
 
     Args:
         linear: the image of `lit_scene`, (height, width, 3).
@@ -65,15 +65,15 @@ def spots(linear: np.ndarray, spheres: np.ndarray) -> Spots:
 
 
 def wobble(frames: list[Spots], exact: Spots) -> tuple[np.ndarray, np.ndarray]:
-    """Return how far highlights move and flicker from frame to frame.
+    """Return how far highlights move and how much they flicker from frame to frame.
 
     Args:
         frames: highlights of an encoding in two or more frames.
         exact: highlights of exact normals, which do not move.
 
     Returns:
-        squared pixels, and squared percent of the exact peak, each a mean over pairs of frames and lights, of shape
-        (spheres,); NaN if a sphere has no light.
+        squared pixels, and squared percent of the exact peak, each averaged over pairs of frames and lights, of shape
+        (spheres,); NaN if no light reaches a sphere.
     """
     moved = np.diff(np.stack([frame.centroids for frame in frames]), axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):

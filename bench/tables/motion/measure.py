@@ -1,4 +1,4 @@
-"""Rows of the motion table: the code alone, then highlights and images that are rendered with its decodes."""
+"""Rows of the motion table: encoded normals alone, then highlights and images rendered with decoded normals."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ SCENE, PIPELINE = "gloss", "deferred"
 
 @dataclass(frozen=True)
 class FrameSequence:
-    """Frames to render.
+    """A sequence of frames to render.
 
     Attributes:
-        axis, turn, frames: how the camera turns.
+        axis, turn, frames: axis of the camera's rotation, degrees per frame, and number of frames.
         size: width and height in pixels.
-        setting: of the scene.
+        setting: setting of the scene.
     """
 
     axis: str
@@ -53,7 +53,7 @@ class FrameSequence:
     setting: Setting
 
     def views(self, view: View) -> Iterator[View]:
-        """Yield the camera of each frame, rotated by equal amounts to both sides of the given camera."""
+        """Yield the camera for each frame: the given camera, rotated by equal amounts to both sides."""
         angles = turning.angles(self.turn, self.frames, PICTURE_SWING_DEG)
         for angle in angles - np.max(angles) / 2:
             yield view.turned(self.axis, float(angle))
@@ -61,13 +61,13 @@ class FrameSequence:
 
 @dataclass(frozen=True)
 class MotionCase:
-    """One row to measure.
+    """A row of the motion table to measure.
 
     Attributes:
         codec: codec to measure.
         motion: rotation to follow.
-        count, seed: number and seed of the normals that are followed.
-        pictures: frames to render; None for none.
+        count, seed: number of normals to follow, and seed for choosing them.
+        pictures: frames to render; None to render no frames.
     """
 
     codec: Codec
@@ -84,17 +84,17 @@ class MotionCase:
 
 @dataclass
 class Filmed:
-    """A sequence as rendered.
+    """A rendered sequence.
 
     Attributes:
-        shown: the displayed image of each frame, float32 of shape (height, width, 3); of exact normals alone.
-        covered: where a frame has a surface, bool of shape (height, width).
-        still, still_covered: the same two of the scene's own camera.
-        spheres: which sphere a pixel shows, see highlights.spheres_of.
-        lit: the highlights as displayed: a frame of exact normals, or all frames of a code where somebody keeps them.
-        spots: where they are.
-        display: how they are displayed.
-        worst: of a code, the sphere whose highlights move the most, counted as `spheres` does; 0 for none.
+        shown: the displayed image of each frame, float32 of shape (height, width, 3); only for exact normals.
+        covered: mask of the surfaces in each frame, bool of shape (height, width).
+        still, still_covered: image and mask from the scene's own camera.
+        spheres: the sphere that each pixel shows, see highlights.spheres_of.
+        lit: the displayed highlights: one frame for exact normals; for an encoding all frames, if they are kept.
+        spots: positions and peaks of the highlights in each frame.
+        display: conversion of highlights to displayed values.
+        worst: the sphere whose highlights move the most with an encoding, numbered as in `spheres`; 0 for none.
     """
 
     shown: list[np.ndarray] = field(default_factory=list)
@@ -109,7 +109,7 @@ class Filmed:
 
 
 class Bench:
-    """A bench that measures cases, and each reference only once.
+    """A bench that measures cases and renders each reference only once.
 
     Args:
         device: device that renders frames; None if it is not needed.
@@ -122,7 +122,8 @@ class Bench:
         self._panels: dict[tuple[str, float, int], panel.Exact] = {}
 
     def measure(self, case: MotionCase) -> tuple[Row, Filmed | None]:
-        """Return one row of the table and its frames; a row that cannot be measured has its reason in `skipped`."""
+        """Return the row of a case, and its frames if any were rendered; if the case cannot be measured, the row has
+        the reason in `skipped`."""
         row = TABLE.empty([f"{power:g}" for power in POWERS]) | _case_columns(case)
         try:
             with trip_of(case.codec) as trip:
@@ -178,14 +179,15 @@ class Bench:
 
 @dataclass
 class Differences:
-    """The error of an encoding in the displayed images of a sequence, and its change from one image to the next."""
+    """An encoding's error in the displayed images of a sequence, and its change from one image to the next."""
 
     static: list[float] = field(default_factory=list)
     moving: list[float] = field(default_factory=list)
     _before: tuple[np.ndarray, np.ndarray] | None = None
 
     def add(self, difference: np.ndarray, covered: np.ndarray) -> None:
-        """Add a frame's image minus that of exact normals, (height, width, 3), and the mask of its surfaces."""
+        """Add the difference between a frame's image and the image of exact normals, (height, width, 3), with a mask
+        of its surfaces."""
         # What is no number is as far off as can be.
         difference = np.where(np.isfinite(difference), difference, 1.0)
         self.static.append(float(np.mean(difference[covered] ** 2)))
@@ -201,13 +203,13 @@ class Differences:
 
     @property
     def wobble_db(self) -> float:
-        """The PSNR, in decibels, of the changes of the images' errors from frame to frame."""
+        """The PSNR, in decibels, of the change in the images' errors from frame to frame."""
         return psnr_db(float(np.mean(self.moving)))
 
 
 @dataclass(frozen=True)
 class Projector:
-    """A sequence about to be rendered: scene gloss, and the same with nothing but highlights."""
+    """A sequence that is ready to render: scene gloss, and the same scene reduced to its highlights."""
 
     pictures: FrameSequence
     scene: Scene
@@ -219,12 +221,12 @@ class Projector:
         return self.pictures.views(self.scene.view)
 
     def image(self, view: View, keeps: Keeps | None = None) -> np.ndarray:
-        """Return a frame as displayed, float32 of shape (height, width, 3); of exact normals without `keeps`."""
+        """Return a frame as displayed, float32 of shape (height, width, 3); with exact normals without `keeps`."""
         self.of_scene.draw(replace(self.scene, view=view, previous=view), keeps)
         return Display(SCENES[SCENE].exposure or 0.0).image(self.of_scene.image()).astype(np.float32)
 
     def highlights(self, keeps: Keeps | None = None) -> np.ndarray:
-        """Return a frame of highlights in linear light, (height, width, 3): each channel shows one light."""
+        """Return a frame of highlights in linear light, (height, width, 3), in which each channel shows one light."""
         self.of_lit.draw(keeps=keeps)
         return self.of_lit.image()
 
@@ -257,7 +259,8 @@ def _exact_film(projector: Projector) -> Filmed:
 
 
 def in_space(trip: Trip, space: str, view: View) -> Keeps:
-    """Return a function that gives the normals from the G-buffer of a turned camera, in view space again."""
+    """Return a function that applies the round trip in `space` to the normals in a rotated camera's G-buffer; normals
+    enter and leave it in view space."""
     to_view = view.matrix()[:3, :3] if space == turning.SPACES[1] else np.eye(3)
 
     def keeps(position: np.ndarray, n: np.ndarray) -> np.ndarray:
@@ -267,11 +270,11 @@ def in_space(trip: Trip, space: str, view: View) -> Keeps:
 
 
 def on_surfaces(trip: Trip, of_normals: np.ndarray, of_positions: np.ndarray) -> Keeps:
-    """Return a function that gives the normals that come back from the G-buffer of a still camera if the codes on
-    its surfaces are those of a turned camera.
+    """Return a function that applies the round trip to the normals in a still camera's G-buffer, encoded as a rotated
+    camera would encode them.
 
-    The frame looks as if the image turned with the camera, with every surface at its pixel: changes come from the
-    code, not from the raster of pixels.
+    The frame looks as if the image rotated with the camera, so every surface stays at its pixel: changes come from
+    the encoding, not from the raster of pixels.
 
     Args:
         trip: round trip of the codec.
@@ -290,8 +293,8 @@ def turned(rows: np.ndarray, matrix: np.ndarray) -> np.ndarray:
 
 
 def _of_highlights(filmed: Filmed, exact: Filmed) -> Row:
-    """Return the columns of highlights, and set `filmed.worst` to the sphere, from 1, whose highlights move the most;
-    empty if no highlight can be followed."""
+    """Return the columns on highlights, and set `filmed.worst` to the number, from 1, of the sphere whose highlights
+    move the most; empty if no highlight can be followed."""
     moved, flickered = highlights.wobble(filmed.spots, exact.spots[0])
     if not np.isfinite(moved).any():
         return {}
@@ -303,7 +306,7 @@ def _of_highlights(filmed: Filmed, exact: Filmed) -> Row:
 
 
 def _root_mean(squares: Sequence[float] | np.ndarray) -> float | None:
-    """Return the root of the mean of the finite values; None if no value is finite."""
+    """Return the root of the mean of the finite values in `squares`; None if no value is finite."""
     finite = np.asarray(squares)[np.isfinite(squares)]
     return float(np.sqrt(np.mean(finite))) if len(finite) else None
 

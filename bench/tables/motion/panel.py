@@ -1,7 +1,7 @@
-"""Crawling steps: a slightly curved panel that mirrors thin strips while the camera moves around it.
+"""Crawling steps: a slightly curved panel that reflects thin strips while the camera moves around it.
 
-A step of an encoding stays on the surface, or moves over it, while the reflection moves past. People notice this
-sooner than the step itself.
+A quantisation step of an encoding stays on the surface, or moves over it, while the reflection moves past. People
+notice this sooner than the step itself.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ SWING_DEG = 4.0
 
 @dataclass(frozen=True)
 class Around:
-    """A panel about to be rendered from each place of the camera."""
+    """A panel that is ready to render from each position of the camera."""
 
     scene: Scene
     made: Rendering
@@ -56,13 +56,14 @@ class Around:
         return self.made.image()
 
     def covered(self) -> np.ndarray:
-        """Return which pixels of the last frame show the panel, bool of shape (height, width)."""
+        """Return a mask of the pixels that show the panel in the last frame, bool of shape (height, width)."""
         return self.made.gbuffer()[0][..., 2] != 0
 
 
 @dataclass(frozen=True)
 class Exact:
-    """Frames of exact normals: as displayed, float32 of shape (height, width, 3); where the panel is; and how."""
+    """Frames with exact normals: the displayed images, float32 of shape (height, width, 3), the masks of the panel,
+    and the conversion to displayed values."""
 
     shown: list[np.ndarray]
     covered: list[np.ndarray]
@@ -71,8 +72,8 @@ class Exact:
 
 @contextmanager
 def going_around(device: Device, axis: str, turn: float, frames: int) -> Iterator[Around]:
-    """Yield the panel under a camera that moves around it, `turn` degrees per frame about its own up, right or view
-    axis."""
+    """Yield the panel, ready to render while a camera moves around it by `turn` degrees per frame, about the camera's
+    own up, right or view axis."""
     scene = shown(OBJECT, ENVIRONMENTS[ENVIRONMENT].make()).scene(ROUGHNESS)
     plan = Plan(SIZE, 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 1, False, 1.0, antialiased=False)
     with rendering(device, PIPELINES[PIPELINE], scene, plan) as drawing:
@@ -80,7 +81,7 @@ def going_around(device: Device, axis: str, turn: float, frames: int) -> Iterato
 
 
 def exact(panel: Around) -> Exact:
-    """Return the frames of exact normals, all with the exposure that is measured in the middle frame."""
+    """Return the frames with exact normals, all at the exposure measured in the middle frame."""
     light, covered = [], []
     for view in panel.views():
         light.append(panel.light(view))
@@ -93,14 +94,14 @@ def exact(panel: Around) -> Exact:
 def differences(
     panel: Around, right: Exact, keeps_of: Callable[[View], Keeps]
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield for each frame its image minus that of exact normals, and the pixels that show the panel."""
+    """Yield the difference between each frame's image and the image of exact normals, and a mask of the panel."""
     for index, view in enumerate(panel.views()):
         image = right.display.image(panel.light(view, keeps_of(view))).astype(np.float32)
         yield image - right.shown[index], right.covered[index]
 
 
 def around(view: View, axis: str, degrees: float) -> View:
-    """Return the camera moved around its target by the rotation that `View.turned` makes in place."""
+    """Return the camera moved around its target by the rotation that `View.turned` applies in place."""
     turned = view.turned(axis, degrees)
     x, y, z = map(float, np.add(view.target, np.subtract(view.eye, turned.target)))
     return replace(turned, eye=(x, y, z), target=view.target)

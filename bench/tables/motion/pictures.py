@@ -1,4 +1,4 @@
-"""Animations of the highlight that wobbles most: written into a folder, and found there again."""
+"""Animations of the highlights that move the most: writing them into a folder, and finding them there again."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _file_stem(row: Row) -> str:
 
 def write(folder: Path, row: Row, filmed: Filmed, exact: Filmed) -> None:
     """Write an animation of the sphere whose highlights move the most: decoded normals, exact normals and their
-    difference, side by side. Write nothing if there is no such sphere."""
+    difference, side by side. Nothing is written if there is no such sphere."""
     if exact.spheres is None or not np.any(where := exact.spheres == filmed.worst) or not filmed.worst:
         return
     window = _window(where)
@@ -37,15 +37,15 @@ def write(folder: Path, row: Row, filmed: Filmed, exact: Filmed) -> None:
 
 
 def _window(where: np.ndarray) -> tuple[slice, slice]:
-    """Return the part of a picture around the pixels in a mask, bool of shape (height, width)."""
+    """Return the slices of rows and columns that enclose the pixels in a mask, (height, width), with a margin."""
     spans = [np.flatnonzero(where.any(axis=axis)) for axis in (1, 0)]
     y, x = (slice(max(int(span[0]) - MARGIN, 0), int(span[-1]) + MARGIN + 1) for span in spans)
     return y, x
 
 
 def films(folder: Path, rows: Sequence[Row]) -> Iterator[Film]:
-    """Yield the animation of the row whose highlights move the most, if the folder has it. A name is looked up, so
-    that it cannot lead out of the folder."""
+    """Yield the animation for the row whose highlights move the most, if the folder contains it. The file name is
+    looked up in the folder, so that it cannot lead out of it."""
     there = files_of(folder)
     usable = sorted(having(rows, "highlight_px", "turn_deg"), key=lambda row: -row["highlight_px"])
     for row in usable[:1]:

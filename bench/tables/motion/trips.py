@@ -1,4 +1,4 @@
-"""A codec as a function of normals: by JAX, or by GLSL where the encoding has no Python half."""
+"""The round trip of a codec as a function of normals: by JAX, or by GLSL if the encoding has no Python version."""
 
 from __future__ import annotations
 
@@ -48,8 +48,7 @@ def backend_of(codec: Codec) -> str:
 
 @cache
 def _program(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Any]:
-    """Return a compiled function (n, view, *scales) -> (stored code, decoded normal), which fixed-point formats
-    share."""
+    """Return a compiled (n, view, *scales) -> (stored code, decoded normal), which fixed-point formats share."""
 
     def through(n: Vec3, view: Vec3, *scales: Scale) -> tuple[Any, Vec3]:
         codec = Codec(encoding, fixed(like, scales), rounding)
@@ -89,8 +88,8 @@ def _trip_by_glsl(codec: Codec, passes: CodecPasses) -> Trip:
 
 
 def _in_chunks(trip: Trip) -> Trip:
-    """Return the same round trip for any count, CHUNK rows at a time: it is compiled once, and a chunk is a
-    rectangle of pixels."""
+    """Return the same round trip for any count, in padded chunks of CHUNK rows: it is compiled once, and a chunk
+    fills a rectangle of pixels."""
 
     def whole(n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         codes, decoded = zip(*(part(n, view, start) for start in range(0, len(n), CHUNK)), strict=True)

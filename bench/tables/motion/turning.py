@@ -1,4 +1,4 @@
-"""The rotations of cameras and objects, and the normals that are followed."""
+"""The rotations of cameras and objects, and the normals that are followed during them."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ AHEAD = View(eye=(0.0, 0.0, 0.0), target=(0.0, 0.0, -1.0), fov=46.0, near=0.1, f
 
 @dataclass(frozen=True)
 class Points:
-    """Points on surfaces as the first frame has them.
+    """Points on surfaces, as seen in the first frame.
 
     Attributes:
-        normals: unit, float64 of shape (count, 3).
-        positions: in view space, at distance 1 along the line of sight, float64 of shape (count, 3).
+        normals: unit normals, float64 of shape (count, 3).
+        positions: in view space, on the plane at distance 1, float64 of shape (count, 3).
     """
 
     normals: np.ndarray
@@ -40,15 +40,16 @@ class Points:
 
 
 def angles(turn: float, frames: int, swing: float = SWING_DEG) -> np.ndarray:
-    """Return the degrees at each frame, (frames,): `turn` more in each frame, up to `swing`, then back, and so on."""
+    """Return the angle at each frame in degrees, (frames,): it grows by `turn` per frame up to `swing`, then shrinks
+    to 0, and so on."""
     steps = max(1, math.floor(swing / turn + 1e-9))
     phase = np.arange(frames) % (2 * steps)
     return turn * np.minimum(phase, 2 * steps - phase)
 
 
 def rotations(axis: str, turn: float, frames: int) -> np.ndarray:
-    """Return the rotations from the first frame's view space to that of each frame of a turning camera, float64 of
-    shape (frames, 3, 3).
+    """Return the rotations from the first frame's view space to the view space of each frame of a turning camera,
+    float64 of shape (frames, 3, 3).
 
     An object that turns the other way has the same effect on its normals.
     """
@@ -58,12 +59,12 @@ def rotations(axis: str, turn: float, frames: int) -> np.ndarray:
 def points(space: str, count: int, seed: int) -> Iterator[Points]:
     """Yield points in chunks of at most CHUNK.
 
-    A camera may look anywhere in the world: in world space normals have all directions.
+    A camera may look anywhere in the world, so in world space, normals point in all directions.
 
     Args:
         space: one of SPACES.
         count: number of points, 1 or more.
-        seed: seed of the start of the sequence; the first points of a larger count are the same.
+        seed: seed for the start of the sequence; a larger count begins with the same points.
     """
     least = LEAST_Z if space == SPACES[0] else -1.0
     low, high = np.array([least, 0, -HALF_WIDTH, -HALF_HEIGHT]), np.array([1, 2 * np.pi, HALF_WIDTH, HALF_HEIGHT])

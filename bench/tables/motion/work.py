@@ -37,7 +37,7 @@ OTHER_DOMAIN = "in world space normals have all directions, and this encoding is
 
 
 def motions(options: MotionOptions) -> list[Motion]:
-    """Return the rotations to measure: each space, moving thing, axis and turn. Raises UsageError."""
+    """Return the rotations to measure, for each space, moving thing, axis and turn. Raises UsageError."""
     in_range("--frames", options.frames, 2, MAX_FRAMES)
     chosen = [
         choose(what, given, {name: name for name in known})
@@ -58,7 +58,7 @@ def motions(options: MotionOptions) -> list[Motion]:
 
 
 def codecs(options: MotionOptions) -> list[Codec]:
-    """Return the requested codecs; those that do not fit are named on standard error. Raises UsageError."""
+    """Return the requested codecs; codecs that do not fit are named on standard error. Raises UsageError."""
     chosen, left_out = fitting(codecs_named(options.encoding, options.storage, options.rounding))
     for encoding in dict.fromkeys(codec.encoding for codec in chosen):
         check_twin(encoding)
@@ -66,8 +66,8 @@ def codecs(options: MotionOptions) -> list[Codec]:
 
 
 def picture_turns(options: MotionOptions) -> tuple[float, ...]:
-    """Return the turns of which frames are rendered: those requested, empty for "none", by default the turn nearest
-    to USUAL_PICTURE_TURN_DEG. Raises UsageError for a turn that is not among --turn."""
+    """Return the turns for which frames are rendered: the requested turns, empty for "none", by default the turn
+    nearest to USUAL_PICTURE_TURN_DEG. Raises UsageError for a turn that is not among --turn."""
     turns = checked_numbers("--turn", options.turn, float, LEAST_TURN_DEG, MOST_TURN_DEG)
     possible = tuple(turn for turn in turns if turn <= PICTURE_SWING_DEG)
     if options.picture_turn is None:
@@ -86,7 +86,7 @@ def cases(options: MotionOptions, device: Device | None) -> list[MotionCase]:
     """Return one case for each row; combinations that cannot be measured are named on standard error.
 
     Raises:
-        UsageError: unknown names, numbers out of range, or nothing left.
+        UsageError: unknown names, numbers out of range, or nothing left to measure.
     """
     in_range("--count", options.count, 1, MAX_POINTS)
     check_seed(options.seed)
@@ -107,7 +107,7 @@ def cases(options: MotionOptions, device: Device | None) -> list[MotionCase]:
 
 
 def is_suited(codec: Codec, motion: Motion) -> bool:
-    """Whether an encoding suits the space of a motion: in world space normals have all directions."""
+    """Whether an encoding suits the space of a motion: in world space, normals point in all directions."""
     return motion.space != turning.SPACES[1] or codec.encoding.domain == "sphere"
 
 
@@ -139,7 +139,7 @@ STILL_DEG = 1e-4
 
 
 def _lines(rows: Sequence[Row]) -> list[list[Row]]:
-    """Return the rows with figures in groups that differ only in the turn."""
+    """Return the rows with figures, in groups that differ only in the turn."""
     lines: dict[tuple, list[Row]] = {}
     for row in having(rows, "wobble_deg", "turn_deg"):
         lines.setdefault(tuple(row.get(name) for name in LINE), []).append(row)
@@ -161,7 +161,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield the worst turn of each codec, and the figures of rendered frames."""
+    """Yield a sheet with the worst turn of each codec, and a sheet with the figures of rendered frames."""
     codes, images = [], []
     for line in _lines(rows):
         worst = max(line, key=lambda row: row["wobble_deg"])
@@ -182,8 +182,8 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _plotted(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of lines over the turn, without encodings that do not wobble: on a logarithmic axis they would
-    compress the rest."""
+    """Return the rows to plot against the turn, without encodings that do not wobble, which would compress the others
+    on a logarithmic axis."""
     return [row for line in _lines(rows) if any((row["ratio"] or 0) > LEAST_PLOTTED for row in line) for row in line]
 
 

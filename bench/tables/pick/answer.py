@@ -1,6 +1,6 @@
 """The answer, from rows alone: which encodings qualify, how they rank, and which to use.
 
-The order of two encodings depends only on these two. Adding or removing a third encoding does not change it.
+The ranking of two encodings depends only on those two. Adding or removing a third encoding does not change it.
 """
 
 from __future__ import annotations
@@ -66,23 +66,23 @@ ERRORS = 2
 
 
 def places_of(row: Row) -> list[str]:
-    """Return the names of a row's places in the answer; `[""]` if the row has no place."""
+    """Return the names of the places that a row has in the answer; `[""]` if it has none."""
     return str(row.get("place") or "").split(", ")
 
 
 def largest(row: Row) -> float | None:
-    """Return the supremum of the angle, or a larger sampled angle: float32 may lose what exact arithmetic does not.
-    None if neither is known."""
+    """Return the supremum of the angle, or the largest sampled angle if larger, because float32 may lose more than
+    exact arithmetic. None if neither is known."""
     return _largest_angle(row["angle_max_deg"], row["angle_sup_deg"])
 
 
 def mean(row: Row) -> float | None:
-    """Return the mean angle, or the mean error after the requested mixing, if that is larger; None if not known."""
+    """Return the mean angle, or the mean error after the requested mixing if larger; None if neither is known."""
     return _largest_angle(row["angle_mean_deg"], row.get("mixed_mean_deg"))
 
 
 def largest_mixed(row: Row) -> float | None:
-    """Return the larger of the largest angle and the largest error after requested mixing; None if unknown."""
+    """Return the largest angle, or the largest error after the requested mixing; None if neither is known."""
     return _largest_angle(largest(row), row.get("mixed_max_deg"))
 
 
@@ -91,8 +91,8 @@ def _largest_angle(*angles: float | None) -> float | None:
 
 
 def images(row: Row) -> dict[tuple[str, str], float]:
-    """Return the PSNR of a row's images by scene and specular power, which is empty for materials without a power; an
-    empty dict if no image was rendered."""
+    """Return the PSNRs of a row's images by scene and specular power; the power is empty if the materials have none.
+    An empty dict if no image was rendered."""
     figures = {name.removeprefix(IMAGE): value for name, value in row.items() if name.startswith(IMAGE)}
     return {_scene_and_power(name): value for name, value in figures.items() if value is not None}
 
@@ -113,7 +113,7 @@ def image_db(row: Row) -> float | None:
 
 
 def decibels(angle: float | None) -> float:
-    """Return 20 log10 of an angle in degrees, as decibels; lower is better, infinite if the angle is None."""
+    """Return 20 log10 of an angle in degrees, in decibels: lower is better; infinite if the angle is None."""
     return math.inf if angle is None else 20 * math.log10(max(angle, 1e-12))
 
 
@@ -134,35 +134,35 @@ AIMS: Mapping[str, Callable[[Row], float]] = MappingProxyType(
 
 
 def loss_db(row: Row) -> float:
-    """Return the loss of an encoding by the row's aim, in decibels; lower is better, infinite if it is not known."""
+    """Return an encoding's loss by the row's aim, in decibels: lower is better; infinite if not known."""
     return AIMS[row["aim"]](row)
 
 
 def floor(row: Row) -> float:
-    """Return the issue slots that the target's memory traffic hides; every encoding costs at least these."""
+    """Return the issue slots that memory traffic hides over all passes, which is the lowest possible cost."""
     return _hidden(row) * (1 + row["readers"])
 
 
 def _hidden(row: Row) -> float:
-    """Return the issue slots of a pass that take no time: those of the question, or else HIDDEN_SLOTS."""
+    """Return the issue slots per pass that take no extra time: the row's own number, otherwise HIDDEN_SLOTS."""
     return row.get("hidden_slots") or HIDDEN_SLOTS
 
 
 def price(row: Row) -> float:
-    """Return the issue slots to encode once and to decode in each decoding pass, with at least the hidden slots in
-    each pass; only the hidden slots if the slots are not known."""
+    """Return the issue slots to encode once and to decode in each decoding pass, counting at least the hidden slots
+    in each pass. Operations of unknown cost count as the hidden slots."""
     encode, decode = (max(row[name] or 0.0, _hidden(row)) for name in ("encode_slots", "decode_slots"))
     return encode + row["readers"] * decode
 
 
 def doublings(row: Row) -> float:
-    """Return the number of doublings from the lowest cost, `floor`, to the cost of an encoding."""
+    """Return log2 of the ratio between the cost of a row's encoding and the lowest possible cost, `floor`."""
     return math.log2(price(row) / floor(row))
 
 
 def is_enough(row: Row) -> bool:
-    """Whether reflections in an environment map hide an encoding's error: twice its largest angle is at most the
-    limit of the question."""
+    """Whether an encoding is accurate enough for reflections of an environment map: twice its largest angle is within
+    the row's limit."""
     angle = largest_mixed(row)
     return angle is not None and 2 * angle <= row["enough"]
 
@@ -170,10 +170,10 @@ def is_enough(row: Row) -> bool:
 def order(row: Row) -> tuple[float, ...]:
     """Return the sort key of a row; lower is better.
 
-    Among encodings that are accurate enough and cheap, the one with the fewest bits is first, then the cheapest, to
-    a doubling. The others follow by loss + worth log2(price / floor), to half a decibel, and then by cost. Image
-    scores are not rounded, because equality of images is decided by pairs. Largest angles are not rounded either,
-    because no choice of normals changes them.
+    Encodings that are accurate enough and cheap come first, by fewest bits and then by cost, rounded to doublings.
+    The others follow by loss + worth log2(price / floor), rounded to half a decibel, and then by cost. Image scores
+    are not rounded, because pairs decide whether images are equal. Nor are largest angles, because no choice of
+    normals changes them.
     """
     ties = (price(row), _bits(row), row["slots"] or 0.0)
     if row["aim"] == "cost":
@@ -190,10 +190,10 @@ def score(row: Row) -> float:
 
 
 def clear_gap_db(candidate: Row, other: Row) -> float:
-    """Return the smallest difference in decibels at which one of two encodings is better.
+    """Return the smallest difference in decibels that makes one of two encodings better.
 
-    Images of one encoding depend on how its axes are oriented in the scene: a gap counts only above twice its
-    standard error.
+    An encoding's images depend on how its axes are oriented in the scene: a difference counts only if it is at least
+    twice its standard error.
     """
     if candidate["aim"] != "image":
         return LEAST_DB
@@ -202,22 +202,22 @@ def clear_gap_db(candidate: Row, other: Row) -> float:
 
 
 def is_clearly_better(candidate: Row, other: Row) -> bool:
-    """Whether an encoding's loss is smaller than another's by at least `clear_gap_db`, beyond chance."""
+    """Whether an encoding's loss is lower than another's by at least `clear_gap_db`, which excludes chance."""
     return loss_db(other) - loss_db(candidate) >= clear_gap_db(candidate, other)
 
 
 def to_a_step(figure: float) -> float:
-    """Return a score rounded to half a decibel, because nobody chooses by less."""
+    """Return a score rounded to half a decibel, because smaller differences do not matter."""
     return round(figure / STEP) * STEP if math.isfinite(figure) else figure
 
 
 def _to_a_tenth(loss: float) -> float:
-    """Return a loss rounded to 0.1 dB, so that the storage that comes first among equals stays first."""
+    """Return a loss rounded to 0.1 dB, so that equally good encodings keep their order."""
     return round(loss, 1) if math.isfinite(loss) else loss
 
 
 def figures(row: Row) -> tuple[float, float, float]:
-    """Return the figures of the Pareto front: loss, cost and bits; lower is better."""
+    """Return the figures that the Pareto front compares: loss, cost and bits; lower is better."""
     return _to_a_tenth(loss_db(row)), price(row), _bits(row)
 
 
@@ -228,7 +228,7 @@ def beats(candidate: Row, other: Row) -> bool:
 
 
 def why_unfit(row: Row) -> str:
-    """Return why an encoding can never be the answer to a question, whatever it costs; empty if it can be."""
+    """Return the reason why an encoding can never be the answer, whatever its cost; empty if it can."""
     if row["skipped"]:
         return row["skipped"]
     if row["invalid"]:
@@ -265,25 +265,25 @@ def why_left_out(row: Row) -> str:
 
 
 def edges_decide(needs: str | None) -> bool:
-    """Whether neighbouring pixels may be of two surfaces: true unless only a hemisphere is needed, as in a normal
-    map, whose texels are of one surface."""
+    """Whether neighbouring pixels may belong to different surfaces: true unless only a hemisphere is needed, as for a
+    normal map, whose texels belong to one surface."""
     return needs != "hemisphere"
 
 
 def lost(row: Row) -> str:
-    """Return which normals an encoding loses because they are outside its domain; empty if it loses none."""
+    """Return a phrase on the share of normals outside an encoding's domain; empty if all are inside."""
     share = row["lost_percent"]
     return f"cannot represent normals that {BEYOND[row['domain']]}: {shown_share(share)} of the set" if share else ""
 
 
 def shown_share(percent: float) -> str:
-    """Return a percentage above 0 as text, so that it is never shown as 0: `1.2%` or "less than 0.01%"."""
+    """Return a percentage above 0 as text that never reads as 0: `1.2%` or "less than 0.01%"."""
     return f"{percent:.2g}%" if percent >= 0.01 else "less than 0.01%"
 
 
 def groups(rows: Sequence[Row]) -> dict[tuple[str, str, str], list[Row]]:
-    """Return the rows grouped by the question that they answer: the storage or bytes with the rounding, the set of
-    normals, and the scenes."""
+    """Return the rows grouped by the question that they answer: the requested storage or bytes with the rounding, the
+    set of normals, and the scenes."""
     by_question: dict[tuple[str, str, str], list[Row]] = {}
     for row in rows:
         by_question.setdefault((asked_of(row), row["normals"], row["scene"]), []).append(row)
@@ -291,14 +291,14 @@ def groups(rows: Sequence[Row]) -> dict[tuple[str, str, str], list[Row]]:
 
 
 def asked_of(row: Row) -> str:
-    """Return what was requested, in words; rounding to nearest is not mentioned."""
+    """Return the requested storage or bytes and the rounding, in words; rounding to nearest is not mentioned."""
     rounding = row.get("rounding") or "nearest"
     return row["asked"] if rounding == "nearest" else f"{row['asked']} with {rounding} rounding"
 
 
 def answered(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of each question with `left_out`, `front` and `place`: first those that qualify, by their
-    order, then the others. Of other storages with the same bytes only a row that is much better stays."""
+    """Return the rows of each question with `left_out`, `front` and `place`: first the rows that qualify, in order,
+    then the others. From other storages of the same bytes, only a row that is much better is kept."""
     return [row for group in groups(rows).values() for row in _answered_rows(group)]
 
 
@@ -323,8 +323,8 @@ def _answered_rows(group: Sequence[Row]) -> list[Row]:
 
 
 def _with_ties(fit: list[Row]) -> tuple[list[Row], list[int]]:
-    """Return the qualifying rows in their order, but first the cheapest of those whose images tie with the best; and
-    the indices of the others that tie."""
+    """Return the qualifying rows in order, except that the cheapest row whose images tie with the best comes first;
+    and the indices of the other tied rows."""
     if not fit or fit[0]["aim"] != "image" or order(fit[0])[0] != 1:
         return fit, []
     tied = [row for row in fit[1:] if score(row) - score(fit[0]) < clear_gap_db(fit[0], row)]
@@ -334,8 +334,8 @@ def _with_ties(fit: list[Row]) -> tuple[list[Row], list[int]]:
 
 
 def _only_inside(judged: Sequence[Row], best: Sequence[Row]) -> Row | None:
-    """Return the best encoding among those that survive mixing only inside a surface; None unless it is clearly
-    better than the answer."""
+    """Return the best encoding that survives mixing inside a surface but not across an edge; None unless it is
+    clearly better than the answer."""
     codes = [row for row in judged if row["left_out"] == EDGE_SAID and not row["hole"] and not row["beside"]]
     first = min(codes, key=order, default=None)
     return first if first and all(is_clearly_better(first, row) for row in best) else None
@@ -346,8 +346,9 @@ def _place_text(row: Row, places: Sequence[str]) -> str | None:
 
 
 def _rows_with_holes(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows with the size of their hole, and exclude those that have one. A hole is relative to the
-    smallest error of all encodings that could be requested in the storage, whatever they cost and survive."""
+    """Return the rows with a description of their hole; rows with a hole are excluded. A hole is relative to the
+    smallest error in the storage, over all encodings that could be the answer, whatever their cost and whether they
+    survive mixing."""
     least: dict[str, float] = {}
     for row in rows:
         if not why_unfit(row) and (angle := largest(row)) is not None:
@@ -361,7 +362,7 @@ def _rows_with_holes(rows: Sequence[Row]) -> list[Row]:
 
 
 def _hole_text(row: Row, least: float) -> str:
-    """Return how large an encoding's hole is, and where; empty if it has none."""
+    """Return the error of an encoding's hole and the normal at which it occurs, as text; empty if it has no hole."""
     angle = largest(row)
     if why_unfit(row) or row["accept_holes"] or angle is None or angle <= min(HOLE * least, LOST_DEG):
         return ""
@@ -370,7 +371,7 @@ def _hole_text(row: Row, least: float) -> str:
 
 
 def _unpriced(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows; rows of unknown cost are excluded if others have a known cost."""
+    """Return the rows; qualifying rows of unknown cost are excluded if others have a known cost."""
     is_priced = any(row["slots"] is not None for row in rows if not row["left_out"])
     return [row | {"left_out": LOOPS_SAID} if is_priced and _lacks_price(row) else row for row in rows]
 
@@ -380,7 +381,8 @@ def _lacks_price(row: Row) -> bool:
 
 
 def _places(fit: Sequence[Row]) -> list[list[str]]:
-    """Return for each qualifying encoding, in the given order, the names of its places among the alternatives."""
+    """Return the names of the places of each qualifying encoding, in the given order: best, cheaper, more accurate
+    and so on."""
     places: list[list[str]] = [[] for _ in fit]
     if not fit:
         return places
@@ -404,7 +406,7 @@ def _places(fit: Sequence[Row]) -> list[list[str]]:
 
 
 def is_same_price(candidate: Row, other: Row) -> bool:
-    """Whether two costs are less than a tenth of a doubling apart."""
+    """Whether two costs differ by less than a tenth of a doubling."""
     return abs(math.log2(price(candidate) / price(other))) < SAME_PRICE
 
 
@@ -422,13 +424,13 @@ def _bits(row: Row) -> float:
 
 
 def _first_of_each_size(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
-    """Return the index of the first alternative of each number of bits, the most bits first."""
+    """Return the index of the first alternative for each number of bits, with the most bits first."""
     first = {_bits(fit[i]): i for i in reversed(chosen)}
     return [first[size] for size in sorted(first, reverse=True)]
 
 
 def _rungs_apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
-    """Return the indices that are kept: each alternative must be clearly better than the last that was kept."""
+    """Return the indices to keep: each alternative must be clearly better than the previous one that is kept."""
     kept: list[int] = []
     for index in chosen:
         if not kept or is_clearly_better(fit[index], fit[kept[-1]]):
@@ -438,15 +440,15 @@ def _rungs_apart(chosen: Sequence[int], fit: Sequence[Row]) -> list[int]:
 
 def is_much_better(row: Row, best: Row) -> bool:
     """Whether an encoding in another storage is worth mentioning: it is better by a bit per component, its largest
-    error is not higher, and the best encoding is not already far more accurate than requested."""
+    error is no larger, and the best encoding is not already far more accurate than required."""
     worst = largest_mixed(best) or math.inf
     is_worse, is_needless = (largest_mixed(row) or math.inf) > worst, 2 * worst * NEEDLESS <= best["enough"]
     return loss_db(best) - loss_db(row) >= MUCH_BETTER_DB and not is_worse and not is_needless
 
 
 def _elsewhere_rows(judged: Sequence[Row], fit: Sequence[Row]) -> list[Row]:
-    """Return a list of the best encoding in another storage of the same bytes, if it is much better and its largest
-    error is not higher; else empty."""
+    """Return a list with the best encoding in another storage of the same bytes, if it is much better than the
+    answer; otherwise an empty list."""
     others = [row for row in judged if row["beside"] and not row["left_out"]]
     better = [row for row in others if fit and is_much_better(row, fit[0])]
     kept = sorted(better, key=lambda row: order(row)[:-TIES])[:1]

@@ -21,7 +21,7 @@ LOWEST_SHARE, MOST_ANGLES = 1.0, 96
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield the charts of each question with at least two encodings of known cost: cost against error, and the
+    """Yield the charts for each question with at least two encodings of known cost: cost against error, and the
     distribution of angles."""
     for index, group in enumerate(groups(rows).values()):
         able = [row for row in group if _has_place(row)]
@@ -33,18 +33,18 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def chart_name(index: int) -> str:
-    """Return the name of a question's chart, from the question's index among those of the rows."""
+    """Return the name of the cost chart for the question with this index."""
     return f"choose-{index}"
 
 
 def spread_name(index: int) -> str:
-    """Return the name of a question's chart of angles, from the question's index among those of the rows."""
+    """Return the name of the chart of angles for the question with this index."""
     return f"spread-{index}"
 
 
 def _has_place(row: Row) -> bool:
-    """Whether an encoding qualifies under some constraints that a reader may choose, and its mean error and its issue
-    slots are known."""
+    """Whether an encoding belongs in the charts: it qualifies under some constraints that a reader may choose, and
+    its mean error and its issue slots are known."""
     is_known = bool(mean(row)) and row["slots_once"] is not None
     return is_known and not row["beside"] and not why_unfit({**row, "accept_lengths": True})
 
@@ -55,7 +55,7 @@ def _point(row: Row) -> Row:
 
 
 def _front(points: Sequence[Row]) -> list[Row]:
-    """Return the Pareto front of the points without `rest`, in cost and error, the cheapest first."""
+    """Return the Pareto front in cost and error of the points that are not excluded (`rest`), the cheapest first."""
     kept: list[Row] = []
     for point in sorted(
         (candidate for candidate in points if not candidate["rest"]), key=lambda row: (row["x"], row["y"])
@@ -121,20 +121,20 @@ def _spread(name: str, counted: Sequence[tuple[Row, Bins]]) -> Chart:
 
 
 def _shares_below(counts: Bins) -> tuple[list[float], list[float]]:
-    """Return the upper edges of a histogram's bins, and the percentage of all angles below each."""
+    """Return the upper edges of a histogram's bins, and the percentage of all angles below each edge."""
     total = sum(count for *_, count in counts)
     return [max(high, LEAST_DEG) for _, high, _ in counts], [100 * n / total for n in accumulate(c for *_, c in counts)]
 
 
 def _share_at(angle: float, edges: Sequence[float], below: Sequence[float]) -> float:
-    """Return the percentage of angles below a bin's edge, with a tolerance because rows round edges."""
+    """Return the percentage of angles below a bin edge, with a tolerance because edges are rounded in rows."""
     index = bisect_right(edges, angle * 1.001)
     return round(below[index - 1], 1) if index else 0.0
 
 
 def _angles(shares: Iterable[tuple[Sequence[float], Sequence[float]]]) -> list[float]:
-    """Return the edges of bins, ascending and at most MOST_ANGLES: from the lowest below which a codec has
-    LOWEST_SHARE percent of its normals up to the highest."""
+    """Return at most MOST_ANGLES bin edges in ascending order, from the lowest edge below which a codec has
+    LOWEST_SHARE percent of its normals to the highest edge."""
     pairs = [pair for edges, below in shares for pair in zip(edges, below, strict=True)]
     low = min(edge for edge, share in pairs if share >= LOWEST_SHARE)
     every = sorted({edge for edge, _ in pairs if edge >= low}, reverse=True)

@@ -1,6 +1,7 @@
-"""Choices for the page's script: each question's codecs, judged by everything that a reader cannot change.
+"""Choices for the page's script: the codecs for each question, judged by everything that a reader cannot change.
 
-The script contains only the rule of `answer.py`, with a reader's limits in place of the requested ones.
+The script contains only the ranking rule of `answer.py`, applied with the reader's limits instead of the requested
+ones.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ ASKED = (
 
 
 def extras(_folder: Path, tables: Mapping[str, Sequence[Row]], _remarks: list[str]) -> Mapping[str, Any]:
-    """Return the questions of a run, for the page, as `choices`; empty if the run answers no question."""
+    """Return the questions of a run for the page, as `choices`; an empty dict if the run answers no question."""
     asked = enumerate(groups(tables[TABLE.name]).values())
     questions = [
         _question(group) | {"chart": chart_name(index), "spread": spread_name(index)}
@@ -74,7 +75,7 @@ def _question(group: Sequence[Row]) -> dict[str, Any]:
 
 
 def _on(first: Row) -> str:
-    """Return the normals of a question, and those that an encoding must represent if these are not all."""
+    """Return the set of normals, followed by the normals that an encoding must represent, unless these are all."""
     held = MADE_FOR.get(first["needs"] or "")
     return f"{first['normals']}: {held}" if held else first["normals"]
 
@@ -126,16 +127,16 @@ def _code(row: Row) -> dict[str, Any]:
 
 
 def _turns(row: Row) -> list[list[float]]:
-    """Return for each image the list of its errors at the encoding's pole, by yaw."""
+    """Return a list for each image with its errors by yaw, at the encoding's pole."""
     errors = _read(row.get("image_errors")) or {}
     return [by_pole[row["image_pole"] or VIEW_SPACE] for by_pole in errors.values()]
 
 
 def _read(text: str | None) -> Any:
-    """Return the content of a column that holds JSON; None if it was not measured."""
+    """Return the parsed value of a JSON column; None if it was not measured."""
     return json.loads(text) if text else None
 
 
 def _finite(value: float) -> float | None:
-    """Return a loss, or None if it is not finite, which JSON cannot store."""
+    """Return a loss; None if it is not finite, because JSON cannot store such a number."""
     return value if math.isfinite(value) else None

@@ -1,4 +1,4 @@
-"""Images lit with decoded normals: their errors in many orientations, and the pictures of one orientation."""
+"""Images lit with decoded normals: their errors in many orientations, and the displayed image in one orientation."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ Found = dict[str, dict[str, dict[str, list[float]]]]
 
 
 class Images:
-    """A context manager for the images of a question's scenes. Each scene's surfaces are drawn once, and released at
-    the end."""
+    """A context manager for the images of a question's scenes. The surfaces of each scene are drawn once and released
+    at the end."""
 
     def __init__(self, device: Device):
         self._device, self._stack = device, ExitStack()
@@ -55,14 +55,14 @@ class Images:
         self._stack.close()
 
     def first(self, case: PickCase) -> Row:
-        """Return the columns of images from a few yaws, enough to recognise encodings far from the best."""
+        """Return the image columns from a few yaws, enough to recognise encodings that are far from the best."""
         return _with_conditions(columns(self._errors(case, 0, turns.FIRST, _poles(case))), case)
 
     def of(self, case: PickCase) -> Row:
-        """Return the columns of images: PSNRs over covered pixels that the encoding is made for, at each power in
-        each scene; empty if the device or a layout does not support the codec.
+        """Return the image columns: PSNRs over covered pixels in the encoding's domain, for each scene and power.
+        Empty if the device or a layout does not support the codec.
 
-        Images with effects use only a few yaws, because they are drawn whole, which is slow.
+        Images with effects use only a few yaws, because each is rendered in full, which is slow.
         """
         poles = _poles(case)
         if case.said.get("effects"):
@@ -83,8 +83,8 @@ class Images:
         return row
 
     def _errors(self, case: PickCase, first: int, count: int, poles: Sequence[str]) -> Found:
-        """Return the errors by image and pole: of `count` yaws from number `first` on, or of as many rotations for
-        the pole TURNED. Scenes that the device cannot draw are left out."""
+        """Return the errors by image and pole: for `count` yaws from number `first`, or for as many rotations for the
+        pole TURNED. Scenes that the device cannot draw are left out."""
         errors: Found = {}
         for maker in case.makers:
             known = maker.name if maker is SCENES.get(maker.name) else None
@@ -122,7 +122,7 @@ class Images:
         return self._trips[codec]
 
     def _images(self, case: PickCase, maker: SceneMaker) -> Mapping[float | None, WholeImage]:
-        """Return a scene's images by specular power (None without powers), drawn once for all codecs. Raises
+        """Return the images of a scene by specular power (None without powers), drawn once for all codecs. Raises
         UsageError if the scene shows no surface."""
         question = (maker, case.setting, case.powers, case.pipeline)
         if question not in self._whole:
@@ -141,7 +141,7 @@ class Images:
         return self._sampled[id(whole)]
 
     def _lost_percent(self, case: PickCase, maker: SceneMaker) -> float:
-        """Return the percentage of covered pixels whose normals the encoding is not made for."""
+        """Return the percentage of covered pixels whose normals are outside the encoding's domain."""
         whole, encoding = next(iter(self._images(case, maker).values())), case.codec.encoding
         if encoding.domain == "view":
             return 100.0 * float(np.mean(whole.view_angles() > encoding.reach_deg))
@@ -155,7 +155,7 @@ class Images:
         return f"In {maker.name} {within}"
 
     def shown(self, case: PickCase, maker: SceneMaker, pole: str) -> dict[float | None, tuple[np.ndarray, np.ndarray]]:
-        """Return for each power (None without powers) the displayed image of the first yaw, and the image of exact
+        """Return for each power (None without powers) the displayed image at the first yaw, and the image of exact
         normals: (height, width, 3), 0 to 1.
 
         Raises:
@@ -167,7 +167,7 @@ class Images:
 
 
 def _with_conditions(row: Row, case: PickCase) -> Row:
-    """Return columns of images with each scene's size, exposure and display in words; an empty row unchanged."""
+    """Return image columns with the size, exposure and display of each scene in words; an empty row is unchanged."""
     parts = []
     for maker in case.makers:
         exposure = "a measured exposure" if maker.exposure is None else f"{maker.exposure:g} stops"
@@ -182,7 +182,7 @@ def _poles(case: PickCase) -> Sequence[str]:
 
 
 def _turns(pole: str, first: int, count: int, seed: int) -> Sequence[Turn]:
-    """Return the rotations from the world's axes to an encoding's: many orientations, or only None in view space."""
+    """Return the rotations from world axes to the encoding's axes: many orientations, or only None in view space."""
     if pole == turns.VIEW_SPACE:
         return [None]
     if pole == TURNED:
@@ -211,7 +211,7 @@ def _frames_and_pole(image_errors: Found) -> tuple[turns.Errors, str]:
 
 
 def columns(image_errors: Found) -> Row:
-    """Return the columns of a codec's images; empty if the codec has no images."""
+    """Return the columns on a codec's images; empty if the codec has no images."""
     if not image_errors:
         return {}
     frames, pole = _frames_and_pole(image_errors)

@@ -13,8 +13,8 @@ from ...ground.output.sources import sources
 
 
 def figures_key(what: str, codec: Codec, *parts: Any) -> str:
-    """Return the cache key of a codec's figure; empty if the figure may change between runs, which a None in `parts`
-    signals."""
+    """Return the cache key for a codec's figure; empty if the figure may change between runs: `parts` contains None,
+    or the encoding is not in the catalogue."""
     if None in parts or not is_in_catalogue(codec.encoding):
         return ""
     return key_of("pick", what, sources(), jax.__version__, codec.name, *map(repr, parts))

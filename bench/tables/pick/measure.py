@@ -1,4 +1,4 @@
-"""Measurement of each codec for an answer: angles, images and instructions. Earlier results are not measured again."""
+"""Measurement of each codec for an answer: angles, images and instructions, with earlier results from the cache."""
 
 from __future__ import annotations
 
@@ -63,13 +63,13 @@ QUALITY = ("angle_mean_deg", "angle_max_deg", "angle_counts", "worst_normal", "i
 
 @dataclass(frozen=True)
 class PickCase:
-    """One codec and the question about it.
+    """A codec, and the question that it may answer.
 
     Attributes:
         codec: the codec.
-        normal_set: the normals that its angles are measured over.
-        makers, setting, powers: the scenes to render, and the specular powers.
-        said: the columns of the row about the question.
+        normal_set: the normals over which its angles are measured.
+        makers, setting, powers: the scenes to render, their setting, and the specular powers.
+        said: the columns of the row that describe the question.
         pipeline: the renderer, with the requested effects.
         is_surveyed: whether constraints other than the requested ones are measured too.
     """
@@ -85,12 +85,12 @@ class PickCase:
 
     @property
     def name(self) -> str:
-        """The case's name in a question, whose cases all have the same rounding: `encoding/storage`."""
+        """The name of the case within its question, in which all cases have the same rounding: `encoding/storage`."""
         return f"{self.codec.encoding.name}/{self.codec.storage.name}"
 
     @property
     def is_beside(self) -> bool:
-        """Whether the case is of another storage of the same bytes, and is compared only by its angles."""
+        """Whether the case has another storage of the same bytes, so that only its angles are compared."""
         return bool(self.said["beside"])
 
     def powers_of(self, maker: SceneMaker) -> tuple[float | None, ...]:
@@ -101,15 +101,17 @@ class PickCase:
 def rows(
     asked: Sequence[Sequence[PickCase]], device: Device | None, images: Path | None, tick: Callable[[str], None]
 ) -> Iterator[list[Row]]:
-    """Yield the rows of each question: the codecs of one storage on one set of normals and its scenes, in order.
+    """Yield the rows of each question, which compares the codecs of one storage on one set of normals and its scenes.
 
-    Images and suprema take seconds each. Images are drawn for codecs that have a place in the answer, or for all
-    that qualify if the image decides. Suprema are computed for codecs that have a place, or for all that qualify if
-    the largest angle decides.
+    Images and suprema take seconds each. Images are drawn for codecs that have a place in the answer, or for all that
+    qualify if images decide. Suprema are computed for codecs that have a place, or for all that qualify if the
+    largest angle decides.
 
     Args:
+        asked: the cases of each question.
         device: device that draws the images; None for no images.
         images: folder for the images of codecs that an answer names; None to write no images.
+        tick: called with a name when a case is done.
     """
     if not asked:
         return
@@ -136,7 +138,7 @@ def rows(
 
 
 class Question:
-    """The codes of one storage, or of storages of as many bytes, on one set of normals and in its scenes."""
+    """The codecs for one storage, or for storages of the same bytes, on one set of normals and in its scenes."""
 
     def __init__(self, chosen: Sequence[PickCase], pool: Executor, costs: Costs, others: Costs | None):
         self._pool, self._costs, self._others, self._aim = pool, costs, others, chosen[0].said["aim"]
@@ -158,8 +160,8 @@ class Question:
         return cheap if case.is_beside else 2 * cheap if case.said["packed"] else math.inf
 
     def measure(self, tick: Callable[[str], None]) -> None:
-        """Measure the angles of all cases and, if requested, the mixing, and start the computation of the suprema
-        that are then needed in the other thread."""
+        """Measure the angles of all cases and the requested mixing, if any, and start computing the suprema that are
+        then needed in the other thread."""
         measured = zip(
             [*self._by_gl, *self._by_jax], [*_angle_columns(self._by_gl), *self._angle_columns.result()], strict=True
         )
@@ -178,8 +180,8 @@ class Question:
         self._find_suprema(self._qualified_rows("angle") if self._aim == "worst" else self._placed_rows())
 
     def _survey(self, others: Costs) -> None:
-        """Measure other constraints that a reader of the page may set, for all possible answers and for the codec
-        of another storage that the answer names."""
+        """Measure issue slots and mixing for other constraints that a reader of the page may set: for all possible
+        answers, with mixing in another storage only for codecs that the answer names."""
         named = {_case_name(row) for row in self._placed_rows()}
         for name, row in self._rows.items():
             if why_unfit(row | {"accept_lengths": True}):
@@ -189,8 +191,8 @@ class Question:
                 row["by_use"] = json.dumps(_by_use(self._cases[name]))
 
     def _judge_others(self) -> None:
-        """Measure how mixing affects the codec of another storage that the answer would name; if it does not
-        survive, measure the next one."""
+        """Measure the effect of mixing on the codec in another storage that the answer would name; if the codec does
+        not survive, measure the next one."""
         judged: set[str] = set()
         while waits := [
             row for row in self._placed_rows() if row["beside"] and row["mixing"] and _case_name(row) not in judged
@@ -201,11 +203,11 @@ class Question:
 
     @property
     def _own(self) -> list[PickCase]:
-        """Cases that count as progress: those of the requested storage."""
+        """The cases with the requested storage, which count as progress."""
         return [case for name, case in self._cases.items() if name in self._rows and not case.is_beside]
 
     def draw(self, images: Images | None, tick: Callable[[str], None]) -> None:
-        """Draw images, if `images` is given, and find the suprema of codecs that then have a place."""
+        """Draw images, if `images` is given, and find the suprema of the codecs that have a place as a result."""
         own = self._own
         left = own[len(own) // OF_ANGLES :]
         if self._aim == "worst":
@@ -227,7 +229,7 @@ class Question:
         self._measure_axes([self._cases[_case_name(row)] for row in placed])
 
     def _draw_near_the_best(self, images: Images) -> None:
-        """Draw all codecs that qualify in a few orientations, and those near the best in all orientations."""
+        """Draw all codecs that qualify in a few orientations, then the codecs near the best in all orientations."""
         names = [_case_name(row) for row in self._qualified_rows("angle")]
         for name in names:
             self._rows[name] |= images.first(self._cases[name])
@@ -239,25 +241,25 @@ class Question:
                 self._rows[name] |= images.of(self._cases[name])
 
     def _measure_axes(self, cases: Sequence[PickCase]) -> None:
-        """Measure the largest error of axis-aligned normals: of all, or of those with z >= 0 if an encoding need not
-        represent the rest."""
+        """Measure the largest error over axis-aligned normals: over all of them, or over those with z >= 0 if the
+        encoding need not or cannot represent the others."""
         axes = {case.name: replace(case, normal_set=_axis_set(_is_half(case))) for case in cases}
         for name, row in zip(axes, _angle_columns(list(axes.values())), strict=True):
             self._rows[name][AXES] = row["angle_max_deg"]
 
     def answered(self) -> list[Row]:
-        """Return the rows as far as they are known, the best first."""
+        """Return the answered rows with the figures known so far, the best first."""
         return answered(list(self._rows.values()))
 
     def _placed_rows(self) -> list[Row]:
-        """Return the rows with a place in the answer; rank by angles until images exist."""
+        """Return the rows with a place in the answer; they are ranked by angle until images exist."""
         rows = list(self._rows.values())
         has_images = any(row.get("image_errors") for row in rows)
         aim = "angle" if self._aim == "image" and not has_images else self._aim
         return [row for row in answered([row | {"aim": aim} for row in rows]) if row["place"]]
 
     def _recorded_front(self) -> list[Row]:
-        """Return the rows on the front, shown next to those with a place, whose suprema come with the package."""
+        """Return the rows on the Pareto front whose suprema are recorded in the package."""
         cases = ((row, self._cases[_case_name(row)]) for row in self.answered() if row["front"])
         return [row for row, case in cases if SUPREMA.find(name_of(case.codec, _is_half(case)), case.codec)]
 
@@ -275,19 +277,19 @@ class Question:
             self._rows[name][SUPREMUM] = future.result()
 
     def rows(self) -> list[Row]:
-        """Return the rows, in the order of the cases, once their suprema are computed."""
+        """Return the rows, in the order of the cases, after waiting for their suprema."""
         self._take_suprema()
         return list(self._rows.values())
 
 
 def _is_half(case: PickCase) -> bool:
-    """Whether an encoding need not represent all directions, or cannot."""
+    """Whether an encoding need not, or cannot, represent all directions."""
     return bool(case.said["needs"] not in (None, "", "sphere") or case.codec.encoding.domain != "sphere")
 
 
 @cache
 def _axis_set(is_half: bool) -> NormalSet:
-    """Return the axis-aligned normals, all or those with z >= 0: of floors, walls and ceilings facing the viewer."""
+    """Return the axis-aligned normals, as of floors, walls and ceilings: all, or those with z >= 0."""
     axes = NORMAL_SETS["axes"](0, 0)
     if not is_half:
         return axes
@@ -306,8 +308,8 @@ def _case_name(row: Row) -> str:
 
 
 def _by_use(case: PickCase) -> Row:
-    """Return for each use the reason why a codec cannot be used in this way (empty if it can), and the sum, number
-    and maximum of its errors."""
+    """Return for each use the reason why a codec cannot be used in this way, empty if it can, and the sum, count and
+    maximum of its errors."""
     domain, at_edges = _mixed_domain(case), edges_decide(case.said["needs"])
     key = figures_key("each use", case.codec, domain, at_edges, _normals_key(case))
 
@@ -331,7 +333,7 @@ def _by_use(case: PickCase) -> Row:
 
 
 def _mixing_columns(case: PickCase) -> Row:
-    """Return the effect of the requested mixing on a codec: why it does not survive, if it does not, and its errors."""
+    """Return columns on the effect of the requested mixing: reasons why a codec does not survive, and its errors."""
     uses, domain = case.said["mixing"], _mixed_domain(case)
     key = figures_key("mixing", case.codec, uses, domain, _normals_key(case))
 
@@ -349,8 +351,8 @@ def _mixing_columns(case: PickCase) -> Row:
 
 
 def _mixed_domain(case: PickCase) -> str:
-    """Return the domain of the normals that are mixed: the requested domain or else the encoding's, and "hemisphere"
-    instead of "sphere" if the set has no other normals."""
+    """Return the domain of the normals to mix: the requested domain, otherwise the encoding's; "hemisphere" instead
+    of "sphere" if the set has no normals with z < 0."""
     domain = case.said["needs"] or case.codec.encoding.domain
     return "hemisphere" if domain == "sphere" and not _lost_percent(case.normal_set, "hemisphere") else domain
 
@@ -376,7 +378,7 @@ def _case_columns(case: PickCase) -> Row:
 
 
 def _angle_columns(chosen: Sequence[PickCase]) -> list[Row]:
-    """Return the columns of angles of each case; cases that are not in the cache are measured together."""
+    """Return the angle columns of each case; cases that are not in the cache are measured together."""
     keys = [figures_key("angles", case.codec, _normals_key(case)) for case in chosen]
     rows = [kept.read_figures(key) for key in keys]
     missing = [_quality_case(case) for case, row in zip(chosen, rows, strict=True) if row is None]
@@ -392,13 +394,13 @@ def _angle_columns(chosen: Sequence[PickCase]) -> list[Row]:
 
 
 def length_shares(codecs: Sequence[Codec]) -> dict[str, float | None]:
-    """Return by codec name the ratio of the length error to the direction error, over a few normals of the sphere;
+    """Return the ratio of the length error to the direction error by codec name, over a few normals of the sphere;
     None if it is not known."""
     return {name: row["length_share"] for name, row in _angles_of(codecs, NORMAL_SETS["sphere"](FEW, 0))}
 
 
 def mean_angles(codecs: Sequence[Codec], normals: NormalSet) -> dict[str, float]:
-    """Return by codec name the mean angle in degrees over normals; codecs without figures are left out."""
+    """Return the mean angle over a set of normals, in degrees, by codec name; codecs without figures are left out."""
     return {name: row["angle_mean_deg"] for name, row in _angles_of(codecs, normals) if not row["skipped"]}
 
 
@@ -408,8 +410,8 @@ def _angles_of(codecs: Sequence[Codec], normals: NormalSet) -> Iterator[tuple[st
 
 
 def _length_share(row: Row) -> float | None:
-    """Return the root mean squared error of the decoded lengths divided by that of the directions in radians; None if
-    there is no direction error, or no figures.
+    """Return the RMS error of the decoded lengths divided by the RMS angle in radians; None if there are no figures
+    or no direction error.
 
     |n - n'|^2 = (1 - |n'|)^2 + 2 |n'| (1 - cos theta), and the last term's mean is close to that of theta^2.
     """
@@ -424,7 +426,7 @@ def _quality_case(case: PickCase) -> quality.QualityCase:
 
 
 def _supremum_deg(case: PickCase) -> float | None:
-    """Return the largest angle in exact arithmetic; None for an encoding that exists only in shaders, and for a set
+    """Return the largest angle in exact arithmetic; None for an encoding that exists only in shaders, or for a set
     without a domain."""
     quality_case = _quality_case(case)
     if quality_case.backend != "jax":
@@ -436,15 +438,15 @@ def _supremum_deg(case: PickCase) -> float | None:
 
 
 def _normals_key(case: PickCase) -> list[Any] | None:
-    """Return the part of a key that identifies a set of normals; None for a set that may change between runs."""
+    """Return the part of a cache key for a set of normals; None for a set that may change between runs."""
     chosen = case.normal_set
     return [chosen.name, chosen.count, chosen.seed] if chosen.name in NORMAL_SETS else None
 
 
 @cache
 def _lost_percent(normals: NormalSet, domain: str, reach_deg: float = 90.0) -> float:
-    """Return the percentage of normals outside a domain; outside "view" are those more than `reach_deg` from the
-    line of sight."""
+    """Return the percentage of normals outside a domain; for "view", of normals more than `reach_deg` from the line
+    of sight."""
     if domain == "sphere":
         return 0.0
     lost = count = 0

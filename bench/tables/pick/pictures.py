@@ -1,4 +1,4 @@
-"""Pictures of the codes that an answer names: written into a folder, and found there again."""
+"""Pictures for the encodings that an answer names: writing them into a folder, and finding them there again."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ PLACES = (BEST, AGAINST, MORE_EXACT, MOST_EXACT, CHEAPER, FEWER_BITS)
 
 
 def write(folder: Path, chosen: Sequence[PickCase], rows: Sequence[Row], drawing: Images) -> None:
-    """Write the images of every encoding that has a place in the answer, and of exact normals, in PNG files;
-    encodings that the device does not support are left out."""
+    """Write PNG images for every encoding that has a place in the answer, and for exact normals; encodings that the
+    device does not support are left out."""
     poles = {CodecKey.of(row): row.get("image_pole") or VIEW_SPACE for row in rows}
     for case, maker in ((pick_case, maker) for pick_case in placed(chosen, rows) for maker in pick_case.makers):
         # A code that the device has no room for has no image.
@@ -44,7 +44,7 @@ def write(folder: Path, chosen: Sequence[PickCase], rows: Sequence[Row], drawing
 
 
 def placed(chosen: Sequence[PickCase], rows: Sequence[Row]) -> Iterator[PickCase]:
-    """Yield the cases whose codec the answer names, without those of other storages of the same bytes."""
+    """Yield the cases whose codec the answer names, except in other storages of the same bytes."""
     named = {CodecKey.of(row) for row in rows if set(places_of(row)) & set(PLACES)}
     yield from (case for case in chosen if not case.is_beside and _key_of_case(case) in named)
 
@@ -67,7 +67,8 @@ def _write(path: Path, image: np.ndarray) -> None:
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """Yield the subjects in a folder of answers: for each power, the highest first, the codecs by their places."""
+    """Yield a subject for each scene and power, the highest power first, with the pictures in a folder: the codecs by
+    storage and place."""
     there = files_of(folder)
     storages = list(dict.fromkeys(row.get("storage") for row in rows))
     kept = [row for row in rows if set(places_of(row)) & set(PLACES)]

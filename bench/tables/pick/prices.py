@@ -1,4 +1,4 @@
-"""Costs of codecs: issue slots as executed, on the most expensive of several GPU families."""
+"""Costs of codecs: executed issue slots, on the most expensive of several GPU families."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from .table import READERS
 
 
 class Costs:
-    """Instructions and issue slots of codecs. On a machine without compilers, the costs of catalogue codecs are
-    recorded ones, and others are unknown.
+    """Instructions and issue slots of codecs. On a machine without compilers, catalogue codecs have recorded costs,
+    and the costs of other codecs are unknown.
 
-    Packing into channels counts; the conversion that a render target does by itself does not.
+    Packing into channels counts; the conversion that a render target performs by itself does not.
     """
 
     def __init__(self, codecs: Iterable[Codec], families: Sequence[str], readers: int = READERS):
@@ -28,12 +28,12 @@ class Costs:
         self._rows = {family: cost.known_counts(cases, family, usual_stage(family)) for family in families}
 
     def of(self, codec: Codec) -> Row:
-        """Return the cost columns for the family on which the codec costs most; empty if nothing is known."""
+        """Return the cost columns for the GPU family on which the codec costs most; empty if no cost is known."""
         prices = [row for family in self._rows if (row := self._price_columns(family, codec))]
         return max(prices, key=lambda row: (row["slots"] is None, row["slots"] or 0.0), default={})
 
     def slots_of(self, codec: Codec) -> dict[str, tuple[float | None, float | None]]:
-        """Return by family the slots to encode and to decode, as a pair; a family without figures is left out."""
+        """Return pairs of the slots to encode and to decode, by GPU family; families without figures are left out."""
         prices = {family: self._price_columns(family, codec) for family in self._rows}
         return {family: (row["encode_slots"], row["decode_slots"]) for family, row in prices.items() if row}
 

@@ -81,8 +81,8 @@ OF_SPACE = {
 
 
 def sentences(group: Sequence[Row]) -> list[str]:
-    """Return the sentences on the rows of one question, as `answered` returns them: the answer, then paragraphs of
-    a few sentences, and last the codecs that do not qualify."""
+    """Return texts on the rows of one question, as returned by `answered`: the answer, then paragraphs of a few
+    sentences, and last the codecs that do not qualify."""
     return [*told(group), *left_out(group)]
 
 
@@ -103,14 +103,15 @@ def told(group: Sequence[Row]) -> list[str]:
 
 
 def _first_sentences(group: Sequence[Row], best: Row) -> str:
-    """Return which encoding to use, what it cannot represent, and what is much better in another storage."""
+    """Return sentences on the recommended encoding, the normals that it cannot represent, and encodings in other
+    storages that are much better."""
     others = [*not_held(best), *(_elsewhere_text(row, best) for row in _much_better(group, best))]
     return " ".join([f"{question(best)}: take {called(best)}.", *others])
 
 
 def in_short(group: Sequence[Row]) -> list[str]:
-    """Return texts on the encoding to use, its errors and its cost, without the alternatives, which a table lists;
-    all sentences if no encoding qualifies."""
+    """Return texts on the recommended encoding, its errors and its cost, without the alternatives, which a table
+    lists; all sentences if no encoding qualifies."""
     best = next((row for row in group if BEST in places_of(row)), None)
     if best is None:
         return [*told(group), *left_out(group)]
@@ -129,8 +130,8 @@ def in_short(group: Sequence[Row]) -> list[str]:
 
 
 def conditions(group: Sequence[Row]) -> Iterator[str]:
-    """Yield a line on the encodings that were left out, and a line on how images were made, if there are images;
-    nothing if no encoding qualifies."""
+    """Yield a line on the number of encodings that were left out and, if there are images, a line on how they were
+    rendered; nothing if no encoding qualifies."""
     if not any(BEST in places_of(row) for row in group):
         return
     count = sum(bool(row["left_out"]) and not row["against"] for row in group)
@@ -142,13 +143,13 @@ def conditions(group: Sequence[Row]) -> Iterator[str]:
 
 
 def _of_maps(best: Row) -> Iterator[str]:
-    """Yield a note that texture maps are a separate question, if normals with z >= 0 are to be filtered."""
+    """Yield a note that texture maps are a separate question, if normals with z >= 0 are filtered."""
     if best["needs"] == "hemisphere" and "filter" in (best.get("mixing") or "").split(","):
         yield "Figures are for all normals with z >= 0. Normals of a texture map are near z: use normalbench maps."
 
 
 def _space_sentences(best: Row) -> str:
-    """Return the meaning of an encoding's space; empty if none was requested."""
+    """Return sentences on the requested space of the normals; empty if no such space was requested."""
     if best["needs"] not in OF_SPACE:
         return ""
     angles = best.get("image_view_angles")
@@ -161,22 +162,22 @@ def question(row: Row) -> str:
 
 
 def not_held(best: Row) -> Iterator[str]:
-    """Yield a sentence with the share of visible normals that the answer cannot represent, if the share is large."""
+    """Yield a sentence on the share of visible normals that the answer cannot represent, if this share is large."""
     lost = best.get("image_lost_percent") or 0.0
     if lost >= MUCH_LOST:
         yield f"It cannot represent {lost:.2g}% of the visible normals in {best['image_lost_scene']}."
 
 
 def _much_better(group: Sequence[Row], best: Row) -> list[Row]:
-    """Return the rows of other storages that are worth a sentence: those in the place ELSEWHERE, or else at most one
-    row that is much more accurate."""
+    """Return the rows in other storages that are worth a sentence: rows with the place ELSEWHERE, otherwise at most
+    one alternative that is much more accurate."""
     others = [row for row in group if ELSEWHERE in places_of(row)]
     rungs = [row for row in group if {MORE_EXACT, MOST_EXACT} & {*places_of(row)} and row["storage"] != best["storage"]]
     return others or sorted((row for row in rungs if is_much_better(row, best)), key=order)[:1]
 
 
 def _instead(group: Sequence[Row]) -> Iterator[str]:
-    """Yield the nearest alternatives if no encoding qualifies."""
+    """Yield sentences on alternatives if no encoding qualifies."""
     if not group[0]["needs"] and all(row["lost_percent"] for row in group if not row["beside"]):
         yield "If normals have z >= 0 or face the viewer, name their space: --domain tangent, terrain, map or view."
     if group[0]["mixing"]:
@@ -208,7 +209,7 @@ def _slots_once(row: Row) -> float:
 
 
 def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
-    """Yield a sentence on images that tie with the best, if any do, and one for each alternative."""
+    """Yield a sentence on encodings whose images tie with the best, if any, and a sentence on each alternative."""
     titles = RUNGS | (BETTER_IMAGE if best["aim"] == "image" else {})
     if tied := [called(row) for row in group if TIE in places_of(row)]:
         yield (
@@ -220,7 +221,7 @@ def rungs(group: Sequence[Row], best: Row) -> Iterator[str]:
 
 
 def _hangs_on(group: Sequence[Row], best: Row) -> Iterator[str]:
-    """Yield one sentence with the answers under constants near the assumed ones; nothing if the answer stays."""
+    """Yield one sentence on the answers under constants near the assumed ones; nothing if they do not differ."""
     worth, enough = best["worth"], best["enough"]
     supposed = [
         ({"worth": worth + change}, f"at {worth + change:g} dB per doubling") for change in (-1, 1) if worth > 1
@@ -239,7 +240,7 @@ def _hangs_on(group: Sequence[Row], best: Row) -> Iterator[str]:
 
 
 def called(row: Row) -> str:
-    """Return an encoding's name, followed by its storage if this is not what was requested."""
+    """Return an encoding's name, followed by its storage unless this storage was requested."""
     return row["encoding"] if row["asked"] == row["storage"] else f"{row['encoding']} in {row['storage']}"
 
 
@@ -273,12 +274,12 @@ def _error_sentences(row: Row) -> str:
 
 
 def _largest_text(row: Row) -> str:
-    """Return the supremum as text if it was searched, otherwise the largest sampled angle, which may be smaller."""
+    """Return text on the supremum if it is known, otherwise on the largest sampled angle, which may be smaller."""
     return f"largest {'sampled ' * (row['angle_sup_deg'] is None)}{degrees(largest(row))}"
 
 
 def _moved_deg(row: Row) -> list[float]:
-    """Return the mean and largest movement of a mirror's reflection: twice the angle by which its normal is turned."""
+    """Return the mean and the largest angle by which a mirror's reflection moves: twice the error of its normal."""
     return [min(2 * value, 180.0) for value in (mean(row), largest_mixed(row)) if value is not None]
 
 
@@ -297,7 +298,7 @@ def _seen_sentences(row: Row) -> str:
 
 
 def _roughness_command(row: Row) -> str:
-    """Return the command that finds the lowest roughness at which an encoding's banding is acceptable."""
+    """Return the command line that finds the roughness above which an encoding's banding is invisible."""
     words = ["normalbench", "roughness", "--encoding", row["encoding"], "--storage", row["storage"]]
     rounding = row.get("rounding") or "nearest"
     return command_line(words if rounding == "nearest" else [*words, "--rounding", rounding])
@@ -316,14 +317,14 @@ def _price_sentence(row: Row) -> str:
 
 
 def _slots_text(row: Row) -> str:
-    """Return the slots to encode and to decode, the GPU family, and who counted them if that was elsewhere."""
+    """Return text on the slots to encode and to decode, the GPU family and the compiler of recorded slots."""
     slots = f"{row['encode_slots']:g} issue slots to encode and {row['decode_slots']:g} to decode"
     elsewhere = f" (recorded with {row['recorded_by']}; no compiler here)" if row["recorded_by"] else ""
     return f"{slots} on {row['dearest_family']}{elsewhere}"
 
 
 def _of_hidden(row: Row) -> str:
-    """Return the cost as text, compared with the slots that memory traffic hides."""
+    """Return text on the cost, compared with the slots that memory traffic hides."""
     if price(row) == floor(row):
         return f"{floor(row):g}, the minimum: {TRAFFIC} {HIDDEN_SLOTS} slots per pass"
     return f"{price(row):g}, {price(row) / floor(row):.2g} times the slots that {TRAFFIC}"
@@ -342,7 +343,7 @@ def _bits_text(row: Row) -> str:
 
 
 def _images_text(row: Row) -> str:
-    """Return the sentence on the worst of a row's images; empty if the row has no images."""
+    """Return a sentence on the worst of a row's images; empty if the row has no images."""
     by_scene = images(row)
     if not by_scene:
         return ""
@@ -359,14 +360,17 @@ def _images_text(row: Row) -> str:
 
 
 def _spread_text(row: Row) -> str:
-    """Return the standard error of a row's worst image in parentheses, after a space; empty if not known."""
+    """Return the standard error of a row's images in parentheses, after a space; empty if not known."""
     error = row.get("image_se_db")
     return f" (standard error {error:.1f} dB over orientations)" if error is not None else ""
 
 
 def _pole_sentence(row: Row, names: str | None = None) -> str:
-    """Return a sentence, with a leading space, on how to point an encoding's z axis; empty unless that matters more
-    than chance. `names` is the text on how to write it, by default for encodings of the catalogue."""
+    """Return a sentence, after a space, on where to point an encoding's z axis; empty if this matters no more than
+    chance.
+
+    Args:
+        names: text on how to name the orientation; None for the names in the catalogue."""
     pole, cost = row.get("image_pole"), row.get("image_wrong_pole_db") or 0.0
     if not pole or cost < max(STEP, ERRORS * (row.get("image_se_db") or 0.0)):
         return ""
@@ -378,7 +382,7 @@ def _pole_sentence(row: Row, names: str | None = None) -> str:
 
 
 def _mixing_text(row: Row) -> str:
-    """Return how mixing affects a codec that survives it inside a surface; empty if mixing was not requested."""
+    """Return text on how mixing affects a codec that survives it; empty if no mixing was requested."""
     if not row.get("mixing"):
         return ""
     upsampled = "Upsampling decodes each texel before weighting it, which works with every encoding. "
@@ -397,7 +401,7 @@ def _reservation_sentence(row: Row) -> str:
 
 
 def _gain_text(row: Row, best: Row) -> str:
-    """Return text on how many decibels a codec is better or worse than the answer; "as accurate" below 0.05 dB."""
+    """Return text on a codec's gain or loss in decibels over the answer; "equally accurate" below 0.05 dB."""
     gain = loss_db(best) - loss_db(row)
     if math.isnan(gain) or abs(gain) < 0.05:
         return "equally accurate"
@@ -405,7 +409,7 @@ def _gain_text(row: Row, best: Row) -> str:
 
 
 def _rung_text(row: Row, best: Row) -> str:
-    """Return the text of an alternative: its gain and its cost."""
+    """Return text on an alternative: its gain, its cost and, if different, its bits."""
     text = f"{called(row)}, {_gain_text(row, best)} ({_errors_text(row)})"
     return f"{text}, {_price_text(row, best)}{_bits_clause(row, best)}."
 
@@ -440,13 +444,13 @@ def _bits_clause(row: Row, best: Row) -> str:
 
 
 def _elsewhere_text(row: Row, best: Row) -> str:
-    """Return the sentence on an encoding in another storage of the same bytes that is much better."""
+    """Return a sentence on an encoding that is much better in another storage of the same bytes."""
     begin, end = around_gain(row, degrees(mean(row)))
     return f"{begin}{loss_db(best) - loss_db(row):.0f}{end}"
 
 
 def around_gain(row: Row, mean_text: str) -> tuple[str, str]:
-    """Return the text on a codec of another storage, before and after its gain."""
+    """Return the sentence on a codec in another storage as two parts: the text before and after its gain."""
     free = f"leaves {row['free_bits']} bits free" if row["free_bits"] else "uses all bits"
     begin = f"In {row['storage']}, also {row['bytes']} bytes, {row['encoding']} is "
     return begin, f" dB better (mean {mean_text}) and {free}."
@@ -463,7 +467,7 @@ def _rival_sentence(row: Row, best: Row) -> str:
 
 
 def left_out(group: Sequence[Row]) -> Iterator[str]:
-    """Yield one sentence with the codecs that do not qualify, grouped by the reason; nothing if all do."""
+    """Yield one sentence on the codecs that do not qualify, grouped by reason; nothing if all qualify."""
     reasons: dict[str, list[Row]] = {}
     for row in group:
         if row["left_out"] and not row["against"]:
@@ -473,7 +477,7 @@ def left_out(group: Sequence[Row]) -> Iterator[str]:
 
 
 def _with_reason(rows: Sequence[Row], why: str) -> str:
-    """Return the codecs that are left out for a reason; if its details differ, those of the first codec."""
+    """Return text that names the codecs left out for a reason, with the details of the first codec."""
     # The example is the one that people would ask about.
     rows = sorted(rows, key=lambda row: (bool(row.get("hole")), loss_db(row)))
     names = [f"{called(row)} {row['hole']}" if row.get("hole") else called(row) for row in rows]

@@ -1,4 +1,4 @@
-"""The pick table: which encoding to use, and its cost. Measures what an answer needs, and writes the answer."""
+"""The pick table: which encoding to use, and its cost. It measures only what the answer needs."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ TEXEL_DEG = 360 / 1024
 
 @dataclass(frozen=True, kw_only=True)
 class PickOptions(Reading, SourceOptions):
-    """Options of `pick`: the candidates and the constraints. Names are comma-separated."""
+    """Options for `pick`: the candidates and the constraints. Names are comma-separated."""
 
     storage: StorageNames = ("rg8", "rgb10a2")
     bytes: Annotated[
@@ -286,7 +286,7 @@ COLUMNS = (
     ),
     Column("mixed_max_deg", "Largest error after the required mixing inside a surface.", HOW, "degrees", shown=False),
     Column("mixed_across", "The result of the required mixing across an edge, if it is unusable.", HOW),
-    Column("by_use", "The result of each use of mixing, for the constraints on the page.", RAW, shown=False),
+    Column("by_use", "The verdict on each kind of mixing, for the constraints on the page.", RAW, shown=False),
     Column("by_family", "The issue slots on other GPU families, for the constraints on the page.", RAW, shown=False),
     Column("against", "Whether the encoding was named by --against.", HOW, shown=False),
     Column("beside", "Whether the row is for a different storage of the same size.", HOW, shown=False),

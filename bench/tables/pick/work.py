@@ -1,4 +1,4 @@
-"""Measurement of the pick table, and its answers."""
+"""Measurement and display of the pick table."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ SHOWN = ("encoding", "storage", "place", "bits", "free_bits", "angle_mean_deg", 
 
 @dataclass(frozen=True)
 class PickStep:
-    """The cases of a question, the device that draws them, and the folder for their images, if they are wanted."""
+    """The cases of a question, the device that draws them, and the folder for their images, if requested."""
 
     cases: Sequence[measure.PickCase]
     device: Device | None
@@ -64,7 +64,8 @@ class PickStep:
 
 
 def questions(options: PickOptions) -> list[list[measure.PickCase]]:
-    """Return for each storage, or number of bytes, and set of normals a case for each codec that fits.
+    """Return a list of cases for each combination of rounding, storage or number of bytes, and set of normals: a case
+    for each codec that fits.
 
     Raises:
         UsageError: unknown names, counts out of range, or no codec that fits.
@@ -132,13 +133,14 @@ def questions(options: PickOptions) -> list[list[measure.PickCase]]:
 
 
 def _scenes(options: PickOptions, needs: str | None) -> tuple[SceneMaker, ...]:
-    """Return the scenes that are drawn: none for normals with z >= 0, which no G-buffer has, unless they are named."""
+    """Return the scenes to draw. Normals with z >= 0 have none unless scenes are named, because no G-buffer is
+    limited to them."""
     is_usual = options.scene == PickOptions().scene and options.aim != "image" and not options.effects
     return () if needs == "hemisphere" and is_usual else tuple(scene_makers_named(options.scene))
 
 
 def _say_if_few(sets: Iterable[NormalSet]) -> None:
-    """Print a line for each count of random normals that is so low that another seed may give another answer."""
+    """Print a line for each count of random normals that is so low that another seed may change the answer."""
     few = {normals.count: normals.name for normals in sets if normals.area is not None and normals.count < FEW}
     for count, name in few.items():
         tell(
@@ -148,7 +150,7 @@ def _say_if_few(sets: Iterable[NormalSet]) -> None:
 
 
 def _asked(options: PickOptions) -> dict[str, list[Storage]]:
-    """Return the storages of each question, by the text of the request. Raises UsageError."""
+    """Return the storages of each question, by the storage or number of bytes requested. Raises UsageError."""
     if options.bytes is None:
         # Of floats whose number nobody said, all that a texel has.
         asked = [of_count(storage, storage.channels) for storage in storages_named(options.storage)]
@@ -162,15 +164,15 @@ def _asked(options: PickOptions) -> dict[str, list[Storage]]:
 
 
 def _packings(storage: Storage) -> list[Storage]:
-    """Return the storages that are packed in a texel of this one."""
+    """Return the storages that are packed in texels of a storage."""
     return [other for other in STORAGES.values() if other.is_packed and other.target == storage and other != storage]
 
 
 def _compared(
     name: str, storages: Sequence[Storage], rounding: str, fit: Sequence[Codec], encodings: Sequence[Encoding]
 ) -> Iterator[tuple[Codec, Row]]:
-    """Yield the codecs of a question and their columns: the requested ones, then, if one storage was requested,
-    those of other storages with the same number of bytes."""
+    """Yield the codecs of a question with their columns: the requested codecs, then, if one storage was requested,
+    the codecs in other storages with the same number of bytes."""
     size, is_one = storages[0].texel_bytes, storages[0].name == name
     about: Row = {"asked": name, "bytes": size, "rounding": rounding, "beside": False, "packed": False}
     for codec in fit:
@@ -187,13 +189,15 @@ def _compared(
 
 
 def _is_held(codec: Codec, storages: Sequence[Storage], rounding: str) -> bool:
-    """Whether a codec belongs to a question: by its storage and rounding, or as an integer of as many bytes."""
+    """Whether a codec belongs to a question: it has the storage and rounding, or it is an integer of the same number
+    of bytes."""
     is_integer = codec.encoding.is_packed and codec.storage.texel_bytes == storages[0].texel_bytes
     return is_integer or (codec.storage in storages and codec.rounding == rounding)
 
 
 def _pipeline(effects: Sequence[ChosenEffect], makers: Sequence[SceneMaker], setting: Setting) -> Pipeline:
-    """Return the pipeline that renders the images. Raises UsageError for effects that clash or have nothing to do."""
+    """Return the pipeline that renders the images. Raises UsageError for effects that cannot be combined or that have
+    nothing to do in a scene."""
     complaints: list[str] = []
     # Pixels can be sampled of deferred shading; some effects need what is special to the hybrid pipeline.
     pipeline = pipeline_with(PIPELINES["hybrid" if effects else "deferred"], effects, complaints)
@@ -228,7 +232,7 @@ def _question(options: PickOptions) -> Row:
 
 
 def _fitting(codecs: Iterable[Codec]) -> tuple[list[Codec], list[str]]:
-    """Return the codecs that fit, and a line for each reason against others. Raises UsageError if no codec fits."""
+    """Return the codecs that fit, and a line for each reason against the others. Raises UsageError if none fits."""
     misfits, fit = [], []
     for codec in codecs:
         if codec.misfit:
@@ -281,7 +285,7 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
 
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield for each question the answer in sentences, and the codecs that no other codec beats."""
+    """Yield a sheet for each question: the answer in sentences, and the Pareto-optimal and recommended encodings."""
     for (asked, normals, scene), group in groups(rows).items():
         front = [_short(row) for row in group if row["front"] or row["place"]]
         title = f"{asked}, on {normals}: Pareto-optimal encodings in error, cost and bits"
@@ -292,7 +296,7 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield for each question the answer in a dozen lines."""
+    """Yield a short sheet for each question: the answer in sentences, and the alternatives."""
     for group in groups(rows).values():
         # The first sentence has what lies in another storage.
         placed = [_alternative(row) for row in group if row["place"] and row["place"] != ELSEWHERE]
@@ -303,7 +307,7 @@ def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _alternative(row: Row) -> Row:
-    """Return an encoding that has a place in the answer as a row of its short table, with errors in degrees and the
+    """Return the short table's row for an encoding that has a place in the answer, with errors in degrees and the
     worst image in decibels."""
     figures = {"mean (°)": mean(row), "worst (°)": largest_mixed(row), "slots": row["slots"], "bits": row["bits"]}
     worst = min(images(row).values(), default=None)
@@ -316,7 +320,7 @@ def _short(row: Row) -> Row:
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a line for each question without an answer; the sentences of the sheet give the reason."""
+    """Yield a line for each question without an answer; the sentences on the sheet give the reason."""
     for (asked, normals, _), group in groups(rows).items():
         if all(row["left_out"] for row in group):
             yield f"no answer for {asked} on {normals}"

@@ -1,4 +1,4 @@
-"""The charts of angles: how often which."""
+"""The charts of normal accuracy: histograms of angles."""
 
 from __future__ import annotations
 
@@ -31,12 +31,13 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def histogram_chart(index: int, rows: Sequence[Row]) -> Chart:
-    """Return a histogram of angles for each codec, the best mean on top; mean, 99th percentile and largest are
-    marked.
+    """Return a histogram of angles for each codec, with the best codec at the top; the mean, the 99th percentile and
+    the largest angle are marked.
 
     Args:
-        index: its index among the charts of the table.
-        rows: rows of the quality table for one set, in that order: encoding, storage, bits, angle_counts and angles.
+        index: index of the chart among the charts of the table.
+        rows: rows of the quality table for one set, the best first: encoding, storage, bits, angle_counts and
+            angles.
     """
     lines = lines_of(rows)
     feet = [float(len(rows) - 1 - i) for i in range(len(rows))]
@@ -81,7 +82,7 @@ def _point_row(row: Row, line: str) -> dict[str, Any]:
 
 
 def steps(counts: Sequence[tuple[float, float, int]]) -> tuple[list[float], list[float]]:
-    """Return a histogram's outline: edges from LEAST_DEG up, and between them the number of normals per octave."""
+    """Return a histogram's outline: bin edges from LEAST_DEG up, and the number of normals per octave in each bin."""
     below = sum(count for low, _, count in counts if low < LEAST_DEG)
     edges, heights = [LEAST_DEG, LEAST_DEG * 1.125], [below / math.log2(1.125)]
     for low, high, count in counts:
@@ -93,7 +94,7 @@ def steps(counts: Sequence[tuple[float, float, int]]) -> tuple[list[float], list
 
 
 def _outline_points(row: Row, foot: float) -> list[Row]:
-    """Return a codec's histogram as the points of a stepped line above `foot`; its highest step has the same height
+    """Return a codec's histogram as the points of a stepped line above `foot`; the highest step has the same height
     for every codec."""
     edges, heights = steps(bins(row["angle_counts"]))
     highest = max(heights)
@@ -104,7 +105,7 @@ def _outline_points(row: Row, foot: float) -> list[Row]:
 
 
 def _finding_sentence(rows: Sequence[Row]) -> str:
-    """Return which codec has the smallest mean angle at each bit count that several codecs share."""
+    """Return a sentence on the codec with the smallest mean angle at each bit count that several codecs share."""
     alike: dict[int, list[Row]] = {}
     for row in rows:
         alike.setdefault(row["bits"], []).append(row)

@@ -1,4 +1,4 @@
-"""Data that the page shows in addition to the quality rows: errors over the sphere."""
+"""Data that the page shows besides the quality rows: maps of errors over the sphere, agreement of backends."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from .table import TABLE
 
 
 def extras(folder: Path, tables: Mapping[str, Sequence[Row]], remarks: list[str]) -> Mapping[str, Any]:  # noqa: ARG001
-    """Return the errors over the sphere in the folder of a run, as `maps`, and a sentence on how far the figures of
-    two backends differ, as `agreement`."""
+    """Return the maps of errors over the sphere in a run's folder, as `maps`, and a sentence on how far the figures
+    from two backends differ, as `agreement`."""
     rows = tables.get(TABLE.name, ())
     return {"maps": list(_sphere_maps(folder / TABLE.files["maps"], rows)), "agreement": agreement(rows)}
 

@@ -1,4 +1,4 @@
-"""The accuracy that half arithmetic costs: its rows next to the same rows in float32."""
+"""The loss of accuracy in half arithmetic: its rows compared with the same rows in float32."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ SURVIVES = 10.0
 
 
 def with_half_loss(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows, in half arithmetic with the increase of the RMS angle if the float32 row is given too."""
+    """Return the rows; rows in half arithmetic get the increase of the RMS angle if their float32 row is present."""
     known = {_case_key(row): row["angle_rms_deg"] for row in rows if not _is_half(row)}
     return [row | _loss_column(row, known.get(_case_key(row))) if _is_half(row) else row for row in rows]
 
 
 def survivors(rows: Sequence[Row]) -> tuple[str, ...]:
-    """Return a line for each storage and set: the encodings that stay nearly as accurate in half arithmetic, and the
-    others."""
+    """Return a line for each storage and set: encodings that remain nearly as accurate in half arithmetic, and the
+    other encodings."""
     measured_rows = [row for row in rows if row.get("half_loss_percent") is not None]
     return tuple(_loss_lines(measured_rows))
 

@@ -1,4 +1,4 @@
-"""The quality table: the errors of each codec on a set of normals, by the JAX and by the GLSL implementation."""
+"""Measurement of the quality table: the errors of each codec on a set of normals, by JAX and by shaders."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ Tick = Callable[[], None]
 
 @dataclass(frozen=True)
 class QualityCase:
-    """One row to measure; `worst_case` and `codes` request figures that take seconds each."""
+    """A row of the quality table to measure; `worst_case` and `codes` request figures that take seconds each."""
 
     codec: Codec
     normal_set: NormalSet
@@ -65,12 +65,12 @@ class QualityCase:
         return f"{self.codec.name} {self.normal_set.name} {self.backend}"
 
     def parts(self) -> list[QualityCase]:
-        """Cases for the parts of the set; empty if the set is measured at once."""
+        """Return the cases for the parts of the set; empty if the set is measured as a whole."""
         return [replace(self, normal_set=part) for part in self.normal_set.parts]
 
     @property
     def domain(self) -> str | None:
-        """Domain of limits and suprema: "sphere", or "hemisphere" if the set or the encoding is for z >= 0; None
+        """The domain of limits and suprema: "sphere", or "hemisphere" if the set or the encoding covers less; None
         for a set that is not uniform."""
         if self.normal_set.area is None:
             return None
@@ -80,7 +80,7 @@ class QualityCase:
 
 @cache
 def meter_of(codec: Codec) -> Measures:
-    """Return the meter of a codec: compiled C, or XLA's program if there is no C compiler or no C for the codec."""
+    """Return a codec's meter: compiled C, or XLA's program if there is no C compiler or no C for the codec."""
     # Noise is of pixels, and what the C compiler is given is of each normal by itself.
     if not codec.is_dithered:
         like, scales = shared(codec.storage, codec.encoding.components)
@@ -97,19 +97,19 @@ def _compiled(encoding: Encoding, like: Storage, rounding: str) -> ctypes.CDLL:
 
 
 def meter_by_xla(codec: Codec) -> Meter:
-    """Return the meter of a codec by XLA's program."""
+    """Return the meter for a codec that runs XLA's program."""
     like, scales = shared(codec.storage, codec.encoding.components)
     noise = (_noise_of(codec, CHUNK_WIDTH, CHUNK),) if codec.is_dithered else ()
     return Meter(_program(codec.encoding, like, codec.rounding), (*noise, *scales))
 
 
 def _noise_of(codec: Codec, width: int, count: int) -> tuple[np.ndarray, ...]:
-    """Return the noise for three numbers of the codes of `count` pixels, arranged by `laid_out`: float32 planes."""
+    """Return noise for the three numbers in each of `count` codes, arranged by `laid_out`: float32 planes."""
     return tuple(np.ascontiguousarray(laid_out(codec.dither(0).added, width, count).T[:3]))
 
 
 def _trip(encoding: Encoding, like: Storage, rounding: str) -> Callable[..., Vec3]:
-    """Return a round trip that fixed-point formats share, each with its scales, so that it is compiled once."""
+    """Return a round trip with a format's scales as arguments, so that fixed-point formats share a compilation."""
 
     def round_trip(n: Vec3, view: Vec3, *scales: Scale) -> Vec3:
         return Codec(encoding, fixed(like, scales), rounding).round_trip(n, view)
@@ -134,7 +134,7 @@ def _noisy_trip(encoding: Encoding, like: Storage) -> Callable[..., Vec3]:
 
 
 def round_trip(codec: Codec, n: np.ndarray, view: np.ndarray) -> np.ndarray:
-    """Return the decodes of unit normals, (count, 3), not renormalised, by the program that measures rows.
+    """Return the decodes of unit normals, (count, 3), not renormalised, computed by the program that measures rows.
 
     Args:
         n, view: unit normals and view positions, float32 of shape (count, 3).
@@ -161,7 +161,7 @@ def rgba(planes: Vec3, height: int, width: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Decoding:
-    """A case about to be measured: its meter, its chunks, and the columns on how it is measured."""
+    """A case that is ready to measure: its meter, its chunks, and columns on the device and the rounding."""
 
     meter: Measures
     loads: Iterable[Load]
@@ -232,7 +232,7 @@ def _decodings_by_wgsl(case: QualityCase) -> Iterator[Decoding]:
 
 
 def identity(value: Any) -> Any:
-    """Return the value unchanged: the load of a chunk that is already in memory."""
+    """Return the value unchanged; used to load a chunk that is already in memory."""
     return value
 
 
@@ -244,11 +244,11 @@ BACKENDS: Mapping[str, Callable[[QualityCase], AbstractContextManager[Decoding]]
 def cases(
     codecs: Iterable[Codec], normal_sets: Iterable[NormalSet], backends: Iterable[str], *exact: bool
 ) -> list[QualityCase]:
-    """Return a case for every codec on every set by every backend; those that differ only in the backend are
+    """Return a case for every codec on every set with every backend; cases that differ only in the backend are
     adjacent.
 
     Args:
-        exact: the cases' last fields: whether to find the worst case, and whether to count codes."""
+        exact: whether to find the worst case, and whether to count codes: the last fields of the cases."""
     normal_sets, backends = list(normal_sets), list(backends)
     return [
         QualityCase(codec, chosen, backend, *exact)
@@ -272,14 +272,14 @@ def measure(case: QualityCase, tick: Tick = idle) -> Row:
 
 
 def _row(case: QualityCase, total: ErrorTotal, how: Mapping[str, str | None]) -> Row:
-    """Return a row of the table; for a part of a set, the totals from which `merged` makes a row."""
+    """Return a row of the table; for a part of a set, a row with totals, which `merged` combines."""
     if case.normal_set.of:
         return {TOTAL: total.as_text(), **how}
     return _case_columns(case) | _measured_columns(case, statistics(case.normal_set.count, total)) | dict(how)
 
 
 def merged(case: QualityCase, rows: Sequence[Row]) -> Row:
-    """Return the row of a set that was measured in parts, from the rows of the parts in order."""
+    """Return the row of a set that was measured in parts, given the rows of the parts in order."""
     if reason := next((row["skipped"] for row in rows if row.get("skipped")), None):
         return _case_columns(case) | {"skipped": reason}
     total = ErrorTotal()
@@ -345,7 +345,7 @@ def _figures(s: Statistics, area: float | None) -> Row:
 
 
 def _components_text(vector: np.ndarray) -> str:
-    """Return a vector as text in parentheses, with all digits of its three float32."""
+    """Return a vector as text in parentheses, with all digits of its three float32 components."""
     return f"({', '.join(map(str, vector))})"
 
 
@@ -378,7 +378,7 @@ def _is_shared(case: QualityCase) -> bool:
 
 
 def tell_by_xla(chosen: Iterable[QualityCase]) -> None:
-    """Say which encodings' rows by JAX are computed by XLA, which rounds differently from compiled C."""
+    """Print which encodings are computed by XLA instead of compiled C, from which their last digits may differ."""
     shared = [case.codec for case in chosen if _is_shared(case) and not case.codec.is_dithered]
     if shared and not compiler():
         tell("no C compiler found (cc): XLA computes the rows, which is slower, and the last digits may differ")
@@ -388,7 +388,8 @@ def tell_by_xla(chosen: Iterable[QualityCase]) -> None:
 
 @dataclass(frozen=True)
 class RoundTrip:
-    """A codec on an image: float32 arrays of shape (height, width, 3); `encoded` is what the texels stand for."""
+    """The round trip of an image through a codec: float32 arrays of shape (height, width, 3), where `encoded` are the
+    stored numbers, and the mask `covered`, (height, width)."""
 
     normals: np.ndarray
     encoded: np.ndarray
@@ -397,16 +398,16 @@ class RoundTrip:
 
 
 def planes_of(normals: NormalSet) -> tuple[Vec3, Vec3, np.ndarray]:
-    """Return the normals and view positions of a set that is an image, as Vec3 of planes (count,), and the coverage
-    (count,), pixel by pixel."""
+    """Return the normals and view positions of an image set as Vec3 of planes (count,), and the mask of covered
+    pixels, (count,), in pixel order."""
     assert normals.shape
     count, chunks = math.prod(normals.shape), [load() for load in normals.loads()]
     return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *chunks)
 
 
 def seen(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the normals and the view positions of a set that is an image, each of shape (height, width, 3), and the
-    mask of covered pixels, (height, width)."""
+    """Return the normals and view positions of an image set, each of shape (height, width, 3), and the mask of
+    covered pixels, (height, width)."""
     assert normals.shape
     n, view, covered = planes_of(normals)
     images = [np.stack([np.asarray(p) for p in planes], axis=-1).reshape(*normals.shape, 3) for planes in (n, view)]
@@ -414,13 +415,14 @@ def seen(normals: NormalSet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def image_of(normals: NormalSet) -> tuple[np.ndarray, np.ndarray]:
-    """Return the normals of a set that is an image, (height, width, 3), and the mask of covered pixels."""
+    """Return the normals of an image set, (height, width, 3), and the mask of covered pixels, (height, width)."""
     n, _, covered = seen(normals)
     return n, covered
 
 
 def image_round_trip(case: QualityCase) -> RoundTrip:
-    """Return a codec's round trip of a set that is an image. Raises one of UNMEASURABLE with the GLSL backend."""
+    """Return the round trip of an image set through a codec. Raises one of UNMEASURABLE if the backend does not
+    support the codec."""
     height, width = case.normal_set.shape or (0, 0)
     n, view, covered = planes_of(case.normal_set)
 

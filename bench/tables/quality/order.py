@@ -1,4 +1,4 @@
-"""The quality table for display: grouped by bits, the best first, with the limit of each bit count below."""
+"""The order of the quality table for display: by bits, the best first, with the limit below each bit count."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ONCE = ("limit_mean_deg", "limit_rms_deg", "limit_max_deg", "below_limit", "code
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Return rows by normal set, as given, then by bits, then the best first; a codec's backends stay together."""
+    """Return the rows by set in the given order, then by bits, the best first; a codec's backends stay together."""
     sets = list(dict.fromkeys(row["normals"] for row in rows))
     best: dict[tuple, float] = {}
     for row in rows:
@@ -32,12 +32,12 @@ def _codec_key(row: Row) -> tuple:
 
 
 def _error_key(row: Row) -> float:
-    """Return the RMS angle, on which effective bits are based; infinity for rows without figures."""
+    """Return the RMS angle, from which effective bits are computed; infinity for rows without figures."""
     return math.inf if row["angle_rms_deg"] is None else row["angle_rms_deg"]
 
 
 def with_limits(rows: Sequence[Row]) -> list[Row]:
-    """Return ordered rows, and after each group with the same set and bits a row with the limit for these bits."""
+    """Return ordered rows, with a row for the limit after each group that shares its set and bits."""
     shared = {column: rows[0][column] for column in SHARED if len({row[column] for row in rows}) == 1}
     return [row for _, group in groupby(rows, _group_key) for row in _rows_with_limit(list(group), shared)]
 

@@ -1,4 +1,4 @@
-"""The most accurate codecs of the catalogue at the bit counts of encodings that pack themselves."""
+"""The catalogue's most accurate codecs at the bit counts of encodings that pack themselves."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ COUNT = 2**14
 
 
 def best_columns(codec: Codec) -> Row:
-    """Return the columns with the most accurate codec of the catalogue that has as many bits, and its mean angle,
-    which is cached; empty for an encoding that is not packed.
+    """Return columns with the catalogue's most accurate codec of the same bit count or the closest lower one, and its
+    mean angle. Empty for an encoding that does not pack itself.
     """
     encoding = codec.encoding
     return _best_columns(encoding.packed_bits, encoding.domain) if encoding.is_packed else {}
@@ -37,7 +37,7 @@ def _best_columns(bits: int, domain: str) -> Row:
 
 
 def _codecs(bits: int, domain: str) -> list[Codec]:
-    """Return the catalogue's codecs that represent a domain with `bits` bits, or with the closest lower number."""
+    """Return the catalogue's codecs for a domain with `bits` bits, or with the closest lower number of bits."""
     holding = [
         encoding for encoding in ENCODINGS.values() if encoding.domain in ("sphere", domain) and not encoding.sign_bits
     ]

@@ -1,4 +1,4 @@
-"""Pictures of codecs on a set that is an image: written to a folder, and found there again."""
+"""Pictures of codecs on an image set: writing them to a folder, and finding them there again."""
 
 from __future__ import annotations
 
@@ -31,20 +31,21 @@ MOST_BYTES = MAX_PIXELS * 13 + 2**16
 
 
 def stem(normals: str, key: CodecKey) -> str:
-    """Return a codec's file name for a set, without the content's suffix. The name of a chain has a slash."""
+    """Return the start of a codec's file names for a set, without the kind of file; the slash in the name of a chain
+    is replaced."""
     parts = [normals, key.encoding, key.storage, *([] if key.rounding == "nearest" else [key.rounding])]
     return "-".join(parts).replace("/", "_in_")
 
 
 def write(chosen: Sequence[measure.QualityCase], folder: Path) -> None:
-    """Write the pictures of each codec, and the set's own."""
+    """Write the pictures of each codec and of each image set's exact normals."""
     _write_codecs(chosen, folder)
     _write_originals(chosen, folder)
 
 
 def _write_codecs(chosen: Iterable[measure.QualityCase], folder: Path) -> None:
-    """Write four PNG files and, unless the image is too large, an array file for each codec on each image set. GLSL
-    is used if it was requested and can be measured."""
+    """Write four PNG files and, unless the image is too large, an array file for each codec on each image set. The
+    pixels come from a shader backend if one was requested and can measure them."""
     wanted = {(c.normal_set.name, c.codec): c for c in sorted(chosen, key=lambda c: c.backend, reverse=True)}
     for (normals, codec), case in wanted.items():
         if not case.normal_set.shape:
@@ -61,7 +62,7 @@ def _write_codecs(chosen: Iterable[measure.QualityCase], folder: Path) -> None:
 
 
 def _round_trip(case: measure.QualityCase) -> measure.RoundTrip | None:
-    """Return the round trip by the case's backend, or by JAX; None if neither can compute it."""
+    """Return the round trip by the case's backend, otherwise by JAX; None if neither can compute it."""
     for backend in dict.fromkeys((case.backend, "jax")):
         with suppress(*measure.UNMEASURABLE):
             return measure.image_round_trip(replace(case, backend=backend))
@@ -74,7 +75,7 @@ def _write_png(path: Path, pixels: np.ndarray) -> None:
 
 
 def _write_pixels(path: Path, codec: Codec, trip: measure.RoundTrip) -> None:
-    """Write the angle and the stored bits of every pixel to an array file (.npz)."""
+    """Write the angular error and the stored bits of every pixel to an array file (.npz)."""
     with np.errstate(invalid="ignore"):
         angle = angle_bytes(angles_deg(trip.normals, trip.decoded), trip.covered)
     codes, bits = _codes_and_bits(codec, trip.encoded)
@@ -84,8 +85,8 @@ def _write_pixels(path: Path, codec: Codec, trip: measure.RoundTrip) -> None:
 
 
 def _codes_and_bits(codec: Codec, encoded: np.ndarray) -> tuple[np.ndarray, list[int]]:
-    """Return the stored bits of every component, uint32 of shape (height, width, components), and the number of bits
-    of each. A sign bit is 1 for +1."""
+    """Return the stored bits of every component, uint32 of shape (height, width, components), and the bit count of
+    each component. A sign bit is 1 for +1."""
     stored = codec.encoding.components
     planes = [words(encoded[..., i], codec.storage, i) for i in range(stored)]
     planes += [(encoded[..., stored + i] > 0).astype(np.uint32) for i in range(codec.encoding.sign_bits)]
@@ -93,21 +94,21 @@ def _codes_and_bits(codec: Codec, encoded: np.ndarray) -> tuple[np.ndarray, list
 
 
 def _write_originals(chosen: Sequence[measure.QualityCase], folder: Path) -> None:
-    """Write the exact normals of each set that is an image."""
+    """Write a picture of the exact normals of each image set."""
     for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
         n, covered = measure.image_of(case.normal_set)
         _write_png(folder / f"{case.normal_set.name}-normals.png", pictures.normals_picture(n, covered))
 
 
 def write_scenes(chosen: Sequence[measure.QualityCase], folder: Path) -> None:
-    """Write the normals of each set that is an image in the form in which a page's laboratory reads them."""
+    """Write the normals of each image set in the format that a page's laboratory reads."""
     for case in {case.normal_set.name: case for case in chosen if case.normal_set.shape}.values():
         write_scene(case.normal_set.name, *measure.seen(case.normal_set), folder)
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """Yield a subject for each set of normals of the rows, if the folder has its images. Names are looked up, so that
-    they cannot lead out of the folder."""
+    """Yield a subject for each set of normals in the rows, if the folder has its pictures. File names are looked up
+    in the folder, so that they cannot lead out of it."""
     there = files_of(folder)
     for normals in dict.fromkeys(str(row.get("normals")) for row in rows):
         original = there.get(f"{normals}-normals.png")
@@ -119,15 +120,15 @@ def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
 
 
 def _pictured(there: dict[str, Path], name: str, key: CodecKey, rank: int) -> Pictured | None:
-    """Return a codec's images for the page; None if one of its files is missing."""
+    """Return a codec's pictures for the page; None if one of its files is missing."""
     arrays, decoded = there.get(f"{name}.npz"), there.get(f"{name}-decoded.png")
     return Pictured(key, key.label, key.label, partial(_pixels, arrays, decoded), rank) if arrays and decoded else None
 
 
 def in_order(rows: Sequence[Row]) -> dict[CodecKey, int]:
-    """Return the ranks of the codecs of one set's rows, ordered by bits and then the best first. Rank 0: the best of
-    each number of bits and the second best of the fewest bits; 1: the other second best; 2: codecs of the article; 3:
-    the rest."""
+    """Return the rank of each codec in the rows of one set, ordered by bits and then by accuracy. Rank 0 is the best
+    codec at each number of bits, and the second best at the fewest bits; 1 the second best at other numbers of bits;
+    2 codecs from the article; 3 all others."""
     figures = {CodecKey.of(row): row for row in rows if is_count(row.get("bits")) and is_number(row.get(LEADING))}
     ranks: dict[CodecKey, int] = {}
     for key, row in sorted(figures.items(), key=lambda item: (item[1]["bits"], -item[1][LEADING])):
@@ -140,7 +141,7 @@ ARTICLES = {CodecKey(name, published.STORAGE, "nearest") for name in published.P
 
 
 def _pixels(arrays: Path, decoded: Path) -> NormalPixels | None:
-    """Return the pixels of a codec from its files; None if they are damaged or do not match."""
+    """Return a codec's pixels from its files; None if the files are damaged or do not match."""
     try:
         angle, codes, bits = read_npz(arrays, PIXELS, MOST_BYTES)
     except (OSError, DamagedError):

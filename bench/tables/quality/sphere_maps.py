@@ -1,8 +1,8 @@
-"""Error of a codec in each direction: an equal-area map of the sphere, kept as a small array.
+"""The error of a codec in each direction: an equal-area map of the sphere, stored as a small array.
 
-Each half uses Lambert's azimuthal equal-area projection, for normals in view space: z >= 0, which faces the viewer,
-in the first disc and z <= 0 in the second, x to the right and y up in both. A disc of radius 1 holds a hemisphere;
-at a distance r from its centre |z| = 1 - r^2, so every cell represents the same solid angle.
+Normals are in view space. Lambert's azimuthal equal-area projection maps each half of the sphere to a disc: z >= 0,
+which faces the viewer, to the first and z <= 0 to the second, with x to the right and y up in both. A disc of radius
+1 holds a hemisphere; at a distance r from its centre |z| = 1 - r^2, so every cell represents the same solid angle.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ WHOLE_SPHERE = "sphere"
 
 
 class SphereMap(NamedTuple):
-    """Angles between input and decode in degrees, float32 of shape (halves, cells, cells), row 0 on top, the half that
-    faces the viewer first; NaN where a cell is outside its disc, or a half cannot be represented.
+    """Angles between input and decode in degrees, float32 of shape (halves, cells, cells), row 0 at the top, the half
+    that faces the viewer first; NaN for cells outside the disc or in a half that the encoding cannot represent.
 
     Attributes:
-        mean_deg, max_deg: over the directions of each cell.
+        mean_deg, max_deg: mean and largest angle over the directions in each cell.
         directions: number of directions in a whole cell.
     """
 
@@ -48,8 +48,8 @@ class SphereMap(NamedTuple):
 
 @cache
 def _grid() -> tuple[np.ndarray, np.ndarray]:
-    """Return the directions of both discs, float32 of shape (halves, pixels, pixels, 3), and a mask of the
-    directions on the sphere."""
+    """Return the directions in both discs, float32 of shape (halves, pixels, pixels, 3), and a mask of the pixels
+    inside a disc."""
     pixels = CELLS * FINE
     across = (np.arange(pixels) + 0.5) / pixels * 2 - 1
     u, v = np.meshgrid(across, -across)
@@ -62,8 +62,8 @@ def _grid() -> tuple[np.ndarray, np.ndarray]:
 
 
 def sphere_map(codec: Codec) -> SphereMap:
-    """Return a codec's errors over the sphere, measured by JAX, or by GLSL if the encoding exists only in shaders.
-    For an encoding that does not represent the whole sphere, the half that faces away from the viewer is NaN."""
+    """Return a codec's errors over the sphere, measured by JAX, or by GLSL if the encoding exists only in shaders. If
+    an encoding does not represent the whole sphere, the half that faces away from the viewer is NaN."""
     halves, inside = _grid()
     held = 2 if codec.encoding.domain == WHOLE_SPHERE else 1
     n = Vec3(*(np.ascontiguousarray(plane) for plane in np.moveaxis(halves[:held, inside], -1, 0)))
@@ -78,7 +78,8 @@ def sphere_map(codec: Codec) -> SphereMap:
 
 
 def _angles(codec: Codec, n: Vec3) -> Any:
-    """Return the angular errors of planes of shape (halves, pixels), by the program that measures the table."""
+    """Return the angular errors for normals given as planes of shape (halves, pixels), computed by the program that
+    measures the table."""
     given = np.stack([plane.ravel() for plane in n], axis=1)
     ahead = np.broadcast_to(np.array([0.0, 0.0, -1.0], np.float32), given.shape)
     decoded = round_trip(codec, given, ahead).T.reshape(3, *n.x.shape)
@@ -91,7 +92,7 @@ def _angles_apart(n: Vec3, decoded: Vec3) -> Any:
 
 
 def _angles_by_glsl(codec: Codec, n: Vec3) -> np.ndarray:
-    """Return the angular errors of planes of shape (halves, pixels). Raises the errors that UNMEASURABLE lists."""
+    """Return what `_angles` returns, decoded by GLSL. Raises one of UNMEASURABLE."""
     count = n.x.size
     # As an image that every device has room for, the last direction repeated to fill it.
     given = Vec3(*(np.pad(plane.reshape(-1), (0, -count % WIDTH), mode="edge") for plane in n))
@@ -110,7 +111,7 @@ def file_name(encoding: str, storage: str, rounding: str) -> str:
 
 
 def write_maps(codecs: Iterable[Codec], folder: Path) -> None:
-    """Write a file for each codec that can be measured. Raises UsageError if a file cannot be written."""
+    """Write a map file for each codec that can be measured. Raises UsageError if a file cannot be written."""
     for codec in dict.fromkeys(codecs):
         try:
             error_map = sphere_map(codec)
@@ -122,7 +123,7 @@ def write_maps(codecs: Iterable[Codec], folder: Path) -> None:
 
 
 def read_map(path: Path) -> SphereMap | None:
-    """Read a map as it was written; return None if it is missing or damaged."""
+    """Read a map that `write_maps` wrote; return None if the file is missing or damaged."""
     try:
         mean, largest, directions = read_npz(path, SphereMap._fields)
     except (OSError, DamagedError):

@@ -51,10 +51,10 @@ OF_SPHERE, OF_HALF = ("sphere", "axes"), ("hemisphere",)
 
 
 def cases(options: QualityOptions) -> list[measure.QualityCase]:
-    """Return a case for each row. Codecs that do not fit are named on standard error.
+    """Return a case for each row; codecs that do not fit their storage are named on standard error.
 
     Raises:
-        UsageError: unknown names, or nothing that fits.
+        UsageError: unknown names, or no codec that fits.
         MissingError: only GLSL is requested and there is no OpenGL device.
     """
     count = checked_count(options.count)
@@ -88,14 +88,14 @@ def cases(options: QualityOptions) -> list[measure.QualityCase]:
 
 
 def _as_wgsl(backends: Sequence[str]) -> list[str]:
-    """Return the backends with "wgsl" in place of "glsl", and print why: no device here compiles GLSL."""
+    """Return the backends with "wgsl" in place of "glsl", and print the reason: the system's OpenGL is too old."""
     if "glsl" in backends:
         tell(f"shaders run as WGSL instead of GLSL, because this system supports OpenGL only up to {LAST_OPENGL}")
     return list(dict.fromkeys("wgsl" if name == "glsl" else name for name in backends))
 
 
 def _not_of_noise(options: QualityOptions, backends: Sequence[str]) -> str:
-    """Return why dithered codecs cannot be measured as requested; empty if they can."""
+    """Return the reason why dithered codecs cannot be measured as requested; empty if they can."""
     exact = [option for option, is_asked in zip(EXACT, (options.worst_case, options.codes), strict=True) if is_asked]
     if exact:
         return not_with_noise(exact[0])
@@ -103,7 +103,7 @@ def _not_of_noise(options: QualityOptions, backends: Sequence[str]) -> str:
 
 
 def _set_names(words: Sequence[str], codec: Codec) -> Iterator[str]:
-    """Yield the normal sets that words name for a codec: `domain` names the sets of the encoding's domain."""
+    """Yield the normal sets that words name for a codec: `domain` stands for the sets of the encoding's domain."""
     for word in words:
         yield from (OF_SPHERE if codec.encoding.domain == "sphere" else OF_HALF) if word == DOMAIN else (word,)
 
@@ -115,7 +115,7 @@ def _is_asked(case: measure.QualityCase, words: Sequence[str]) -> bool:
 
 
 def steps(options: QualityOptions, outputs: QualityOutputs) -> list[Step]:
-    """Return a step for each row. Raises UsageError, also for an output folder that cannot be written to."""
+    """Return a step for each row. Raises UsageError, also if an output folder cannot be written to."""
     row_steps = [_step(case, _key(case, options)) for case in cases(options)]
     for folder in filter(None, (outputs.images, outputs.maps, outputs.live)):
         check_folder(folder)
@@ -162,7 +162,7 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _failures(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a line for each row with errors below the limit for its number of codes, which is impossible."""
+    """Yield a line for each row whose errors are below the limit for its number of codes, which is impossible."""
     for row in rows:
         if row["below_limit"]:
             wrong = f"{row['codes']} codes cannot be that accurate: the measurement is wrong, or the set is not uniform"
@@ -182,7 +182,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _not_shown(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a line for each reason why rows have no figures, with the names or the number of these rows."""
+    """Yield a line for each reason why rows have no figures, with the names or the number of the rows."""
     skipped = ((_named(row, row["skipped"]), row["skipped"]) for row in rows if row["skipped"])
     for reason, names in names_by_reason(skipped).items():
         listed = ", ".join(names) if len(names) <= MOST_NAMED else f"{len(names)} rows"
@@ -217,8 +217,9 @@ def _sheet_of(row: Row, measured: Sequence[Row]) -> tuple[str, str]:
 
 
 def beside(rows: Iterable[Row]) -> list[Row]:
-    """Return one line for each encoding: the article's figure if it has one, and a column for each backend, or one
-    column if all agree in every digit shown. The article's PSNR is left out if it is infinite for some encodings."""
+    """Return one row for each encoding: the article's figure if there is one, and a column for each backend, or a
+    single column if the backends agree in every digit shown. The article's PSNR is left out if it is infinite for any
+    encoding."""
     lines: dict[str, Row] = {}
     for row in rows:
         name = row["encoding"] + ("" if row["rounding"] == "nearest" else f" {row['rounding']}")
@@ -240,12 +241,12 @@ def beside(rows: Iterable[Row]) -> list[Row]:
 
 
 def _is_beyond(column: str, lines: Iterable[Row]) -> bool:
-    """Whether a column is infinite for some encodings; it cannot compare them."""
+    """Whether a column is infinite for any encoding, so that it cannot compare them."""
     return any(line.get(column) == math.inf for line in lines)
 
 
 def _merge(column: str, lines: Sequence[Row]) -> None:
-    """Merge the columns of all backends into one if there are several and they agree in every digit shown."""
+    """Merge a column's figures from several backends into one column if they agree in every digit shown."""
     names = list(dict.fromkeys(name for line in lines for name in line if name.startswith(f"{column}_")))
     known = all(line.get(name) is not None for line in lines for name in names)
     if len(names) > 1 and known and all(len({text_of(line[name]) for name in names}) == 1 for line in lines):
@@ -255,7 +256,7 @@ def _merge(column: str, lines: Sequence[Row]) -> None:
 
 
 def _psnr_order(column: str) -> tuple[bool, bool]:
-    """Return the sort key of a PSNR column: the article's measure before the plain one, JAX before GLSL."""
+    """Return the sort key of a PSNR column: the article's measure before the plain PSNR, JAX before GLSL."""
     return ARTICLE not in column, "glsl" in column
 
 

@@ -1,1 +1,1 @@
-"""Effect of codecs, layouts and light buffers on the final image."""
+"""The effect of codecs, layouts and light buffers on the final image."""

@@ -14,7 +14,7 @@ IMAGE, NORMALS = "the image", "the normals"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield a chart for each scene, or for each power of a scene."""
+    """Yield a chart for each scene, or for each specular power of a scene."""
     usable = having(rows, "psnr_db", "normal_psnr_db")
     for index, scene in enumerate(dict.fromkeys(map(shown_scene, usable))):
         part = [row for row in usable if shown_scene(row) == scene]
@@ -22,12 +22,12 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def image_chart(index: int, scene: str, rows: Sequence[Row]) -> Chart:
-    """Return the chart of the final image's PSNR next to that of the normals that lit it, a line for each codec, the
-    best image on top.
+    """Return the chart of the final image's PSNR next to the PSNR of the normals that lit it, with a line for each
+    codec and the best image at the top.
 
     Args:
-        index: its index among the charts of the table.
-        rows: rows of one scene, in that order.
+        index: index of the chart among the charts of the table.
+        rows: rows of one scene, the best image first.
     """
     lines = [
         {"codec": CodecKey.of(row).label, "line": line, "image": row["psnr_db"], "normals": row["normal_psnr_db"]}
@@ -58,7 +58,7 @@ FIELDS = ((IMAGE, "image"), (NORMALS, "normals"))
 
 
 def _finding_sentence(lines: Sequence[Row]) -> str:
-    """Return which codec has the best image, and whether it also has the best normals."""
+    """Return a sentence on the codec with the best image, and whether it also has the best normals."""
     best, normals = lines[0], max(lines, key=lambda line: line["normals"])
     sentence = f"Best image: {best['line']}, {best['image']:.1f} dB"
     if best["normals"] == normals["normals"]:

@@ -1,4 +1,4 @@
-"""The render table: the effect of a codec, a layout or a light buffer on the final image of a pipeline."""
+"""Measurement of the render table: the effect of a codec, a layout or a light buffer on the final image."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ SAME = (
 
 @dataclass(frozen=True)
 class RenderCase:
-    """One row to measure.
+    """A row of the render table to measure.
 
     Attributes:
-        pipeline, plan: the renderer, and the plan that it follows.
+        pipeline, plan: the renderer, and the plan with which it renders.
         maker, setting: the scene and its settings.
-        frames: number of moments that figures are averaged over.
-        asked: requested samples per pixel; `plan.samples` is what the device gives.
+        frames: number of moments over which figures are averaged.
+        asked: requested samples per pixel; `plan.samples` is the number that the device provides.
         power: specular power of all materials; None for each material's own.
         exposure: in stops; None to measure it from the reference.
         tone_mapping: one of TONE_MAPPINGS.
-        effects: the effects of the pipeline.
+        effects: the effects of the pipeline, in words; None without effects.
         environment: what metallic-roughness materials reflect, as named in a row; None for other materials.
-        environment_key: distinguishes environments of the same name.
+        environment_key: text that distinguishes environments of the same name.
     """
 
     pipeline: Pipeline
@@ -77,7 +77,7 @@ class RenderCase:
         return " ".join(parts if self.pipeline.has_gbuffer else parts[:2])
 
     def moments(self) -> Iterator[Setting]:
-        """Yield the scene's setting at each moment."""
+        """Yield the setting of the scene at each moment."""
         for frame in range(self.frames):
             yield replace(self.setting, time=frame / self.frames)
 
@@ -89,7 +89,7 @@ class RenderCase:
 
     @property
     def reference(self) -> RenderCase:
-        """The same pipeline with everything in fp32, two light targets if it supports them, and full size."""
+        """The same pipeline with everything in fp32, two light targets if supported, and a full-size G-buffer."""
         targets = max(self.pipeline.light_targets, default=1)
         exact = replace(
             self.plan,
@@ -103,11 +103,11 @@ class RenderCase:
 
 @dataclass(frozen=True)
 class Drawn(Frame):
-    """One frame.
+    """A rendered frame, with the content of its G-buffer.
 
     Attributes:
-        normals, kinds: content of the G-buffer, (height, width, 3) and (height, width); None if there is no
-            G-buffer or it has several samples per pixel. The kind of uncovered pixels is -1.
+        normals, kinds: normals and kinds of material, (height, width, 3) and (height, width); None if there is no
+            G-buffer or it has several samples per pixel. The kind is -1 at uncovered pixels.
     """
 
     normals: np.ndarray | None
@@ -145,7 +145,7 @@ class RenderBench(Bench[RenderCase, Drawn]):
         return Display(exposure, case.tone_mapping)
 
     def _covered_masks(self, case: RenderCase, exact: list[Drawn]) -> list[np.ndarray]:
-        """Return the masks of opaque surfaces in the frames of a reference, bool of shape (height, width) each.
+        """Return the masks of opaque surfaces in the frames of a reference, each bool of shape (height, width).
 
         Raises:
             UsageError: no surface is visible; figures over no pixels would make every codec look exact.
@@ -172,7 +172,7 @@ class RenderBench(Bench[RenderCase, Drawn]):
         return row
 
     def worst(self, case: RenderCase) -> Worst | None:
-        """Return the normal of a case's first frame with the largest G-buffer error; None if there are no normals, or
+        """Return the normal with the largest G-buffer error in a case's first frame; None if there are no normals, or
         the case cannot be measured."""
         try:
             return _farthest(self.frames(case)[0], self.reference(case)[0])
@@ -191,7 +191,7 @@ def _drawn_images(rendered: Rendering, pipeline: Pipeline, repeats: int) -> Draw
 
 
 def _reference_columns(reference: list[Drawn], covered: list[np.ndarray]) -> Row:
-    """Return the columns that describe the reference."""
+    """Return columns on the reference: its exposure, and the share of covered, clipped and black pixels."""
     surface = np.concatenate([frame.linear[where] for frame, where in zip(reference, covered, strict=True)])
     display = reference[0].display
     return {
@@ -211,7 +211,7 @@ def _psnr_of_covered(pairs: list[tuple[Drawn, Drawn]], covered: list[np.ndarray]
 
 
 def _farthest(own: Drawn, other: Drawn) -> Worst | None:
-    """Return the normal of the first frame that differs most from the second; None if they cannot be compared."""
+    """Return the normal that differs most between a frame and its exact frame; None if they cannot be compared."""
     if own.normals is None or other.normals is None or other.kinds is None or own.normals.shape != other.normals.shape:
         return None
     covered = other.kinds >= 0
@@ -224,7 +224,7 @@ def _farthest(own: Drawn, other: Drawn) -> Worst | None:
 
 
 def _normal_error(own: Drawn, other: Drawn, has_kind: bool) -> float:
-    """Return the mean squared error over the components of covered normals; pixels of hair, whose normal is the
+    """Return the mean squared error over the components of covered normals. Hair pixels, whose normal is the
     direction of a strand, count only if `has_kind`."""
     assert own.normals is not None and other.normals is not None and other.kinds is not None
     compared = (other.kinds >= 0) & (has_kind | (other.kinds != KINDS.index("hair")))
@@ -254,7 +254,7 @@ def _case_columns(case: RenderCase) -> Row:
 
 
 def _unread(case: RenderCase) -> list[str]:
-    """Return the names of the quantities that a layout keeps but no pass reads."""
+    """Return the names of the quantities that a layout stores but no pass reads."""
     if not case.pipeline.has_gbuffer:
         return []
     kept = [quantity_of(word.component) for word in case.plan.layout.words]
@@ -266,18 +266,18 @@ def _unread(case: RenderCase) -> list[str]:
 
 
 def _is_exact_but_for_normals(case: RenderCase) -> bool:
-    """Whether a codec is stored in the exact layout, so that the layout's bytes do not matter."""
+    """Whether a case stores a codec in the otherwise exact layout, so that the layout's bytes do not matter."""
     layout, exact = case.plan.layout, LAYOUTS["fp32"]
     return case.pipeline.has_gbuffer and layout.name == exact.name and layout != exact
 
 
 def shown_scene(row: Row) -> str:
-    """Return the scene of a row, with its power if there is one, as named in sentences."""
+    """Return the name of a row's scene for sentences, with the specular power if there is one."""
     return str(row["scene"]) + ("" if row["power"] is None else f" at power {row['power']:g}")
 
 
 def in_order(rows: list[Row]) -> list[Row]:
-    """Return rows by render settings, in the given order, then by bits of the normal's code, the best first."""
+    """Return the rows by render settings in the given order, then by bits of the normal's code, the best first."""
     groups = list(dict.fromkeys(_group_key(row) for row in rows))
     return sorted(rows, key=lambda row: (groups.index(_group_key(row)), row["normal_bits"] or 0, *_error_key(row)))
 
@@ -287,13 +287,13 @@ def _group_key(row: Row) -> tuple[Any, ...]:
 
 
 def _error_key(row: Row) -> tuple[bool, float]:
-    """Return the sort key of a row by the error of its image: exact images first, rows without figures last."""
+    """Return the sort key of a row by its image error: exact images come first, rows without figures last."""
     return row["mse"] is None, row["mse"] or 0.0
 
 
 def ranked(given: Sequence[Row]) -> list[Row]:
-    """Return the rows with each codec's `rank` by its image and `normal_rank` by its normals, among the rows that
-    differ only in the codec; rows without others to compare with stay unchanged."""
+    """Return the rows with the codec's `rank` by its image and `normal_rank` by its normals, among rows with the same
+    render settings; rows without others to compare with are unchanged."""
     rows = [dict(row) for row in given]
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:

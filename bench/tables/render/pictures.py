@@ -1,4 +1,4 @@
-"""Pictures of rendered images: written into a folder, and found there again."""
+"""Pictures of rendered images: writing them into a folder, and finding them there again."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ REFERENCE = "reference"
 
 
 def scene_stem(row: Row, content: Sequence[str] = ()) -> str:
-    """Return the file name of a row's reference, without the content's suffix."""
+    """Return the start of the file name for a row's scene, followed by parts that name its content, if given."""
     power = [] if row["power"] is None else [f"power{row['power']:g}"]
     effects = [name_of_file(row["effects"])] if row.get("effects") else []
     shadow = [] if row["shadow"] else ["unshadowed"]
@@ -34,7 +34,7 @@ def scene_stem(row: Row, content: Sequence[str] = ()) -> str:
 
 
 def _surfaces(row: Row) -> Iterator[str]:
-    """Yield the parts of a file name for the environment and the smoothing of metallic-roughness surfaces; nothing
+    """Yield the parts of a file name for the environment and the antialiasing of metallic-roughness surfaces; nothing
     for the defaults."""
     if (around := row.get("environment")) and not around.startswith(f"{AROUND} "):
         yield name_of_file(around)
@@ -45,7 +45,7 @@ def _surfaces(row: Row) -> Iterator[str]:
 
 
 def stem(row: Row) -> str:
-    """Return a row's file name, without the content's suffix."""
+    """Return the start of a row's file names, without the kind of picture."""
     if row["layout"] is None:
         return scene_stem(row)
     rounding = [] if row["rounding"] == "nearest" else [row["rounding"]]
@@ -54,7 +54,7 @@ def stem(row: Row) -> str:
 
 
 def write(folder: Path, row: Row, drawn: Drawn, reference: Drawn) -> None:
-    """Write the first frame of a row, its errors, and its reference, which the rows of one scene share."""
+    """Write pictures of a row's first frame and its errors, and of the reference, which the scene's rows share."""
     images = {f"{stem(row)}-{kind}": pixels for kind, pixels in _named_pictures(drawn, reference).items()}
     # Written anew each time: the folder may hold one of other settings.
     images[f"{scene_stem(row)}-{REFERENCE}"] = pictures.picture(reference.shown)
@@ -70,8 +70,8 @@ def _named_pictures(drawn: Drawn, reference: Drawn) -> dict[str, np.ndarray]:
 
 
 def subjects(folder: Path, rows: Sequence[Row]) -> Iterator[Subject]:
-    """Yield a subject for each scene of the rows, if the folder has its images. Names are looked up, so that they
-    cannot lead out of the folder."""
+    """Yield a subject for each scene in the rows, if the folder has its pictures. File names are looked up in the
+    folder, so that they cannot lead out of it."""
     there = files_of(folder)
     groups: dict[str, list[Row]] = {}
     for row in rows:
@@ -98,7 +98,7 @@ def _pictured_or_none(there: Mapping[str, Path], row: Row, part: Sequence[Row], 
 
 
 def _label(row: Row, part: Sequence[Row]) -> str:
-    """Return the codec, and other names that distinguish the row."""
+    """Return a label for a row: the codec, and any other names that distinguish the row."""
     if row["layout"] is None:
         return str(row["pipeline"])
     others = [name for name in ("layout", "light_buffer", "light_targets") if len({other[name] for other in part}) > 1]
@@ -106,7 +106,7 @@ def _label(row: Row, part: Sequence[Row]) -> str:
 
 
 def in_order(rows: Sequence[Row]) -> list[tuple[Row, int]]:
-    """Return the rows of one scene, the best of the fewest bits first, each with its rank among those of equal bits."""
+    """Return the rows of one scene by bits, the best first, each with its rank among rows with the same bits."""
 
     def bits_and_figure(row: Row) -> tuple[int, float]:
         return row.get("normal_bits") or 0, -row[LEADING] if is_number(row.get(LEADING)) else 0.0
@@ -117,6 +117,6 @@ def in_order(rows: Sequence[Row]) -> list[tuple[Row, int]]:
 
 
 def _pixels(final: Path, flip: Path | None) -> ImagePixels | None:
-    """Return the pixels of a row's files; None if the image is damaged, without FLIP if its file is missing."""
+    """Return a row's pixels from its picture files; None if the image is damaged, without FLIP if it is missing."""
     image, apart = read_png(final), read_png(flip) if flip else None
     return None if image is None else ImagePixels(image, None if apart is None else apart[..., 0])

@@ -47,10 +47,10 @@ ONE_ORIENTATION = (
 
 
 def layouts(options: RenderOptions) -> list[Layout]:
-    """Return the requested layouts, each with every requested codec; unchanged if no codec is requested.
+    """Return the requested layouts, each with every requested codec; if no codec is requested, unchanged.
 
     Raises:
-        UsageError: an unknown name, an impossible layout, or nothing left.
+        UsageError: an unknown name, an impossible layout, or nothing left to measure.
     """
     chosen = layouts_named(("fp32",) if options.layout is None else options.layout)
     if options.layout is not None and options.encoding is options.storage is options.rounding is None:
@@ -70,7 +70,7 @@ def cases(options: RenderOptions, device: Device) -> list[RenderCase]:
     """Return a case for each row; impossible combinations are named on standard error.
 
     Raises:
-        UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
+        UsageError: unknown names, sizes or counts out of range, or nothing left to measure.
     """
     in_range("--frames", options.frames, 0, MAX_FRAMES)
     size, samples = checked_target(options.size, options.samples, max(options.frames, 1), device)
@@ -112,8 +112,8 @@ def cases(options: RenderOptions, device: Device) -> list[RenderCase]:
 
 
 def _as_engines_keep(plan: Plan) -> Plan:
-    """Return a plan that measures only an encoding with its normal in world space if the encoding is made for that;
-    any other plan unchanged."""
+    """Return a plan that measures only an encoding with its normals in world space if engines use the encoding there;
+    any other plan is unchanged."""
     layout, exact = plan.layout, LAYOUTS["fp32"]
     if layout.name != exact.name or layout == exact:
         return plan
@@ -121,7 +121,7 @@ def _as_engines_keep(plan: Plan) -> Plan:
 
 
 def _around(scene: Scene) -> str | None:
-    """Return a row's text on what metallic-roughness materials reflect; None if the scene has other materials."""
+    """Return text on what metallic-roughness materials reflect; None if the scene has other materials."""
     if not scene.is_metal_rough:
         return None
     if (around := scene.environment) is None:
@@ -179,7 +179,7 @@ def _warnings(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _most(rows: Sequence[Row], column: str) -> dict[str, float]:
-    """Return the largest value of a column by scene; scenes without a value are left out."""
+    """Return the largest value in a column for each scene; scenes without a value are left out."""
     largest: dict[str, float] = {}
     for row in rows:
         scene = shown_scene(row)
@@ -194,7 +194,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _usual_columns(rows: Sequence[Row]) -> tuple[str, ...]:
-    """Return the names of the columns to hide because they only repeat the usual case."""
+    """Return the names of the columns to hide because all their values are the usual ones."""
     usual = {
         ("samples_asked",): all(row["samples"] == row["samples_asked"] for row in rows),
         ("exposure",): not any(row["exposure"] for row in rows),

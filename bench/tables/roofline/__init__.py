@@ -1,1 +1,1 @@
-"""Bytes against instructions: which code is faster on which GPU."""
+"""Memory traffic against arithmetic: which encoding is faster on which GPU."""

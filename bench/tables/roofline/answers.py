@@ -11,7 +11,7 @@ Place = tuple[str, int]
 
 
 def answers(rows: Sequence[Row]) -> tuple[str, ...]:
-    """Return a sentence for each GPU, or for several with the same answer; several sentences have a heading.
+    """Return a sentence for each GPU, or for GPUs with the same answer together; several sentences have a heading.
 
     Args:
         rows: the ranked rows of the table.
@@ -30,8 +30,8 @@ def _answers_by_gpu(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _answer_text(rows: Sequence[Row], places: Sequence[Place]) -> str:
-    """Return the fastest codecs as text, for each combination of size and reads; combinations with the same codecs
-    are named together."""
+    """Return text on the fastest codecs for each combination of size and reads; combinations with the same codecs are
+    named together."""
     groups: dict[str, list[Place]] = {}
     for size, reads in places:
         best = [row for row in rows if (row["size"], row["reads"], row["rank"]) == (size, reads, 1)]
@@ -42,7 +42,7 @@ def _answer_text(rows: Sequence[Row], places: Sequence[Place]) -> str:
 
 
 def _codes_text(rows: Sequence[Row]) -> str:
-    """Return text on the codecs that are equally fast, such as "spheremap and octahedral in rg8 are equally fast"."""
+    """Return text on the fastest codecs, such as "spheremap and octahedral in rg8 are equally fast"."""
     by_storage: dict[str, list[str]] = {}
     for row in rows:
         by_storage.setdefault(row["storage"], []).append(row["encoding"])
@@ -51,8 +51,8 @@ def _codes_text(rows: Sequence[Row]) -> str:
 
 
 def _places_text(some: Sequence[Place], every: Sequence[Place]) -> str:
-    """Return some combinations of size and reads in words: only sizes, or only reads, if these are enough to
-    distinguish them from the others."""
+    """Return text on some combinations of size and reads: only sizes, or only reads, if these distinguish them from
+    the other combinations."""
     sizes, reads = (list(dict.fromkeys(column)) for column in zip(*some, strict=True))
     if sum(size in sizes for size, _ in every) == len(some):
         return f"at {_listed_text(sizes)}"
@@ -66,5 +66,5 @@ def _reads_text(counts: Sequence[int]) -> str:
 
 
 def _listed_text(names: Sequence[str]) -> str:
-    """Return names as one text, with commas, and "and" before the last."""
+    """Return names joined into one text, with commas, and with "and" before the last name."""
     return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)

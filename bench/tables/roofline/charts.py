@@ -13,14 +13,14 @@ MEMORY, CACHE = "bytes from memory take as long as instructions", "bytes from th
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield the chart of bytes over instructions, if any row has both."""
+    """Yield the chart of bytes against instructions, if any row has both."""
     usable = having(rows, "instructions", "bytes_per_pixel")
     if usable:
         yield roofline_chart(usable)
 
 
 def points(rows: Sequence[Row]) -> list[Row]:
-    """Return the points of charts: instructions, and bytes written and read, per pixel and frame, for the fewest
+    """Return the points of the chart: instructions, and bytes written and read, per pixel and frame, at the fewest
     reads and the first size."""
     reads, size = min(row["reads"] for row in rows), rows[0]["size"]
     names = ("gpu", "encoding", "storage", "size", "reads", "ridge", "in_cache")
@@ -38,8 +38,8 @@ def points(rows: Sequence[Row]) -> list[Row]:
 
 
 def ridge_lines(point_rows: Sequence[Row], gpu: str) -> dict[bool, list[tuple[float, float]]]:
-    """Return the lines along which bytes take as long as instructions on a GPU, as points (instructions, bytes), from
-    the lowest bytes of the axis: False for codecs in memory, True for codecs that the cache holds."""
+    """Return the lines on which a GPU's bytes take as long as its instructions, as points (instructions, bytes) from
+    the lower end of the byte axis: False for codecs in memory, True for codecs in the cache."""
     most, (least, _) = _axis_end(point_rows), _bytes_axis(point_rows)
     ridges = {point["in_cache"]: point["ridge"] for point in point_rows if point["gpu"] == gpu}
     across = [most * (step / STEPS) ** 2 for step in range(1, STEPS + 1)]
@@ -51,12 +51,12 @@ def _axis_end(point_rows: Sequence[Row]) -> float:
 
 
 def _bytes_axis(point_rows: Sequence[Row]) -> tuple[float, float]:
-    """Return the ends of the axis of bytes, with room only for the points."""
+    """Return the ends of the byte axis, which leaves a margin around the points."""
     return min(point["y"] for point in point_rows) / 1.5, max(point["y"] for point in point_rows) * 1.5
 
 
 def roofline_chart(rows: Sequence[Row]) -> Chart:
-    """Return the chart of bytes over instructions, per pixel and frame, of each GPU: above the line memory takes
+    """Return the chart of bytes against instructions, per pixel and frame, for each GPU: above the line memory takes
     longer, below it arithmetic.
 
     Args:
@@ -100,7 +100,7 @@ def roofline_chart(rows: Sequence[Row]) -> Chart:
 
 
 def _finding_sentence(point_rows: Sequence[Row]) -> str:
-    """Return a sentence on how often bytes take longer than instructions."""
+    """Return a sentence on the number of cases in which bytes take longer than instructions."""
     bound = [point for point in point_rows if point["y"] * point["ridge"] > point["x"]]
     gpus, codecs = (len(distinct(point_rows, name)) for name in ("gpu", "codec"))
     shown = f"{codecs} codecs on {gpus} {'GPU' if gpus == 1 else 'GPUs'}"

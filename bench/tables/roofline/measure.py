@@ -1,4 +1,4 @@
-"""Time that a codec's bytes and instructions take in a frame, by the roofline model.
+"""The time that a codec's bytes and instructions take in a frame, by the roofline model.
 
 Williams, Waterman, Patterson (2009), Roofline: An Insightful Visual Performance Model for Multicore Architectures.
 """
@@ -28,13 +28,13 @@ TIE = 1e-9
 
 @dataclass(frozen=True)
 class Frame:
-    """Use of a G-buffer in a frame.
+    """The use of a G-buffer in a frame.
 
     Attributes:
         size: width and height in pixels.
         reads: number of passes that read and decode each pixel's normal.
-        overdraw: how often each pixel's normal is encoded and written.
-        cache_share: the share of the last-level cache that is available to normals.
+        overdraw: number of times that each pixel's normal is encoded and written.
+        cache_share: share of the last-level cache that is available to normals.
     """
 
     size: tuple[int, int]
@@ -49,14 +49,14 @@ class Frame:
 
 @dataclass(frozen=True)
 class Work:
-    """Work of a codec per pixel: bytes, and instructions to encode and to decode."""
+    """A codec's work per pixel: bytes, and instructions to encode and to decode."""
 
     bytes: float
     encode: float
     decode: float
 
     def instructions(self, frame: Frame) -> float:
-        """Return the instructions per pixel in a frame."""
+        """Return the instructions per pixel over all passes of a frame."""
         return frame.overdraw * self.encode + frame.reads * self.decode
 
     def traffic(self, frame: Frame) -> float:
@@ -64,25 +64,27 @@ class Work:
         return frame.pixels * self.bytes * (frame.overdraw + frame.reads)
 
     def is_cached(self, frame: Frame, rates: Rates) -> bool:
-        """Whether all normals fit into their share of the cache."""
+        """Whether all normals fit in their share of the cache."""
         return 0 < frame.pixels * self.bytes <= frame.cache_share * rates.cache * 1e6
 
     def times(self, frame: Frame, rates: Rates) -> tuple[float, float]:
-        """Return the seconds that a frame's bytes take, and those that its instructions take."""
+        """Return the time of a frame's bytes and the time of its instructions, in seconds."""
         moved = self.traffic(frame) / (self.bandwidth(frame, rates) * 1e9)
         return moved, frame.pixels * self.instructions(frame) / rates.instructions
 
     def bandwidth(self, frame: Frame, rates: Rates) -> float:
-        """Return the GB/s at which normals move: the cache's if they fit into their share, else the memory's."""
+        """Return the bandwidth for normals in GB/s: the cache's if they fit in their share, else the memory's."""
         return rates.cached if self.is_cached(frame, rates) else rates.memory
 
 
 @dataclass(frozen=True, eq=False)
 class RooflineCase:
-    """Codecs on one GPU, in several frames.
+    """Codecs to compare on one GPU, in several frames.
 
     Attributes:
-        codecs, gpu, rates, frames: the codecs to compare, and the GPU and frames to compare them on.
+        codecs: the codecs.
+        gpu, rates: the GPU's name and rates.
+        frames: uses of the G-buffer to compare the codecs in.
         is_shared: whether other data shares each texel, so that only a code's own bits count.
     """
 
@@ -102,13 +104,13 @@ class RooflineCase:
                 yield row | ({"skipped": work} if isinstance(work, str) else _figures(work, frame, self.rates))
 
     def work(self, codec: Codec) -> Work | None:
-        """Return the work of a codec; None if it is not known."""
+        """Return the work of a codec; None if its cost is not known."""
         work = self._works[codec]
         return None if isinstance(work, str) else work
 
     @cached_property
     def _works(self) -> dict[Codec, Work | str]:
-        """The work of each codec, or why it is not known."""
+        """The work of each codec, or the reason why it is not known."""
         costs = Costs(self._counts)
         lost = next((row["skipped"] for row in self._counts if row["skipped"] and not row["encoding"]), None)
         works: dict[Codec, Work | str] = {}
@@ -156,7 +158,8 @@ def _figures(work: Work, frame: Frame, rates: Rates) -> Row:
 
 
 def ranked(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows by GPU, size and reads, the fastest first, with their ranks; rows without figures come last."""
+    """Return the rows by GPU, size and reads, the fastest first, with their ranks; rows without figures come last in
+    each group."""
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault((row["gpu"], row["size"], row["reads"]), []).append(row)
@@ -175,9 +178,11 @@ MOST_READS = 64
 
 
 def from_reads(candidate: Work, other: Work, rates: Rates, frame: Frame) -> str:
-    """Return from how many reads one codec is faster than another: "always", "never", "from 3", "up to 2", "equal".
+    """Return the numbers of reads at which one codec is faster than another: "always", "never", "from 3", "up to 2",
+    "equal".
 
-    Each time is the larger of two linear functions of the reads, so a codec may also be faster between two numbers.
+    Each time is the larger of two linear functions of the reads, so a codec may also be faster only in a range: "from
+    3 to 5".
     """
     wins, loses = [], []
     for reads in range(1, MOST_READS + 1):

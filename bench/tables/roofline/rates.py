@@ -1,4 +1,4 @@
-"""GPUs by their rates of computation and of memory traffic. Imports nothing heavy."""
+"""Rates of computation and memory traffic for GPUs. This module imports nothing heavy."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from ...ground.spelling import spelled
 
 @dataclass(frozen=True)
 class Rates:
-    """Throughput of a GPU.
+    """The throughput of a GPU.
 
     Attributes:
-        title: its common name.
-        family: the GPU family whose compiler counts for it.
-        lanes: number of lanes whose instructions it issues per clock.
+        title: common name.
+        family: GPU family whose compiler counts the instructions.
+        lanes: number of lanes whose instructions the GPU issues per clock.
         clock: boost clock in GHz.
-        memory: bandwidth of its memory in GB/s.
-        cache: MB of its last-level cache; 0 if the cache's bandwidth is not published.
+        memory: memory bandwidth in GB/s.
+        cache: size of the last-level cache in MB; 0 if the cache's bandwidth is not published.
         cached: bandwidth of that cache in GB/s.
     """
 
@@ -42,7 +42,7 @@ class Rates:
         return self.lanes * self.clock * 1e9
 
     def ridge(self, bandwidth: float) -> float:
-        """Return the number of instructions that take as long as moving one byte, at a bandwidth in GB/s."""
+        """Return the number of instructions that take as long as moving a byte, at a bandwidth in GB/s."""
         return self.instructions / (bandwidth * 1e9)
 
 
@@ -77,8 +77,8 @@ RANGES = MappingProxyType(
 
 
 def gpus_named(words: Names) -> dict[str, Rates]:
-    """Return GPUs' rates by name: of known GPUs, or of all. NAME:memory=400:clock=2 changes rates of a GPU; a
-    family's name with lanes, clock and memory is a GPU of that family.
+    """Return the rates of GPUs by name: of known GPUs, or with `all` of every known GPU. NAME:memory=400:clock=2
+    changes rates of a known GPU; the name of a family with lanes, clock and memory defines a GPU of that family.
 
     Raises:
         UsageError: an unknown name or setting, or a rate that no GPU has.
@@ -90,8 +90,8 @@ def gpus_named(words: Names) -> dict[str, Rates]:
 
 
 def _named_rates(word: str) -> tuple[str, Rates]:
-    """Return a GPU's name, in its known spelling and with its settings, and its rates: of a known GPU, or of a family
-    with settings. Raises UsageError."""
+    """Return a GPU's name, in its known spelling and with its settings, and its rates. The GPU is known, or belongs
+    to a family and has settings. Raises UsageError."""
     typed, *settings = word.split(":")
     name = spelled("family", typed, (*GPUS, *FAMILIES)) or typed
     word = ":".join([name, *settings])

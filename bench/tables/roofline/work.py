@@ -24,7 +24,7 @@ MOST_PAIRS = 6
 
 
 def cases(options: RooflineOptions) -> list[RooflineCase]:
-    """Return a case for each GPU. Raises UsageError for a name that is unknown or a value out of range."""
+    """Return a case for each GPU. Raises UsageError for an unknown name or a value out of range."""
     if not 0.01 <= options.overdraw <= 1000:
         raise UsageError(f"--overdraw {options.overdraw}: out of range; use 0.01 to 1000")
     if not 0 <= options.cache_share <= 1:
@@ -76,8 +76,9 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
 
 
 def _duels(case: RooflineCase) -> Iterator[str]:
-    """Yield lines on how many reads make the smaller of two codecs faster, and at which sizes, for each pair of
-    different bytes. If there are many pairs, only those in which the smaller is not always faster."""
+    """Yield lines on the numbers of reads and the sizes at which the smaller of two codecs is faster, for each pair
+    of different bytes. If there are many pairs, pairs in which the smaller codec is always faster are only
+    counted."""
     works = {f"{codec.encoding.name} {codec.storage.name}": case.work(codec) for codec in case.codecs}
     known = sorted(((name, work) for name, work in works.items() if work), key=lambda entry: entry[1].bytes)
     pairs = [pair for pair in combinations(known, 2) if pair[0][1].bytes < pair[1][1].bytes]
@@ -95,7 +96,7 @@ def _duels(case: RooflineCase) -> Iterator[str]:
 
 
 def _by_size(case: RooflineCase, candidate: measure.Work, other: measure.Work) -> dict[str, list[str]]:
-    """Return the sizes, such as 1920x1080, by the answer of `from_reads` for them."""
+    """Return the sizes, such as 1920x1080, grouped by the answer of `from_reads`."""
     groups: dict[str, list[str]] = {}
     for size, frame in {frame.size: frame for frame in case.frames}.items():
         answer = measure.from_reads(candidate, other, case.rates, frame)
@@ -109,7 +110,7 @@ def _said(answer: str, sizes: Sequence[str]) -> str:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield a sheet for each number of reads: a row for each codec, with GPUs and sizes side by side."""
+    """Yield a sheet for each number of reads, with a row for each codec and a column for each GPU and size."""
     known = [row for row in rows if row["frame_us"] is not None]
     sentences = answers(rows)
     for reads in dict.fromkeys(row["reads"] for row in known):

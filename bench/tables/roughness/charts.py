@@ -17,18 +17,18 @@ MOST_WITH_POINTS = 40
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield the chart of FLIP over roughness, if any row has FLIP."""
+    """Yield the chart of FLIP by roughness, if any row has FLIP."""
     usable = [r for r in having(rows, "flip_p99", "roughness") if r.get("threshold") is None or r.get("decides")]
     if usable:
         yield roughness_chart(usable, sorted({row["threshold"] for row in rows if row.get("threshold") is not None}))
 
 
 def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
-    """Return the chart of FLIP's 99th percentile over roughness, the worst of objects and environments, a line for
+    """Return the chart of FLIP's 99th percentile by roughness, for the worst object and environment, with a line for
     each codec.
 
     Args:
-        rows: rows of the roughness table with FLIP: single images, and crossings that decide.
+        rows: rows of the roughness table with FLIP: single images, and deciding crossings of a threshold.
         thresholds: values to draw as dotted lines.
     """
     worst: dict[tuple[str, float], Row] = {}
@@ -67,6 +67,6 @@ def roughness_chart(rows: Sequence[Row], thresholds: Sequence[float]) -> Chart:
 
 
 def _called(row: Row) -> str:
-    """Return the name of a codec, with its noise and its number of frames unless they are the usual ones."""
+    """Return the name of a codec, with its noise and its number of frames unless there is no noise and one frame."""
     noise = "" if row["dither"] == NONE else f", {row['dither']} noise"
     return CodecKey.of(row).label + noise + ("" if row["frames"] == 1 else f", {row['frames']} frames")

@@ -1,4 +1,4 @@
-"""Images of an object through a layout: one frame, or the mean of several, each from its own place within a pixel."""
+"""Images of an object drawn with a layout: one frame, or the mean of several frames with subpixel offsets."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NONE, STILL, MOVING = DITHERS = ("none", "still", "moving")
 
 @dataclass(frozen=True)
 class Accumulation:
-    """Number of frames drawn for an image, and the noise added to the code of its normals.
+    """The number of frames drawn for an image, and the noise added to the codes of its normals.
 
     Attributes:
         dither: one of DITHERS.
@@ -41,7 +41,7 @@ class Accumulation:
 
 
 class Frames:
-    """Frames of an object through one layout, drawn once and released with the stack.
+    """Frames of an object with one layout, drawn once and released with the stack.
 
     Attributes:
         made: the rendering of each frame.
@@ -76,7 +76,7 @@ class Frames:
 
     def light(self, roughness: float) -> np.ndarray:
         """Return the mean of all frames at a roughness: linear light, float64 of shape (height, width, 3), black
-        around the object."""
+        outside the object."""
         total = np.zeros((*self.covered.shape, 3))
         for rendered, covered in zip(self.made, self._covered, strict=True):
             if OBJECTS[self._what.name].is_metal:
@@ -89,13 +89,14 @@ class Frames:
 
 
 def layout_of(codec: Codec) -> Layout:
-    """Return a layout with the rest in floats; the normal is in world space, as in engines, if encoded for that."""
+    """Return a layout that stores normals with a codec, in world space if engines use the encoding there, and
+    everything else in floats."""
     return replace(LAYOUTS["fp32"], space=engines_space(codec.encoding)).with_codec(codec)
 
 
 def draw_again(rendered: Rendering, roughness: float) -> None:
-    """Draw the image of a metal with another roughness, in a fifth of the time: only one target of the G-buffer
-    changes, to a constant."""
+    """Draw the image of a metal with another roughness in a fifth of the time, by clearing the one target of the
+    G-buffer that changes."""
     number = next(w.target for w in rendered.frame.plan.layout.words if w.component == "power")
     # Reflectance head on, and the roughness, which a metal/rough surface has in place of a power.
     rendered.frame.framebuffer([rendered.frame.textures(GBUFFER)[number]]).clear(*WHITE, roughness)
@@ -103,9 +104,10 @@ def draw_again(rendered: Rendering, roughness: float) -> None:
 
 
 def views(view: View, size: tuple[int, int], frames: int) -> Sequence[View]:
-    """Return the view of each frame: through pixel centres, or for several frames through points spread over pixels.
+    """Return the view for each frame: through pixel centres, or for several frames through points spread over the
+    pixel.
 
-    The points are those of J. Halton, On the efficiency of certain quasi-random sequences, 1960, in bases 2 and 3.
+    Source: J. Halton, On the efficiency of certain quasi-random sequences, 1960; bases 2 and 3.
     """
     if frames == 1:
         return [view]
@@ -114,14 +116,14 @@ def views(view: View, size: tuple[int, int], frames: int) -> Sequence[View]:
 
 
 def moved(view: View, size: tuple[int, int], x: float, y: float) -> View:
-    """Return the view of an image of this size through points x pixels to the right and y pixels above the centres of
-    its pixels. The camera turns, which at so small an angle is the same to 1e-4 of a pixel."""
+    """Return a view shifted by x pixels to the right and y pixels up, for an image of this size. The camera is
+    rotated instead, which at such a small angle agrees to 1e-4 of a pixel."""
     pixel = float(np.degrees(np.arctan(2 * np.tan(np.radians(view.fov) / 2) / size[1])))
     return view.turned("yaw", -x * pixel).turned("pitch", y * pixel)
 
 
 def halton(index: int, base: int) -> float:
-    """Return element `index`, from 1 on, of van der Corput's sequence: the digits of `index` in a base, mirrored at
+    """Return element `index`, from 1, of the van der Corput sequence in a base: the digits of `index`, mirrored at
     the point, in (0, 1)."""
     fraction, share = 0.0, 1.0
     while index:

@@ -1,4 +1,4 @@
-"""Measurement of an encoding's reflections over roughness, and of the lowest roughness that is acceptable."""
+"""Measurement of an encoding's reflections by roughness, and of the lowest acceptable roughness."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ UNMEASURABLE = (ShaderError, FormatError, LayoutError)
 
 @dataclass(frozen=True)
 class RoughnessCase:
-    """An object under an environment or a sun, the codes whose reflections are looked at, and how."""
+    """An object under an environment or a sun, with the codecs, thresholds and kinds of image to measure."""
 
     codecs: tuple[Codec, ...]
     object: str
@@ -51,7 +51,7 @@ class RoughnessCase:
 
     @property
     def light(self) -> str:
-        """Name of the case's environment, or of the sun."""
+        """The name of the environment, or of the sun if there is no environment."""
         return self.environment.name if self.environment else SUN
 
     @property
@@ -60,7 +60,7 @@ class RoughnessCase:
 
 
 class Pictures:
-    """Displayed images of a case with exact normals and with decoded normals; each exact image is drawn once."""
+    """Displayed images for a case, with exact normals and with decoded normals; each exact image is drawn once."""
 
     def __init__(self, device: Device, stack: ExitStack, case: RoughnessCase):
         self._device, self._stack, self._case = device, stack, case
@@ -70,28 +70,28 @@ class Pictures:
         self.display = Display(measured_exposure(exact.light(EXPOSED_AT)[exact.covered]), TONE_MAPPING)
 
     def opened(self, stack: ExitStack, codec: Codec | None, seen: Accumulation) -> Frames:
-        """Return the object drawn with a codec, or with exact normals if that is None; the stack releases it. Raises
-        the errors that UNMEASURABLE lists."""
+        """Return the object drawn with a codec, or with exact normals if `codec` is None; the stack releases it.
+        Raises one of UNMEASURABLE."""
         return Frames(self._device, stack, self.what, self._case.size, codec, seen)
 
     def exact(self, frames: int) -> Frames:
-        """Return the object drawn with exact normals in `frames` frames, which stay open."""
+        """Return the object drawn with exact normals in this number of frames, which are kept for later calls."""
         if frames not in self._exact:
             self._exact[frames] = self.opened(self._stack, None, Accumulation(frames=frames))
         return self._exact[frames]
 
     def image(self, frames: Frames, roughness: float) -> np.ndarray:
-        """Return an image as displayed, in [0, 1], float32 of shape (height, width, 3); black around the object."""
+        """Return an image as displayed, in [0, 1], float32 of shape (height, width, 3); black outside the object."""
         return self.display.image(frames.light(roughness)).astype(np.float32)
 
     def right(self, frames: int, roughness: float) -> Flip:
-        """Return a FLIP comparison with the image of exact normals, drawn once for each roughness and `frames`."""
+        """Return a FLIP comparison with the image of exact normals, made once per roughness and frame count."""
         if (frames, roughness) not in self._right:
             self._right[frames, roughness] = Flip(self.image(self.exact(frames), roughness))
         return self._right[frames, roughness]
 
     def figures(self, frames: Frames, roughness: float, with_flip: bool) -> Row:
-        """Return the columns of one image, compared with exact normals; `flip` and `flip_p99` only if `with_flip`."""
+        """Return the columns on one image compared with exact normals; `flip` and `flip_p99` only if `with_flip`."""
         image, exact = self.image(frames, roughness), self.right(len(frames.made), roughness)
         pixels, right = (picture[frames.covered].astype(np.float64) for picture in (image, exact.reference))
         bytes_off = np.abs(np.round(255 * pixels) - np.round(255 * right)).max(axis=-1)
@@ -104,7 +104,8 @@ class Pictures:
 
 
 def measure(device: Device, case: RoughnessCase) -> list[Row]:
-    """Return for each codec a row for each threshold, then a row for each roughness."""
+    """Return the rows of a case: for each codec and accumulation a row per threshold, then a row per roughness. If
+    they cannot be drawn, a single row has the reason in `skipped`."""
     with ExitStack() as stack:
         pictures = Pictures(device, stack, case)
         about: Row = {"object": case.object, "environment": case.light, "tone_mapping": TONE_MAPPING}
@@ -143,10 +144,10 @@ def size_of(environment: Environment) -> str:
 
 
 def _crossing(with_flip: Callable[[float], Row], rows: Sequence[Row], threshold: float) -> Row:
-    """Return the row of the lowest roughness from which a codec stays within a threshold; if it never does, the row
-    of roughness 1 with None as its roughness.
+    """Return the row of the lowest roughness above which a codec stays within a threshold. If the codec never does,
+    return the row of roughness 1 with None as its roughness.
 
-    Between two roughnesses with FLIP, a single crossing is assumed.
+    A single crossing is assumed between two roughnesses for which FLIP is measured.
     """
     known = [(row["roughness"], row["flip_p99"] <= threshold) for row in rows if "flip_p99" in row]
     low = max((roughness for roughness, is_kept in known if not is_kept), default=-STEP)
@@ -161,7 +162,8 @@ def _crossing(with_flip: Callable[[float], Row], rows: Sequence[Row], threshold:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows that answer first, each codec's worst marked as decisive; then images, by roughness."""
+    """Return the rows of crossings first, with the worst of each codec and threshold marked by `decides`, then the
+    rows of single images."""
     rows = [{**row, "decides": None} for row in rows]
     crossings = sorted((row for row in rows if row["threshold"] is not None), key=_place)
     for row in crossings:
@@ -179,10 +181,10 @@ def _code(row: Row) -> tuple[Any, ...]:
 
 
 def _least(row: Row) -> float:
-    """Return the lowest roughness that keeps the threshold; more than 1 if none does."""
+    """Return the lowest roughness within the threshold; more than 1 if no roughness is."""
     return 1 + STEP if row["roughness"] is None else row["roughness"]
 
 
 def answers(rows: Sequence[Row]) -> Iterator[Row]:
-    """Yield the finished rows that decide: each has the roughness from which a codec is acceptable everywhere."""
+    """Yield the rows that decide, which have the lowest roughness within a threshold for all objects."""
     yield from (row for row in rows if row.get("decides"))

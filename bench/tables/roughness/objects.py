@@ -1,4 +1,4 @@
-"""Test objects: each fills the image, turned to the busiest part of its environment."""
+"""Test objects that fill the image and reflect the most varied part of their environment."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class Kind:
 
     Attributes:
         mesh: function that makes its surface.
-        is_metal: whether it is a metal that reflects its whole environment; otherwise it is white and dull, lit
-            only by a sun.
+        is_metal: whether the object is a metal that reflects its whole environment; otherwise it is white and dull,
+            and lit only by a sun.
     """
 
     mesh: Callable[[], Mesh]
@@ -52,7 +52,7 @@ OBJECTS: Mapping[str, Kind] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Shown:
-    """An object before a camera that sees nothing else, under an environment; without one in the light of a sun."""
+    """An object that a camera sees alone, under an environment or, without one, in the light of a sun."""
 
     name: str
     environment: Environment | None
@@ -60,7 +60,7 @@ class Shown:
     view: View
 
     def scene(self, roughness: float) -> Scene:
-        """Return the scene of the object with this roughness, under its environment or otherwise in the sun."""
+        """Return a scene with the object at this roughness, under its environment or otherwise in the sun."""
         material = MetalRough(WHITE, float(OBJECTS[self.name].is_metal), roughness)
         direction = tuple(-float(x) / np.sqrt(3) for x in SUN_FROM)
         lights = () if self.environment else (Light("sun", SUN_COLOUR, direction=direction),)
@@ -68,7 +68,7 @@ class Shown:
 
 
 def shown(name: str, environment: Environment | None) -> Shown:
-    """Return an object whose middle reflects the busiest direction of an environment to the camera."""
+    """Return an object whose centre reflects the most varied direction of an environment to the camera."""
     back = busiest(environment) if environment else np.array([0.0, 0.0, 1.0])
     right = np.cross((0.0, 1.0, 0.0), back)
     right /= np.linalg.norm(right)
@@ -81,7 +81,8 @@ def shown(name: str, environment: Environment | None) -> Shown:
 
 
 def busiest(environment: Environment) -> np.ndarray:
-    """Return the direction around which brightness varies most within a window: a unit vector, (3,)."""
+    """Return the unit direction, (3,), around which the logarithm of an environment's brightness varies most within
+    WINDOW degrees; at most HIGHEST degrees from the horizon."""
     light = np.log2(environment.radiance.mean(axis=-1, dtype=np.float64) + 1e-3)
     height = len(light)
     window = max(round(WINDOW / 180 * height), 3)

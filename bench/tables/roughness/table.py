@@ -17,7 +17,7 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class RoughnessOptions(SourceOptions):
-    """Options of `roughness`. Names and numbers are comma-separated."""
+    """Options for `roughness`. Names and numbers are comma-separated."""
 
     encoding: Encodings = ("octahedral",)
     storage: StorageNames = ("rg8", "rgb10a2", "rgb8_12_12", "rg16")

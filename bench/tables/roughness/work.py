@@ -28,7 +28,7 @@ CODE, USUAL = ("encoding", "storage", "rounding"), {"dither": NONE, "frames": 1}
 
 
 def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
-    """Return a step for each object and environment, with all codecs. Raises UsageError and MissingError."""
+    """Return a step for each object in each environment, with all codecs. Raises UsageError and MissingError."""
     require_jax()
     device = require_device()
     seen = _seen(options)
@@ -46,8 +46,8 @@ def _steps(options: RoughnessOptions, _: RoughnessOutputs) -> list[Step]:
 
 
 def _seen(options: RoughnessOptions) -> tuple[Accumulation, ...]:
-    """Return each dither, always including none, with each number of frames: by default one frame and, if a dither is
-    requested, as many as temporal antialiasing averages."""
+    """Return every combination of a dither, always including none, and a number of frames. By default there is one
+    frame and, if a dither is requested, also as many frames as temporal antialiasing averages."""
     dithers = dict.fromkeys((NONE, *choose("dither", options.dither, {name: name for name in DITHERS})))
     usual = ("1",) if tuple(dithers) == (NONE,) else ("1", str(TEMPORAL))
     frames = checked_numbers("--frames", options.frames or usual, int, 1, MOST_FRAMES)
@@ -55,7 +55,7 @@ def _seen(options: RoughnessOptions) -> tuple[Accumulation, ...]:
 
 
 def _environments(words: Names) -> tuple[Environment, ...]:
-    """Return environments by name. Raises UsageError for an unknown name, and for two of the same name."""
+    """Return the named environments. Raises UsageError for an unknown name, or if two have the same name."""
     environments = tuple(environment_named(str(word)) for word in words)
     names = [environment.name for environment in environments]
     if not environments:
@@ -78,7 +78,7 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _said(rows: Sequence[Row]) -> tuple[str, ...]:
-    """Return the names of the columns that identify a codec, and of those in which some row is not drawn as usual."""
+    """Return the names of the columns that identify a codec, and of drawing options that any row changes."""
     return *CODE, *(name for name, usual in USUAL.items() if any(row[name] != usual for row in rows))
 
 
@@ -89,6 +89,14 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         for encoding in dict.fromkeys(row["encoding"] for row in part):
             where = ", ".join(_from(row) for row in part if row["encoding"] == encoding)
             yield f"{encoding}: banding is {word} (FLIP {threshold:g}) from roughness: {where}."
+    mirrors: dict[str, dict[str, float]] = {}
+    for row in rows:
+        if row["threshold"] is None and row["roughness"] == 0 and row["flip_p99"] is not None and row["dither"] == NONE:
+            by_storage = mirrors.setdefault(row["encoding"], {})
+            by_storage[row["storage"]] = max(by_storage.get(row["storage"], 0.0), row["flip_p99"])
+    for encoding, by_storage in mirrors.items():
+        where = ", ".join(f"{storage} {flip:.2g}" for storage, flip in by_storage.items())
+        yield f"{encoding}: FLIP of mirrors (roughness 0): {where}."
 
 
 def _from(row: Row) -> str:
@@ -99,7 +107,7 @@ def _from(row: Row) -> str:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield a table of the lowest roughness from which each codec keeps each threshold; nothing if no row decides."""
+    """Yield a sheet of the lowest roughness at which each codec is within each threshold; nothing if no row decides."""
     lines: dict[tuple[object, ...], Row] = {}
     for row in answers(rows):
         about = {name: row[name] for name in (*_said(rows), "bits")}

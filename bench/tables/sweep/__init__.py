@@ -1,1 +1,1 @@
-"""Growth of each pipeline's passes with the number of objects."""
+"""Scaling of each pipeline's passes with the number of objects."""

@@ -1,4 +1,4 @@
-"""The charts of frames: the time of each pass, and the frame time over the number of objects."""
+"""The charts of frame times: the time of each pass, and the frame time by number of objects."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ MORE = ("layout", "light_buffer", "light_targets")
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield the chart of frames over the number of objects, if there are several numbers, and for each number the
-    chart of passes."""
+    """Yield the chart of frame times by number of objects, if there are several numbers, and a chart of passes for
+    each number."""
     known = having(rows, FRAME)
     counts = list(dict.fromkeys(row.get("objects") for row in known))
     if len(counts) > 1:
@@ -33,11 +33,12 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
 
 
 def passes_chart(index: int, objects: object, rows: Sequence[Row]) -> Chart:
-    """Return a chart of a frame's milliseconds: a bar for each pipeline, with the medians of its passes in sequence.
+    """Return a chart of the time in a frame: a bar for each pipeline, with the medians of its passes in sequence.
 
     Args:
-        index: its index among the charts of the table.
-        rows: of a sweep at one number of objects.
+        index: index of the chart among the charts of the table.
+        objects: number of objects.
+        rows: rows of a sweep with this number of objects.
     """
     lines = [_line_name(row, rows, (*MORE, "shadow")) for row in rows]
     parts = [part for row, line in zip(rows, lines, strict=True) for part in _pass_rows(row, line)]
@@ -70,7 +71,7 @@ def passes_chart(index: int, objects: object, rows: Sequence[Row]) -> Chart:
 
 
 def _pass_rows(row: Row, line: str) -> list[Row]:
-    """Return the passes of a frame, each from the end of the pass before."""
+    """Return the passes of a frame as segments of a bar, each starting at the end of the previous pass."""
     passes = passes_of(row)
     ends = [0.0, *accumulate(passes.values())]
     return [
@@ -80,7 +81,7 @@ def _pass_rows(row: Row, line: str) -> list[Row]:
 
 
 def passes_of(row: Row) -> dict[str, float]:
-    """Return the milliseconds of a frame by pass, without the whole frame's."""
+    """Return the milliseconds of each pass in a frame, without the time of the whole frame."""
     names = [n for n in row if n.startswith("ms_") and not n.endswith(SPREAD) and n not in (FRAME, EACH)]
     return {name.removeprefix("ms_"): row[name] for name in names if is_number(row[name])}
 
@@ -91,15 +92,15 @@ def frame_total(row: Row) -> float:
 
 
 def frame_label(row: Row) -> str:
-    """Return the label at the end of a frame's bar: its duration, and whether it is too noisy to compare."""
+    """Return the label at the end of a frame's bar: its duration, with a note if it is too noisy to compare."""
     total, spread = frame_total(row), row.get(f"{FRAME}{SPREAD}")
     is_noisy = is_number(spread) and spread > NOISY * row[FRAME]
     return (f"{total:.0f}" if total >= 100 else f"{total:.3g}") + ", too noisy to compare" * is_noisy
 
 
 def frames_chart(rows: Sequence[Row]) -> Chart:
-    """Return the chart of milliseconds per frame over the number of objects, a line for each pipeline, a panel with
-    shadows and a panel without.
+    """Return the chart of milliseconds per frame by number of objects, with a line for each pipeline and separate
+    panels with and without shadows.
 
     Args:
         rows: rows of a sweep: pipeline, objects, shadow, ms_frame and its spread, size, lights, clock, device.
@@ -138,7 +139,7 @@ def _shadow_text(row: Row) -> str:
 
 
 def _line_name(row: Row, rows: Sequence[Row], more: Sequence[str]) -> str:
-    """Return a pipeline's name, and the values that distinguish its rows."""
+    """Return the name of a row's pipeline, followed by the values in which the pipeline's rows differ."""
     same = [other for other in rows if other["pipeline"] == row["pipeline"]]
     varied = [name for name in more if len({str(other.get(name)) for other in same}) > 1]
     texts = (_shadow_text(row) if name == "shadow" else str(row.get(name)) for name in varied)

@@ -1,4 +1,4 @@
-"""One point of the sweep: milliseconds and triangles of each pass."""
+"""Measurement of one point of the sweep: milliseconds and triangles of each pass."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .table import TABLE
 
 @dataclass(frozen=True)
 class Point:
-    """One row to measure: a pipeline over a number of objects."""
+    """A row of the sweep to measure: a pipeline with a number of objects."""
 
     pipeline: Pipeline
     plan: Plan
@@ -31,7 +31,7 @@ class Point:
         return f"{self.pipeline.name}, {self.setting.objects} objects, {shadow} shadow map"
 
     def key(self, device: Device) -> Row:
-        """Return the columns that determine a row: the pipeline, its settings and the device."""
+        """Return the columns that identify a row: the pipeline, its settings and the device."""
         return described(self.pipeline, self.plan, self.setting, self.asked) | {
             "holds": self.plan.layout.summary if self.pipeline.has_gbuffer else None,
             "scene": "objects",
@@ -41,7 +41,7 @@ class Point:
 
 
 def measure(device: Device, point: Point) -> Row:
-    """Return one row: milliseconds and triangles of each pass."""
+    """Return the row of a point: milliseconds and triangles of each pass."""
     row = TABLE.empty(STAGES) | point.key(device)
     scene = SCENES["objects"].make(point.setting)
     with rendering(device, point.pipeline, scene, point.plan) as rendered:

@@ -28,7 +28,7 @@ def points(options: SweepOptions, device: Device) -> list[Point]:
     """Return a point for each row; plans that do not suit a pipeline are named on standard error.
 
     Raises:
-        UsageError: unknown names, sizes and counts beyond what is possible, or nothing left.
+        UsageError: unknown names, sizes or counts out of range, or nothing left to measure.
     """
     auto = SOFTWARE_SIZE if device.is_software else SIZE
     size, samples = checked_target(auto if options.size == "auto" else options.size, options.samples, 1, device)

@@ -1,4 +1,4 @@
-"""The sweep: how each pipeline's passes grow with the number of objects."""
+"""The sweep table: how the cost of each pipeline's passes grows with the number of objects."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ KEY, HOW, TIME = Role.KEY, Role.HOW, Role.TIME
 
 @dataclass(frozen=True, kw_only=True)
 class SweepOptions(SourceOptions):
-    """Options of `sweep`. Names and counts are comma-separated; each pipeline's published layout is the default."""
+    """Options for `sweep`. Names and counts are comma-separated; each pipeline's published layout is the default."""
 
     pipeline: Pipelines = ("prepass", "hybrid", "deferred", "inferred", "forward")
     objects: Annotated[Names, Option("--objects", "Numbers of objects, comma-separated.")] = (

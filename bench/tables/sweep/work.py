@@ -26,7 +26,7 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
 
 
 def _shown(done: Measured) -> Iterator[Sheet]:
-    """Yield the rows with only the whole frame's spread, and without the triangles of passes that draw the screen."""
+    """Yield a sheet of rows with only the whole frame's spread, without triangle counts of full-screen passes."""
     rows = TABLE.without_hidden(done.rows)
     hidden = {c for c in rows[0] if c.endswith("_spread") and c != "ms_frame_spread"}
     rows = without(rows, hidden | {"triangles_linear_depth", "triangles_screen"})

@@ -1,4 +1,4 @@
-"""A set of normals in two halves: one to fit to, and one that is held out to measure on."""
+"""A set of normals split into two halves: one for fitting, and one that is held out for measuring."""
 
 from __future__ import annotations
 
@@ -31,30 +31,30 @@ class Normals:
         return len(self.n)
 
     def some(self, most: int) -> Normals:
-        """Return at most `most` of the normals, evenly spread over the set."""
+        """Return at most `most` of the normals, at even intervals in the set."""
         step = -(-len(self) // most)
         return Normals(self.n[::step], self.view[::step])
 
     def planes(self) -> tuple[Vec3, Vec3]:
-        """Return the normals and the positions as planes: a Vec3 each."""
+        """Return the normals and the positions as planes, each a Vec3."""
         return tuple(Vec3(*(jnp.asarray(c) for c in a.T)) for a in (self.n, self.view))  # type: ignore[return-value]
 
 
 @dataclass(frozen=True)
 class Halves:
-    """The normals to fit to, and the others as a set."""
+    """The normals for fitting, and the held-out normals as a set."""
 
     fitting: Normals
     held_out: NormalSet
 
 
 def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
-    """Return a set's covered normals in two random halves.
+    """Return a set's covered normals, split into two random halves.
 
     Args:
-        by_tiles: whether whole squares of an image go to one half. Neighbours are too similar to test a lookup table,
-            which could learn each normal by heart. Two parameters cannot do so; for them, a half should miss no rare
-            normals.
+        by_tiles: whether to split an image by square tiles instead of pixels. Needed for a lookup table, which could
+            memorise single normals and reproduce them for their similar neighbours. Two parameters cannot do so; for
+            them, neither half should miss rare normals.
 
     Raises:
         UsageError: too many or too few normals, or all normals to fit are the same.
@@ -81,7 +81,7 @@ def halves_of(chosen: NormalSet, seed: int, by_tiles: bool) -> Halves:
 
 
 def _tile_numbers(chosen: NormalSet) -> np.ndarray:
-    """Return the number of each pixel's tile; without an image or in a small image each normal is a tile."""
+    """Return the tile number of each pixel; in a set without an image or with a small one, every normal is a tile."""
     index = np.arange(chosen.count)
     if not chosen.shape or min(chosen.shape) < 4 * TILE:
         return index

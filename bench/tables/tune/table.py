@@ -1,4 +1,4 @@
-"""The table of `tune`: parameters fitted to normals, and their gain on a half that was held out."""
+"""The tune table: parameters fitted to normals, and their gain on a half that was held out."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class TuneOptions(Reading):
-    """Options of `tune`: what to fit, and to which normals."""
+    """Options for `tune`: what to fit, and to which normals."""
 
     encoding: Annotated[str, Option("ENCODING", "An encoding; `normalbench list encodings` lists all.")] = ""
     normals: Annotated[Names, Option("--normals", "A normal set or a file of normals.", files=True)] = ("playground",)
@@ -34,7 +34,9 @@ class TuneOptions(Reading):
 class TuneOutputs:
     """Outputs of `tune` other than its rows."""
 
-    table: Annotated[Path | None, Option("--table", "Write the tuned lookup table to this file, a NumPy array.")] = None
+    table: Annotated[Path | None, Option("--table", "Write the tuned lookup table to this file as a NumPy array.")] = (
+        None
+    )
 
 
 COLUMNS = (

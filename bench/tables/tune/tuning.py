@@ -1,6 +1,6 @@
-"""A search for an encoding's parameters and lookup table that minimise the measured error on normals.
+"""A search for the parameters and lookup table of an encoding that minimise the measured error over normals.
 
-The error includes the storage's own rounding. The search uses one half of a set; the other half measures the gain.
+The error includes the rounding of the storage. The search uses one half of a set; the other half measures the gain.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Values = dict[str, float]
 
 
 class Scale:
-    """Values of parameters as numbers from 0 to 1: by their logarithm where they are never below 0."""
+    """Conversion between parameter values and numbers from 0 to 1, logarithmic for positive parameters."""
 
     def __init__(self, encoding: Encoding):
         self.names = [p.name for p in encoding.parameters]
@@ -46,12 +46,12 @@ class Scale:
         return np.where(self._is_log, np.log(np.where(self._is_log, values, 1.0)), values)
 
     def shares(self, values: Mapping[str, float]) -> np.ndarray:
-        """Return the positions of parameter values in their ranges, as numbers from 0 to 1."""
+        """Return numbers from 0 to 1: the positions of parameter values within their ranges."""
         low, high = self._ends
         return (self._log_values(np.array([values[name] for name in self.names])) - low) / (high - low)
 
     def values(self, shares: np.ndarray) -> Values:
-        """Return the values of parameters for numbers from 0 to 1, rounded to the digits of a name."""
+        """Return the parameter values at positions from 0 to 1, rounded to the digits that a name shows."""
         low, high = self._ends
         bent = low + np.clip(shares, 0.0, 1.0) * (high - low)
         straight = np.where(self._is_log, np.exp(np.where(self._is_log, bent, 0.0)), bent)
@@ -59,9 +59,9 @@ class Scale:
 
 
 class Measure:
-    """The error of a codec on normals, including the storage's rounding; smaller is better.
+    """The error of a codec over normals, including the rounding of the storage; lower is better.
 
-    The values of parameters are arguments of a program that is compiled once.
+    Parameter values are arguments of the program, so that it is compiled only once.
     """
 
     def __init__(self, codec: Codec, normals: Normals, goal: str):
@@ -85,9 +85,10 @@ class Measure:
 
 
 def search(codec: Codec, normals: Normals, goal: str) -> Values:
-    """Return the values with the smallest measured error that searches from published and best random values find.
+    """Return the parameter values with the smallest measured error that searches find; they start from the published
+    values and from the best of many random values.
 
-    If nothing is better than the published values, they are kept.
+    The published values are kept if no other values are better.
     """
     measure, scale = Measure(codec, normals, goal), Scale(codec.encoding)
     random = np.random.default_rng(0).uniform(0.0, 1.0, (RANDOM, len(scale.names)))
@@ -96,7 +97,7 @@ def search(codec: Codec, normals: Normals, goal: str) -> Values:
 
 
 def _searched(measure: Measure, scale: Scale, values: Values) -> Values:
-    """Return values changed by ever smaller steps, each repeated as long as the measured error falls."""
+    """Return the values after a local search with ever smaller steps, each repeated while the error falls."""
     ways = [np.array(way) for way in itertools.product((-1, 0, 1), repeat=len(scale.names)) if any(way)]
     for step in STEPS:
         while True:
@@ -108,15 +109,16 @@ def _searched(measure: Measure, scale: Scale, values: Values) -> Values:
 
 
 def fitted(codec: Codec, normals: Normals, goal: str, names: list[str]) -> Values:
-    """Return the values of the parameters `names` with the smallest measured error; empty without parameters."""
+    """Return the values of the named parameters with the smallest measured error; empty without such parameters."""
     chosen = tuple(p for p in codec.encoding.parameters if p.name in names)
     return search(replace(codec, encoding=replace(codec.encoding, parameters=chosen)), normals, goal) if chosen else {}
 
 
 def fitted_table(codec: Codec, normals: Normals, goal: str) -> np.ndarray:
-    """Return the lookup table with the smallest squared error on normals.
+    """Return the lookup table fitted to normals.
 
-    How much a texel's centre counts against its normals, which may be few, is decided between two halves of them.
+    A texel's centre is weighed against its normals, which may be few. The weight is chosen by fitting to one half of
+    the normals and measuring the error on the other.
     """
     look_up, levels = codec.encoding.look_up, codec.storage.count(0)
     assert look_up

@@ -1,4 +1,4 @@
-"""Fitting of parameters to one half of a set, and measurement of the other, by `tune`."""
+"""Tuning of an encoding: fitting to one half of a set of normals, and measurement on the other."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Side:
 
 @dataclass(eq=False)
 class Tuning:
-    """A tuning: its target and normals, and once it is done, the codec before and after, and the lookup table."""
+    """A tuning task: its target and normals and, once done, the codec before and after, and the lookup table."""
 
     chosen: Chosen
     halves: Halves
@@ -68,7 +68,7 @@ class Tuning:
     scales: np.ndarray | None = None
 
     def measured(self) -> list[Row]:
-        """Fit a codec to one half of the normals, measure both codecs on the other, and return the rows."""
+        """Fit the codec to one half of the normals, and return rows on both codecs over the other half."""
         chosen, halves, goal = self.chosen, self.halves, self.options.error
         self.scales = fitted_table(chosen.codec, halves.fitting, goal) if chosen.has_table else None
         parameters = fitted(chosen.codec, halves.fitting, goal, chosen.names)
@@ -82,7 +82,7 @@ class Tuning:
 
 
 def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
-    """Return one step. Raises UsageError for a target that cannot be tuned."""
+    """Return a list of one step. Raises UsageError for a target that cannot be tuned."""
     encoding, table = options.encoding, outputs.table
     if MARK in encoding and encoding.partition(MARK)[0] in NAMES:
         raise UsageError(f"{encoding}: tune starts from the published encoding; name {encoding.partition(MARK)[0]}")
@@ -102,7 +102,7 @@ def _steps(options: TuneOptions, outputs: TuneOutputs) -> list[Step]:
 
 
 def _write(done: Measured, _: Tick) -> None:
-    """Write the lookup table, if it was requested, and print a line on how to use the result."""
+    """Write the lookup table, if one was tuned and requested, and print how to use the result."""
     for tuning in (step.case for step in done.steps):
         if tuning.sides:
             if tuning.table and tuning.scales is not None:
@@ -112,7 +112,8 @@ def _write(done: Measured, _: Tick) -> None:
 
 
 def chosen_of(name: str, options: TuneOptions) -> Chosen:
-    """Return the target that an encoding's name and `--parameter` select. Raises UsageError if nothing can be tuned."""
+    """Return the target that an encoding's name, `--storage` and `--parameter` select. Raises UsageError if nothing
+    can be tuned."""
     encoding = _one("encoding", encodings_named, (name,))
     storage = _one("storage", storages_named, options.storage)
     codec = Codec(encoding, storage)
@@ -135,7 +136,12 @@ def _has_table(codec: Codec) -> bool:
 
 
 def _one(what: str, named: Callable[[Names], list[Any]], words: Names) -> Any:
-    """Return the only item that words name. Raises UsageError, which lists the known names that can be tuned."""
+    """Return the single item that words name. Raises UsageError for an unknown name or several items.
+
+    Args:
+        what: kind of item, for messages.
+        named: function that returns the items that words name.
+        words: the words."""
     try:
         choices = named(words)
     except UsageError as error:
@@ -159,7 +165,7 @@ def _halves(chosen: Chosen, options: TuneOptions) -> Halves:
 
 
 def tuned_codec(codec: Codec, tuned_values: Values, scales: np.ndarray | None, table: Path | None) -> Codec:
-    """Return the codec with the tuned values, under a name that includes them."""
+    """Return the codec with the tuned values and lookup table, under a name that states them."""
     encoding: Encoding = codec.encoding
     changed = {name: value for name, value in tuned_values.items() if value != encoding.published[name]}
     if changed:
@@ -179,7 +185,7 @@ def _write_table(path: Path, scales: np.ndarray) -> None:
 
 
 def rows(before: Side, after: Side, chosen: Chosen, tuned_values: Values, about: Row) -> Iterator[Row]:
-    """Yield a row for each tuned parameter and for a tuned table, then a row for each figure of the held-out half."""
+    """Yield a row for each tuned parameter and for a tuned table, then a row for each figure on the held-out half."""
     codecs = {"encoding": before.codec.encoding.name, "storage": before.codec.storage.name}
     codecs |= {"tuned_encoding": after.codec.encoding.name}
     empty = TABLE.empty() | codecs | about
@@ -205,7 +211,7 @@ def _row(quantity: str, published: float, tuned: float) -> Row:
 
 
 def _gain(figure: str, published: float, tuned: float) -> Row:
-    """Return `gain` with its `unit`: the increase of a PSNR in dB, or by how many percent an angle is smaller."""
+    """Return the columns `gain` and `unit`: the increase of a PSNR in dB, or the reduction of an angle in percent."""
     if figure == FIGURES["psnr"]:
         return {"gain": tuned - published if tuned != published else 0.0, "unit": "dB"}
     return {"gain": 100 * (1 - tuned / published) if published else 0.0, "unit": "%"}

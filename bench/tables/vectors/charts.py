@@ -16,15 +16,15 @@ LOST = "error equal to the motion"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield the chart of the mean error over the speed, if any row has figures."""
+    """Yield the chart of the mean error by speed, if any row has figures."""
     usable = sorted(one_backend(having(rows, "speed", "error_mean_px")), key=place)
     if usable:
         yield vectors_chart(usable)
 
 
 def vectors_chart(rows: Sequence[Row]) -> Chart:
-    """Return the chart of the mean error of motion vectors over their speed: a panel for each number of bits, a line
-    for each codec.
+    """Return the chart of the mean error of motion vectors by speed, with a panel for each bit count and a line for
+    each codec.
 
     Args:
         rows: rows of the vectors table for one backend: encoding, storage, bits, range, speed, error_mean_px.
@@ -69,7 +69,8 @@ def _bits_text(bits: int) -> str:
 
 
 def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """Return the rows of each codec by its name, by speed; rows of zero error, without a logarithm, are left out."""
+    """Return each codec's rows in order of speed, by codec name; rows with zero error are left out, because the axis
+    is logarithmic."""
     several = len({row.get("range") for row in rows if row.get("range")}) > 1
     lines: dict[str, list[Row]] = {}
     for row in sorted(rows, key=lambda row: row["speed"]):
@@ -80,7 +81,7 @@ def vector_lines(rows: Sequence[Row]) -> dict[str, list[Row]]:
 
 
 def _finding_sentence(rows: Sequence[Row]) -> str:
-    """Return which codec of each bit count has the smallest error at the lowest speed."""
+    """Return a sentence that names the codec with the smallest error at the lowest speed, for each bit count."""
     least = min(row["speed"] for row in rows)
     phrases = []
     for bits in sorted({row["bits"] for row in rows}):

@@ -1,4 +1,4 @@
-"""The vectors table: the errors of stored motion vectors, by JAX and by GLSL."""
+"""Measurement of the vectors table: the errors of stored motion vectors, by JAX and by GLSL."""
 
 from __future__ import annotations
 
@@ -40,11 +40,14 @@ Noise = np.ndarray | None
 
 @dataclass(frozen=True)
 class MotionVectorCase:
-    """The rows of one code by one back end: one for each speed.
+    """A codec of motion vectors to measure with one backend, in one row for each speed.
 
     Attributes:
-        largest: the range in screens.
-        speeds: in pixels a frame.
+        codec: encoding and storage of the motion vectors.
+        backend: "jax" or "glsl".
+        largest: range of the motion vectors in screens.
+        speeds: speeds in pixels per frame.
+        paths: the moving points.
     """
 
     codec: MotionCodec
@@ -99,7 +102,8 @@ BACKENDS: Mapping[str, Backend] = MappingProxyType({"jax": _trip_by_jax, "glsl":
 
 
 def measure(case: MotionVectorCase) -> list[Row]:
-    """Return a row for each speed; if the device cannot measure them, with the reason in `skipped` and no figures."""
+    """Return a row for each speed; if the device cannot measure the case, the rows have the reason in `skipped` and
+    no figures."""
     rows = [_case_columns(case, speed) for speed in case.speeds]
     try:
         with ExitStack() as stack:
@@ -116,7 +120,7 @@ def measure(case: MotionVectorCase) -> list[Row]:
 
 
 def _noisy_trip(stack: ExitStack, case: MotionVectorCase) -> Trip:
-    """Return a round trip of motions that adds its own noise to each frame; all frames' noise is stacked vertically."""
+    """Return a round trip that adds separate noise to each frame; the noise of all frames is stacked vertically."""
     noise = np.concatenate([case.codec.dither(frame).added[: POINTS // WIDTH] for frame in range(FRAMES)])
     return stack.enter_context(BACKENDS[case.backend](case.codec, case.largest, noise))[0]
 
@@ -137,8 +141,8 @@ def _case_columns(case: MotionVectorCase, speed: float) -> Row:
 
 
 def _of_any_count(trip: Trip) -> Trip:
-    """Return the same round trip for up to CHUNK motions: the last is repeated up to CHUNK, so that the trip is
-    compiled once and the motions form a rectangle of pixels."""
+    """Return the same round trip for up to CHUNK motions. They are padded to CHUNK with the last motion, so that the
+    trip is compiled once and the motions fill a rectangle of pixels."""
 
     def whole(motions: np.ndarray) -> np.ndarray:
         padded = np.pad(motions, ((0, CHUNK - len(motions)), (0, 0)), mode="edge")
@@ -152,10 +156,10 @@ def _length_px(motion: np.ndarray, size: tuple[int, int]) -> float:
 
 
 def _figures(case: MotionVectorCase, speed: float, trip: Trip, rest: np.ndarray) -> Row:
-    """Return the figures of the motions of all points in all frames at a speed.
+    """Return the figures on the motions of all points in all frames at a speed.
 
-    The error of a motion v is |decode(v) - v| in pixels. A point that is moved by the stored vectors is off by the
-    sum of its frames' errors, which is its drift.
+    The error of a motion v is |decode(v) - v| in pixels. The drift of a point that the stored vectors move is the sum
+    of its errors over all frames.
     """
     total, largest, lost, clipped, square = 0.0, 0.0, 0, 0, 0.0
     for motions in case.paths.chunks(speed):
@@ -177,16 +181,16 @@ def _figures(case: MotionVectorCase, speed: float, trip: Trip, rest: np.ndarray)
 
 
 def _through(trip: Trip, motions: np.ndarray) -> np.ndarray:
-    """Return the decoded motions of up to POINTS points in all frames. The last point is repeated up to POINTS, so
-    that each frame keeps its place in the array."""
+    """Return the decoded motions of up to POINTS points in all frames. They are padded to POINTS with the last point,
+    so that each frame keeps its place in the array."""
     count = motions.shape[1]
     whole = np.pad(motions, ((0, 0), (0, POINTS - count), (0, 0)), mode="edge")
     return trip(whole.reshape(-1, NUMBERS)).reshape(whole.shape)[:, :count]
 
 
 def _least_speed_px(trip: Trip, rest: np.ndarray, case: MotionVectorCase) -> float:
-    """Return the lowest speed in pixels from which motions along an axis decode differently from rest, in the worst
-    of the four directions; 0 if every motion does."""
+    """Return the lowest speed, in pixels, from which motions along an axis decode differently from no motion, in the
+    worst of the four directions; 0 if every tested motion does."""
     low, high = np.full(len(DIRECTIONS), LEAST), np.full(len(DIRECTIONS), max(case.largest, 1.0))
     # Each pass divides the ratio of the two ends by many steps; two come to the digits that float32 has.
     for _ in range(2):
@@ -198,8 +202,12 @@ def _least_speed_px(trip: Trip, rest: np.ndarray, case: MotionVectorCase) -> flo
 
 
 def _around(tried: np.ndarray, told: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return, of ascending motions in each direction, the last that is not distinguished from rest, and the next;
-    the first if all are distinguished."""
+    """Return, for each direction, the last of ascending motions that decodes like no motion, and the next motion; if
+    there is no such motion, twice the first.
+
+    Args:
+        tried: motions, (directions, count).
+        told: whether each motion decodes differently from no motion."""
     end, everything = tried.shape[1] - 1, told.all(axis=1)
     last = np.where(everything, 0, end - np.argmax(~told[:, ::-1], axis=1))
     after = np.where(everything, 0, np.minimum(last + 1, end))

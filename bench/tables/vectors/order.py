@@ -1,4 +1,4 @@
-"""The order of codes of motion vectors."""
+"""The order of codecs of motion vectors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..table import Row
 
 
 def place(row: Row) -> tuple[int, ...]:
-    """Return a codec's position in the catalogues; codecs of other versions come last."""
+    """Return the position of a row's codec in the catalogues; codecs that the catalogues lack come last."""
     lists = (list(MOTION_ENCODINGS), list(MOTION_STORAGES))
     names = (row["encoding"], row["storage"])
     return tuple(known.index(name) if name in known else len(known) for known, name in zip(lists, names, strict=True))

@@ -1,11 +1,11 @@
-"""Points that move over the screen: their motion vectors, frame after frame.
+"""Points that move over the screen, with their motion vector in each frame.
 
 Point i of N, at speed s: its first direction is 2 pi (i + u) / N, and in frame t of 16 its motion is, in pixels,
 
     s (1 + a / 10) (1 + sin(2 pi (t / 16 + p)) / 10)    at the first direction plus t times d
 
-with u and p random in [0, 1], a in [-1, 1] and d in [-2, 2] degrees, each fixed for the point. So the speed of each
-point differs, and both speed and direction change a little from frame to frame: no single code decides a figure.
+with u and p random in [0, 1], a in [-1, 1] and d in [-2, 2] degrees, each fixed for the point. Thus the speed differs
+between points, and both speed and direction change a little from frame to frame: no single code decides a figure.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ POINTS = 2**12
 
 @dataclass(frozen=True)
 class Paths:
-    """Points that move.
+    """Moving points on a screen.
 
     Attributes:
         count: number of points.
-        seed: seed of the points.
+        seed: seed for the points.
         size: size of the image in pixels.
     """
 
@@ -36,7 +36,8 @@ class Paths:
     size: tuple[int, int]
 
     def chunks(self, speed: float) -> Iterator[np.ndarray]:
-        """Yield motions at a speed in pixels per frame: float32 in screens, (FRAMES, POINTS or the rest, 2)."""
+        """Yield the motions at a speed in pixels per frame, for up to POINTS points at a time: float32 in screens, of
+        shape (FRAMES, points, 2)."""
         for start in range(0, self.count, POINTS):
             yield (self._motions_px(start, speed) / self.size).astype(np.float32)
 

@@ -1,4 +1,4 @@
-"""The table of motion vectors: how exact they are in compact targets."""
+"""The table of motion vectors: their accuracy in compact targets."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ KEY, HOW = Role.KEY, Role.HOW
 
 @dataclass(frozen=True, kw_only=True)
 class VectorsOptions(SourceOptions):
-    """Options of `vectors`. Names and numbers are comma-separated; the default storage is each encoding's usual one."""
+    """Options for `vectors`. Names and numbers are comma-separated; by default each encoding is measured in its usual
+    storage."""
 
     encoding: Annotated[Names, Option("--encoding", f"Motion encodings or your own files, {NAMED}.", files=True)] = (
         "all",

@@ -33,10 +33,10 @@ UNNOTICED_PX = 0.01
 
 
 def cases(options: VectorsOptions) -> list[measure.MotionVectorCase]:
-    """Return a case for each codec, range and backend; a codec that needs no range has one case.
+    """Return a case for each codec, range and backend; a codec that needs no range has one case per backend.
 
     Raises:
-        UsageError: unknown names, numbers beyond what is possible, or nothing that fits.
+        UsageError: unknown names, numbers out of range, or no codec that fits.
         MissingError: only GLSL is requested and there is no OpenGL device.
     """
     check_seed(options.seed)
@@ -55,7 +55,7 @@ def cases(options: VectorsOptions) -> list[measure.MotionVectorCase]:
 
 
 def codecs(options: VectorsOptions) -> list[MotionCodec]:
-    """Return the codecs asked for; those that do not fit are named on standard error."""
+    """Return the requested codecs; codecs that do not fit their storage are named on standard error."""
     roundings = roundings_named(options.rounding, ROUNDINGS_AND_DITHERED)
     return that_fit(codecs_of_kind(MOTION, options.encoding, options.storage, roundings))
 
@@ -70,7 +70,8 @@ def _key(case: measure.MotionVectorCase) -> Row:
 
 
 def in_order(rows: Sequence[Row]) -> list[Row]:
-    """Return rows by bits, the codec with the smallest error at the lowest speed first; each codec's rows by speed."""
+    """Return the rows by bits, then by the codec's error at the lowest speed in ascending order; the rows of a codec
+    stay together."""
     best: dict[tuple, float] = {}
     for row in sorted(rows, key=lambda row: row["speed"], reverse=True):
         error = row["error_mean_px"]
@@ -87,7 +88,7 @@ def _line(row: Row) -> tuple:
 
 
 def _by_speed(rows: Sequence[Row], figure: str, names: Sequence[str]) -> list[Row]:
-    """Return a row for each codec and range: the columns `names`, then a figure at each speed."""
+    """Return a row for each codec and range, with the columns `names` followed by the figure at each speed."""
     lines: dict[tuple, Row] = {}
     for row in rows:
         line = lines.setdefault(_line(row), {name: _said(row[name]) for name in names})
@@ -116,8 +117,8 @@ def _shown(done: Measured) -> Iterator[Sheet]:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a sentence with the encodings that keep still pixels still and have the smallest error at an everyday
-    speed, or that no encoding does; nothing without figures."""
+    """Yield a sentence on the most accurate encodings at an everyday speed among those that keep still pixels still,
+    or a sentence that no encoding does; nothing without figures."""
     measured = one_backend([row for row in rows if row["error_mean_px"] is not None])
     speed = min((row["speed"] for row in measured), key=lambda speed: abs(speed - EVERYDAY_PX), default=0.0)
     still = [row for row in sorted(measured, key=place) if row["speed"] == speed and not row["still_px"]]

@@ -16,11 +16,12 @@ def bits_of(blocks: np.ndarray) -> np.ndarray:
 
 
 def field(bits: np.ndarray, start: int, width: int) -> np.ndarray:
-    """Return the whole number in `width` bits of each block, the lowest bit at `start`; int32 of shape (count)."""
+    """Return the whole number in `width` bits of each block, the lowest bit at `start`; int32 of shape (count,)."""
     return bits[:, start : start + width].astype(np.int32) @ (1 << np.arange(width, dtype=np.int32))
 
 
 def fields(bits: np.ndarray, start: int, width: int, count: int) -> np.ndarray:
-    """Return `count` whole numbers of `width` bits, one after the other from bit `start`; int32, (blocks, count)."""
+    """Return `count` whole numbers per block, each of `width` bits, one after the other from bit `start`; int32 of
+    shape (blocks, count)."""
     part = bits[:, start : start + width * count].reshape(len(bits), count, width)
     return part.astype(np.int32) @ (1 << np.arange(width, dtype=np.int32))

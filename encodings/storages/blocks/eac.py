@@ -1,7 +1,7 @@
-"""EAC R11 and RG11: Khronos Data Format Specification, chapter on ETC2, unsigned and signed.
+"""EAC R11 and RG11, unsigned and signed: Khronos Data Format Specification, chapter on ETC2.
 
-A block is a base value, a multiplier, one of 16 tables, and for each texel the number of one of the table's eight
-modifiers, the highest bit first and texels column by column. Texels have 11 bits.
+A block holds a base value, a multiplier, the number of one of 16 tables and, for each texel, the index of one of the
+table's eight modifiers, the highest bit first and texels column by column. Texels have 11 bits.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ MODIFIERS = np.concatenate([_NEGATIVE, -1 - _NEGATIVE], axis=1)
 
 
 def eac_r11(blocks: np.ndarray, is_signed: bool = False) -> np.ndarray:
-    """The texels of EAC R11 blocks as whole numbers of 11 bits.
+    """Return the texels of EAC R11 blocks as 11-bit integers.
 
     Args:
         blocks: uint8 of shape (count, 8).
 
     Returns:
-        int32 of shape (count, 16), row by row: 0 to 2047, or -1023 to 1023 where it is signed.
+        int32 of shape (count, 16), row by row: 0 to 2047, or -1023 to 1023 if `is_signed`.
     """
     base = blocks[:, :1].astype(np.int32)
     multiplier, table = blocks[:, 1] >> 4, blocks[:, 1] & 15
@@ -41,20 +41,21 @@ def eac_r11(blocks: np.ndarray, is_signed: bool = False) -> np.ndarray:
 
 
 def _indices(blocks: np.ndarray) -> np.ndarray:
-    """Return each texel's modifier, row by row; blocks store them by column from the third byte's highest bit down."""
+    """Return the index of each texel's modifier, row by row; blocks store the indices column by column, from the
+    third byte's highest bit down."""
     bits = bits_of(np.ascontiguousarray(blocks[:, :1:-1]))[:, ::-1].reshape(-1, TEXELS, 3)
     by_columns = bits.astype(np.int32) @ np.array([4, 2, 1])
     return by_columns.reshape(-1, SIDE, SIDE).transpose(0, 2, 1).reshape(-1, TEXELS)
 
 
 def decode_rg11(blocks: np.ndarray, is_signed: bool = False) -> np.ndarray:
-    """The texels of EAC RG11 blocks.
+    """Return the texels of EAC RG11 blocks.
 
     Args:
         blocks: uint8 of shape (count, 16), red before green.
 
     Returns:
-        float32 of shape (count, 16, 2): in [0, 1], or in [-1, 1] where it is signed.
+        float32 of shape (count, 16, 2): in [0, 1], or in [-1, 1] if `is_signed`.
     """
     halves = (eac_r11(blocks[:, start : start + 8], is_signed) for start in (0, 8))
     return np.stack([half / (SIGNED_ONE if is_signed else ONE) for half in halves], axis=2).astype(np.float32)

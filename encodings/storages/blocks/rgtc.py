@@ -1,8 +1,8 @@
 """BC4 and BC5 (RGTC): Khronos Data Format Specification, chapter on RGTC.
 
-A block of BC4 has two ends, and for each texel the index of one of eight values: the ends, and values between them.
-The specification gives these as real numbers, for example (6 RED0 + RED1) / 7, and rounds none of them. They are
-therefore exact here: they are sevenths or fifths of the way between the ends, in 35ths of a step of 8 bits.
+A BC4 block has two endpoints and, for each texel, the index of one of eight values: the endpoints, and values between
+them. The specification gives these values as real numbers, for example (6 RED0 + RED1) / 7, without rounding. They
+are therefore exact here: sevenths or fifths of the way between the endpoints, in 35ths of an 8-bit step.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ FOUR = np.array([[5, 0], [0, 5], [4, 1], [3, 2], [2, 3], [1, 4], [0, 0], [0, 0]]
 
 
 def bc4_parts(blocks: np.ndarray, is_signed: bool = False) -> np.ndarray:
-    """The texels of BC4 blocks in 35ths of a step.
+    """Return the texels of BC4 blocks in 35ths of a step.
 
     Args:
         blocks: uint8 of shape (count, 8).
 
     Returns:
-        int32 of shape (count, 16), row by row; 1 is 35 x 255, or 35 x 127 where it is signed.
+        int32 of shape (count, 16), row by row; 1 is 35 x 255, or 35 x 127 if `is_signed`.
     """
     bits = bits_of(blocks)
     ends = np.stack([field(bits, 0, 8), field(bits, 8, 8)], axis=1)
@@ -44,13 +44,13 @@ def bc4_parts(blocks: np.ndarray, is_signed: bool = False) -> np.ndarray:
 
 
 def decode_bc5(blocks: np.ndarray, is_signed: bool = False) -> np.ndarray:
-    """The texels of BC5 blocks as the specification has them.
+    """Return the texels of BC5 blocks as the specification defines them.
 
     Args:
         blocks: uint8 of shape (count, 16).
 
     Returns:
-        red and green, float32 of shape (count, 16, 2): in [0, 1], or in [-1, 1] where it is signed.
+        red and green, float32 of shape (count, 16, 2): in [0, 1], or in [-1, 1] if `is_signed`.
     """
     scale = PARTS * (SIGNED_ONE if is_signed else ONE)
     halves = (bc4_parts(np.ascontiguousarray(blocks[:, start : start + 8]), is_signed) for start in (0, 8))

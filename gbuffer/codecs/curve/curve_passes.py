@@ -1,4 +1,4 @@
-"""Curves in shaders: through a real render target, and without any."""
+"""Curves in shaders: round trips through a real render target, and exact values without a target."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..harness import Passes, check_functions, exact, set_uniforms
 
 
 def curve_constants(encoding: CurveEncoding) -> dict[str, object]:
-    """The macros that a curve's GLSL file needs.
+    """Return the macros that a curve's GLSL file needs.
 
     Raises:
         ShaderError: the file cannot be read or lacks one of its functions.
@@ -67,14 +67,14 @@ class CurvePasses(Passes):
 
 
 def exact_curves(device: Device, encoding: CurveEncoding, largest: float, given: np.ndarray) -> np.ndarray:
-    """Numbers of quantities, and quantities of numbers, by a compute shader and without storage.
+    """Return the numbers for quantities, and the quantities for numbers, from a compute shader, without storage.
 
     Args:
         largest: the range.
         given: two quantities and two numbers; float32 of shape (count, 4).
 
     Returns:
-        the quantities' numbers and the numbers' quantities, likewise.
+        the numbers for the quantities and the quantities for the numbers; float32 of shape (count, 4).
     """
     names = {"CURVE_ENCODING": encoding.glsl}
     (output,) = exact(device, "curve_parity.comp", _curve_defines(encoding), names, [given], 1, range=largest)

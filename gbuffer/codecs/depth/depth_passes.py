@@ -1,4 +1,4 @@
-"""Depths through a real render target or depth buffer: encoded by one fragment pass, read back by a second."""
+"""Round trips of depths through a real render target or depth buffer: one fragment pass encodes, a second decodes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def depth_defines(encoding: DepthEncoding) -> dict[str, object]:
     """Return the macros that adapt `depth_code.glsl` to an encoding.
 
     Raises:
-        ShaderError: its GLSL file cannot be read or lacks one of the two functions.
+        ShaderError: the encoding's GLSL file cannot be read or lacks one of the two functions.
     """
     check_functions(encoding.glsl, encoding.signatures)
     return {
@@ -97,8 +97,8 @@ class DepthPasses(Passes):
         numbers and depths that they are computed from.
 
         Args:
-            points: place (from -1 to 1, right and up) and view depth, float32 of shape (height, width, 3).
-            way: number of a Rebuild's way to the position; ways by the projection need a depth buffer's number.
+            points: screen position (-1 to 1, right and up) and view depth, float32 of shape (height, width, 3).
+            way: the `way` of a `Rebuild`; methods that use the projection need a depth buffer's number.
         """
         given = _camera_uniforms(camera, self._codec.encoding) | {"way": way}
         for program in (self._encode.program, self._decode.program):
@@ -112,7 +112,7 @@ class DepthPasses(Passes):
 
 
 def _camera_uniforms(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
-    """The uniforms that describe the camera, by name."""
+    """Return the uniforms that describe a camera, by name."""
     projection = encoding.projection
     return {
         "rays": camera.rays,
@@ -126,8 +126,8 @@ def _camera_uniforms(camera: Camera, encoding: DepthEncoding) -> dict[str, Any]:
 def _stored_texture(
     device: Device, stack: ExitStack, storage: DepthStorage, passed: VertexArray, given: Textures
 ) -> Texture:
-    """Return the texture that a pass writes in a storage from textures, given by sampler; it has their size and is
-    released with the stack."""
+    """Return the texture of a storage that a pass writes from textures, given by sampler name; it has their size and
+    is released with the stack."""
     size = given["points"].size
     if storage.home != "attachment":
         target = device.owned(stack, device.target(size, storage.format))
@@ -143,11 +143,11 @@ def _stored_texture(
 
 @cache
 def rounds_by_itself(device: Device, storage: DepthStorage, rounding: str) -> bool:
-    """Whether the device's own conversion into a storage rounds as the emulation does by `rounding`; always True for
+    """Whether the device's own conversion into a storage rounds as the emulation does for `rounding`; always True for
     packed integers and bytes. A depth buffer is compared with rounding to nearest, whatever `rounding` is.
 
     Raises:
-        FormatError: the device cannot render to it.
+        FormatError: the device cannot render to the storage.
     """
     if storage.home in ("packed", "bytes"):
         return True  # bytes are whole numbers of the format's steps, or whatever the device makes of them
@@ -160,7 +160,8 @@ def rounds_by_itself(device: Device, storage: DepthStorage, rounding: str) -> bo
 
 
 def through(device: Device, storage: DepthStorage, numbers: np.ndarray) -> np.ndarray:
-    """Return float32 numbers, (count,), written unchanged to a target's first channel or a depth buffer, then read.
+    """Return float32 numbers, (count,), after they are written unchanged to a target's first channel or a depth
+    buffer and read back.
 
     Raises:
         FormatError: the device cannot render to the storage.
@@ -178,14 +179,14 @@ def through(device: Device, storage: DepthStorage, numbers: np.ndarray) -> np.nd
 
 
 def exact_values(device: Device, encoding: DepthEncoding, camera: Camera, points: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Numbers of depths, depths of numbers, and positions, by a compute shader and without storage.
+    """Return the numbers for depths, the depths for numbers, and positions, from a compute shader, without storage.
 
     Args:
         points: place on the screen, depth, number; float32 of shape (count, 4).
 
     Returns:
-        numbers and depths, (count, 2); positions of the numbers by the inverse projection and by its two terms, and of
-        the depths by the eye's ray, (count, 3).
+        numbers and depths, (count, 2); positions from the numbers by the inverse projection and by its two terms, and
+        from the depths by the eye ray, (count, 3).
     """
     defines, names = depth_defines(encoding), {"DEPTH_ENCODING": encoding.glsl}
     seen = _camera_uniforms(camera, encoding)

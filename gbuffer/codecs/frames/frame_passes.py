@@ -1,4 +1,4 @@
-"""Tangent frames through a real render target: encoded by one fragment pass, decoded from the texture by a second."""
+"""Round trips of tangent frames through a real render target: one fragment pass encodes, a second decodes."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ..harness import Passes, check_functions, dithering, exact
 
 
 def frame_defines(encoding: FrameEncoding, least: float) -> dict[str, object]:
-    """Return the macros that adapt `frame_code.glsl` to an encoding; `least` is the codec's smallest number.
+    """Return the macros that adapt `frame_code.glsl` to an encoding; `least` is the codec's `least`.
 
     Raises:
-        ShaderError: its GLSL file cannot be read or lacks one of its functions.
+        ShaderError: the encoding's GLSL file cannot be read or lacks one of its functions.
     """
     check_functions(encoding.glsl, encoding.signatures)
     name = encoding.prefix
@@ -64,13 +64,13 @@ class FramePasses(Passes):
 
 
 def exact_frames(device: Device, encoding: FrameEncoding, least: float, *given: np.ndarray) -> list[np.ndarray]:
-    """Codes of frames, and frames of codes, by a compute shader and without storage.
+    """Return the codes of frames, and the frames of given codes, from a compute shader, without storage.
 
     Args:
         given: normals with hands, tangents, and codes to decode; float32 arrays of shape (count, 4).
 
     Returns:
-        codes, decoded normals with hands, and decoded tangents, likewise.
+        codes, decoded normals with hands, and decoded tangents; float32 arrays of shape (count, 4).
     """
     defines, names = frame_defines(encoding, least), {"FRAME_ENCODING": encoding.glsl}
     return exact(device, "frame_parity.comp", defines, names, given, 3)

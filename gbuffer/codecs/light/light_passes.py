@@ -1,4 +1,4 @@
-"""Light through a real light buffer: added one by one, as the light passes of a renderer add it."""
+"""Lights in a real light buffer: added one by one, as in the light passes of a renderer."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def light_defines(codec: LightCodec) -> dict[str, object]:
     """Return the macros that adapt `light_code.glsl` to a codec.
 
     Raises:
-        ShaderError: its GLSL file cannot be read or lacks one of the two functions.
+        ShaderError: the encoding's GLSL file cannot be read or lacks one of the two functions.
     """
     encoding = codec.encoding
     check_functions(encoding.glsl, encoding.signatures)
@@ -40,7 +40,7 @@ def light_defines(codec: LightCodec) -> dict[str, object]:
 
 
 def _packing_defines(storage: Storage) -> dict[str, object]:
-    """Return the macros for numbers packed across channels. They are stored from 0 up, as the encoding makes them."""
+    """Return the macros for numbers packed across channels, which are stored without a bias, as encoded."""
     if not storage.is_packed:
         return {"LIGHT_PACKED": 0}
     laid = storage_defines(storage, ["nearest"] * storage.channels, True)
@@ -49,7 +49,7 @@ def _packing_defines(storage: Storage) -> dict[str, object]:
 
 @dataclass(frozen=True)
 class Sum:
-    """Content of a light buffer: `light`, and the `texels` that encode it, as the encoding made them; float32
+    """The contents of a light buffer: `light`, and the `texels` that encode it, as returned by the encoding; float32
     arrays of shape (width, 4)."""
 
     light: np.ndarray
@@ -97,7 +97,7 @@ class LightPasses(Passes):
 
 
 def exact_light(device: Device, codec: LightCodec, lights, given) -> tuple[np.ndarray, np.ndarray]:
-    """Texels of lights, and light of given texels, by a compute shader and without storage.
+    """Return the texels for lights, and the light of given texels, from a compute shader, without storage.
 
     Args:
         lights, given: float32 arrays of shape (count, 4).

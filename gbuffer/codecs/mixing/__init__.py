@@ -1,1 +1,1 @@
-"""Stored codes that meet: filtered, resolved and blended by the device."""
+"""Mixing of stored codes: filtering, resolving and blending by the device."""

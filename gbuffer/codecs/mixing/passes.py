@@ -1,4 +1,4 @@
-"""Texels that meet in real hardware: filtered, averaged to mip levels, resolved and blended; then decoded."""
+"""Mixing of texels by real hardware: filtering, mip levels, resolving and blending, and decoding of the results."""
 
 from __future__ import annotations
 
@@ -30,9 +30,10 @@ class Meetings:
 
     Attributes:
         normals: unit normals of the patches side by side, float32 of shape (SIDE height, SIDE width, 4).
-        decals: unit normals of a detail that is laid over each patch's first texel, (height, width, 4).
+        decals: unit normals of a detail drawn over each patch's first texel, (height, width, 4).
         views: one view-space position for all texels of a patch, (height, width, 4).
-        shares: how far right and up a filter reads between a patch's first four texels, 0 to 1, (height, width, 2).
+        shares: how far right and up a filter samples between a patch's first four texels, 0 to 1, (height, width,
+            2).
         quarters: the same for upsampling, from QUARTERS, (height, width, 2).
         counts: number of samples with the patch's first normal; the others have its second, (height, width).
         alphas: blend factor of each row of pixels, (height,).
@@ -59,13 +60,13 @@ class Meetings:
 
     @property
     def seconds(self) -> np.ndarray:
-        """The normal to the right of the first one of each patch, (height, width, 4)."""
+        """The normal to the right of each patch's first normal, (height, width, 4)."""
         return self.normals[::SIDE, 1::SIDE]
 
     @property
     def places(self) -> np.ndarray:
-        """Positions that a filter reads, in texture coordinates, (height, width, 2). Widths that are powers of two
-        make them exact."""
+        """The positions at which a filter samples, in texture coordinates, (height, width, 2). They are exact if
+        width and height are powers of two."""
         width, height = self.size
         x, y = np.meshgrid(np.arange(width), np.arange(height))
         corners = np.stack([x, y], axis=-1) * SIDE + 0.5
@@ -153,7 +154,7 @@ class MixPasses:
         return Decoded(normals[..., :3], numbers)
 
     def texels(self) -> Decoded:
-        """Return every texel of the patches, unmixed; arrays of shape (SIDE height, SIDE width, ...)."""
+        """Return all texels of the patches, decoded but not mixed; arrays of shape (SIDE height, SIDE width, ...)."""
         width, height = self._size
         views = np.repeat(np.repeat(self.meetings.views, SIDE, 0), SIDE, 1)
         with self._given_textures(views=views) as given:
@@ -170,8 +171,8 @@ class MixPasses:
             return self._decoded_pass("mix_filter.frag", self._size, {**self._texels, **given})
 
     def mip(self, level: int) -> Decoded:
-        """Return each patch's normal, and the numbers that it is decoded from: its first texel in a mip level that
-        the device generated, 1 of 2 x 2 texels or 2 of 4 x 4."""
+        """Return each patch's normal, and the numbers that it is decoded from: the patch's first texel in a mip level
+        that the device generated. Level 1 averages 2 x 2 texels, level 2 averages 4 x 4."""
         for texture in self._texels.values():
             self._device.build_mips(texture)
         return self._decoded_pass("mix_texel.frag", self._size, self._texels, stride=SIDE >> level, level=level)
@@ -200,7 +201,7 @@ class MixPasses:
 
     def blended(self, decals: np.ndarray) -> Decoded:
         """Return each patch's normal, and the numbers that it is decoded from: the code of the patch's first normal
-        after the device's blending has drawn `decals`, normals of shape (height, width, 4), over it."""
+        after the device has blended `decals`, normals of shape (height, width, 4), over it."""
         targets = self._encoded_textures(self.meetings.firsts, self.meetings.views)
         passed, device = self._pass_array("encode.frag"), self._device
         framebuffer = device.owned(self._stack, device.framebuffer(list(targets.values())))
@@ -229,7 +230,7 @@ class MixPasses:
         return self._decoded_pass("mix_texel.frag", self._size, targets, stride=1)
 
     def upsampled(self) -> Decoded:
-        """Return each patch's normal by the discontinuity-sensitive filter of its first 2 x 2 texels; no numbers."""
+        """Return each patch's normal from a discontinuity-sensitive filter of its first 2 x 2 texels; no numbers."""
         with self._given_textures(shares=self.meetings.quarters.astype(np.float32)) as given:
             return self._decoded_pass("mix_upsample.frag", self._size, {**self._texels, **given}, stride=SIDE)
 

@@ -1,4 +1,4 @@
-"""Motion vectors through a real render target: encoded by one fragment pass, decoded from the texture by a second."""
+"""Round trips of motion vectors through a real render target: one fragment pass encodes, a second decodes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def motion_defines(encoding: MotionEncoding, needs_range: bool) -> dict[str, obj
     """Return the macros that adapt `motion_code.glsl` to an encoding.
 
     Raises:
-        ShaderError: its GLSL file cannot be read or lacks one of its functions.
+        ShaderError: the encoding's GLSL file cannot be read or lacks one of its functions.
     """
     check_functions(encoding.glsl, encoding.signatures)
     return {
@@ -52,7 +52,7 @@ class MotionPasses(Passes):
         super().__init__(device, shaders, defines, names, {"texels": storage.target}, tables)
 
     def round_trip(self, motions: np.ndarray, largest: float) -> np.ndarray:
-        """Return motions (screens per frame), float32 of shape (height, width, 2), encoded, stored and decoded.
+        """Return motions (screens per frame), float32 of shape (height, width, 2), after a round trip.
 
         Args:
             largest: the range in screens.
@@ -67,13 +67,13 @@ class MotionPasses(Passes):
 
 
 def exact_motions(device: Device, encoding: MotionEncoding, largest: float, given: np.ndarray) -> np.ndarray:
-    """Codes of motions, and motions of codes, by a compute shader and without storage.
+    """Return the codes of motions, and the motions of codes, from a compute shader, without storage.
 
     Args:
         given: a motion and a code; float32 of shape (count, 4).
 
     Returns:
-        the motion's code and the code's motion, likewise.
+        the code of the motion and the motion of the code; float32 of shape (count, 4).
     """
     defines, names = motion_defines(encoding, True), {"MOTION_ENCODING": encoding.glsl}
     (output,) = exact(device, "motion_parity.comp", defines, names, [given], 1, range=largest)

@@ -1,1 +1,1 @@
-"""Users' functions of any kind, by themselves."""
+"""Users' functions of any kind, run without storage."""

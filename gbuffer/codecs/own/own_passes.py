@@ -1,4 +1,4 @@
-"""A user's two functions of any kind on a GL device, without storage."""
+"""A user's two functions of any kind on an OpenGL device, without storage."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Positions of the volumes in the world, and the views of the lights on them."""
+"""The positions of the volumes in the world, and the lights' views of the volumes."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ NEAR = 0.01
 
 @dataclass(frozen=True)
 class Cascade:
-    """A volume's place.
+    """The place of a volume in the world.
 
     Attributes:
-        origin: of its low corner, in its own cells from the origin of the world.
+        origin: position of its low corner, in its own cells from the origin of the world.
         cell: the side of a cell in metres.
-        cells: along each axis.
+        cells: number of cells along each axis.
     """
 
     origin: tuple[int, int, int]
@@ -38,7 +38,7 @@ class Cascade:
 
     @property
     def box(self) -> np.ndarray:
-        """Low and high corner of the volume in the world, (2, 3)."""
+        """The low and the high corner of the volume in the world, (2, 3)."""
         low = np.array(self.origin, float)
         return np.stack([low, low + self.cells]) * self.cell
 
@@ -48,8 +48,8 @@ class LightSight:
     """A light's view of the scene, in a square image: a `Sight`.
 
     Attributes:
-        rows: world to view space, 16 numbers row by row.
-        half: half the image's width and height: in metres for parallel rays, else at distance 1.
+        rows: the matrix from world to view space, 16 numbers row by row.
+        half: half the image's width and height: in metres for parallel rays, otherwise at distance 1.
         near, far: distances along the line of sight.
         is_parallel: whether its rays are parallel.
     """
@@ -80,7 +80,7 @@ class LightSight:
 
 
 def box_of(scene: Scene) -> np.ndarray:
-    """The low and the high corner of all that a scene draws, (2, 3)."""
+    """Return the low and the high corner of the box around everything that a scene draws, (2, 3)."""
     ends = []
     for part in scene.parts:
         low, high = part.mesh.positions.min(axis=0), part.mesh.positions.max(axis=0)
@@ -91,8 +91,8 @@ def box_of(scene: Scene) -> np.ndarray:
 
 
 def finest_cell(box: np.ndarray, extent: float, cells: int, cascades: int) -> float:
-    """Return the side of the finest cascade's cells in metres: extent / cells, or, if the extent is 0, the side with
-    which the coarsest cascade holds the box."""
+    """Return the side of the finest cascade's cells in metres: extent / cells or, if the extent is 0, the side at
+    which the coarsest cascade contains the box."""
     if extent > 0:
         return extent / cells
     longest = max(float((box[1] - box[0]).max()), LEAST)
@@ -100,13 +100,13 @@ def finest_cell(box: np.ndarray, extent: float, cells: int, cascades: int) -> fl
 
 
 def cascades_of(view: View, box: np.ndarray, cell: float, cells: int, cascades: int) -> tuple[Cascade, ...]:
-    """Return the cascades around a view, the finest first; the side of the cells doubles from each to the next."""
+    """Return the cascades around a view, the finest first; the side of the cells doubles from cascade to cascade."""
     return tuple(_placed_cascade(view, box, cell * 2**index, cells) for index in range(cascades))
 
 
 def _placed_cascade(view: View, box: np.ndarray, cell: float, cells: int) -> Cascade:
-    """Return the cascade ahead of the eye, at whole cells. Along each axis it is clamped to the scene's box, or
-    centred on the box if it is larger."""
+    """Return the cascade ahead of the eye, aligned to whole cells. Along each axis it is clamped to the scene's box,
+    or centred on the box if the cascade is larger."""
     forward = np.subtract(view.target, view.eye)
     wanted = view.eye + AHEAD * cell * cells * forward / np.linalg.norm(forward)
     reach = (cells / 2 - MARGIN) * cell
@@ -117,8 +117,8 @@ def _placed_cascade(view: View, box: np.ndarray, cell: float, cells: int) -> Cas
 
 
 def sun_sight(sun: Light, cascade: Cascade, box: np.ndarray, texels: int) -> Sight:
-    """Return a parallel view along the sun's rays that covers a cascade, from before the whole scene; its texels stay
-    where they are in the world as the cascade moves."""
+    """Return a parallel view along the sun's rays that covers a cascade and begins in front of the whole scene. Its
+    texels keep their positions in the world when the cascade moves."""
     back = -np.array(sun.direction)
     right = np.cross(back, np.eye(3)[np.argmin(abs(back))])
     right = right / np.linalg.norm(right)
@@ -136,7 +136,7 @@ def sun_sight(sun: Light, cascade: Cascade, box: np.ndarray, texels: int) -> Sig
 
 
 def spot_sight(spot: Light) -> Sight:
-    """Return the perspective view of a spot's shadow: its cone, up to WIDEST degrees from its axis."""
+    """Return the perspective view for a spotlight's shadow: the light's cone, up to WIDEST degrees from its axis."""
     way = np.array(spot.direction)
     up = tuple(np.eye(3)[np.argmin(abs(way))].tolist())
     view = View(spot.position, tuple((np.array(spot.position) + way).tolist()), 90.0, 1.0, 2.0, up)

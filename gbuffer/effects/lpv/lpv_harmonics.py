@@ -14,7 +14,7 @@ LOBE0, LOBE1 = pi * SH0, 2 * pi / 3 * SH1
 
 
 def _square(half: float, distance: float) -> float:
-    """The solid angle of a square of side 2 `half`, seen along its axis from a distance."""
+    """Return the solid angle of a square with sides of 2 `half`, seen along its axis from a distance."""
     # Omega = 4 atan(a b / (d sqrt(a^2 + b^2 + d^2)))
     return 4 * atan(half * half / (distance * sqrt(2 * half * half + distance * distance)))
 

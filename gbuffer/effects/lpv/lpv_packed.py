@@ -1,4 +1,5 @@
-"""Four signed numbers under a shared exponent in 32 bits, as RGB9E5 has three without sign; see lpv_packed.glsl."""
+"""Four signed numbers with a shared exponent in 32 bits, similar to the three unsigned numbers of RGB9E5 (see
+lpv_packed.glsl)."""
 
 # A word counts in LEVELS: m_0 + LEVELS (m_1 + LEVELS (m_2 + LEVELS (m_3 + LEVELS x))), with the exponent x on top. Of
 # 32 exponents and four mantissas of one size, 107 is the most levels that 32 bits hold: 32 x 107^4 < 2^32 < 32 x 108^4.

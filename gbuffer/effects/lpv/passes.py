@@ -37,8 +37,8 @@ class Lattice:
 
 
 def inject(volumes: Volumes, extent: float, blocks: bool) -> Pass:
-    """Return the pass that draws a reflective shadow map for each spot, and for the sun one per cascade, and adds
-    VPLs from it; if `blocks`, also surfels from these maps and the camera's G-buffer, which block light."""
+    """Return the pass that draws a reflective shadow map for each spot and, for a sun, for each cascade, and adds
+    VPLs from it. If `blocks`, it also adds surfels, which block light, from these maps and the camera's G-buffer."""
     maps = (*volumes.reflective, volumes.reflective_depth)
     writes = (*maps, *volumes.injected, volumes.blockers)
     build = partial(Injection, volumes, extent, blocks)
@@ -46,7 +46,7 @@ def inject(volumes: Volumes, extent: float, blocks: bool) -> Pass:
 
 
 class Injection:
-    """The injection pass: draws the reflective shadow maps one by one and adds their texels to the volumes."""
+    """The injection pass, which draws the reflective shadow maps one by one and adds their texels to the volumes."""
 
     def __init__(self, volumes: Volumes, extent: float, blocks: bool, canvas: Canvas):
         self._canvas, self._volumes, self._blocks = canvas, volumes, blocks
@@ -73,8 +73,8 @@ class Injection:
                 self._add_surfels(view, cascades)
 
     def _views(self) -> Iterator[tuple[int, Sight, range]]:
-        """Yield the index of each sun and spot, its view, and the cascades that it lights from there: one per view of
-        a sun, all for a spot."""
+        """Yield the index of each sun and spot, its view, and the cascades that it lights from there: one cascade per
+        view of a sun, all cascades for a spot."""
         number, all_of_them = self._volumes.texels, range(self._volumes.cascades)
         for index, light in enumerate(self._canvas.frame.scene_buffers.lights):
             if light.kind == "sun":
@@ -130,7 +130,8 @@ def propagate(volumes: Volumes, iterations: int, amplifier: float) -> Pass:
 
 
 class Propagation:
-    """Steps over all cells, slice by slice of the volumes: that needs neither compute shaders nor layered drawing."""
+    """The propagation pass, which draws the volumes slice by slice: this needs neither compute shaders nor layered
+    rendering."""
 
     def __init__(self, volumes: Volumes, iterations: int, amplifier: float, canvas: Canvas):
         self._canvas, self._iterations, self._slices = canvas, iterations, volumes.cells * volumes.cascades

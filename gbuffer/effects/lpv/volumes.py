@@ -1,4 +1,4 @@
-"""The volumes' sizes and resources, which the settings decide, and the macros that shaders know them by."""
+"""The volumes' sizes and resources, which follow from the settings, and the macros that describe them to shaders."""
 
 from __future__ import annotations
 
@@ -43,41 +43,41 @@ class Volumes:
 
     @property
     def corners(self) -> int:
-        """Number of cell corners along an axis, where blockers of light are kept."""
+        """The number of cell corners along an axis, at which blockers of light are stored."""
         return self.cells + 1
 
     @property
     def injected(self) -> tuple[Resource, ...]:
-        """The light of the first step, slices side by side, so that one draw adds to all of them."""
+        """The injected light, before propagation, with slices side by side so that one draw adds to all slices."""
         return tuple(self._flat_resource(f"lpv_injected_{channel}", self.cells) for channel in CHANNELS)
 
     @property
     def blockers(self) -> Resource:
-        """Blockers of light at the cells' corners, slices side by side."""
+        """The blockers of light at the cells' corners, with slices side by side."""
         return self._flat_resource("lpv_blockers", self.corners)
 
     @property
     def wave(self) -> tuple[Resource, ...]:
-        """The light that travels, a volume for each channel."""
+        """The light that is being propagated, one volume per channel."""
         return tuple(self._volume_resource(f"lpv_wave_{channel}") for channel in CHANNELS)
 
     @property
     def light(self) -> tuple[Resource, ...]:
-        """The sum over all steps, a volume for each channel."""
+        """The sum over all steps, one volume per channel."""
         return tuple(self._volume_resource(f"lpv_light_{channel}") for channel in CHANNELS)
 
     @property
     def reflective(self) -> tuple[Resource, ...]:
-        """A reflective shadow map: flux, normal and position; one is drawn after the other."""
+        """The textures of a reflective shadow map: flux, normal and position. Each map replaces the previous one."""
         return tuple(self._map_resource(f"lpv_{what}", "rgba32f") for what in ("flux", "normal", "position"))
 
     @property
     def reflective_depth(self) -> Resource:
-        """Depth and stencil that a reflective shadow map is drawn against."""
+        """The depth and stencil attachment for drawing a reflective shadow map."""
         return self._map_resource("lpv_depth", DEPTH_STENCIL)
 
     def defines(self, cell: float) -> dict[str, object]:
-        """Return the macros of the shaders of the volumes; `cell` is the finest cascade's cell size in metres."""
+        """Return the macros for the volumes' shaders; `cell` is the finest cascade's cell size in metres."""
         marks = {"SHIFT": SHIFT, "COVERED_SHARE": COVERED_SHARE}
         own = {"CELLS": self.cells, "CORNERS": self.corners, "CASCADES": self.cascades, "TEXELS": self.texels}
         packs = {"PACKS": int(self.format == "shared"), "CELL": float(cell)}

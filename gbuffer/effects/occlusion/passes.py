@@ -1,7 +1,7 @@
-"""The passes of an ambient occlusion method: depths for its taps, the method, and at half size the upsampling.
+"""The passes of an ambient occlusion method: depths for its taps, the occlusion itself and, at half size, upsampling.
 
-All methods write the same resource, VISIBILITY, and their passes have the same names, so that a pipeline takes one
-method and its times can be compared with another's.
+All methods write the same resource, VISIBILITY, and give their passes the same names, so that a pipeline can use any
+of the methods and their times can be compared.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ CONSTANTS: Mapping[str, float] = {
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AmbientOcclusion(Effect):
-    """A method of ambient occlusion.
+    """An ambient occlusion method.
 
     Attributes:
-        falls_off: how much of the light from a direction is lost to a surface at a distance, both in units of the
-            radius: distances of any shape, 0 or more, to numbers from 0 to 1; 0 from 1 on. A ray caster that is to
-            judge the method weighs by it.
+        falls_off: function that returns the share of a direction's light that a surface blocks at a given distance.
+            It takes distances in units of the radius, an array of any shape, 0 or more, and returns numbers from 0 to
+            1, which are 0 for distances of 1 or more. The ray caster that checks the method weights its hits with it.
     """
 
     falls_off: Callable[[np.ndarray], np.ndarray]
@@ -57,10 +57,10 @@ def passes(shader: str, size: str, bends: bool, **macros: float) -> tuple[Pass, 
     """Return the passes of one method.
 
     Args:
-        shader: the method's shader, whose targets are visibility and, if it `bends`, the bent normal.
+        shader: the method's shader, which writes visibility and, if `bends`, the bent normal.
         size: "full" or "half".
         bends: whether the method writes a bent normal.
-        macros: macros of the shader besides CONSTANTS.
+        macros: macros for the shader, in addition to CONSTANTS.
     """
     whole = (VISIBILITY, BENT_NORMAL) if bends else (VISIBILITY,)
     half = (HALF_VISIBILITY, HALF_BENT_NORMAL) if bends else (HALF_VISIBILITY,)

@@ -1,8 +1,8 @@
 """Screen-space reflections: mirrored rays, spread by roughness, that hit the surfaces visible on the screen.
 
-A ray marches over the depths of the screen (McGuire and Mara, Efficient GPU Screen-Space Ray Tracing, 2014), and
-the step in which it passes behind a surface is bisected. The light at the hit replaces the surface's reflection of
-the environment. A ray cannot hit anything outside the image or hidden by something else.
+A ray marches through the depth buffer (McGuire and Mara, Efficient GPU Screen-Space Ray Tracing, 2014), and the step
+in which it passes behind a surface is bisected. The light at the hit replaces the surface's reflection of the
+environment. A ray cannot hit anything outside the image or hidden behind another surface.
 """
 
 from __future__ import annotations

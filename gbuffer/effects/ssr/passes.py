@@ -1,4 +1,4 @@
-"""The passes of screen-space reflections: inverse depths, ray tracing, and blending into the image."""
+"""The passes of screen-space reflections: inverse depths, ray tracing and blending into the image."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Subsurface scattering in screen space: skin's diffuse light, blurred before it is multiplied by the albedo.
 
 Jimenez, Sundstedt and Gutierrez, Screen-Space Perceptual Rendering of Human Skin, 2009; Jimenez and Gutierrez,
-SeparableSSS, 2012; Christensen and Burley 2015; Jo Kyeong-jun, Advanced Rendering with Vision Engine: the pairs of
-Gaussians, the stencil, and light that is scattered before textures are applied.
+SeparableSSS, 2012; Christensen and Burley 2015. The pairs of Gaussians, the stencil and scattering before texturing
+are from Jo Kyeong-jun, Advanced Rendering with Vision Engine.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The passes of subsurface scattering: skin's light is written and marked in a stencil, then blurred where marked."""
+"""The passes of subsurface scattering: write skin's light, mark its pixels in a stencil, blur marked pixels."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ class Scatter:
     """Settings that all passes share.
 
     Attributes:
-        width: in metres.
-        follow: the share of light that a depth step of one width keeps out.
-        samples: taps of a blur.
+        width: width of the scattering, in metres.
+        follow: share of the light that a depth step of one width blocks.
+        samples: taps per blur.
     """
 
     width: float
@@ -61,14 +61,13 @@ class Scatter:
     samples: int
 
     def defines(self, light: Resource, **more: object) -> dict[str, object]:
-        """Return the macros of a blur that reads the resource `light`, and the macros in `more`; a step in depth is
-        measured in metres."""
+        """Return the macros of a blur of `light`, and the macros in `more`; FOLLOW is per metre of depth."""
         scale = {"SOURCE": light.name, "METRES": self.width / MILLIMETRES, "SAMPLES_TAKEN": self.samples}
         return {**scale, "FOLLOW": self.follow / self.width, **more}
 
 
 def sun_entry() -> Pass:
-    """Return the pass that draws the first surfaces that the sun reaches; it is skipped if there are no shadows."""
+    """Return the pass that draws the surfaces that sunlight reaches first; it is skipped if there are no shadows."""
     return Pass("sun_entry", (), (SUN_ENTRY,), _sun_entry, after=("lights",))
 
 
@@ -151,13 +150,13 @@ class Blur:
 
 
 def separable(scatter: Scatter) -> tuple[Pass, ...]:
-    """Return two passes that blur skin's light along rows and then along columns, both by one kernel."""
+    """Return two passes that blur skin's light along rows and then along columns, with the same kernel."""
     return _pair("", scatter, separable_kernel(scatter.samples), SKIN_LIGHT, SCATTERED)
 
 
 def gaussians(scatter: Scatter, pairs: int) -> tuple[Pass, ...]:
-    """Return a row pass and a column pass per Gaussian, `pairs` times, each pair blurring the previous result; the
-    last pass adds all up."""
+    """Return `pairs` pairs of passes, one pair per Gaussian. Each pair blurs the previous result along rows and then
+    along columns; the last pass adds up all Gaussians."""
     sum_of, levels, passes = GAUSSIANS[pairs], SKIN_GAUSSIANS[: pairs - 1], []
     begun = (SKIN_LIGHT, *levels)
     for number, (variance, light) in enumerate(zip(sum_of.increments.tolist(), begun, strict=True), 1):
@@ -171,7 +170,7 @@ def gaussians(scatter: Scatter, pairs: int) -> tuple[Pass, ...]:
 
 
 def burley(scatter: Scatter, seed: int) -> tuple[Pass, ...]:
-    """Return one pass, in a tuple, that blurs skin's light by Burley's profile with a disc of taps."""
+    """Return one pass, in a tuple, that blurs skin's light with Burley's profile over a disc of taps."""
     distances = burley_distances()
     numbers = {
         "RADII": listed(burley_radii(scatter.samples)),
@@ -196,8 +195,8 @@ def _pair(
     sums: tuple[Resource, ...] = (),
     shares: Mapping[str, Any] = MappingProxyType({}),
 ) -> tuple[Pass, Pass]:
-    """Return two passes that blur `light` along rows and then along columns into `into`; with `sums`, the second also
-    adds up these resources by the macros `shares`."""
+    """Return two passes that blur `light` along rows and then along columns into `into`. The second also adds up the
+    resources in `sums`, if any, with the weights in the macros `shares`."""
     told = {"KERNEL": listed(kernel), "GAUSSIANS": 0}
     rows = scatter.defines(light, ALONG_X=1, **told)
     columns = scatter.defines(SKIN_ACROSS, ALONG_X=0, **(told | dict(shares)))

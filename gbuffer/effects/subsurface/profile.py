@@ -1,4 +1,4 @@
-"""Distances that light travels through skin, and the taps of each method for them. Lengths are millimetres of skin.
+"""How far light travels through skin, and the taps of each method. Lengths are in millimetres of skin.
 
 d'Eon and Luebke, Advanced Techniques for Realistic Real-Time Skin Rendering, GPU Gems 3, 2007, chapter 14;
 Jimenez and Gutierrez, SeparableSSS, 2012; Christensen and Burley, Approximate Reflectance Profiles for Efficient
@@ -35,10 +35,12 @@ REACHES, MANY = (2.0, 3.0), 20
 
 
 def separable_kernel(samples: int) -> np.ndarray:
-    """Weights of red, green and blue, and offsets in mm, (samples, 4); the middle first (SeparableSSS.cpp, 2012).
+    """Return weights for red, green and blue, and offsets in mm, (samples, 4), starting with the central tap.
+
+    The kernel is that of SeparableSSS.cpp, 2012.
 
     Args:
-        samples: odd, 3 or more.
+        samples: number of taps, odd, 3 or more.
     """
     reach = REACHES[samples > MANY]
     o = np.linspace(-reach, reach, samples)
@@ -54,7 +56,7 @@ def separable_kernel(samples: int) -> np.ndarray:
 
 
 def _narrowed_profile(r: np.ndarray) -> np.ndarray:
-    """sum of w_red exp(-(r / (0.001 + falloff))^2 / 2v) / v, (offsets, 3); a factor that all share is left out."""
+    """Return the sum of w_red exp(-(r / (0.001 + falloff))^2 / 2v) / v, (offsets, 3), up to a constant factor."""
     rr = (r[:, None] / (LEAST_FALL_OFF + FALL_OFF)) ** 2
     v = VARIANCES[1:]
     return np.einsum("g,gnc->nc", WEIGHTS[1:, 0] / v, np.exp(-rr / (2 * v[:, None, None])))
@@ -74,7 +76,7 @@ class Gaussians:
 
     @property
     def increments(self) -> np.ndarray:
-        """Variances of the blurs: the differences of `variances`, because sigma_fg^2 = sigma_f^2 + sigma_g^2."""
+        """Variance of each blur: the differences of `variances`, because sigma_fg^2 = sigma_f^2 + sigma_g^2."""
         return np.diff(self.variances, prepend=0.0)
 
 
@@ -113,8 +115,8 @@ DEVIATIONS = 3.0
 
 
 def gaussian_kernel(variance: float, samples: int) -> np.ndarray:
-    """Return equal weights of red, green and blue, and offsets in mm, (samples, 4), by ascending offset: even steps
-    over 3 standard deviations on either side. `variance` is in mm^2."""
+    """Return weights, equal for red, green and blue, and offsets in mm, (samples, 4), in ascending order of offset.
+    Taps are evenly spaced over 3 standard deviations on either side; `variance` is in mm^2."""
     offsets = np.linspace(-DEVIATIONS, DEVIATIONS, samples) * variance**0.5
     weights = np.exp(-(offsets**2) / (2 * variance))
     return np.concatenate([np.repeat(weights[:, None] / weights.sum(), 3, axis=1), offsets[:, None]], axis=1)
@@ -123,15 +125,15 @@ def gaussian_kernel(variance: float, samples: int) -> np.ndarray:
 def burley_distances() -> np.ndarray:
     """Return the distances d, in mm, of R(r) = (e^(-r/d) + e^(-r/3d)) / (8 pi d r) for red, green and blue.
 
-    With these distances light travels as far on average as in d'Eon's sum: the mean of r is 2.5 d for R, and
+    With these distances, light travels as far on average as with d'Eon's sum: the mean of r is 2.5 d for R, and
     sqrt(pi v / 2) for a Gaussian of variance v.
     """
     return np.sqrt(np.pi * VARIANCES / 2) @ WEIGHTS / 2.5
 
 
 def burley_radius(u: np.ndarray, d: float) -> np.ndarray:
-    """Return the radii within which shares u of the light stay, 0 to below 1, for a distance d: the inverse of
-    CDF(r) = 1 - e^(-r/d) / 4 - 3 e^(-r/3d) / 4 (Golubev 2019)."""
+    """Return the radii within which the shares `u` of the light remain, each in [0, 1), for a distance d. This is the
+    inverse of CDF(r) = 1 - e^(-r/d) / 4 - 3 e^(-r/3d) / 4 (Golubev 2019)."""
     # With x = e^(-r/3d), x^3 + 3x = 4 (1 - u) = k, which has one real root.
     k = 4 * (1 - np.asarray(u))
     g = np.cbrt(k / 2 + np.sqrt(k**2 / 4 + 1))
@@ -139,5 +141,5 @@ def burley_radius(u: np.ndarray, d: float) -> np.ndarray:
 
 
 def burley_radii(samples: int) -> np.ndarray:
-    """Return the radii of a disc's taps, (samples,), in mm: middles of equal shares of red, which goes farthest."""
+    """Return the radii of a disc's taps, (samples,), in mm: midpoints of equal shares of red, which goes farthest."""
     return burley_radius((np.arange(samples) + 0.5) / samples, float(burley_distances().max()))

@@ -1,8 +1,9 @@
-"""Water: a radial grid moved by waves, that mirrors, refracts and scatters.
+"""Water: a radial grid displaced by waves, with reflection, refraction and scattering.
 
 Jo Kyeong-jun's talk on hybrid deferred rendering; Kryachko, Using Vertex Texture Displacement for Realistic Water
-Rendering, GPU Gems 2, chapter 18; the look-ups' guard and light in crests after NVIDIA's sample Island 11. Surfaces
-under water are lit as if it were not there, but for caustics: the sun's way down through the water costs no light.
+Rendering, GPU Gems 2, chapter 18. The guard on texture lookups and the light in crests follow NVIDIA's sample Island
+11. Surfaces under water are lit as if the water were not there, except for caustics: sunlight is not absorbed on its
+way down.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The radial grid under the eye (GPU Gems 2, chapter 18): rings ever wider apart, vertices as many on each."""
+"""The radial grid below the camera (GPU Gems 2, chapter 18): rings with growing gaps and equal vertex counts."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ STEP = 0.5
 
 @dataclass(frozen=True)
 class Grid:
-    """A disc of `rings` rings around its centre, each of `spokes` vertices.
+    """A disc of `rings` rings around its centre, each with `spokes` vertices.
 
-    Ring i has the radius r = FIRST_GAP i + curve i^4. GPU Gems 2 has r = a0 + a1 i^4, whose first rings are 9 um apart
-    where 256 of them reach 40 km: less than float32 tells apart 100 m from the origin. The linear term keeps them
-    apart, and the middle is closed.
+    Ring i has the radius r = FIRST_GAP i + curve i^4. GPU Gems 2 uses r = a0 + a1 i^4. If 256 rings reach 40 km, its
+    first rings are then 9 um apart, which float32 cannot resolve 100 m from the origin. The linear term keeps the
+    rings apart, and the fan in the middle closes the disc.
     """
 
     rings: int
@@ -29,7 +29,8 @@ class Grid:
 
     @cached_property
     def vertices(self) -> np.ndarray:
-        """Cosine and sine of the spoke, number of the ring, (1 + rings spokes, 3), float32; the first is the centre."""
+        """Cosine and sine of each vertex's spoke and the number of its ring, (1 + rings x spokes, 3), float32; the
+        first vertex is the centre."""
         angle = 2 * np.pi * np.arange(self.spokes) / self.spokes
         ring, spoke = np.divmod(np.arange(self.rings * self.spokes), self.spokes)
         rows = np.stack([np.cos(angle)[spoke], np.sin(angle)[spoke], ring + 1.0], axis=1)
@@ -37,7 +38,7 @@ class Grid:
 
     @cached_property
     def triangles(self) -> np.ndarray:
-        """Return vertex indices, (triangles, 3), int32: a fan around the centre, two per cell between rings."""
+        """Vertex indices, (triangles, 3), int32: a fan around the centre, then two per cell between rings."""
         here = np.arange(self.spokes)
         after = (here + 1) % self.spokes
         fan = np.stack([np.zeros_like(here), 1 + after, 1 + here], axis=1)
@@ -48,22 +49,22 @@ class Grid:
         return np.concatenate([fan, cells]).astype(np.int32)
 
     def curve(self, outer: float) -> float:
-        """Return the factor of i^4 in the radius of ring i with which the last ring has a radius of `outer` metres; 0
-        if the last ring reaches `outer` without it."""
+        """Return the factor of i^4 in the radius of ring i that gives the last ring a radius of `outer` metres; 0 if
+        the linear term alone reaches that radius."""
         return max(outer - FIRST_GAP * self.rings, 0.0) / self.rings**4
 
     def radii(self, outer: float) -> np.ndarray:
-        """Return the radii of the rings, (rings,), in metres."""
+        """Return the radii of the rings, (rings,), in metres; the last is at least `outer`."""
         i = np.arange(1, self.rings + 1)
         return FIRST_GAP * i + self.curve(outer) * i.astype(float) ** 4
 
 
 def centre_under(view: View) -> tuple[float, float]:
-    """Return the position of the grid's centre in the world, x and z: under the eye, in whole steps."""
+    """Return the world x and z of the grid's centre: below the camera, rounded to a multiple of STEP."""
     return round(view.eye[0] / STEP) * STEP, round(view.eye[2] / STEP) * STEP
 
 
 def reach(view: View, aspect: float) -> float:
-    """Metres from the centre to beyond the farthest point that can be seen: a corner of the far plane."""
+    """Return the radius in metres at which the grid covers every visible point, up to the far plane's corners."""
     up = np.tan(np.radians(view.fov) / 2)
     return float(view.far * np.sqrt(1 + up**2 + (up * aspect) ** 2)) + STEP

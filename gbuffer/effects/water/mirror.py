@@ -11,7 +11,8 @@ from ...scenes.scene import View
 
 @dataclass(frozen=True)
 class MirrorSight:
-    """A view's reflection in still water: a `Sight`. Its image has left and right exchanged, like a turned camera's.
+    """A view's reflection in still water, as a `Sight`. Left and right are exchanged in its image, because the camera
+    is rotated, not reflected.
 
     Attributes:
         view: the mirrored camera.
@@ -26,7 +27,7 @@ class MirrorSight:
         return self.view.matrix()
 
     def projection(self, aspect: float) -> np.ndarray:
-        """Return the matrix from view to clip space, (4, 4), with the near plane in the water's surface (Lengyel,
+        """Return the matrix from view to clip space, (4, 4), whose near plane is the water's surface (Lengyel,
         Oblique View Frustum Depth Projection and Clipping, 2005)."""
         matrix = self.view.projection(aspect)
         # The plane in view space, by the inverse transpose: positive above the water.
@@ -37,7 +38,7 @@ class MirrorSight:
         return matrix
 
     def rays(self, size: tuple[int, int]) -> tuple[float, float, float, float]:
-        """The rays of the view that is mirrored: `View.rays`."""
+        """Return the rays of the mirrored camera; see `View.rays`."""
         return self.view.rays(size)
 
 

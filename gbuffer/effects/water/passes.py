@@ -1,4 +1,5 @@
-"""The passes of water: wave maps, caustics, mirror image, depth behind the water, surface, and overlay on the image."""
+"""The passes of water: wave maps, caustics, mirror image, depth behind the water, surface and overlay on the
+image."""
 
 from __future__ import annotations
 
@@ -29,10 +30,10 @@ class Look:
 
     Attributes:
         maps: the wave maps.
-        seed: of the waves' random numbers.
-        strength: factor on the waves' slope.
-        grid: the grid that is drawn.
-        defines: macros.
+        seed: seed of the waves' random numbers.
+        strength: factor on the slope of the waves.
+        grid: the grid to draw.
+        defines: macros for the shaders.
     """
 
     maps: Maps
@@ -82,7 +83,7 @@ def passes(look: Look) -> tuple[Pass, ...]:
 
 
 class WaveMaps:
-    """The sum of waves, slice by slice: each leaves out one more octave of the shortest."""
+    """The pass that sums the waves, slice by slice; each slice leaves out one more octave of the shortest waves."""
 
     def __init__(self, look: Look, canvas: Canvas):
         self._look, self._canvas = look, canvas
@@ -103,7 +104,7 @@ class WaveMaps:
 
 
 def _caustics(look: Look, canvas: Canvas) -> Run:
-    """Return a function that adds up sunlight on each slice's depth, triangle by triangle, if there is a sun."""
+    """Return a function that adds up sunlight at each slice's depth, triangle by triangle, if there is a sun."""
     target = canvas.target(look.maps.caustics)
     program = canvas.program("water_caustics.vert", "water_caustics.frag", **look.defines)
     lattice, corners = canvas.frame.array(program, []), 6 * (CELLS + 2 * MARGIN) ** 2
@@ -131,7 +132,7 @@ def _mirror_sight(canvas: Canvas) -> MirrorSight:
 
 
 def _mirror(canvas: Canvas) -> Run:
-    """Return a function that draws all opaque surfaces above the water under all lights, seen from below."""
+    """Return a function that draws the opaque surfaces above the water, with all lights, from the mirrored camera."""
     target = canvas.target(MIRROR, depth=MIRROR_DEPTH)
     surfaces = ForwardSurfaces(canvas, bool(canvas.frame.scene_buffers.first_lamp))
 
@@ -145,7 +146,7 @@ def _mirror(canvas: Canvas) -> Run:
 
 
 class Surface:
-    """The grid, drawn with depth, so that waves hide waves."""
+    """The pass that draws the grid, with a depth test, so that waves hide the waves behind them."""
 
     def __init__(self, look: Look, canvas: Canvas):
         self._look, self._canvas, frame = look, canvas, canvas.frame
@@ -186,7 +187,7 @@ class Surface:
 
 
 def sun_drift(direction: tuple[float, float, float]) -> tuple[float, float, float]:
-    """Return how far refracted sunlight moves, (x, 0, z), per metre of depth under still water, in the world."""
+    """Return the world-space shift of refracted sunlight, (x, 0, z), per metre of depth under still water."""
     # Snell: the part along the surface shrinks by the index.
     x, z = direction[0] / CONSTANTS["INDEX"], direction[2] / CONSTANTS["INDEX"]
     down = float(np.sqrt(1 - x * x - z * z))

@@ -1,4 +1,4 @@
-"""Resources that the passes of water share, in sizes that the settings decide, and the constants of their shaders."""
+"""Resources that the water passes share, with sizes that depend on the settings, and their shaders' constants."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ CELLS, MARGIN = 96, 12
 
 @dataclass(frozen=True)
 class Maps:
-    """The wave maps and the caustics made from them: volumes whose slices are texels x texels."""
+    """The wave maps and the caustics made from them: volumes with slices of `texels` x `texels`."""
 
     octaves: int
     texels: int
@@ -55,10 +55,10 @@ class Maps:
 
     @property
     def caustics(self) -> Resource:
-        """The volume of sunlight on the ground over that under still water, one slice for each of some depths."""
+        """The volume of ratios between the sunlight on the ground and that under still water, one slice per depth."""
         return Resource("water_caustics", "r32f", (self.texels, self.texels), depth=CONSTANTS["CAUSTIC_SLICES"])
 
     def defines(self, chop: float) -> dict[str, object]:
-        """The macros that shaders of the maps are compiled with."""
+        """Return the macros for shaders that use the maps; `chop` is the choppiness of the waves."""
         own = {"LEVELS": self.octaves, "TEXELS": self.texels, "WAVE_COUNT": self.octaves * WAVES, "CHOP": float(chop)}
         return {**elementary.CONSTANTS, **CONSTANTS, **own, "CELLS": CELLS, "MARGIN": MARGIN}

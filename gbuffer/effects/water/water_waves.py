@@ -1,7 +1,7 @@
-"""The waves of a sheet of water: a sum of cosines that repeats in space and in time; see water_waves.frag.
+"""The waves of a sheet of water: a sum of cosines that repeats in space and in time (see water_waves.frag).
 
-Tessendorf, Simulating Ocean Water, 2001: deep water's dispersion w^2 = g k, frequencies rounded so that all waves
-repeat together. The spectrum is not a measured one: every octave has nearly the same slope.
+Tessendorf, Simulating Ocean Water, 2001: the dispersion of deep water, w^2 = g k, with frequencies rounded so that
+all waves repeat together. The spectrum is not measured: every octave has nearly the same slope.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ class Waves:
     """eta(x, z) = sum of a cos(2 pi (n . (x, z) / patch - phase)), the longest waves first.
 
     Attributes:
-        numbers: (waves, 2), whole: waves along x and z in a patch.
-        heights: (waves,), a in metres.
-        phases: (waves,), in turns, of the moment.
-        patch: in metres.
+        numbers: n, (waves, 2), integers: waves per patch along x and z.
+        heights: a, (waves,), in metres.
+        phases: (waves,), in turns, at the scene's moment.
+        patch: side of the patch, in metres.
     """
 
     numbers: np.ndarray
@@ -55,20 +55,20 @@ class Waves:
 
     @property
     def slopes(self) -> np.ndarray:
-        """Mean square slopes, (octaves + 1,): first of all waves, then with one more octave of the shortest waves
-        left out each time; the last, without waves, is 0."""
+        """Mean square slopes, (octaves + 1,): for all waves, then with one more octave of the shortest waves left out
+        each time; the last, for no waves, is 0."""
         each = (self.heights**2 * np.sum(self.wave_numbers**2, axis=1) / 2).reshape(-1, WAVES).sum(axis=1)
         return np.append(np.cumsum(each)[::-1], 0.0)
 
     @property
     def table(self) -> np.ndarray:
-        """Input of the shader, (waves, 4), float32: wave number n (x, y), height a, and phase from 0 to 1."""
+        """Input for the shader, (waves, 4), float32: wave number n (x, y), height a and phase, from 0 to 1."""
         return np.column_stack([self.numbers, self.heights, self.phases % 1.0]).astype(np.float32)
 
 
 def waves_of(water: Water, octaves: int, seed: int, strength: float) -> Waves:
-    """Return the waves of a sheet of water at its moment: `octaves` octaves from the longest on, drawn at random by
-    `seed`, their slope times `strength`."""
+    """Return the waves of a sheet of water at its moment: the `octaves` longest octaves, with random numbers from
+    `seed` and slopes multiplied by `strength`."""
     rng = np.random.default_rng(seed)
     octave = np.repeat(np.arange(OCTAVES), WAVES)
     size = FIRST * 2.0 ** (octave + rng.uniform(0, 1, len(octave)))
@@ -86,5 +86,5 @@ def waves_of(water: Water, octaves: int, seed: int, strength: float) -> Waves:
 
 
 def shortest(patch: float, octaves: int) -> float:
-    """The length of the shortest waves, in metres, but for the rounding of their numbers."""
+    """Return the length of the shortest waves, in metres, before wave numbers are rounded."""
     return patch / (FIRST * 2**octaves)

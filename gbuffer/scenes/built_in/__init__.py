@@ -1,1 +1,1 @@
-"""The scenes that need no file, a module for each."""
+"""The scenes that need no file, each in its own module."""

@@ -1,4 +1,4 @@
-"""Smooth spheres from dull to sharp highlights under moving lights: where quantised normals show."""
+"""Smooth spheres with dull to sharp highlights under moving lights, which make quantised normals visible."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ POWERS = tuple(2.0**n for n in range(2, 11))
 
 
 def gloss(setting: Setting) -> Scene:
-    """Nine spheres in three rows before a wall, `setting.lights` point lights that circle in front of them."""
+    """Return nine spheres in three rows before a wall, and `setting.lights` point lights that circle in front."""
     rng = np.random.default_rng(setting.seed)
     row, column = np.divmod(np.arange(len(POWERS)), 3)
     places = np.stack([2.3 * (column - 1), 2.3 * (1 - row), np.zeros(len(POWERS))], axis=1)

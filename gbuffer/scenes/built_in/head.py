@@ -70,7 +70,7 @@ def head(setting: Setting) -> Scene:
 
 
 def bust() -> Mesh:
-    """A head that looks along +z, with ears and a neck, its middle at the origin."""
+    """Return a head that looks along +z, with ears and a neck, centred at the origin."""
     ears = [_ear_mesh(side) for side in (-1.0, 1.0)]
     neck = sphere(1.0, 48, 32).placed(UPRIGHT @ np.diag(NECK), (0.0, -0.12, -0.025))
     return joined([_skull_mesh(), neck, *ears])
@@ -98,8 +98,8 @@ def _ear_mesh(side: float) -> Mesh:
 
 
 def _smooth(ball: Mesh, positions: np.ndarray, flips: bool = False) -> Mesh:
-    """Return a sphere's mesh with other positions and smooth normals; `flips` reverses the winding, for positions
-    that are mirrored."""
+    """Return a sphere's mesh with these positions and smooth normals; `flips` reverses the winding, for mirrored
+    positions."""
     triangles = wound(ball)[:, ::-1] if flips else wound(ball)
     return Mesh(positions, smooth_normals(positions, triangles), triangles, ball.uv)
 

@@ -1,4 +1,4 @@
-"""A lake between hills under a clear sky: things above the water, in it and under it."""
+"""A lake between hills under a clear sky, with objects above the water, in it and under it."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def height(x: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 
 def lake(setting: Setting) -> Scene:
-    """The lake; `setting.lights` counts lanterns on its shore, the sun comes on top; waves move with the time."""
+    """Return the lake with `setting.lights` lanterns on its shore and a sun; the waves move with time."""
     rng = np.random.default_rng(setting.seed)
     none = placed((0, 0, 0))
     water = Water(patch=16.0, time=setting.time * Water.period)
@@ -70,7 +70,7 @@ def _ground_mesh() -> Mesh:
 
 
 def _sky_band(index: int, slices: int = 48) -> Mesh:
-    """Return a ring of the sky's dome, number `index` from the horizon up, with normals that point inwards."""
+    """Return a ring of the sky dome, number `index` from the horizon up, with normals that point inwards."""
     # Bands are narrow near the horizon; the first reaches below it.
     low, high = (np.pi / 2 * ((index + step) / BANDS) ** 1.5 for step in (0, 1))
     low = low if index else -0.06
@@ -113,8 +113,8 @@ def _ground_point(x: float, z: float) -> np.ndarray:
 
 
 def _scattered(rng: np.random.Generator, count: int, least: float, most: float) -> np.ndarray:
-    """Return random places on the ground, (count, 3), at distances of `least` to `most` from the middle, in radii of
-    the lake."""
+    """Return random points on the ground, (count, 3), at distances of `least` to `most` from the middle, in units of
+    the lake's radius."""
     out, angle = SHORE * rng.uniform(least, most, count), rng.uniform(0, 2 * np.pi, count)
     x, z = out * np.cos(angle), out * np.sin(angle) / 1.15
     return np.stack([x, height(x, z), z], axis=1)

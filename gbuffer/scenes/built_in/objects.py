@@ -1,4 +1,4 @@
-"""Jo Kyeong-jun's test scene: many objects of one general and one special part each, point lights and a sun."""
+"""Jo Kyeong-jun's test scene: many objects with one general and one special part each, point lights and a sun."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _places(count: int, rng: np.random.Generator) -> np.ndarray:
 
 
 def objects(setting: Setting) -> Scene:
-    """`setting.objects` objects on a field and `setting.lights` point lights that circle above it."""
+    """Return `setting.objects` objects on a field, and `setting.lights` point lights that circle above it."""
     rng = np.random.default_rng(setting.seed)
     places = _places(setting.objects, rng)
     # A field of few objects has large ones; many are as small as their cells.

@@ -1,9 +1,9 @@
 """The scene on which the quality table of Pranckevicius' article was measured.
 
 World space is left-handed, y up, z into the screen, the eye at (0, 0, -5); view space is OpenGL's, so z is negated.
-Back faces are culled, as in Direct3D 9 by default. The normals that face away from the eye, which are most of what
-per-pixel view space loses, are interpolated normals at the silhouettes of four lamp arms. The original's arms may
-not be redistributed: lamp_arm.py makes an arm with the same statistics. Teapots are cut finely enough that the table
+Back faces are culled, as in Direct3D 9 by default. Most normals that per-pixel view space cannot represent face away
+from the eye; they are interpolated normals at the silhouettes of four lamp arms. The original's arms may not be
+redistributed: lamp_arm.py makes an arm with the same statistics. Teapots are tessellated finely enough that the table
 no longer changes: from 10 x 10 to 24 x 24 cells per patch, every row stays within 0.15 dB.
 """
 
@@ -55,18 +55,18 @@ def meshes() -> list[Mesh]:
 
 
 def in_view_space() -> list[Mesh]:
-    """The scene's objects as the camera sees them."""
+    """Return the scene's objects in the camera's view space."""
     return [mesh.placed(TO_VIEW, -(np.array(EYE) @ TO_VIEW)) for mesh in meshes()]
 
 
 @cache
 def playground() -> Rendered:
-    """Return the scene as its camera sees it, without back faces: normals, positions and coverage of the pixels."""
+    """Return the scene as the camera sees it, without back faces: normals, positions and coverage of the pixels."""
     return rasterise(facing(joined(in_view_space())), CAMERA)
 
 
 def lit_playground(setting: Setting) -> Scene:
-    """The scene with materials, `setting.lights` point lights around its middle and a sun; the eye is the origin."""
+    """Return the scene with materials, a sun and `setting.lights` lights around its middle; the eye is the origin."""
     rng = np.random.default_rng(setting.seed)
     pot, ball, slab, arm = range(4)
     kinds = [pot] * len(TEAPOTS) + [ball] * len(SPHERES) + [slab] * len(BOXES) + [arm] * len(ARMS)

@@ -1,4 +1,4 @@
-"""A chart of metal/rough materials, each attribute over its whole range: no code is good here by chance."""
+"""A chart of metallic-roughness materials with each attribute over its whole range: no encoding excels by chance."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _place(number: int) -> tuple[float, float, float]:
 
 
 def _materials() -> tuple[MetalRough, ...]:
-    """Return the materials of the panels, from the upper left."""
+    """Return the materials of the panels, starting at the upper left."""
     along, up = _ramp(0.0, 1.0), _ramp(0.0, 1.0).T
     copper, steel = (0.95, 0.64, 0.54), (0.78, 0.78, 0.8)
     return (

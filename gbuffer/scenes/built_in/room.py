@@ -1,4 +1,4 @@
-"""A room of axis-aligned walls, floor and boxes, where a code that has no zero tilts every surface."""
+"""A room with axis-aligned walls, floor and boxes, in which an encoding that cannot store 0 tilts every surface."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ MATERIALS = (
 
 
 def _wall(axis: int, side: float) -> Mesh:
-    """Return the face of the room at one end, -1 or 1, of an axis, 0 to 2; its normal points inward."""
+    """Return the wall of the room at one end, -1 or 1, of an axis, 0 to 2; its normal points inwards."""
     turned = {
         0: np.array([(0, 1.0, 0), (-side, 0, 0), (0, 0, 1.0)]),
         1: np.diag([1.0, -side, 1.0]),
@@ -43,7 +43,7 @@ def _wall(axis: int, side: float) -> Mesh:
 
 
 def room(setting: Setting) -> Scene:
-    """The room; `setting.lights` counts its point lights, three spot lights and a sun come on top."""
+    """Return the room, lit by `setting.lights` point lights, three spot lights and a sun."""
     rng = np.random.default_rng(setting.seed)
     up = np.array([(1.0, 0, 0), (0, 0, -1.0), (0, 1.0, 0)])
     pot = teapot(8).placed(0.45 * up, (0, 0, 0))

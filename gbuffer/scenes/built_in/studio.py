@@ -1,4 +1,4 @@
-"""A photographer's studio of metal/rough materials: where steps of a normal's code show in reflections."""
+"""A photographer's studio with metallic-roughness materials, in whose reflections a normal's steps are visible."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ LAMP = MetalRough(base=(0.8, 0.8, 0.8), roughness=1.0, emission=(50.0, 50.0, 50.
 
 
 def studio(setting: Setting) -> Scene:
-    """The studio; `setting.lights` counts its point lights, a sun comes on top."""
+    """Return the studio, lit by `setting.lights` point lights and a sun."""
     materials = _materials()
     across = np.linspace(-2.85, 2.85, len(ROUGHNESS))
     rows = [np.stack([across, 0 * across + y, 0 * across + z], axis=1) for y, z in ((0.33, 1.6), (1.2, 0.6))]
@@ -60,7 +60,7 @@ def studio(setting: Setting) -> Scene:
 
 @cache
 def _surroundings() -> Environment:
-    """Return the environment `studio` with the scene's floor and back wall in front, as the spheres see it."""
+    """Return the environment `studio`, occluded by the scene's floor and back wall, as the spheres see it."""
     radiance = ENVIRONMENTS["studio"].make().radiance.copy()
     ways = directions(len(radiance))
     before = radiance * solid_angles(len(radiance))[..., None]
@@ -128,7 +128,7 @@ def panel(width: float, height: float, across: float, up: float, cells: int = 64
 
 @cache
 def tiles(size: int = 512) -> np.ndarray:
-    """A normal map of four by four tiles with rounded joints, each a little uneven; uint16 of shape (size, size, 4)."""
+    """Return a normal map of 4 x 4 slightly uneven tiles with rounded joints; uint16 of shape (size, size, 4)."""
     v, u = np.meshgrid((np.arange(size) + 0.5) / size, (np.arange(size) + 0.5) / size, indexing="ij")
     cell_u, cell_v = (4 * u) % 1 - 0.5, (4 * v) % 1 - 0.5
     slopes = np.zeros((size, size, 2))
@@ -147,7 +147,7 @@ def tiles(size: int = 512) -> np.ndarray:
 
 
 def _lights(setting: Setting) -> list[Light]:
-    """Point lights that circle above the spheres."""
+    """Return point lights that circle above the spheres."""
     rng = np.random.default_rng(setting.seed)
     turn = 2 * np.pi * (setting.time + (np.arange(setting.lights) + 0.5) / max(setting.lights, 1))
     out, height = rng.uniform(0.6, 1.0, setting.lights), rng.uniform(2.0, 4.0, setting.lights)

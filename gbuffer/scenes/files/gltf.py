@@ -1,8 +1,8 @@
-"""glTF 2.0 and GLB files: meshes with their own normals and tangents under their nodes' transforms, materials, lights
-and the first camera.
+"""glTF 2.0 and GLB files: meshes under their nodes' transforms, with their own normals and tangents; materials,
+lights and the first camera.
 
-A node's transform is applied to its vertices unchanged, even if it mirrors them or has three scales. Normals use the
-inverse transpose, and tangents are transformed like positions.
+A node's transform is applied to its vertices unchanged, even if it mirrors them or scales them non-uniformly. Normals
+use the inverse transpose, and tangents are transformed like positions.
 
 The files are not read with trimesh (5.2), which drops tangents, does not give a mirrored mesh the file's normals, and
 accepts indices that are out of range and nodes that are their own ancestors.
@@ -38,7 +38,7 @@ def read_gltf(path: Path) -> MeshFile:
     """Return the default scene of a glTF or GLB file: its meshes, materials, lights and first camera.
 
     Raises:
-        SceneFileError: it is damaged, too large, needs an extension that is not read, names a file outside its
+        SceneFileError: the file is damaged, too large, needs an unsupported extension, names a file outside its
             folder, or has no triangles.
     """
     gltf = Gltf(path)
@@ -65,10 +65,11 @@ def read_gltf(path: Path) -> MeshFile:
 
 
 def gltf_meshes(path: Path) -> list[Stored]:
-    """Return the meshes of the default scene as stored, each mesh once and in its own space, with points and lines.
+    """Return the meshes of the default scene as stored, including points and lines, each mesh once and in its own
+    space.
 
     Raises:
-        SceneFileError: see `read_gltf`; but a file may have no triangles.
+        SceneFileError: as for `read_gltf`, except that the file may have no triangles.
     """
     gltf = Gltf(path)
     # A mesh in several places is read once.
@@ -163,7 +164,7 @@ def _local_matrix(gltf: Gltf, node: Object, place: str) -> np.ndarray:
 
 
 def _check_sizes(gltf: Gltf, nodes: list[tuple[Object, np.ndarray]]) -> None:
-    """Raise SceneFileError if the meshes of all nodes together are too large to read; use only headers."""
+    """Raise SceneFileError if the meshes of all nodes together are too large to read; only headers are used."""
     sizes: dict[int, tuple[int, int]] = {}
     vertices = triangles = 0
     for node, _ in nodes:
@@ -177,7 +178,7 @@ def _check_sizes(gltf: Gltf, nodes: list[tuple[Object, np.ndarray]]) -> None:
 
 
 def _size(gltf: Gltf, mesh: Object, place: str) -> tuple[int, int]:
-    """Return a mesh's number of vertices and an upper bound of its number of triangles, from headers alone."""
+    """Return the number of a mesh's vertices and an upper bound on its number of triangles, from headers alone."""
     vertices = triangles = 0
     for primitive, where in _mesh_primitives(gltf, mesh, place):
         attributes = gltf.child(primitive, "attributes", where)
@@ -189,7 +190,8 @@ def _size(gltf: Gltf, mesh: Object, place: str) -> tuple[int, int]:
 
 
 def _mesh_primitives(gltf: Gltf, mesh: Object, place: str) -> list[tuple[Object, str]]:
-    """Return each primitive and its place for messages, "meshes[0].primitives[1]". Raises SceneFileError."""
+    """Return each primitive of a mesh, with its place for messages, such as "meshes[0].primitives[1]". Raises
+    SceneFileError."""
     primitives = gltf.list_of(mesh, "primitives", place)
     if not all(isinstance(primitive, dict) for primitive in primitives):
         raise gltf.error(f"{place}.primitives", "contains an entry that is not an object")
@@ -233,7 +235,7 @@ def _lacking_uv(material: MetalRough, *sets: np.ndarray | None) -> list[str]:
 
 
 def _stored(gltf: Gltf, primitive: Object, mode: int, where: str) -> Stored:
-    """Return a primitive as stored; its points, if it has no triangles."""
+    """Return a primitive as stored, or its points if it has no triangles."""
     corners, arrays = _stored_numbers(gltf, primitive, mode, where)
     normals, uv, second = (arrays.get(name) for name in ("NORMAL", "TEXCOORD_0", "TEXCOORD_1"))
     # Tangents without normals say nothing (glTF 2.0, 3.7.2.1).
@@ -279,8 +281,8 @@ def _stored_numbers(gltf: Gltf, primitive: Object, mode: int, where: str) -> tup
 
 
 def _unpacked(gltf: Gltf, index: object, stored: np.ndarray, width: int, place: str) -> np.ndarray:
-    """Return a Draco attribute's numbers, float64 of shape (count, width), normalised if its accessor says so. Raises
-    SceneFileError if `stored` has another shape."""
+    """Return a Draco attribute's numbers, float64 of shape (count, width), normalised if the accessor requires it.
+    Raises SceneFileError if `stored` has the wrong shape."""
     accessor = gltf.entry("accessors", index, place)
     count = gltf.whole(accessor, "count", place)
     if stored.shape != (count, width):
@@ -289,8 +291,8 @@ def _unpacked(gltf: Gltf, index: object, stored: np.ndarray, width: int, place: 
 
 
 def _triangles(corners: np.ndarray, mode: int) -> np.ndarray:
-    """Return the triangles of a list, strip or fan of vertex indices, (triangles, 3), all wound one way; for points
-    and lines the indices as they are, (points, 1)."""
+    """Return the triangles of a list, strip or fan of vertex indices, (triangles, 3), with consistent winding; for
+    points and lines, the indices unchanged, (points, 1)."""
     if mode not in (TRIANGLES, STRIP, FAN):
         return corners[:, None]
     if mode == TRIANGLES:

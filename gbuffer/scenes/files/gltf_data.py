@@ -44,8 +44,8 @@ class Gltf:
     """A glTF or GLB file.
 
     Attributes:
-        path: the file's path; the files that it names are next to it.
-        json: its document.
+        path: the file's path; paths in the file are relative to its folder.
+        json: the JSON document.
         octahedral_bits: bits of the octahedral map that packs a buffer view, by the view's index; filled in as
             views are unpacked.
     """
@@ -132,16 +132,16 @@ class Gltf:
         return child
 
     def extension(self, holder: Object, name: str, place: str) -> Object:
-        """Return the extension of this name of an object, empty if missing. Raises SceneFileError."""
+        """Return an object's extension of this name, empty if missing. Raises SceneFileError."""
         return self.child(self.child(holder, "extensions", place), name, f"{place}.extensions")
 
     def requires(self, name: str) -> bool:
-        """Whether the file cannot be read without an extension."""
+        """Whether the file requires this extension."""
         return name in self.list_of(self.json, "extensionsRequired", "the file")
 
     def whole(self, holder: Object, key: str, place: str, default: int | None = None) -> int:
-        """Return the integer under a key of an object, from 0 up, or the default if missing. Raises SceneFileError
-        for any other value, and if both are missing."""
+        """Return the integer, 0 or more, under a key of an object, or the default if the key is missing. Raises
+        SceneFileError for any other value, and if key and default are missing."""
         value = holder.get(key, default)
         if type(value) is not int or not 0 <= value < 2**40:
             raise self.error(f"{place}.{key}", f"is {_shown_text(value)}, not a whole number")
@@ -151,8 +151,8 @@ class Gltf:
         return self.numbers({key: [holder.get(key, default)]}, key, place, (default,))[0]
 
     def numbers(self, holder: Object, key: str, place: str, default: tuple[float, ...]) -> tuple[float, ...]:
-        """Return the finite numbers under a key of an object, as many as the default has, or the default if missing.
-        Raises SceneFileError if the file's numbers are not valid."""
+        """Return the finite numbers under a key of an object, as many as in `default`, or `default` if the key is
+        missing. Raises SceneFileError if the file's numbers are not valid."""
         values = holder.get(key, list(default))
         if not isinstance(values, list) or len(values) != len(default) or not all(map(_is_number, values)):
             raise self.error(f"{place}.{key}", f"is {_shown_text(values)}, not {len(default)} numbers below 1e15")
@@ -164,7 +164,7 @@ class Gltf:
         """Return an accessor's decoded numbers, float64 of shape (count, width).
 
         Raises:
-            SceneFileError: the accessor has another width, or extends beyond its buffer.
+            SceneFileError: the accessor has the wrong width, or extends beyond its buffer.
         """
         return self._accessor(index, width, place)
 
@@ -176,7 +176,7 @@ class Gltf:
         return self._accessor(index, 1, place)[:, 0].astype(np.int64)
 
     def count(self, index: object, place: str) -> int:
-        """Return an accessor's count of elements, from its header alone."""
+        """Return an accessor's number of elements, from its header alone."""
         return self.whole(self.entry("accessors", index, place), "count", place)
 
     def _accessor(self, index: object, width: int, place: str) -> np.ndarray:
@@ -197,7 +197,7 @@ class Gltf:
         return meant_numbers(elements, accessor.get("normalized") is True)
 
     def _sparse_elements(self, sparse: Object, dense: np.ndarray, place: str) -> np.ndarray:
-        """Return a copy of an accessor's elements with those in `sparse` replaced. Raises SceneFileError."""
+        """Return a copy of an accessor's elements with the elements in `sparse` replaced. Raises SceneFileError."""
         count = self.whole(sparse, "count", f"{place} (sparse)")
         where, what = (self.child(sparse, key, place) for key in ("indices", "values"))
         kind = COMPONENTS.get(_hashable_or_none(where.get("componentType")))
@@ -213,7 +213,7 @@ class Gltf:
         return dense
 
     def _view_elements(self, index: object, start: int, kind: str, count: int, width: int, place: str) -> np.ndarray:
-        """Return elements of a buffer view, (count, width), as they are stored."""
+        """Return elements of a buffer view, (count, width), as stored."""
         view = self.entry("bufferViews", index, place)
         where = f"{place}, bufferViews[{index}]"
         data = self.view_bytes(index, place)
@@ -227,7 +227,7 @@ class Gltf:
         return np.ndarray((count, width), kind, data, start, (stride, size))
 
     def view_bytes(self, index: object, place: str) -> bytes | memoryview:
-        """Return the bytes of a buffer view, unpacked if EXT_meshopt_compression packs it.
+        """Return the bytes of a buffer view, unpacked if it is packed with EXT_meshopt_compression.
 
         Raises:
             SceneFileError: the view exceeds its buffer or cannot be unpacked.
@@ -246,12 +246,13 @@ class Gltf:
         return self._unpacked[index]
 
     def _is_packed(self, view: Object, where: str) -> bool:
-        """Whether a view has to be unpacked, because its buffer has no plain copy of it."""
+        """Whether a view must be unpacked, because the file has no unpacked copy of it."""
         buffer = self.entry("buffers", view.get("buffer"), where)
         return self.requires(MESHOPT) or ("uri" not in buffer and view.get("buffer") != 0)
 
     def _slice(self, view: Object, where: str) -> memoryview:
-        """Return the part of a buffer that a view names, as stored. Raises SceneFileError if it is too short."""
+        """Return the part of a buffer to which a view refers, as stored. Raises SceneFileError if the buffer is too
+        short."""
         offset, length = (
             self.whole(view, key, where, default) for key, default in (("byteOffset", 0), ("byteLength", None))
         )

@@ -23,10 +23,10 @@ ROUNDED_OFF = "its lights fall off with 1 / (d^2 + 1), not 1 / d^2"
 def lights_of(
     gltf: Gltf, nodes: Iterable[tuple[Object, np.ndarray]], pieces: Iterable[Piece], notes: list[str]
 ) -> tuple[Light, ...]:
-    """Return the lights of nodes, a sun first; append to `notes` what differs from the file.
+    """Return the lights of nodes, a sun first; append a note to `notes` for each difference from the file.
 
-    A light of colour c gives an irradiance of pi c at a distance of 0, so a colour is an intensity divided by pi. A
-    sun's intensity is in lux, that of other lights in candela.
+    A light of colour c gives an irradiance of pi c at a distance of 0, so a colour is an intensity divided by pi. The
+    intensity of a sun is in lux, the intensity of other lights in candela.
 
     Raises:
         SceneFileError: a light is damaged.
@@ -47,7 +47,7 @@ def lights_of(
 
 
 def _corners(piece: Piece) -> np.ndarray:
-    """Return the corners of a box around a piece in world space, (8, 3)."""
+    """Return the corners of a piece's bounding box in world space, (8, 3)."""
     used = piece.mesh.positions[np.unique(piece.mesh.triangles)]
     ends = np.stack([used.min(axis=0), used.max(axis=0)])
     corners = np.stack(np.meshgrid(*ends.T, indexing="ij"), axis=-1).reshape(8, 3)
@@ -87,8 +87,8 @@ def _data(gltf: Gltf, index: object) -> tuple[Object, str]:
 
 
 def _cones(gltf: Gltf, spot: Object, place: str) -> tuple[float, float]:
-    """Return the half angles of a spot light's inner and outer cone in degrees, 0 and 45 by default; the inner is at
-    least LEAST_RIM smaller. Raises SceneFileError."""
+    """Return the half angles of a spot light's inner and outer cones in degrees, 0 and 45 by default. The inner angle
+    is at least LEAST_RIM smaller than the outer. Raises SceneFileError."""
     inner, outer = (
         float(np.degrees(gltf.number(spot, key, place, default)))
         for key, default in (("innerConeAngle", 0.0), ("outerConeAngle", np.pi / 4))

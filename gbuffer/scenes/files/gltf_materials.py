@@ -1,8 +1,8 @@
 """Materials of glTF files: metallic-roughness parameters and the textures that vary them.
 
-Two numbers of `MetalRough` define blending and cut-outs. An opaque material has an alpha of 1, and so do its
-texture's texels. A cut-out material has an alpha of 1 too: its factor is included in the threshold. A blended
-material has an alpha below 1 if any texel of its texture has.
+`MetalRough` has two numbers for blending and cut-outs, alpha and cutoff. An opaque material has an alpha of 1, as
+have the texels of its texture. A cut-out material also has an alpha of 1: its alpha factor is included in the cutoff.
+A blended material has an alpha below 1 if any texel of its texture has an alpha below 1.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ DEFAULT = MetalRough(base=(1.0, 1.0, 1.0), metalness=1.0, roughness=1.0)
 
 
 class Materials:
-    """The materials of a file, read one after another; an image that several materials use is unpacked once.
+    """The materials of a file, read one after another; an image that several materials use is decoded once.
 
     Attributes:
         notes: features of the materials that are not drawn.
@@ -42,7 +42,7 @@ class Materials:
         self._texels_in_all = 0
 
     def all(self) -> Iterator[tuple[MetalRough, bool]]:
-        """Yield each material, and whether its back is drawn. Raises SceneFileError."""
+        """Yield each material, and whether its back faces are drawn. Raises SceneFileError."""
         for index in range(len(self._gltf.list_of(self._gltf.json, "materials", "the file"))):
             data = self._gltf.entry("materials", index, f"materials[{index}]")
             yield self._material(data, f"materials[{index}]"), data.get("doubleSided") is True
@@ -95,8 +95,8 @@ class Materials:
         return _triple(np.maximum(emission * strength, 0.0).tolist())
 
     def _reflectance(self, data: Object, place: str) -> float:
-        """Return ((n - 1) / (n + 1))^2 of the refractive index n in KHR_materials_ior; an index of 0 means full
-        reflection. DIELECTRIC without the extension. Raises SceneFileError for other indices below 1."""
+        """Return ((n - 1) / (n + 1))^2 for the refractive index n in KHR_materials_ior, or DIELECTRIC without that
+        extension. An index of 0 means full reflection. Raises SceneFileError for other indices below 1."""
         extension = self._gltf.extension(data, IOR, place)
         if not extension:
             return DIELECTRIC
@@ -108,8 +108,8 @@ class Materials:
     # Pictures.
 
     def _map(self, holder: Object, key: str, place: str, kind: str) -> Map | None:
-        """Return a map of `kind`: "colour", "opaque" for a colour without alpha, or "numbers"; None if missing, or if
-        it cannot be used, which is noted."""
+        """Return a map of `kind`: "colour", "opaque" for a colour without alpha, or "numbers". Return None if the map
+        is missing, or if it cannot be used, which is noted."""
         gltf, place = self._gltf, f"{place}.{key}"
         if key not in holder:
             return None
@@ -128,7 +128,7 @@ class Materials:
         return Map(pixels, is_srgb, self._wrap(texture, place), uv_set, self._placed(moved, place))
 
     def _image(self, texture: Object) -> object:
-        """Return the index of a texture's image; None if it has none that can be read."""
+        """Return the index of a texture's image; None if the texture has no readable image."""
         extensions = texture.get("extensions")
         extensions = extensions if isinstance(extensions, dict) else {}
         webp = extensions.get(WEBP)
@@ -152,8 +152,9 @@ class Materials:
     def _placed(self, moved: Object, place: str) -> np.ndarray:
         """Return the matrix of KHR_texture_transform, (2, 3): translation x rotation x scale.
 
-        A positive rotation turns (1, 0) up in the image, towards smaller v: the extension's text says
-        counter-clockwise. Its GLSL turns the other way; files and programs follow the text (glTF pull request 1624).
+        A positive rotation turns (1, 0) up in the image, towards smaller v: counter-clockwise, according to the
+        extension's text. The GLSL in the extension turns the other way; files and programs follow the text (glTF pull
+        request 1624).
         """
         numbers = self._gltf.numbers
         (x, y), (along_u, along_v) = (
@@ -199,8 +200,8 @@ class Materials:
 
 
 def _as_kind(image: np.ndarray, kind: str) -> np.ndarray:
-    """Return an image's texels for a map of `kind`: "numbers" unchanged; of colours, 16 bits on the sRGB curve become
-    linear, and "opaque" sets alpha to the largest integer."""
+    """Return an image's texels for a map of `kind`. "numbers" are unchanged; 16-bit sRGB colours are converted to
+    linear, and "opaque" also sets alpha to the largest integer."""
     if kind == "numbers":
         return image
     most = np.iinfo(image.dtype).max
@@ -213,7 +214,7 @@ def _as_kind(image: np.ndarray, kind: str) -> np.ndarray:
 
 
 def _linear_of_deep() -> np.ndarray:
-    """Return the linear light of each of the 65536 values of 16 bits on the sRGB curve."""
+    """Return the linear value of each of the 65,536 16-bit sRGB values, float64."""
     from ....encodings.storages.rounding import from_srgb  # JAX, which few files need here
 
     return np.asarray(from_srgb(np.arange(65536) / 65535), np.float64)

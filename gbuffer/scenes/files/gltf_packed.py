@@ -1,4 +1,4 @@
-"""Data packed by two extensions of glTF: primitives by KHR_draco_mesh_compression, buffer views by
+"""Data packed with two glTF extensions: primitives with KHR_draco_mesh_compression, buffer views with
 EXT_meshopt_compression.
 
 Each extension is unpacked by its own package, which is imported when a file needs it. The size of the result is
@@ -40,11 +40,11 @@ def _package(gltf: Gltf, name: str, place: str) -> Any:
 
 
 def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place: str) -> tuple[bytes, int | None]:
-    """Return a buffer view's bytes and the bits of its octahedral encoding; None for the bits of any other packing.
+    """Return a buffer view's bytes and the bits of its octahedral encoding; the bits are None for any other packing.
 
     Args:
-        packed: the view's extension.
-        data: the bytes that the extension names.
+        packed: the view's extension object.
+        data: the packed bytes to which the extension refers.
         most: maximum number of bytes after unpacking.
 
     Raises:
@@ -74,8 +74,8 @@ def unpacked_view(gltf: Gltf, packed: Object, data: memoryview, most: int, place
 
 
 def _octahedral_bits(packed: np.ndarray, count: int, stride: int) -> int | None:
-    """Return the bits of an octahedral map's numbers; None if the third number of no element is above 0. That number
-    represents 1 as 2^(bits - 1) - 1."""
+    """Return the bits per number of an octahedral encoding; None if no element has a third number above 0. The third
+    number represents 1 as 2^(bits - 1) - 1."""
     if not count:
         return None
     ones = np.frombuffer(packed.tobytes(), f"<i{stride // 4}").reshape(count, 4)[:, 2]
@@ -131,7 +131,7 @@ def _check_draco_size(gltf: Gltf, data: bytes, place: str) -> None:
 
 
 def _varint(data: bytes, offset: int) -> tuple[int, int]:
-    """Return a number stored as seven bits per byte, the lowest first, and the offset after it."""
+    """Return a number stored as seven bits per byte, the lowest bits first, and the offset after it."""
     value = shift = 0
     while True:
         value |= (data[offset] & 127) << shift

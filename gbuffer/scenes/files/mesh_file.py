@@ -1,4 +1,4 @@
-"""Contents of mesh files as read: meshes, their places, their materials and a camera."""
+"""Contents of mesh files as read: meshes, their placement, their materials and a camera."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Rounding:
 
     Attributes:
         most: number of steps from 0 to 1: 127 for signed 8 bits, 127.5 for unsigned 8 bits that represent [-1, 1].
-        is_octahedral: whether the numbers are of an octahedral encoding, and not x, y and z.
+        is_octahedral: whether the numbers are an octahedral code, and not x, y and z.
     """
 
     most: float
@@ -36,11 +36,11 @@ class Stored:
     """A mesh as a file stores it, unchecked.
 
     Attributes:
-        place: its place in the file.
+        place: its place in the file, for messages.
         positions: (vertices, 3).
         corners: vertex indices: (triangles, 3) for triangles, (points, 1) for points.
         normals: (vertices, 3), of any length; None if the file has no normals.
-        uv, tangents, second_uv: as in `Mesh`, tangents as `authored`, of any length.
+        uv, tangents, second_uv: as in `Mesh`; tangents are as in `Mesh.authored`, but of any length.
         roundings: the rounding of the normals, if the file defines it.
     """
 
@@ -56,10 +56,10 @@ class Stored:
 
 @dataclass(frozen=True)
 class Piece:
-    """One mesh in one place.
+    """One instance of a mesh.
 
     Attributes:
-        mesh: in its own space; pieces of one mesh share it.
+        mesh: the mesh in its own space; pieces with the same mesh share it.
         model: (4, 4), matrix to world space for column vectors, of any scale and handedness.
         material: index into the file's materials.
     """
@@ -74,7 +74,7 @@ class Piece:
 
     @property
     def is_rigid(self) -> bool:
-        """Whether the model is rotation, one scale and translation, which the renderer's instances may have."""
+        """Whether `model` consists of rotation, uniform scale and translation, as the renderer's instances must."""
         linear = self.model[:3, :3]
         square = linear @ linear.T
         scale = np.trace(square) / 3
@@ -87,11 +87,11 @@ class MeshFile:
 
     Attributes:
         path: the file's path.
-        pieces: at least one.
+        pieces: the instances of its meshes; at least one.
         materials, two_sided: the pieces' materials, and whether the back of each material is drawn.
-        view: the file's own camera; None if it has none.
-        notes: notes on what was ignored in the file or made up for it, each in a few words.
-        lights: the file's own, a sun first; empty if it has none.
+        view: the file's own camera; None if it has no camera.
+        notes: notes on data that were ignored or had to be made up, each in a few words.
+        lights: the file's own lights, a sun first; empty if it has no lights.
     """
 
     path: Path
@@ -104,41 +104,42 @@ class MeshFile:
 
     @property
     def is_metal_rough(self) -> bool:
-        """Whether its materials are metal/rough, and not Blinn-Phong."""
+        """Whether the file's materials are metallic-roughness and not Blinn-Phong."""
         return isinstance(self.materials[0], MetalRough)
 
     @cached_property
     def baked(self) -> Mesh:
-        """Everything in world space as one mesh."""
+        """All pieces in world space, joined into one mesh."""
         return joined([piece.baked() for piece in self.pieces])
 
     @cached_property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """The lowest and the highest corner of all that is drawn, world space, (3,) each."""
+        """The minimum and the maximum corner of everything that is drawn, in world space, (3,) each."""
         return self.drawn.min(axis=0), self.drawn.max(axis=0)
 
     @cached_property
     def radius(self) -> float:
-        """Radius of the ball around the middle of the bounds that contains everything that is drawn."""
+        """Radius of the sphere around the centre of `bounds` that contains everything that is drawn."""
         low, high = self.bounds
         return float(np.linalg.norm(self.drawn - (low + high) / 2, axis=1).max())
 
     @cached_property
     def drawn(self) -> np.ndarray:
-        """The vertices of all triangles in world space, (vertices, 3); a file may hold others that no one sees."""
+        """The vertices of all triangles in world space, (vertices, 3), without vertices that no triangle uses."""
         return self.baked.positions[np.unique(self.baked.triangles)]
 
 
 def of_one_mesh(path: Path, mesh: Mesh, notes: Iterable[str]) -> MeshFile:
-    """Return a file of one mesh, in one grey material that is visible from both sides."""
+    """Return a `MeshFile` with one mesh, in a grey material that is visible from both sides."""
     return MeshFile(path, (Piece(mesh, np.eye(4), 0),), (Material(),), (True,), None, tuple(notes))
 
 
 def mesh_of(path: Path, stored: Stored) -> tuple[Mesh, list[str]]:
-    """Return the mesh that a file holds, and notes on what had to be made up, empty if nothing.
+    """Return the mesh that a file stores, and notes on data that had to be made up; no notes if the data are
+    complete.
 
-    Normals are scaled to unit length; smooth normals replace those that are missing or have no length. Triangles
-    without an area are left out.
+    Normals are scaled to unit length; smooth normals replace normals that are missing or have zero length. Triangles
+    with zero area are left out.
 
     Raises:
         SceneFileError: an index is out of range, a number is not valid, or no triangle is left.
@@ -167,7 +168,7 @@ def mesh_of(path: Path, stored: Stored) -> tuple[Mesh, list[str]]:
 
 
 def _completed_normals(normals: np.ndarray, positions: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, int]:
-    """Return unit normals, with smooth normals in place of normals without length, and the number of normals replaced
+    """Return unit normals, with smooth normals in place of normals of zero length, and the number of normals replaced
     at vertices that triangles use."""
     length = np.linalg.norm(normals, axis=1)
     lost = length < NOTHING
@@ -182,8 +183,8 @@ def _completed_normals(normals: np.ndarray, positions: np.ndarray, triangles: np
 
 
 def _tangents(path: Path, place: str, tangents) -> np.ndarray | None:
-    """Return unit tangents with signs of 1 or -1, (vertices, 4); None if any tangent has no length, so that all
-    follow from the uv instead. Raises SceneFileError."""
+    """Return unit tangents with signs of 1 or -1, (vertices, 4); None if any tangent has zero length, so that all
+    tangents are derived from the uv instead. Raises SceneFileError."""
     tangents = checked_numbers(path, np.asarray(tangents, np.float64), f"{place}: the tangent")
     length = np.linalg.norm(tangents[:, :3], axis=1, keepdims=True)
     if (length < NOTHING).any():

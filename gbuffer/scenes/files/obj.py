@@ -1,8 +1,8 @@
-"""Wavefront OBJ files, and the colours of their MTL files.
+"""Wavefront OBJ files, and the colours in their MTL files.
 
-Read here and not by trimesh (5.2), which counts negative indices from the end of the file and not from the line they
-are in, takes index 0 for a vertex, leaves out all normals where one index is beyond them, passes over lines that it
-does not know, and names no line of a damaged file.
+The files are not read with trimesh (5.2), which counts negative indices from the end of the file and not from their
+line, accepts 0 as an index, drops all normals if one index is out of range, skips unknown lines, and does not name
+the line at which a file is damaged.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ Corner = tuple[int, int, int]
 
 @dataclass
 class _Obj:
-    """The contents of an OBJ file, line by line.
+    """The contents of an OBJ file, read line by line.
 
     Attributes:
         data: rows of numbers by kind.
         vertices: distinct corners.
-        known: their indices in `vertices`, by their text in the file.
-        corners: indices into `vertices`, three in turn for each triangle; by material.
+        known: index of each corner in `vertices`, by its text in the file.
+        corners: indices into `vertices`, three per triangle, by material.
         libraries, material, triangles: material files, the current material, and the number of triangles so far.
     """
 
@@ -56,10 +56,10 @@ class _Obj:
 
 
 def read_obj(path: Path) -> MeshFile:
-    """Read an OBJ file: one mesh for each material, visible from both sides.
+    """Read an OBJ file: one mesh per material, visible from both sides.
 
     Raises:
-        SceneFileError: it is damaged, too large, has no faces, or names a file outside its folder.
+        SceneFileError: the file is damaged, too large, has no faces, or names a file outside its folder.
     """
     obj = _obj_of(path)
     notes: list[str] = []
@@ -75,7 +75,7 @@ def read_obj(path: Path) -> MeshFile:
 
 
 def obj_meshes(path: Path) -> list[Stored]:
-    """Return the meshes of an OBJ file as stored, one for each material. Raises SceneFileError."""
+    """Return the meshes of an OBJ file as stored, one per material. Raises SceneFileError."""
     return list(_stored(path, _obj_of(path)))
 
 
@@ -98,7 +98,7 @@ def _stored(path: Path, obj: _Obj) -> Iterator[Stored]:
 
 
 def _lines(data: bytes) -> Iterator[tuple[int, list[str]]]:
-    """Yield the words of each line that has any, with its number; a line may continue after a backslash."""
+    """Yield the number and the words of each line that is not empty; a line may continue after a backslash."""
     words: list[str] = []
     for number, line in enumerate(data.decode("utf-8", "replace").split("\n"), 1):
         text = line.partition("#")[0].rstrip()
@@ -139,8 +139,8 @@ def _take_face(obj: _Obj, corners: list[int]) -> None:
 
 
 def _new_corner(obj: _Obj, text: str) -> int:
-    """Add a corner, "position/uv/normal" of which the last two are optional, and return its index in `obj.vertices`.
-    Indices in the text start at 1; negative indices count from the end. Raises ValueError."""
+    """Add a corner, "position/uv/normal" with the last two optional, and return its index in `obj.vertices`. Indices
+    in the text start at 1; negative indices count from the end. Raises ValueError."""
     words = text.split("/")
     if len(words) > len(KINDS) or not words[0]:
         raise ValueError("a corner must be position/uv/normal")
@@ -164,7 +164,7 @@ def _checked_index(word: str, count: int) -> int:
 
 
 def _mesh(path: Path, place: str, tables: dict[str, np.ndarray], vertices: np.ndarray, corners: list[int]) -> Stored:
-    """Return a mesh with one vertex for each distinct corner; it has normals if any corner has a normal. Raises
+    """Return a mesh with one vertex per distinct corner; it has normals if any corner has a normal. Raises
     SceneFileError if the mesh is too large."""
     used, triangles = np.unique(np.array(corners, np.int64), return_inverse=True)
     checked_size(path, len(used), len(triangles) // 3, place)

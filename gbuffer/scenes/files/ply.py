@@ -1,8 +1,8 @@
-"""PLY files (Turk 1994), ASCII and binary of either byte order: vertices with normals and uv, faces of any number of
-corners.
+"""PLY files (Turk 1994), ASCII and binary of either byte order: vertices with normals and uv, faces with any number
+of corners.
 
-Read here and not by trimesh (5.2), which refuses binary files of triangles and quads together, takes a text that is cut
-off for a whole one, and splits and merges vertices that have uv.
+The files are not read with trimesh (5.2), which refuses binary files with both triangles and quads, accepts truncated
+text files as complete, and splits and merges vertices that have uv.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ MAX_TOKEN = 64
 
 @dataclass(frozen=True)
 class Property:
-    """A property of an element: its type, and the type of its count if it is a list."""
+    """A property of an element: its type and, if it is a list, the type of its count."""
 
     name: str
     type: str
@@ -39,7 +39,7 @@ class Property:
 
 @dataclass(frozen=True)
 class Element:
-    """A table of the file: its name, number of rows, and columns."""
+    """A table in the file: its name, its number of rows and its columns."""
 
     name: str
     count: int
@@ -74,8 +74,8 @@ def is_cloud(path: Path) -> bool:
 
 
 def read_cloud(path: Path) -> Stored:
-    """Return the points of a cloud with their normals; points without positions receive distinct made-up positions.
-    Raises SceneFileError, also if the points have no normals."""
+    """Return the points of a point cloud with their normals; points without positions receive distinct made-up
+    positions. Raises SceneFileError, also if the points have no normals."""
     tables, types = _tables(path)
     normals, roundings = _normals(tables["vertex"], types["vertex"])
     if normals is None or not len(normals):
@@ -87,8 +87,8 @@ def read_cloud(path: Path) -> Stored:
 
 
 def _normals(vertex: Table, types: dict[str, str]) -> tuple[np.ndarray | None, tuple[Rounding, ...]]:
-    """Return decoded normals (or None) and their roundings (empty for floats): signed integers represent [-1, 1]
-    around 0, unsigned integers from end to end."""
+    """Return decoded normals (or None) and their roundings (empty for floats). Signed integers represent [-1, 1]
+    symmetrically about 0; unsigned integers represent it over their whole range."""
     normals, kinds = _columns(vertex, NORMAL), {types[name] for name in NORMAL if name in types}
     kind = np.dtype(kinds.pop() if len(kinds) == 1 else "f8")
     if normals is None or kind.kind == "f":
@@ -100,7 +100,7 @@ def _normals(vertex: Table, types: dict[str, str]) -> tuple[np.ndarray | None, t
 
 
 def _tables(path: Path) -> tuple[dict[str, Table], dict[str, dict[str, str]]]:
-    """Return a PLY file's columns and their types in the header, each by element and by property. Raises
+    """Return the columns of a PLY file and their types in the header, each by element and property. Raises
     SceneFileError."""
     data = file_bytes(path)
     order, elements, start = _header(path, data)
@@ -118,7 +118,7 @@ def _tables(path: Path) -> tuple[dict[str, Table], dict[str, dict[str, str]]]:
 
 
 def _header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
-    """Return the byte order ("<", ">" or "" for ASCII), the elements, and the offset of the first row. Raises
+    """Return the byte order ("<", ">" or "" for ASCII), the elements and the offset of the first row. Raises
     SceneFileError."""
     end = data.find(b"end_header", 0, MAX_HEADER)
     newline = data.find(b"\n", end)
@@ -188,7 +188,7 @@ def _binary(path: Path, data: bytes, offset: int, element: Element, order: str) 
 
 
 def _values(data: bytes, offset: int, p: Property, order: str) -> tuple[np.ndarray, int]:
-    """Return the values of a property at an offset, one value or a list's values, and the offset after them. Raises
+    """Return the value of a property at an offset, or a list property's values, and the offset after them. Raises
     ValueError beyond the end of the data, and for more than MAX_CORNERS values."""
     count = 1
     if p.counted_by:
@@ -215,8 +215,8 @@ def _first_lengths(data: bytes, offset: int, element: Element, order: str) -> di
 
 
 def _alike(data: bytes, offset: int, element: Element, order: str, lengths: dict[str, int]) -> tuple[Table, int] | None:
-    """Return an element's table, read at once, and the offset after it; None if the lists of any row differ in length
-    from `lengths`, or the data ends too soon."""
+    """Return an element's table, read in one step, and the offset after it; None if a row's lists differ in length
+    from `lengths`, or if the data end too soon."""
     fields = []
     for p in element.properties:
         if p.counted_by:
@@ -294,7 +294,7 @@ def _mesh(path: Path, tables: dict[str, Table], types: dict[str, dict[str, str]]
 
 
 def _fans(path: Path, faces: np.ndarray | list[np.ndarray]) -> np.ndarray:
-    """Return faces of any number of corners as triangles, fans around the first corner, int64 of shape
+    """Return faces with any number of corners as triangles, fans around the first corner, int64 of shape
     (triangles, 3). Raises SceneFileError."""
     if isinstance(faces, np.ndarray):
         if faces.ndim != 2:

@@ -1,4 +1,4 @@
-"""Users' mesh files as scenes: a camera that frames them, lights around them and the surfaces that it sees."""
+"""Users' mesh files as scenes: a camera that frames the meshes, lights around them and the surfaces that it sees."""
 
 from __future__ import annotations
 
@@ -54,7 +54,8 @@ def read_mesh_file(path: Path) -> MeshFile:
 
 
 def file_view(file: MeshFile) -> View:
-    """Return the file's camera, or one from the side that shows everything if the image is at least as wide as high."""
+    """Return the file's camera or, without one, a camera from the side that shows everything in an image at least as
+    wide as high."""
     if file.view:
         return file.view
     low, high = file.bounds
@@ -76,8 +77,9 @@ def _float_triple(values: np.ndarray) -> tuple[float, float, float]:
 
 
 def file_scene(file: MeshFile, setting: Setting) -> Scene:
-    """Return the file's meshes under its own lights or, without any, under a sun. An environment also lights
-    metallic-roughness surfaces; around others `setting.lights` point lights circle if the file has no lights."""
+    """Return the scene of a file's meshes, with the file's own lights or, if it has no lights, a sun.
+    Metallic-roughness surfaces are also lit by an environment, other surfaces of a file without lights by
+    `setting.lights` point lights."""
     view = file_view(file)
     aside = 0.01 * file.radius
     moved = (_float_triple(np.add(point, (aside, 0.0, 0.0))) for point in (view.eye, view.target))
@@ -116,8 +118,8 @@ def _material_indices(file: MeshFile, pieces: list[Piece]) -> np.ndarray:
 
 
 def _made_up_lights(file: MeshFile, setting: Setting) -> tuple[Light, ...]:
-    """Return a sun; for surfaces without surroundings also point lights in a box half again as large as the scene's, on
-    their way around its middle."""
+    """Return a sun and, for materials that are not metallic-roughness, point lights that circle around the scene's
+    centre, in a box about 1.5 times as large as the scene's."""
     direction = np.array(SUN) / np.linalg.norm(SUN)
     sun = Light("sun", (0.8, 0.77, 0.7), direction=_float_triple(direction))
     if file.is_metal_rough:
@@ -138,21 +140,22 @@ def _made_up_lights(file: MeshFile, setting: Setting) -> tuple[Light, ...]:
 
 @dataclass(frozen=True)
 class SeenMesh(Rendered):
-    """A file as a camera sees it.
+    """A mesh file as a camera sees it.
 
     Attributes:
-        map_error_deg: mean error of the normals of 8-bit maps in degrees, over all visible normals; None if no map
-            has 8 bits.
+        map_error_deg: estimated mean error, in degrees over all visible normals, from the rounding of 8-bit normal
+            maps; None if no map has 8 bits.
     """
 
     map_error_deg: float | None
 
 
 def seen(file: MeshFile, size: tuple[int, int]) -> SeenMesh:
-    """Return view-space normals, positions and coverage as the camera sees them, drawn without an OpenGL driver.
+    """Return the view-space normals, positions and coverage of an image of a mesh file, drawn without an OpenGL
+    driver.
 
     A pixel's normal comes from its material's normal map, if it has one. Points that a material cuts out are holes.
-    The back of a surface is drawn if the file's material says so, as renderers do.
+    The back of a surface is drawn if its material is two-sided.
     """
     view = file_view(file)
     matrix = view.matrix()

@@ -1,4 +1,4 @@
-"""Bytes of users' scene files: bounded, never from the network, never from outside a file's own folder."""
+"""Bytes of users' scene files: of limited size, never from the network, never from outside a file's own folder."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ TOO_LARGE = 1e15
 
 
 class SceneFileError(ValueError):
-    """A file that cannot be read as a scene: one line with the file, the place in it and the remedy."""
+    """A file that cannot be read as a scene; the message is one line with the file, the place in it and the
+    remedy."""
 
 
 class MissingPackageError(SceneFileError):
-    """A file that a package would read which is not installed."""
+    """A file that needs a package that is not installed."""
 
 
 def file_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
@@ -52,7 +53,7 @@ def file_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
 
 
 def checked_address(path: Path, address: object, place: str) -> Path | None:
-    """Return the resolved path that an address in the file `path` names, or None for a data: address; read nothing.
+    """Return the resolved path of an address in the file `path`, without reading it; None for a data: address.
 
     Raises:
         SceneFileError: the address is not text, is on the network, or leaves the file's folder, also by a link.
@@ -81,7 +82,7 @@ def checked_address(path: Path, address: object, place: str) -> Path | None:
 
 
 def resource(path: Path, address: object, place: str) -> bytes:
-    """Return the data at an address in the file `path`: base64 after data:, or a file in its folder.
+    """Return the data at an address in the file `path`: base64 after data:, or a file in the same folder.
 
     Raises:
         SceneFileError: see `checked_address` and `file_bytes`; or the base64 is not valid.
@@ -102,7 +103,7 @@ def resource(path: Path, address: object, place: str) -> bytes:
 
 
 def checked_indices(path: Path, indices: np.ndarray, count: int, place: str) -> np.ndarray:
-    """Return vertex indices unchanged. Raises SceneFileError if an index is not one of `count` vertices."""
+    """Return vertex indices unchanged. Raises SceneFileError unless all indices are from 0 to `count` - 1."""
     bad = np.flatnonzero((indices < 0) | (indices >= count))
     if len(bad):
         worst = indices.ravel()[bad[0]] if indices.ndim == 1 else indices.reshape(-1)[bad[0]]

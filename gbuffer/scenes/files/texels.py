@@ -1,7 +1,7 @@
-"""Images of users' scene files as texels: PNG, JPEG and WebP.
+"""Images in users' scene files as texels: PNG, JPEG and WebP.
 
-An image's size is read from its header, and an image that is too large is refused before anything is unpacked. Pillow
-reads all images. It reduces 16-bit colours to 8 bits, so OpenImageIO reads 16-bit PNG files once more.
+An image's size is read from its header, and an image that is too large is refused before anything is decoded. Pillow
+reads all images, but reduces 16-bit colours to 8 bits, so OpenImageIO reads 16-bit PNG files again.
 """
 
 from __future__ import annotations
@@ -34,19 +34,20 @@ class PictureError(ValueError):
 
 
 def sides(data: bytes) -> tuple[int, int]:
-    """Width and height of a picture, from its header alone. Raises PictureError."""
+    """Return the width and height of an encoded image, from its header alone. Raises PictureError."""
     with _opened(_bare(data)) as picture:
         return picture.size
 
 
 def texels(data: bytes) -> np.ndarray:
-    """Return an image's texels, (height, width, 4), uint8, or uint16 for a PNG file of 16 bits; row 0 is the top.
+    """Return the texels of an encoded image, (height, width, 4), uint8, or uint16 for a 16-bit PNG file; row 0 is the
+    top.
 
-    Grey fills all three colours. An alpha that the image lacks is the largest integer. No colour is converted:
+    Grey fills all three colours. An alpha that the image lacks is the largest integer. Colours are not converted:
     colour profiles and gamma are ignored.
 
     Raises:
-        PictureError: the data is not in one of FORMATS, is too large, truncated or damaged.
+        PictureError: the data are not in one of FORMATS, or are too large, truncated or damaged.
     """
     data = _bare(data)
     with _opened(data) as picture:

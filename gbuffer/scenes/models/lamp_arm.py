@@ -1,10 +1,10 @@
 """A mechanical lamp arm, like the four in the article's scene; the original's mesh may not be redistributed.
 
-It is in the plane y = 0: a bracket, a thick ring, a tapering tube to a fork joint, a second tube to a head of flat
-facets, and bent cables along both tubes. Round parts are cut coarsely and have smooth normals, so that interpolated
-normals face away from the eye at silhouettes. The dimensions reproduce the statistics of the original's four arms:
-the number of pixels that they cover, how many of their normals have z < 0 or face away, and the histograms of z and
-of n . v (tests/gbuffer/test_lamp_arm.py).
+The arm follows the plane y = 0: a bracket, a thick ring, a tapering tube to a fork joint, a second tube to a head
+with flat facets, and bent cables along both tubes. Round parts are tessellated coarsely and have smooth normals, so
+that interpolated normals face away from the eye at silhouettes. The dimensions reproduce the statistics of the
+original's four arms: the number of pixels that they cover, how many of their normals have z < 0 or face away, and the
+histograms of z and of n . v (tests/gbuffer/test_lamp_arm.py).
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ HEAD_RADII, HEAD_LENGTH, HEAD_SIDES, HEAD_FACES = (0.153, 0.15), 0.251, 7, (3.26
 
 @cache
 def lamp_arm() -> Mesh:
-    """The arm in its own space, about 900 triangles."""
+    """Return the arm in its own space, about 900 triangles."""
     return joined([*_shoulder(), *_elbow(), *_cables(), _head()])
 
 
 def _shoulder() -> Iterator[Mesh]:
-    """Yield the meshes of the bracket, the ring that it ends at, and the tube behind the ring."""
+    """Yield the meshes of the bracket, the ring at its end, and the tube behind the ring."""
     neck = RING + _way(RING, FOOT) * (0.9 * RING_RADIUS + NECK_RADIUS)
     yield plate(FOOT, neck, FOOT_RADIUS, NECK_RADIUS, 0.4 * THICK)
     yield disc(RING_RADIUS, 0.8 * THICK, RING_SLICES, RING_HOLE, RING_BULGE).placed(np.eye(3), _at(RING))
@@ -67,14 +67,14 @@ def _cables() -> Iterator[Mesh]:
 
 
 def _cable(start: np.ndarray, middle: np.ndarray, end: np.ndarray) -> Mesh:
-    """The mesh of a cable along a quadratic Bezier curve."""
+    """Return the mesh of a cable along a quadratic Bezier curve."""
     t = np.linspace(0, 1, CABLE_STEPS)[:, None]
     path = (1 - t) ** 2 * start + 2 * t * (1 - t) * middle + t * t * end
     return swept(path, (CABLE_RADIUS,) * CABLE_STEPS, CABLE_SIDES)
 
 
 def _head() -> Mesh:
-    """A shade of flat facets with a recessed front."""
+    """Return the mesh of a lamp shade with flat facets and a recessed front."""
     (narrow, wide), long = HEAD_RADII, HEAD_LENGTH
     profile = [(0, 0), (narrow, 0), (wide, 0.6 * long), (wide, long), (0.85 * wide, long)]
     profile += [(0.8 * wide, 0.9 * long), (0, 0.85 * long)]
@@ -116,7 +116,7 @@ def turned(profile: list[tuple[float, float]], slices: int) -> Mesh:
 
 
 def disc(radius: float, half: float, slices: int, hole: float = 0.0, bulge: float = 0.0) -> Mesh:
-    """A disc or a ring around y with flat ends at y = half and -half, its rim rounded by `bulge`."""
+    """Return a disc or a ring around y, with flat ends at y = half and y = -half and a rim that bulges by `bulge`."""
     rim = [(radius, -half), (radius + bulge, 0.0), (radius, half)] if bulge else [(radius, -half), (radius, half)]
     profiles = [[(radius, half), (hole, half)], [(hole, -half), (radius, -half)], rim]
     profiles += [[(hole, half), (hole, -half)]] if hole else []
@@ -140,7 +140,7 @@ def plate(start: np.ndarray, end: np.ndarray, first: float, last: float, half: f
 
 
 def faceted(mesh: Mesh) -> Mesh:
-    """Return the mesh with flat normals, three vertices for each triangle; triangles without an area are left out."""
+    """Return the mesh with flat normals, three vertices per triangle; triangles with zero area are left out."""
     corners = mesh.positions[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(across, axis=1)
@@ -156,7 +156,7 @@ def _around(count: int) -> np.ndarray:
 
 
 def _way(start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """The unit direction from one place to another."""
+    """Return the unit direction from one point to another."""
     return (end - start) / np.linalg.norm(end - start)
 
 

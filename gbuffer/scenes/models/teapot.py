@@ -1,8 +1,8 @@
 """The Utah teapot, evaluated from its Bezier patches.
 
-Control points after M. Newell, 1975, as published by F. Crow, The Origins of the Teapot, IEEE CG&A 7(1), 1987: z is
-up, the base is at z = 0, the spout points to +x, and Blinn's squashed height (3.15 to the tip of the lid) is kept.
-Rim, body, lid and bottom are solids of revolution, so their patches are given by profiles; handle and spout are given
+The control points are by M. Newell, 1975, as published by F. Crow, The Origins of the Teapot, IEEE CG&A 7(1), 1987: z
+is up, the base is at z = 0, the spout points to +x, and Blinn's squashed height (3.15 to the tip of the lid) is kept.
+Rim, body, lid and bottom are solids of revolution, so their patches are given by profiles. Handle and spout are given
 on one side of the plane y = 0 and mirrored.
 """
 
@@ -65,7 +65,7 @@ def _quarter_circle(turn: int, radius: float, height: float, k: float = QUARTER)
 
 
 def control_points() -> np.ndarray:
-    """The 32 patches, float64 of shape (32, 4, 4, 3)."""
+    """Return the control points of the 32 patches, float64 of shape (32, 4, 4, 3)."""
     patches = []
     for profile in PROFILES.values():
         for turn in range(4):
@@ -84,7 +84,7 @@ def _bernstein(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _evaluate(patch: np.ndarray, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and (unscaled) normals of a patch at parameters u (down the rows) and v (along them)."""
+    """Return positions and unscaled normals on a patch at parameters u (down the rows) and v (along them)."""
     (bu, du), (bv, dv) = _bernstein(u), _bernstein(v)
     position = np.einsum("ni,nj,ijk->nk", bu, bv, patch)
     along_u = np.einsum("ni,nj,ijk->nk", du, bv, patch)
@@ -104,13 +104,13 @@ def _patch_mesh(patch: np.ndarray, steps: int) -> Mesh:
 
 
 def teapot(steps: int) -> Mesh:
-    """The teapot in its own units, z up, `steps` x `steps` cells a patch, normals from the patches themselves."""
+    """Return the teapot in its own units, z up, with `steps` x `steps` cells per patch and analytic normals."""
     meshes = [_patch_mesh(patch, steps) for patch in control_points()]
     return joined([_outward(mesh, index) for index, mesh in enumerate(meshes)])
 
 
 def _outward(mesh: Mesh, index: int) -> Mesh:
-    """Return a patch with outward normals. All point to one side; the patch's middle decides which side is out."""
+    """Return patch number `index` with its normals outward: if they point inwards on average, all are negated."""
     middle = mesh.positions.mean(axis=0)
     turned = index < 4 * len(PROFILES)
     inside = np.array([0.0, 0.0, HEIGHT / 2]) if turned else middle * (1.0, 0.0, 1.0)

@@ -139,6 +139,7 @@ class Choose {
     root.addEventListener("drawn", ({ target }) => this.plot(target));
     shows.push((state, before) => this.show(state, before));
     answersTo = (state) => this.answersTo(state);
+    titles.choose = () => (this.found.best ? `${this.question.where}: ${this.found.best.name}` : this.question.where);
     this.show(state, null);
     // What a page comes with may be here before its last script, which reads the address.
     if (isShown) change({}, true);
@@ -243,7 +244,7 @@ class Choose {
 
   said({ best, fit, out, why, rungs, exact, gain, price, isSame }, asked, question) {
     const dear = out.filter((code) => code.once !== null && why.get(code).startsWith("more than ")).map((code) => code.once);
-    const decodeFirst = asked.mixing && !asked.mixing.split(",").includes("upsample") ? ["Or decode each texel before you mix: upsample alone works with every encoding."] : [];
+    const decodeFirst = asked.mixing && !asked.mixing.split(",").includes("upsample") ? ["Or decode each texel before you mix: only upsample works with every encoding."] : [];
     if (!best) return [...(dear.length ? [`The cheapest encoding that only the slot limit excludes takes ${Math.min(...dear)} issue slots.`] : this.without(question, asked)), ...decodeFirst];
     const isEnough = (code) => code.largest !== null && 2 * code.largest <= asked.enough, limit = degrees(asked.enough);
     const moved = isEnough(best) ? [`A reflection moves by at most ${degrees(2 * best.largest)}, within your limit. Of the low-cost encodings within it, the one with the fewest bits is chosen.`] : fit.some(isEnough) || !asked.enough ? [] : [`No remaining encoding moves a reflection by ${limit} or less.`];

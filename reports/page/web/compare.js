@@ -55,7 +55,8 @@ class Compare {
         if (of[at]?.like) notes.push(`${side.toUpperCase()} was not measured in ${about.title}; the figures are for ${of[at].like}, which stores identical values.`);
         if (!of[at] && of[1 - at]) lacks[side].push(about.title);
       }
-      const figures = of.every(Boolean) ? comparedIn(table, of) : [];
+      const place = ({ figure }) => about.figures.indexOf(figure.name) + 1 || Infinity;
+      const figures = of.every(Boolean) ? comparedIn(table, of).sort((one, other) => place(one) - place(other)) : [];
       if (figures.length) groups.push({ about, figures });
       await new Promise((done) => setTimeout(done));
     }

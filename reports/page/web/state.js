@@ -115,6 +115,14 @@ function ruleOf(name, side) {
   return `:is(${sameAs(name)}) { --side: var(--${side}); --side-ground: var(--${side}-ground); --side-width: 2.6px; --side-name: "${side.toUpperCase()}\\00a0"; }\n`;
 }
 
+// What the tab is called, by view: the answer, or the codecs that are shown.
+const titles = { compare: ({ a, b }) => a && b && `${a} against ${b}`, codecs: ({ a }) => a }, usualTitle = document.title;
+
+function titled(state) {
+  const told = titles[state.view]?.(state) || document.querySelector(`nav [data-to="${state.view}"]`)?.textContent.trim();
+  document.title = told ? `${told} - normalbench` : usualTitle;
+}
+
 function show(before, goes = false) {
   for (const view of views) view.hidden = view.dataset.view !== state.view;
   for (const link of document.querySelectorAll("nav [data-to]")) {
@@ -132,6 +140,7 @@ function show(before, goes = false) {
     if (list) list.value = state[side];
   }
   for (const listener of shows) listener(state, before);
+  titled(state);
   if (state.view !== before.view || state.at !== before.at || goes) goTo(before);
 }
 

@@ -173,7 +173,7 @@ def test_all_codes_of_a_file_have_a_line(told):
     _, _, rows = told
     lines = {row["functions"]: row["says"] for row in rows if row["file"] == "post/packing.glsl"}
     assert "rounded codes (3.3%) decode to NaN" in lines["encodeDir:decodeDir"]
-    assert any("packDirToUint:unpackDirFromUint" in line and "if it is named" in line for line in lines.values())
+    assert any("packDirToUint:unpackDirFromUint" in line and "only if named" in line for line in lines.values())
     depth = lines["packDepth:unpackDepth"]
     assert "not a multiple of 1/255; use powers of 255 instead of 256" in depth
     assert "`normalbench depth --depth" in depth

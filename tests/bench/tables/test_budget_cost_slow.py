@@ -43,7 +43,7 @@ def test_rows_have_the_slots_of_the_emitted_code_and_the_bytes_of_readers(run):
     assert mine["mb_1080p"] == pytest.approx(1920 * 1080 * (1.5 * 16 + 16 + 8) / 1e6)
     assert proposal["dearest_family"] == "navi21" and proposal["slots"] > 0
     text = next(sentence for sentence in told(proposal) if sentence.startswith("Packing takes"))
-    assert text.endswith(f"{proposal['slots']:g} per pixel, written 1.5 times and read once in full.")
+    assert text.endswith(f"{proposal['slots']:g} slots per pixel, written 1.5 times and read once in full.")
 
 
 @pytest.mark.usefixtures("gl", "radv")

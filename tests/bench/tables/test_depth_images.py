@@ -114,7 +114,7 @@ BAD = {
         ("--depths", "a.npy", "--near", "70"),
         "a.npy: no depth is within --near 70 --far 80; depths are 1",
     ),
-    "behind": (("--depths", "behind.npy"), "--depth-unit -1 inverts them"),
+    "behind": (("--depths", "behind.npy"), "--depth-unit -1 negates them"),
     "a list": (("--depths", "cube.npy"), "cube.npy: an array of shape (2, 2, 2, 2)"),
     "NaN alone": (("--depths", "nan.npy"), "nan.npy: no depth is within"),
     "distances": (("--depths", "a.npy", "--distance", "5"), "--distance applies only to generated points"),

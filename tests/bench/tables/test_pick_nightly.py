@@ -10,7 +10,7 @@ from test_pick_slow import EXPECTED, SOME, check_a_question
 rows = test_pick.rows
 
 
-def test_100_random_questions_of_measured_rows_match_brute_force(rows):
+def test_answers_to_100_random_questions_match_brute_force(rows):
     chance = random.Random(0)
     for _ in range(100):
         check_a_question(rows, chance)

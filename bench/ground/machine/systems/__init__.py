@@ -1,4 +1,4 @@
-"""Features that Linux, macOS and Windows each have in their own way, behind one interface.
+"""Features that Linux, macOS and Windows implement differently, behind one interface.
 
-No other module of `bench` names any of them.
+No other module in `bench` names any of these systems.
 """

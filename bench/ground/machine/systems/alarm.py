@@ -1,4 +1,4 @@
-"""A call that is made in the main thread, some seconds later."""
+"""A function call in the main thread after some seconds."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if sys.platform == "win32":
     _waiting: list[Timer] = []
 
     def call_later(seconds: float, call: Call) -> None:
-        """Have a function called once after some seconds, with the frame that is interrupted. A call that is still
-        waiting is cancelled."""
+        """Arrange for a function to be called once after some seconds, with the interrupted frame as its argument.
+        Cancel any pending call."""
         call_none()
         signal.signal(_SIGNAL, lambda _, frame: call(frame))
         timer = Timer(seconds, _thread.interrupt_main, [_SIGNAL])
@@ -36,8 +36,8 @@ if sys.platform == "win32":
 else:
 
     def call_later(seconds: float, call: Call) -> None:
-        """Have a function called once after some seconds, with the frame that is interrupted. A call that is still
-        waiting is cancelled."""
+        """Arrange for a function to be called once after some seconds, with the interrupted frame as its argument.
+        Cancel any pending call."""
         signal.signal(signal.SIGALRM, lambda _, frame: call(frame))
         signal.setitimer(signal.ITIMER_REAL, seconds)
 

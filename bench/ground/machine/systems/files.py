@@ -1,4 +1,4 @@
-"""Owners of files, how a file replaces another one, cache folders, and functions of the C library."""
+"""Ownership and replacement of files, cache folders, and functions of the C library."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ if sys.platform == "win32":
     _WAITS = (0.01, 0.05, 0.2, 0.5, 1.0)
 
     def moved_over(partial: Path, path: Path) -> None:
-        """Move a file to a path, in place of any file there. Retries for a while if the file there is in use.
-        Raises OSError."""
+        """Move a file to a path, in place of any file there. Retry for a while if the file there is in use. Raises
+        OSError."""
         for wait in _WAITS:
             try:
                 partial.replace(path)
@@ -38,11 +38,13 @@ if sys.platform == "win32":
         return os.environ.get("USERNAME", "")
 
     def is_own(_: os.stat_result) -> bool:
-        """Whether a file is this user's: always True. Windows guards a user's folder by lists, not by numbers."""
+        """Whether a file belongs to this user: always True. Windows protects a user's folder by access lists, not by
+        user ids."""
         return True
 
     def is_closed(_: os.stat_result) -> bool:
-        """Whether a file or folder is this user's, and nobody else may write to it: always True, see `is_own`."""
+        """Whether a file or folder belongs to this user, and nobody else may write to it: always True, see
+        `is_own`."""
         return True
 
     def is_guarded(_: Path) -> bool:
@@ -82,17 +84,17 @@ else:
         return status.st_uid == os.geteuid()
 
     def is_closed(status: os.stat_result) -> bool:
-        """Whether a file or folder is this user's, and nobody else may write to it."""
+        """Whether a file or folder belongs to this user, and nobody else may write to it."""
         return is_own(status) and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
     def is_guarded(path: Path) -> bool:
-        """Whether nobody but this user and root can put another file at a path without links: every existing part of it
-        belongs to either, and others may not write to any of its folders, unless the folder is sticky, as /tmp is.
-        Raises OSError.
+        """Whether only this user and root can put a different file at a path without links: every existing part of
+        the path belongs to one of them, and nobody else may write to its folders, except to sticky folders such as
+        /tmp. Raises OSError.
 
-        Write permission of a group counts, except for this user's own group without other members, which some
-        systems give each user together with folders that it may write to. Access lists by which the user let others
-        in do not count.
+        Write permission of a group counts, except for this user's own group without other members, which some systems
+        give each user together with folders that the group may write to. Access lists by which the user admitted
+        others do not count.
         """
         return all(_is_kept_by_its_owner(place.lstat()) for place in (path, *path.parents) if os.path.lexists(place))
 

@@ -1,5 +1,5 @@
-"""Processes for code that may do anything. On Linux they are forked from a process that has imported what they need.
-Forking is not safe on macOS and does not exist on Windows; there each process imports for itself."""
+"""Processes for untrusted code. On Linux they are forked from a process that has already imported the modules they
+need. Forking is not safe on macOS and does not exist on Windows; there each process imports the modules itself."""
 
 from __future__ import annotations
 

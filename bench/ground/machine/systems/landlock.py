@@ -1,19 +1,20 @@
-"""A wall around a process, which it cannot take down: Landlock of Linux. Imports nothing heavy.
+"""A wall around a process, which the process cannot remove: Landlock in Linux. Imports nothing heavy.
 
     python -I -S landlock.py r/usr/lib w/tmp/made x/usr/bin/cc -- /usr/bin/cc main.c
 
-walls itself in and becomes the command: see `command`. https://docs.kernel.org/userspace-api/landlock.html
+builds a wall around itself and becomes the command: see `command`.
+https://docs.kernel.org/userspace-api/landlock.html
 
-Denied, except for the named paths: reading files and listing folders; writing, making, removing, renaming and
-truncating files; and executing. Also denied: all TCP (from ABI 4 on), operations special to devices (ABI 5),
-signals to processes and abstract sockets outside (ABI 6), and tracing processes outside. Even in a writable folder,
-nothing can be moved to another folder and only files and folders can be made: no link, pipe, socket or device waits
-there for whoever reads it.
+Denied, except for the named paths: reading files and listing folders; writing, creating, removing, renaming and
+truncating files; and executing. Also denied: all TCP (from ABI 4 on), operations special to devices (ABI 5), signals
+to processes and abstract sockets outside (ABI 6), and tracing processes outside. Even in a writable folder, nothing
+can be moved to another folder and only files and folders can be created, so that a later reader of the folder finds
+no link, pipe, socket or device.
 
 Not denied: learning that a path exists, its status and the target of a link; changing the mode, owner, times and
-attributes of the user's files; UDP; sockets in folders, such as those of a desktop; anything that open descriptors
-lead to. EXECUTE applies to `execve` alone: the loader and `memfd_create` run other bytes as well, behind the same
-wall.
+attributes of the user's files; UDP; sockets in folders, such as the sockets of a desktop; anything that open
+descriptors give access to. EXECUTE applies to `execve` only: the loader and `memfd_create` can run other bytes too,
+behind the same wall.
 """
 
 from __future__ import annotations
@@ -42,7 +43,8 @@ TCP, OUTSIDE, NO_NEW_PRIVILEGES = 0b11, 0b11, 38
 
 
 def abi() -> int:
-    """Return the version of Landlock here; 0 if the system lacks it, or does not let this process use it."""
+    """Return Landlock's version on this system; 0 if the system lacks Landlock or does not let this process use
+    it."""
     return max(0, _called(CREATE_RULESET, None, 0, VERSION)) if sys.platform == "linux" else 0
 
 
@@ -52,14 +54,15 @@ def is_available() -> bool:
 
 
 def restrict(reads: list[str], writes: list[str], executes: list[str]) -> None:
-    """Build the wall around this process and all that it starts from now on, permanently.
+    """Put a permanent wall around this process and all processes that it starts from now on.
 
-    The wall binds the calling thread only. A process with other threads is refused, because they would stay outside.
+    The wall applies to the calling thread only. A process with other threads is refused, because these threads would
+    stay outside.
 
     Args:
-        reads: files, and folders with all that is in them. A path that does not exist is left out, here and below.
+        reads: files, and folders with their contents. Paths that do not exist are ignored, here and below.
         writes: folders to read and write in, and files such as /dev/null.
-        executes: programs, and the loaders of libraries that they name, which the kernel executes too.
+        executes: programs, and the library loaders that they name, which the kernel executes too.
 
     Raises:
         RuntimeError: the process has other threads.
@@ -81,15 +84,16 @@ def restrict(reads: list[str], writes: list[str], executes: list[str]) -> None:
 
 
 def forget_variables() -> None:
-    """Remove all variables except VARIABLES and Python's from this process: the others may hold secrets."""
+    """Remove all environment variables except VARIABLES and Python's from this process: the others may hold
+    secrets."""
     for name in [*os.environ]:
         if name not in VARIABLES and not name.startswith("PYTHON"):
             del os.environ[name]
 
 
 def command(words: list[str], reads: list[str], writes: list[str], executes: list[str]) -> list[str]:
-    """Return the command that builds a wall around itself and then becomes the command `words`, whose first word
-    is a path that `executes` has too. See `restrict`. The command keeps only VARIABLES of the environment, and its
+    """Return the command that builds a wall around itself and then becomes the command `words`, whose first word is a
+    path that is also in `executes`; see `restrict`. The command keeps only VARIABLES of the environment, and its
     status is 126 if `words` cannot be run."""
     rules = [kind + path for kind, paths in (("r", reads), ("w", writes), ("x", executes)) for path in paths]
     return [sys.executable, "-I", "-S", __file__, *rules, "--", *words]

@@ -1,11 +1,11 @@
-"""Processes for code that may do anything, forked from a process with their imports done. Imports nothing heavy.
+"""Processes for untrusted code, forked from a process that has done their imports. Imports nothing heavy.
 
-Importing JAX takes longer than most work in such a process. So one process imports once, runs nothing, and forks for
-each request.
+Importing JAX takes longer than most work in such a process. Therefore one process imports once, runs nothing, and
+forks for each request.
 
     python -m normalbench.bench.ground.machine.systems.linux_forks DESCRIPTOR
 
-is that process: requests come through a socket.
+is that process, which receives requests through a socket.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ class _Forking:
         return self.link
 
     def end(self) -> None:
-        """End the process by closing the socket of its requests."""
+        """End the process by closing the socket for its requests."""
         if self.link and self.process:
             self.link.close()
             self.process.wait()
@@ -135,8 +135,8 @@ def _read_at_the_start() -> dict[str, str]:
 
 
 def _asked(request: bytes, files: tuple[IO[bytes], IO[bytes]]) -> socket.socket:
-    """Ask for a process, and return the socket through which its number has come and its status will come. The
-    process that forks may have ended, so it is asked twice.
+    """Request a process, and return the socket that has received its number and will receive its status. Try twice,
+    because the process that forks may have ended.
 
     Raises:
         OSError: the process that forks does not keep running.
@@ -157,7 +157,8 @@ def _asked(request: bytes, files: tuple[IO[bytes], IO[bytes]]) -> socket.socket:
 
 
 def _serve(link: socket.socket) -> None:
-    """Fork for each request, until the other end is closed or no request has come for a long time."""
+    """Fork for each request, until the other end of the socket is closed or no request has arrived for a long
+    time."""
     # Who waits for the process that was asked for is itself waited for by nobody.
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     link.settimeout(IDLE_S)
@@ -194,7 +195,8 @@ def _watch(module: Any, given: dict[str, Any], answer: int, files: list[int]) ->
 
 
 def _run(module: Any, given: dict[str, Any], answer: int, files: list[int]) -> NoReturn:
-    """Run the module's `main` in the request's folder, with its variables, and end this process with the status."""
+    """Run the module's `main` in the request's folder with the request's variables, and end this process with its
+    status."""
     status = 1
     try:
         # By this number it is ended, with what it starts: it is known before anything of the user's is run.

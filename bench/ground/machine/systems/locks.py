@@ -1,4 +1,4 @@
-"""Files that one process at a time may write."""
+"""Locks, so that only one process at a time writes a file."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if sys.platform == "win32":
     _FAR = 0x7FFF_0000
 
     def lock(file: FileIO) -> None:
-        """Keep others from locking a file, until it is closed or this process ends. Does not wait.
+        """Lock a file until it is closed or this process ends, without waiting for the lock.
 
         Raises:
-            OSError: another process has locked it, or the file system has no locks.
+            OSError: another process has locked the file, or the file system has no locks.
         """
         place = file.tell()
         file.seek(_FAR)
@@ -30,9 +30,9 @@ if sys.platform == "win32":
             file.seek(place, os.SEEK_SET)
 
     def put_in_place(path: Path, old: FileIO, partial: Path, new: FileIO) -> FileIO:
-        """Replace a file by another locked file. Return the file that is open and locked then.
+        """Replace a file by another locked file. Return the file that is open and locked afterwards.
 
-        A file cannot be replaced while it is open or locked, so for a moment another process may lock it.
+        A file cannot be replaced while it is open or locked, so that another process may lock it for a moment.
 
         Raises:
             OSError: the file cannot be replaced, or another process was faster. Both files are closed.
@@ -54,15 +54,15 @@ else:
     import fcntl
 
     def lock(file: FileIO) -> None:
-        """Keep others from locking a file, until it is closed or this process ends. Does not wait.
+        """Lock a file until it is closed or this process ends, without waiting for the lock.
 
         Raises:
-            OSError: another process has locked it, or the file system has no locks.
+            OSError: another process has locked the file, or the file system has no locks.
         """
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
     def put_in_place(path: Path, old: FileIO, partial: Path, new: FileIO) -> FileIO:
-        """Replace a file by another locked file. Return the file that is open and locked then.
+        """Replace a file by another locked file. Return the file that is open and locked afterwards.
 
         Raises:
             OSError: the file cannot be replaced.

@@ -1,4 +1,4 @@
-"""Installation advice, command lines, and the API by which wgpu reaches a GPU, for each system."""
+"""Installation advice, command lines, and the API through which wgpu accesses a GPU, for each system."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def how_to_install(packages: str, counts: bool = False) -> str:
     """Return text on how to install packages here, such as "Debian: apt-get install mesa".
 
     Args:
-        packages: names of Debian's packages, separated by spaces; the first is missing and needs the others.
+        packages: names of Debian packages, separated by spaces; the first is missing and needs the others.
         counts: whether the package is needed to count instructions, which only Linux can do.
     """
     way = ELSEWHERE if counts else _WAYS.get(packages.split()[0], ELSEWHERE)
@@ -43,7 +43,7 @@ def how_to_install(packages: str, counts: bool = False) -> str:
 
 
 def command_line(words: Iterable[str]) -> str:
-    """Return the words of a command as one line that a shell of this system reads back."""
+    """Return the words of a command as one line that this system's shell splits into the same words."""
     return subprocess.list2cmdline(words) if sys.platform == "win32" else shlex.join(words)
 
 

@@ -11,6 +11,7 @@ PRELOAD = "LD_PRELOAD"
 
 
 def preloaded(path: Path) -> dict[str, str]:
-    """Return the variables, by name, that make a process load a library before those that this process was given."""
+    """Return the environment variables that make a process load a library before the libraries preloaded here, by
+    name."""
     others = filter(None, [os.environ.get(PRELOAD, "")])
     return {PRELOAD: os.pathsep.join([str(path), *others])}

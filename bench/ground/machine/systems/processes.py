@@ -18,7 +18,7 @@ class FileOfChild:
     """A file that another process writes.
 
     Attributes:
-        path: the path that the process is told.
+        path: the path to pass to the process.
         descriptors: the descriptors that the process must be given, as `pass_fds` of `subprocess`.
         content: a function that reads what the process wrote.
     """
@@ -45,8 +45,8 @@ if sys.platform == "win32":
     }
 
     def started(command: Sequence[str], **how: Any) -> subprocess.Popen[Any]:
-        """Start a process in a job of its own: an interruption of this process does not reach it, and `end_group`
-        ends it with all that it started. It ends with this process."""
+        """Start a process in its own job: an interruption of this process does not reach it, and `end_group` ends it
+        with all processes that it started. The process ends when this process ends."""
         process = subprocess.Popen(command, creationflags=subprocess.CREATE_NEW_PROCESS_GROUP, **how)
         windows.hold(process.pid)
         return process
@@ -56,16 +56,18 @@ if sys.platform == "win32":
         windows.end(process.pid)
 
     def end_this_group() -> NoReturn:
-        """End this process; its job, which whoever started it holds, ends the others."""
+        """End this process; its job, which is held by the process that started it, ends the others."""
         os._exit(1)
 
     def signal_name(status: int) -> str:
-        """Return why the system ended a process, given its status; empty if the process ended by itself."""
+        """Return the reason why the system ended a process, given its status; empty if the process ended by
+        itself."""
         status &= 0xFFFFFFFF
         return _ENDINGS.get(status, f"0x{status:08X}" if status >= 0xC0000000 else "")
 
     def limit(seconds: int, _: int, memory: int) -> None:
-        """Limit this process to seconds of processor time and bytes of memory; Windows limits no files."""
+        """Limit this process to seconds of processor time and bytes of memory. File sizes are not limited on
+        Windows."""
         windows.limit_this_process(memory, seconds)
 
     def limit_memory(most: int) -> None:
@@ -86,19 +88,19 @@ if sys.platform == "win32":
         return windows.is_running(process)
 
     def most_addresses() -> int | None:
-        """Return None: this system does not limit the bytes that this process may have addresses for."""
+        """Return None, because this system does not limit the address space of this process."""
         return None
 
     def on_fork(call: Callable[[], None]) -> None:
-        """Have a function called in processes that are forked from this one: none is."""
+        """Do nothing, because this system does not fork processes, in which the function would be called."""
 
 else:
     import resource
     import signal
 
     def started(command: Sequence[str], **how: Any) -> subprocess.Popen[Any]:
-        """Start a process with a group of its own: an interruption of this process does not reach it, and `end_group`
-        ends it with all that it started."""
+        """Start a process in its own group: an interruption of this process does not reach it, and `end_group` ends
+        it with all processes that it started."""
         return subprocess.Popen(command, start_new_session=True, **how)
 
     def end_group(process: subprocess.Popen[Any]) -> None:
@@ -111,7 +113,7 @@ else:
         raise AssertionError("it has ended")
 
     def end_group_of(number: int) -> None:
-        """End a group of processes by its number; 0 is this process's own."""
+        """End a group of processes by its number; 0 for this process's own group."""
         try:
             os.killpg(number, signal.SIGKILL)
         except ProcessLookupError:
@@ -122,9 +124,9 @@ else:
         return signal.Signals(-status).name if status < 0 else ""
 
     def limit(seconds: int, file: int, memory: int) -> None:
-        """Limit this process to seconds of processor time, and to bytes of a file and of data.
+        """Limit this process to `seconds` of processor time, `file` bytes per file and `memory` bytes of data.
 
-        Exceeding a limit ends this process and no other; it leaves no core dump.
+        Exceeding a limit ends this process and no other, without a core dump.
         """
         _limit({resource.RLIMIT_CPU: seconds, resource.RLIMIT_FSIZE: file, resource.RLIMIT_CORE: 0})
         limit_memory(memory)
@@ -134,11 +136,11 @@ else:
         _limit({resource.RLIMIT_DATA: most})
 
     def limit_addresses(most: int) -> None:
-        """Limit all memory that this process has addresses for, in bytes."""
+        """Limit the address space of this process, in bytes."""
         _limit({resource.RLIMIT_AS: most})
 
     def most_addresses() -> int | None:
-        """Return the bytes that this process may have addresses for; None if they are not limited."""
+        """Return the limit on this process's address space, in bytes; None if the address space is not limited."""
         most = resource.getrlimit(resource.RLIMIT_AS)[0]
         return None if most == resource.RLIM_INFINITY else most
 
@@ -150,8 +152,8 @@ else:
 
     @contextmanager
     def file_of_child() -> Iterator[FileOfChild]:
-        """Yield a file for another process to write. It has no name, so nothing is left of it, however this
-        process ends."""
+        """Yield a file for another process to write. The file has no name, so that nothing of it remains, however
+        this process ends."""
         with TemporaryFile() as file:
 
             def content() -> bytes:
@@ -171,7 +173,7 @@ else:
         return True
 
     def on_fork(call: Callable[[], None]) -> None:
-        """Have a function called in each process that is forked from this one."""
+        """Arrange for a function to be called in each process that is forked from this process."""
         os.register_at_fork(after_in_child=call)
 
 

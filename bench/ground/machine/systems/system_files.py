@@ -1,4 +1,4 @@
-"""Facts that Linux gives in files about this machine and this process; empty if the files are missing."""
+"""Facts about this machine and this process that Linux provides in files; empty if the files are missing."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ LOADED = Path("/proc/self/maps")
 
 
 def processor_lines() -> list[str]:
-    """Return the lines of /proc/cpuinfo on each core, as `name : value`; empty if the file is missing."""
+    """Return the lines about each core in /proc/cpuinfo, as `name : value`; empty if the file is missing."""
     return _lines(PROCESSOR)
 
 
 def processor_kind() -> list[str]:
-    """Return facts, as text, that tell this kind of processor from others that need other programs."""
+    """Return facts, as text, that distinguish this kind of processor from kinds that need different compiled
+    programs."""
     facts = {line for line in processor_lines() if line.startswith(("model name", "flags", "Features"))}
     return [platform.machine(), platform.processor(), *sorted(facts)]
 

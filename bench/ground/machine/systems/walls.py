@@ -36,12 +36,12 @@ class Wall:
     executes: tuple[str, ...] = ()
 
     def __or__(self, other: Wall) -> Wall:
-        """Return a wall that allows what either wall allows."""
+        """Return a wall that allows everything that either wall allows."""
         kinds = zip(*((wall.reads, wall.writes, wall.executes) for wall in (self, other)), strict=True)
         return Wall(*(tuple(dict.fromkeys((*own, *more))) for own, more in kinds))
 
     def around(self, words: Sequence[str]) -> list[str]:
-        """Return a command that runs `words` behind this wall; the first word becomes the path of a program. See
+        """Return a command that runs `words` behind this wall; the first word is replaced by the program's path. See
         `landlock.command`."""
         program = shutil.which(words[0]) or words[0]
         return landlock.command([program, *words[1:]], [*self.reads], [*self.writes], [*self.executes])
@@ -52,20 +52,20 @@ class Wall:
 
 
 def require() -> None:
-    """Raise MissingError if this system has no walls."""
+    """Raise MissingError if this system does not support walls."""
     if not landlock.is_available():
         raise MissingError(NONE)
 
 
 def of_program(path: Path | str) -> Wall:
-    """Return the wall of a program, with the system's libraries. The program may start itself again."""
+    """Return the wall for a program, which may use the system's libraries and start itself again."""
     loader = _loader(path)
     return Wall(LIBRARIES, WRITTEN, (str(path), *filter(None, [loader])))
 
 
 def of_tool(path: Path | str) -> Wall:
-    """Return the wall of a program: the files that `of_program` leaves it and, unless the program's folder is
-    directly in /usr, that folder and lib and lib64 next to it."""
+    """Return the wall for a tool: the files that `of_program` allows and, unless the tool's folder is directly in
+    /usr, that folder and the folders lib and lib64 next to it."""
     folder = Path(path).resolve().parent
     own = (folder, *(folder.parent / name for name in ("lib", "lib64")))
     return of_program(path) | Wall(_spared(own) if folder.parent != Path("/usr") else ())
@@ -73,7 +73,8 @@ def of_tool(path: Path | str) -> Wall:
 
 @cache
 def of_c_compiler(tool: str) -> Wall:
-    """Return the wall of a C or C++ compiler, which compiles and links: the parts, headers and libraries it names."""
+    """Return the wall for a C or C++ compiler that compiles and links: the parts, headers and libraries that it
+    names."""
     parts = [shutil.which(_said(tool, f"-print-prog-name={name}")) for name in PARTS]
     lines = [line.partition(":") for line in _said(tool, "-print-search-dirs").splitlines()]
     places = [place for name, _, text in lines if name != "programs" for place in text.strip(" =").split(os.pathsep)]
@@ -84,14 +85,16 @@ def of_c_compiler(tool: str) -> Wall:
 
 
 def of_python() -> Wall:
-    """Return the wall of this Python: its own folders, those that it imports from, and this program's."""
+    """Return the wall for this Python: its own folders, the folders that it imports from, and this program's
+    folder."""
     package = Path(__file__).parents[4]
     folders = (sys.prefix, sys.base_prefix, *filter(os.path.isabs, sys.path), *Path(sys.executable).parents[:1])
     return of_program(sys.executable) | Wall(_spared((package, *map(Path, folders))))
 
 
 def _spared(paths: Iterable[Path]) -> tuple[str, ...]:
-    """Return absolute paths that exist, resolved and each once, without folders that contain the home folder."""
+    """Return the absolute paths that exist, resolved, without duplicates and without folders that contain the home
+    folder."""
     home = Path.home().resolve()
     resolved = dict.fromkeys(str(path.resolve()) for path in paths if path.is_absolute() and path.exists())
     return tuple(path for path in resolved if not home.is_relative_to(path))

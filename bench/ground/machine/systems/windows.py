@@ -1,4 +1,4 @@
-"""Calls of Windows that Python has no name for: jobs, which hold processes, and whether a process runs.
+"""Windows calls that Python does not provide: jobs, which hold processes, and whether a process is running.
 
 https://learn.microsoft.com/windows/win32/procthread/job-objects
 """
@@ -64,8 +64,8 @@ _own: list[int] = []
 
 
 def hold(process: int) -> None:
-    """Put a process, and all that it starts from now on, into a job that ends when this process does. A process
-    that has ended is left out.
+    """Put a process, and all processes that it starts from now on, into a job that ends when this process ends.
+    Ignore a process that has ended.
 
     Raises:
         OSError: Windows refuses.
@@ -81,15 +81,15 @@ def hold(process: int) -> None:
 
 
 def end(process: int) -> None:
-    """End the remaining processes of the job that `hold` made for a process, if it made one."""
+    """End the remaining processes in the job that `hold` made for a process; do nothing if it made no job."""
     if job := _jobs.pop(process, None):
         _kernel.TerminateJobObject(wintypes.HANDLE(job), wintypes.UINT(ENDED))
         _kernel.CloseHandle(wintypes.HANDLE(job))
 
 
 def limit_this_process(memory: int, seconds: int = 0) -> None:
-    """Limit this process's memory, in bytes, and its processor time, in seconds; 0 seconds set no limit. A crash
-    shows no window from then on.
+    """Limit this process's memory, in bytes, and its processor time, in seconds; 0 seconds for no limit. From then
+    on, a crash shows no window.
 
     Raises:
         OSError: Windows refuses.
@@ -123,7 +123,7 @@ def _checked(result: int) -> int:
 
 
 def is_running(process: int) -> bool:
-    """Whether a process with this number exists and has not ended."""
+    """Whether a process with this number is running."""
     handle = _kernel.OpenProcess(SYNCHRONIZE, False, process)
     if not handle:
         # Another user's.
@@ -135,5 +135,5 @@ def is_running(process: int) -> bool:
 
 
 def _waits(handle: int) -> bool:
-    """Whether a process, given its handle, has not ended."""
+    """Whether a process, given its handle, is still running."""
     return _kernel.WaitForSingleObject(wintypes.HANDLE(handle), 0) == WAIT_TIMEOUT

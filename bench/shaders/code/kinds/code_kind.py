@@ -23,12 +23,12 @@ class Numbers:
         storage: their storage, with the first number in the first channel.
         roundings: the rounding of each number that is stored, one of `storage.ROUNDINGS`.
         is_biased: whether a number c is stored as c/2 + 1/2.
-        size: the number of components of the code's vector; components that are not stored come back as 0.
+        size: the number of components of the code's vector; components that are not stored are read back as 0.
         sign_bits: 1 if the last component is a sign that is stored elsewhere, else 0.
         is_precise: whether the encoder takes the neighbouring code that decodes nearest.
-        settle: the function (value, the code as it comes back) -> the code to store, if some numbers depend on how
+        settle: the function (value, the code as read back) -> the code to store, if some numbers depend on how
             others are rounded; else empty.
-        skipped: the number of bits that are left out before numbers laid across channels.
+        skipped: the number of bits that are skipped before numbers laid across channels.
         share: "unsigned" or "signed" for an integer from `storage.fixed_code`, in sign and magnitude; else empty.
     """
 
@@ -55,24 +55,24 @@ class Numbers:
 
 @dataclass(frozen=True)
 class CodeKind:
-    """A kind of codec, as `code` handles it. Values are rows of numbers, as `run.interface` has them: n and view.
+    """A kind of codec, as `code` handles it. Values are rows of numbers, n and view, as in `run.interface`.
 
     Attributes:
         kind: the catalogue's kind.
         plural: the name of the encoded values, in the plural.
-        given: (codec) -> the places of an encoder's input in these rows: n.xyz.
+        given: (codec) -> the places of an encoder's input in these rows, such as n.xyz.
         named: (codec) -> the usual name of its encoding.
         fields: the names of these places in the structure that an encoder takes and a decoder returns; else empty.
-        settings: by parameter, the places of the other inputs of both functions: view.xyz.
+        settings: the places of the other inputs of both functions, by parameter, such as view.xyz.
         result: (codec) -> the number of values that a decoder returns; in a structure, the values of n come first.
         defines: (codec) -> the macros of its GLSL: CODE, ENCODE and DECODE, and constants.
         numbers: (codec) -> its numbers.
         bound: (codec) -> the settings that are constants of the codec.
         values: (codec) -> n and view, float32 of shape (COUNT, 3 or 4).
-        stored: (codec, n, view) -> the code as it comes back from the storage, as planes; in JAX.
+        stored: (codec, n, view) -> the code as read back from the storage, as planes; in JAX.
         decoded: (codec, code, view) -> the decoded value, as planes; in JAX.
-        by_device: (codec, n, view) -> codes as they come back, and their decoded values, by OpenGL, for encodings
-            that exist only in GLSL; (count, size) and (count, result).
+        by_device: (codec, n, view) -> codes as read back, (count, size), and their decoded values, (count, result),
+            by OpenGL, for encodings that exist only in GLSL.
         has_twin: (codec) -> whether its encoding exists in JAX.
         is_ours: (codec) -> whether its encoding is the catalogue's.
         errors: (input, result) -> the error, float64 of shape (count,).

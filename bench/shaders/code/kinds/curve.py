@@ -1,4 +1,4 @@
-"""Codes of material properties: roughness, occlusion, colour channels."""
+"""Codes for material properties: roughness, occlusion and colour channels."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .own import by_device, defines, is_in
 
 def _values(codec: CurveCodec) -> tuple[np.ndarray, np.ndarray]:
     """Return quantities from 0 to the range, (COUNT, 1), half of them evenly spaced and half in equal numbers per
-    octave, both ends included; and the range, in rows of (COUNT, 3)."""
+    octave, with both ends included; and rows that hold the range, (COUNT, 3)."""
     even, small = np.linspace(0, 1, COUNT // 2), np.geomspace(2.0**-20, 1, COUNT // 2)
     x = np.concatenate([even, small])[:, None] * codec.range
     return x.astype(np.float32), np.broadcast_to(np.array([codec.range, 0, 0], np.float32), (COUNT, 3))

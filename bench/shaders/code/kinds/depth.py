@@ -19,7 +19,7 @@ NEAR, FAR = 0.125, 1024.0
 
 def _values(codec: DepthCodec) -> tuple[np.ndarray, np.ndarray]:
     """Return depths from the near to the far plane, (COUNT, 1), half of them in equal numbers per octave and half
-    evenly spaced, with both signs if the encoding is signed; and the planes, in rows of (COUNT, 3)."""
+    evenly spaced, with both signs if the encoding is signed; and rows that hold the planes, (COUNT, 3)."""
     depth = np.concatenate([np.geomspace(NEAR, FAR, COUNT // 2), np.linspace(NEAR, FAR, COUNT // 2)])
     if codec.encoding.signed:
         depth *= np.where(np.arange(COUNT) % 2, -1.0, 1.0)
@@ -31,7 +31,7 @@ def _far(codec: DepthCodec) -> float:
 
 
 def _bound(codec: DepthCodec) -> dict[str, float]:
-    """Return {"far": 1.0} if floats hold the depth in the scene's own units, else {}."""
+    """Return {"far": 1.0} if floats store depths in the scene's own units, else {}."""
     return {"far": 1.0} if codec.encoding.own_units and codec.storage.is_open else {}
 
 

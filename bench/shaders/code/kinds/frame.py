@@ -68,7 +68,7 @@ def _by_device(codec: FrameCodec, n: np.ndarray, view: np.ndarray) -> tuple[np.n
 
 
 def _errors(given: np.ndarray, back: np.ndarray) -> np.ndarray:
-    """Return the larger of the angles, in degrees, that normals and tangents are off by; 180 for a wrong hand."""
+    """Return the larger of the angular errors of normals and tangents, in degrees; 180 for a wrong hand."""
     axes = (angles_deg(given[:, part], back[:, part]) for part in (NORMAL, TANGENT))
     return np.maximum(np.maximum(*axes), 180.0 * (given[:, HAND] * back[:, HAND] < 0))
 

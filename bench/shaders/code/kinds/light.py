@@ -21,8 +21,8 @@ BRIGHTEST = 1024.0
 
 @cache
 def _lights(largest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return colours with a fourth number, (COUNT, 4), up to `largest`, dim ones as often as bright ones, with black
-    and white first; and zeros, (COUNT, 3)."""
+    """Return colours with a fourth number, (COUNT, 4), up to `largest`, as often dim as bright, with black and white
+    first; and zeros, (COUNT, 3)."""
     random = np.random.default_rng(0)
     light = largest * 2.0 ** random.uniform(-12, 0, (COUNT, 1)) * random.uniform(0, 1, (COUNT, 4))
     light[0], light[1] = 0.0, largest
@@ -64,7 +64,8 @@ def _limit(codec: LightCodec) -> float:
 
 
 def _brightest(given: np.ndarray) -> np.ndarray:
-    """Return the brightest channel of lights, (count, 1), raised to the value that dark lights are compared with."""
+    """Return the brightest channel of each light, (count, 1), but at least the value that is the unit for dark
+    lights."""
     return np.maximum(given.max(axis=1, keepdims=True), 2.0**-8)
 
 
@@ -74,7 +75,7 @@ def _errors(given: np.ndarray, back: np.ndarray) -> np.ndarray:
 
 
 def _is_ours(codec: LightCodec) -> bool:
-    """Whether a codec's encoding is the catalogue's, by its file: over another range it has another name."""
+    """Whether a codec's encoding is the catalogue's, judged by its file: its name depends on the range."""
     return codec.encoding.glsl in {encoding.glsl for encoding in LIGHT_ENCODINGS.values()}
 
 

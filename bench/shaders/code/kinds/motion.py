@@ -22,8 +22,8 @@ RANGES, BEYOND = (0.125, 0.25, 1.0), 1.125
 
 @cache
 def motions() -> tuple[np.ndarray, np.ndarray]:
-    """Return motions of all lengths, (COUNT, 2), some of them beyond their range, both zeros and the ranges included;
-    and their ranges, in rows of (COUNT, 3)."""
+    """Return motions of all lengths, (COUNT, 2), some of them beyond their range, including zeros of both signs and
+    the ranges themselves; and rows that hold their ranges, (COUNT, 3)."""
     random = np.random.default_rng(0)
     largest = random.choice(RANGES, COUNT)
     length = np.where(np.arange(COUNT) % 2, 2.0 ** random.uniform(-14, 0, COUNT), random.uniform(0, 1, COUNT)) * BEYOND

@@ -33,7 +33,7 @@ HOLDS: Mapping[str, str] = MappingProxyType(
 
 @cache
 def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return 2^16 unit normals of a domain, and views: axes and their neighbours, diagonals, then random directions."""
+    """Return 2^16 unit normals in a domain, and views: axes and neighbours, diagonals, then random directions."""
     generator = np.random.default_rng(0)
     random = generator.normal(size=(COUNT, 3))
     n = np.concatenate([directions(), random / np.linalg.norm(random, axis=1, keepdims=True)])[:COUNT]
@@ -46,7 +46,7 @@ def normals(domain: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def is_catalogues(encoding: Encoding) -> bool:
-    """Whether an encoding is the catalogue's, or a variant of one, by name and file. Users may choose any name."""
+    """Whether an encoding is the catalogue's or a variant of it, by name and file: users may choose any name."""
     known = ENCODINGS.get(encoding.name.partition(":")[0])
     return known is not None and known.glsl == encoding.glsl
 

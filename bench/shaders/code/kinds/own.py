@@ -16,7 +16,7 @@ from .....gbuffer.gl.device import device
 
 
 def is_in(kind: Kind) -> Callable[[Any], bool]:
-    """Return a function from a codec to whether its encoding is the catalogue's of this kind."""
+    """Return a function that tells whether a codec's encoding is the catalogue's encoding of this kind."""
     return lambda codec: BY_KIND[kind].get(codec.encoding.name) is codec.encoding
 
 
@@ -24,7 +24,7 @@ def defines(encoding: Any, word: str, code: str) -> dict[str, object]:
     """Return the macros of an encoding: the GLSL type of its code, its two functions, and the constants of its file.
 
     Args:
-        word: the ending of the functions' names: `_motion`.
+        word: the ending of the functions' names, such as `_motion`.
 
     Raises:
         ShaderError: its GLSL file cannot be read or lacks one of its functions.
@@ -40,7 +40,7 @@ def by_device(size: int, result: int, store: Callable[[Any, np.ndarray], np.ndar
     Args:
         size: the number of components of the code.
         result: the number of values that a decoder returns.
-        store: (codec, codes of shape (count, size)) -> the codes as they come back.
+        store: (codec, codes of shape (count, size)) -> the codes as read back from the storage.
     """
 
     def run(codec: Any, n: np.ndarray, view: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

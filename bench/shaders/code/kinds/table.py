@@ -1,4 +1,4 @@
-"""The kinds of codes that `code` writes: each a module of its word next to this one."""
+"""The kinds of codes that `code` writes, each in a module next to this one that is named after the kind's word."""
 
 from __future__ import annotations
 

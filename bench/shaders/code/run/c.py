@@ -1,4 +1,4 @@
-"""C99: compiled to a program by the system's compiler, without fused or reordered arithmetic, which limits itself."""
+"""C99: compiled by the system's compiler, without fused or reordered arithmetic, to a program that limits itself."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def compiler() -> Path:
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """Compile a C file as a program, and yield a function that runs it on rows. Raises MissingError, ShaderError."""
+    """Compile a C file to a program, and yield a function that runs it on rows. Raises MissingError, ShaderError."""
     with built(path, interface, tools.C, [*EXACT, *macros(LIMITS)]) as run:
         yield run
 
@@ -75,7 +75,7 @@ def _scalars(path: str, size: int) -> list[str]:
 
 
 def _listed(places: Sequence[str], prefix: str) -> str:
-    """Return the C text of inputs, with commas: n.xy is a structure of n.x and n.y."""
+    """Return the C text of inputs, separated by commas: n.xy becomes a structure of n.x and n.y."""
     return ", ".join(_given(place, prefix) for place in places)
 
 
@@ -87,8 +87,8 @@ def _given(place: str, prefix: str) -> str:
 
 
 def defined(values: Mapping[str, object], language: str = "c") -> Text:
-    """Return lines that define macros, as a text for compilers of a language; it is checked, because values have
-    names from a file. Raises ShaderError."""
+    """Return lines that define macros, as a text for compilers of a language. The text is checked, because values
+    contain names from a file. Raises ShaderError."""
     return judged_text("".join(f"#define {name} {value}\n" for name, value in values.items()), language)
 
 
@@ -98,10 +98,10 @@ def macros(values: Mapping[str, object]) -> list[str]:
 
 
 def compilers_wall(tool: str, place: Path) -> Wall:
-    """Return the wall for a compiler of a user's text: the compiler may use its own parts and a folder.
+    """Return the wall for a compiler of a user's text: the compiler may use only its own parts and a folder.
 
     Raises:
-        MissingError: walls are not available, or no program can be compiled and run behind one.
+        MissingError: walls are not available, or programs cannot be compiled and run behind a wall.
     """
     walls.require()
     path = str(tools.path_of(tool))
@@ -111,13 +111,13 @@ def compilers_wall(tool: str, place: Path) -> Wall:
 
 
 def programs_wall(program: Path) -> Wall:
-    """Return the wall for a program of somebody's text: it may use the system's libraries, and its own folder."""
+    """Return the wall for a program made from a user's text: it may use the system's libraries and its own folder."""
     return walls.of_program(program) | Wall(writes=(str(program.parent),))
 
 
 @cache
 def _failure_behind_wall(tool: str, path: str) -> str:
-    """Return why a compiler or its program fails behind a wall, for example if `cc` is a script; else empty."""
+    """Return why a compiler or its program fails behind a wall, for example because `cc` is a script; else empty."""
     with folder() as place:
         try:
             wall = walls.of_c_compiler(path) | Wall(writes=(str(place),))
@@ -143,8 +143,8 @@ def compiled(
 
 
 def called(program: Path, path: Path, interface: Interface) -> Run:
-    """Return a function that runs a program on rows: see main.c. Each run is a separate process, behind a wall unless
-    the text is the catalogue's."""
+    """Return a function that runs a program on rows (see main.c). Each run is a separate process, behind a wall
+    unless the text is the catalogue's."""
     wall = None if interface.is_ours else programs_wall(program)
 
     def run(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> Ran:
@@ -164,7 +164,7 @@ def called(program: Path, path: Path, interface: Interface) -> Run:
 
 
 def how() -> str:
-    """Return the C compiler's version and the options that keep it exact, as text. Raises MissingError."""
+    """Return the C compiler's version and the options for exact arithmetic, as text. Raises MissingError."""
     return f"{tools.first_line(tools.C)}, {' '.join(EXACT)}"
 
 

@@ -1,4 +1,4 @@
-"""GLSL of OpenGL ES: compiled and run by the OpenGL driver, if that supports it besides its own GLSL."""
+"""GLSL for OpenGL ES: compiled and run by the OpenGL driver, if the driver supports it besides its own GLSL."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ COMPATIBLE = "ARB_ES3_1_compatibility"
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """Compile a GLSL ES file for the GL device, and yield a function that runs it on rows. Raises MissingError,
+    """Compile a GLSL ES file for the OpenGL device, and yield a function that runs it on rows. Raises MissingError,
     ShaderError, NoDeviceError."""
     how()
     source = EmittedSource(WRAPPER, path, interface)
@@ -27,7 +27,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
 
 def how() -> str:
-    """Return the GL device's name and version. Raises NoDeviceError, or MissingError if it lacks GLSL ES 3.1."""
+    """Return the OpenGL device's name and version. Raises NoDeviceError, or MissingError if it lacks GLSL ES 3.1."""
     if f"GL_{COMPATIBLE}" not in device().context.extensions:
         raise MissingError(f"{opengl.device_name()} does not support GLSL ES 3.1: it lacks {COMPATIBLE}")
     return opengl.device_name()

@@ -1,4 +1,4 @@
-"""GLSL of desktop OpenGL: compiled and run by the GL driver."""
+"""GLSL for desktop OpenGL: compiled and run by the OpenGL driver."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WRAPPER = Path(__file__).with_suffix(".comp")
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """Compile a file for the GL device, and yield a function that runs it. Raises ShaderError, NoDeviceError."""
+    """Compile a file for the OpenGL device, and yield a function that runs it. Raises ShaderError, NoDeviceError."""
     source = EmittedSource(WRAPPER, path, interface)
     with opengl.prepared(opengl.compiled(source.text, source.explain), interface) as run:
         yield run

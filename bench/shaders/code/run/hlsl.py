@@ -1,4 +1,4 @@
-"""HLSL: glslang compiles it to SPIR-V, SPIRV-Cross makes GLSL of that, and the GL driver runs it."""
+"""HLSL: glslang compiles it to SPIR-V, SPIRV-Cross translates the SPIR-V to GLSL, and the OpenGL driver runs that."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ OPTIONS = ("-S", "comp", "-e", "main", "-V", "--target-env", "vulkan1.1", "--aut
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """Compile an HLSL file for the GL device, and yield a function that runs it on rows. Raises MissingError,
+    """Compile an HLSL file for the OpenGL device, and yield a function that runs it on rows. Raises MissingError,
     ShaderError, NoDeviceError."""
     source = EmittedSource(WRAPPER, path, interface, MADE)
     with folder() as place:
@@ -40,7 +40,7 @@ def glsl_of(place: Path, text: Text, explain: Callable[[str], str] = str) -> str
 
 
 def glsl_of_module(place: Path) -> str:
-    """Return GLSL for desktop OpenGL of the SPIR-V module MODULE in a folder. Raises MissingError, ShaderError."""
+    """Return GLSL for desktop OpenGL from the SPIR-V file MODULE in a folder. Raises MissingError, ShaderError."""
     return compile_with(tools.SPIRV_CROSS, ["--version", "430", "--no-es", "--no-420pack-extension", MODULE], place, {})
 
 
@@ -51,7 +51,7 @@ def translators() -> str:
 
 
 def how() -> str:
-    """Return the names of the translators and the GL device, as text. Raises MissingError, NoDeviceError."""
+    """Return the names of the translators and the OpenGL device, as text. Raises MissingError, NoDeviceError."""
     return f"{translators()}, {opengl.device_name()}"
 
 

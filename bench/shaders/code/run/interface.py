@@ -27,11 +27,11 @@ class Interface:
 
     Attributes:
         prefix: P, the beginning of their names.
-        size: the number of components of a code, 1 to 4, including that of a sign bit.
+        size: the number of components of a code, 1 to 4, including a sign bit.
         sign_bits: 1 if the last component of a code is a sign that is stored elsewhere, else 0.
         words: the number of 32-bit integers in a texel: 1, 2 or 4.
-        settings: the places, in the rows `n` and `view`, of the other inputs of both `P_encode` and `P_decode`:
-            view.xyz.
+        settings: the places, in the rows `n` and `view`, of the other inputs of both `P_encode` and `P_decode`, such
+            as view.xyz.
         tables: the lookup tables by name, float32 of shape (height, width, channels).
         is_ours: whether the file has no text from users.
         value: the places of the input of `P_encode`.
@@ -61,7 +61,7 @@ class Interface:
 
     @property
     def defines(self) -> dict[str, object]:
-        """The macros by which the shaders here call the six functions, by name: RUN_ENCODE, RUN_SIZE and others."""
+        """The macros with which wrapper shaders call the six functions, by name: RUN_ENCODE, RUN_SIZE and others."""
         return self.defines_with(", ".join)
 
     def defines_with(
@@ -70,8 +70,8 @@ class Interface:
         """Return the macros of `defines` for a language with a different syntax.
 
         Args:
-            listed: (places) -> the inputs as text, in place of n.xyz, view.x.
-            construct: the text of a structure, from its name and its fields.
+            listed: (places) -> the inputs as text, instead of a list such as n.xyz, view.x.
+            construct: a format for the text of a structure, from its name and its fields.
             parts: (path, size) -> the parts of a decoded value, one after the other.
         """
         value = [construct.format(self.structure, listed(self.value))] if self.structure else [listed(self.value)]
@@ -88,7 +88,7 @@ class Interface:
         return {f"RUN_{name}": value for name, value in {**named, **facts, **given, **rows, **structure}.items()}
 
     def _decoded_rows(self) -> list[list[tuple[str, int]]]:
-        """Return for each of the two rows of a decoded value the (path, size) of the parts in it."""
+        """Return for each of the two rows of a decoded value the (path, size) pairs of its parts."""
         if not self.structure:
             return [[("decoded", self.result)], []]
         rows: dict[str, list[tuple[str, int]]] = {"n": [], "view": []}
@@ -104,9 +104,9 @@ class Ran(NamedTuple):
     Attributes:
         codes: float32 of shape (count, size).
         words: uint32 of shape (count, words).
-        unpacked: from those words; float32 of shape (count, size).
-        decoded: from those codes; float32 of shape (count, result).
-        targets: from the codes; float32 of shape (count, 4).
+        unpacked: from `words`; float32 of shape (count, size).
+        decoded: from `codes`; float32 of shape (count, result).
+        targets: from `codes`; float32 of shape (count, 4).
         from_targets: from the texels of the input; float32 of shape (count, size).
     """
 
@@ -163,8 +163,8 @@ def blocks(count: int) -> Iterator[slice]:
 def rows_of(n: np.ndarray, view: np.ndarray, texels: np.ndarray) -> np.ndarray:
     """Return a shader's input: three rows of four numbers for each normal, float32 of shape (GIVEN count, 4).
 
-    The fourth number of a view is 0. Its bits change the words before they are unpacked, so that no compiler can
-    see that it unpacks what it has packed: Mesa simplifies (a + b) - b to a.
+    The fourth number of a view is 0. Its bits are combined with the words before unpacking, so that a compiler cannot
+    see that these are the packed words: Mesa simplifies (a + b) - b to a.
     """
     given = np.zeros((len(n), GIVEN, 4), np.float32)
     given[:, 0, : n.shape[1]], given[:, 1, :3], given[:, 2] = n, view[:, :3], texels

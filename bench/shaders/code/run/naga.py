@@ -1,8 +1,8 @@
-"""A WGSL file compiled by naga, in a process that naga may crash.
+"""Compilation of a WGSL file by naga, in a process that naga may crash.
 
     python -m normalbench.bench.shaders.code.run.naga FILE
 
-Error messages of naga are ignored here: the next compiler of the file reports them.
+Error messages of naga are ignored here: they are reported when the file is compiled again.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""GLSL compute shaders on the GL device: the last step of the runners of several languages."""
+"""GLSL compute shaders on the OpenGL device, which are the last step of the runners for several languages."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ GROUP = 64  # invocations, as the shaders here have them
 
 
 def device_name() -> str:
-    """Return the GL device's name and its OpenGL version, as text. Raises NoDeviceError."""
+    """Return the name of the OpenGL device and its OpenGL version, as text. Raises NoDeviceError."""
     gl = device()
     return f"{gl.renderer.split(' (')[0]} (OpenGL {gl.version.split()[0]})"
 
 
 @contextmanager
 def prepared(compute: Any, interface: Interface) -> Iterator[Run]:
-    """Yield a function that runs a compiled shader with its tables on rows; both are released afterwards.
+    """Yield a function that runs a compiled shader with its tables on rows; shader and tables are released
+    afterwards.
 
-    A sampler has the name of its table, or a translator's name that contains it.
+    A sampler has the name of its table, or a translator's name that contains the table's name.
     """
     gl = device()
     with ExitStack() as stack:
@@ -41,7 +42,7 @@ def prepared(compute: Any, interface: Interface) -> Iterator[Run]:
 
 
 def bind_tables(compute: Any, tables: Mapping[str, np.ndarray], stack: ExitStack) -> None:
-    """Bind tables as textures, released with the stack."""
+    """Bind tables as textures, which are released with the stack."""
     bind(compute, uploaded(device(), stack, _tables_by_sampler(compute, tables)))
 
 
@@ -51,7 +52,8 @@ def _tables_by_sampler(compute: Any, tables: Mapping[str, np.ndarray]) -> dict[s
 
 
 def dispatched(gl: Device, compute: Any, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Run a shader on rows, GIVEN for each normal; return float32 of shape (MADE count, 4), uint32 of (count, 4)."""
+    """Run a shader on rows, GIVEN per normal, and return its two outputs: float32 of shape (MADE count, 4) and uint32
+    of shape (count, 4)."""
     count = len(given) // GIVEN
     if not count:
         return np.zeros((0, 4), np.float32), np.zeros((0, 4), np.uint32)
@@ -81,5 +83,5 @@ def compiled(text: str, explain: Any) -> Any:
 
 
 def _without_head(log: str) -> str:
-    """Return a driver's log without moderngl's own first lines, one of which says that there is an error."""
+    """Return a driver's log without the words that moderngl adds at its beginning."""
     return log.replace("GLSL Compiler failed", "").replace("compute_shader", "")

@@ -1,4 +1,4 @@
-"""Slang: slangc translates it to GLSL for Vulkan; the other steps, by way of SPIR-V, are as for HLSL."""
+"""Slang: slangc translates it to GLSL for Vulkan; the other steps, through SPIR-V, are the same as for HLSL."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .sources import EmittedSource, compile_with, folder
 
 @contextmanager
 def prepared(path: Path, interface: Interface) -> Iterator[Run]:
-    """Compile a Slang file for the GL device, and yield a function that runs it on rows. Raises MissingError,
+    """Compile a Slang file for the OpenGL device, and yield a function that runs it on rows. Raises MissingError,
     ShaderError, NoDeviceError."""
     source = EmittedSource(WRAPPER, path, interface, MADE)
     with folder() as place:
@@ -31,7 +31,7 @@ def prepared(path: Path, interface: Interface) -> Iterator[Run]:
 
 
 def how() -> str:
-    """Return the names of the compilers and the GL device, as text. Raises MissingError, NoDeviceError."""
+    """Return the names of the compilers and the OpenGL device, as text. Raises MissingError, NoDeviceError."""
     return f"slangc {tools.first_line(tools.SLANG)}, {translators()}, {opengl.device_name()}"
 
 

@@ -1,4 +1,4 @@
-"""A file of source code and the program around it: texts, compilers' messages, and compilers."""
+"""A file of source code and the program around it: texts, compilers and their messages."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ SECONDS = 60
 
 
 class EmittedSource(Source):
-    """A program around a file, which replaces the program's line `#include CODE`.
+    """A program with a file in place of the program's line `#include CODE`.
 
     Args:
         wrapper: the program, whose first line stays first.
         code: the file; its own `#version` is left out.
-        made: the language's text of a structure: see `Interface.defines_with`.
+        made: the language's text for a structure; see `construct` in `Interface.defines_with`.
     """
 
     def __init__(self, wrapper: Path, code: Path, interface: Interface, construct: str = "{}({})"):
@@ -94,8 +94,8 @@ def compile_with(
 
 
 def first_complaint(log: str) -> str:
-    """Return the first line of a compiler's log that names an error, else the first line with words. The place of an
-    error is put in front if the log has it on a line of its own: ` --> FILE:LINE:COLUMN`."""
+    """Return the first line of a compiler's log that names an error, else the first line with words. If the log has
+    the place of an error on a separate line, ` --> FILE:LINE:COLUMN`, the place is put in front."""
     lines = [line.strip() for line in log.splitlines() if re.search(r"\w", line)]
     errors = [line for line in lines if re.search(r"\berror\b", line, re.I)]
     complaint = (errors or lines or ["failed without a message"])[0].removeprefix("ERROR: ")

@@ -32,7 +32,7 @@ ROW = 16  # bytes: four numbers
 
 @cache
 def device() -> Any:
-    """Return the first device of wgpu. Raises MissingError, which says what to install."""
+    """Return wgpu's first device. Raises MissingError, which says what to install."""
     try:
         gpus = adapters()
     except ImportError as error:
@@ -46,7 +46,7 @@ def device() -> Any:
 
 
 def device_name() -> str:
-    """Return the device's name in rows. Raises MissingError."""
+    """Return the device's name as it appears in rows. Raises MissingError."""
     return f"{device().adapter.info['device']}, {API}"
 
 
@@ -76,10 +76,10 @@ class Program:
         name: the name of the text in messages.
         text: the shader; its entry point MAIN reads the first buffer of group 1 and writes the others.
         tables: the lookup tables by name, float32 of shape (height, width, channels).
-        results: the number of buffers that it writes.
+        results: the number of buffers that the shader writes.
 
     Raises:
-        ShaderError: it does not compile; one line.
+        ShaderError: the shader does not compile; one line.
     """
 
     def __init__(self, gpu: Any, name: str, text: Text, tables: Mapping[str, np.ndarray], results: int):

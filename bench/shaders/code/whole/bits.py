@@ -1,4 +1,4 @@
-"""Words in bits of a target's channels, as text: where their parts are shifted to."""
+"""Words that are stored in bits of a target's channels, as text: the positions to which their parts are shifted."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from .....gbuffer.layouts.words import Word
 
 @dataclass(frozen=True)
 class WordPart:
-    """The part of a word in a channel. The word's integer is shifted left by `shift`, or right if that is negative.
-    Bits above the channel are masked off if `is_cut`; `is_masked` means that other bits are above the part."""
+    """The part of a word that is in one channel. The word's integer is shifted left by `shift`, or right if that is
+    negative. Bits above the channel are masked off if `is_cut`; `is_masked` means that other bits are above the
+    part."""
 
     word: Word
     shift: int
@@ -21,8 +22,8 @@ class WordPart:
 
 
 def parts_of(words: Sequence[Word], channel: int, storage: Storage) -> Iterator[WordPart]:
-    """Yield the parts of words in a channel. Bits count from the first channel's highest, and a channel of another
-    size than the first has no parts."""
+    """Yield the parts of words in a channel. Bits are counted from the highest bit of the first channel. A channel
+    of a different size has no parts."""
     size = storage.bits[0]
     if storage.bits[channel] != size:
         return
@@ -34,10 +35,11 @@ def parts_of(words: Sequence[Word], channel: int, storage: Storage) -> Iterator[
 
 
 def packed_texts(parts: Sequence[tuple[WordPart, str]], size: int) -> list[str]:
-    """Return the GLSL terms that, joined with |, form a channel's integer, one for each part, from its word's name.
+    """Return one GLSL term per part, from the name of the part's word. Joined with |, the terms form a channel's
+    integer.
 
     Args:
-        size: the number of bits of the channel."""
+        size: the number of bits in the channel."""
     return [_put_text(part, name, size, len(parts) > 1) for part, name in parts]
 
 

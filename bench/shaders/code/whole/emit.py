@@ -44,7 +44,7 @@ OF_DEPTH = ("encode_depth", "decode_depth")
 
 @dataclass(frozen=True, eq=False)
 class GBufferCode:
-    """The functions of a layout in one language, without the file's head.
+    """The functions of a layout in one language, without the comment at the head of the file.
 
     Attributes:
         layout, language: their layout and language; `language` is a key of LANGUAGES.
@@ -69,13 +69,13 @@ class GBufferCode:
         return self.layout.name + LANGUAGES[self.language].ending
 
     def text(self, head: Iterable[str]) -> str:
-        """Return the text of the file: the functions under a comment of these paragraphs, in an include guard if the
-        language has one."""
+        """Return the text of the file: the functions under a comment with these paragraphs, in an include guard if
+        the language has a preprocessor."""
         guard = self.layout.name if self.prefix == PREFIX else self.prefix
         return commented(self.body, self.language, guard, head)
 
     def files(self, head: Iterable[str]) -> dict[str, bytes]:
-        """Return the contents of all files of the layout, by file name: its functions under a comment of these
+        """Return the contents of all files of the layout, by file name: its functions under a comment with these
         paragraphs, and its lookup tables."""
         beside = table_files(self.tables, self.language, identifier(self.layout.name), self.prefix)
         return {self.name: self.text(head).encode(), **beside}
@@ -123,12 +123,13 @@ def _program(texts: Texts, prefix: str) -> Program:
 
 
 def functions_text(texts: Texts) -> str:
-    """Return the structures and the two functions of a layout in GLSL, with macros for the functions they call."""
+    """Return the GLSL of a layout's structures and two functions, with macros for the functions that these call."""
     return _template().render(texts.context)
 
 
 def read_of(layout: Layout) -> tuple[dict[str, object], dict[str, Any]]:
-    """Return macros and files for the functions that a layout's code calls, as for `Source`. Raises ShaderError."""
+    """Return macros and files for the functions that a layout's code calls, in the form for `Source`. Raises
+    ShaderError."""
     defines = {**depth_defines(layout.depth_encoding), **encoding_defines(layout.encoding), **curve_defines(layout)}
     files = {"ENCODING": layout.encoding.glsl, "DEPTH_ENCODING": layout.depth_encoding.glsl}
     return defines, files | {"CURVES": curve_files(layout)}

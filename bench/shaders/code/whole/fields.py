@@ -11,14 +11,14 @@ from .text import Texts
 
 @dataclass(frozen=True)
 class Leaf:
-    """A number of a structure: where it is, `target_0.x`, and whether it is a whole number."""
+    """A number in a structure: its path, such as `target_0.x`, and whether it is a whole number."""
 
     path: str
     is_whole: bool
 
 
 def surface_leaves(texts: Texts) -> list[Leaf]:
-    """Return the numbers of a surface, in the order of its structure: path, and whether it is a whole number."""
+    """Return the numbers of a surface, in the order of its structure: the path, and whether it is a whole number."""
     return _leaves((field.name, field.kind) for field in texts.contents.fields)
 
 

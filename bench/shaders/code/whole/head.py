@@ -1,4 +1,4 @@
-"""The head above a layout's functions: the layout as a table."""
+"""The comment above a layout's functions, with the layout as a table."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def head(code: GBufferCode, command: str, verified: str) -> list[str]:
 
     Args:
         command: the command that made the file.
-        verified: the comparison of its results with the renderer's.
+        verified: the comparison of the file's results with the renderer's, in words.
     """
     layout, language = code.layout, LANGUAGES[code.language]
     return [
@@ -69,7 +69,7 @@ def _row(contents: Contents, word: Word) -> tuple[str, ...]:
 
 
 def _places(contents: Contents, word: Word) -> Iterator[str]:
-    """Yield the positions of a word, by channel: `x`, or `x 20-31`."""
+    """Yield the positions of a word, by channel, such as `x` or `x 20-31`."""
     storage = contents.layout.targets[word.target].storage
     if not word.bits:
         yield AXES[word.first]
@@ -81,7 +81,7 @@ def _places(contents: Contents, word: Word) -> Iterator[str]:
 
 
 def _field(contents: Contents, word: Word) -> str:
-    """Return the name of a word in the structure: `base_color.x`."""
+    """Return the name of a word in the structure, such as `base_color.x`."""
     if word.component.startswith("normal."):
         return word.component
     field = next(field for field in contents.fields if word in field.words or _is_fourth(field.name, word))

@@ -23,15 +23,15 @@ BESIDE = 1
 
 
 def pack_operation(layout: Layout) -> Operation:
-    """Return the operation that packs a surface into the channels that hold something of it. Raises ShaderError if no
-    code can be written for the layout, or its cost depends on the pixel's position."""
+    """Return the operation that packs a surface into the channels that hold part of it. Raises ShaderError if code
+    cannot be written for the layout, or its cost depends on the pixel's position."""
     texts = _texts(layout)
     return _operation(texts, ("Surface", surface_leaves(texts)), ("Targets", _held(texts)), "pack_gbuffer")
 
 
 def unpack_operation(layout: Layout) -> Operation:
-    """Return the operation that unpacks a surface from the channels that hold something of it. Raises ShaderError
-    like `pack_operation`."""
+    """Return the operation that unpacks a surface from the channels that hold part of it. Raises ShaderError like
+    `pack_operation`."""
     texts = _texts(layout)
     return _operation(texts, ("Targets", _held(texts)), ("Surface", surface_leaves(texts)), "unpack_gbuffer")
 
@@ -48,11 +48,11 @@ def _texts(layout: Layout) -> Texts:
 def _operation(
     texts: Texts, given: tuple[str, Sequence[Leaf]], returned: tuple[str, Sequence[Leaf]], function: str
 ) -> Operation:
-    """Return the operation of one of a layout's functions.
+    """Return the operation for one of a layout's functions.
 
     Args:
-        given, returned: the type of its argument and of its result, with the numbers that are loaded and stored.
-        function: its name."""
+        given, returned: the types of its argument and of its result, each with the numbers that are loaded or stored.
+        function: the function's name."""
     defines, files = read_of(texts.contents.layout)
     own = {
         # Macros are of one line.
@@ -80,7 +80,7 @@ def _store(index: int, leaf: Leaf) -> str:
 
 
 def _held(texts: Texts) -> list[Leaf]:
-    """Return the channels that hold something; the values written to the others are constants."""
+    """Return the channels that hold part of a surface; constants are written to the others."""
     places = [(i, channel) for i, target in enumerate(texts.targets) for channel in range(size_of(target.kind))]
     return [leaf for leaf, place in zip(target_leaves(texts), places, strict=True) if _holds(texts.contents, *place)]
 

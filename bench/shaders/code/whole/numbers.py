@@ -1,4 +1,4 @@
-"""A number of a layout as it is written to a channel or to bits, and back: `words.glsl` for one word."""
+"""A number of a layout, as written to a channel or to bits and as read back: `words.glsl` for one word."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ UNORM, SNORM, HALF, SMALL = range(4)
 
 
 def ways_of(layout: Layout) -> tuple[int, ...]:
-    """Return the rounding of each target: 0 if its format rounds, else one more than its number in `storage.glsl`."""
+    """Return the rounding of each target: 0 if its format rounds, else one more than the rounding's number in
+    `storage.glsl`."""
     homes = {word.target for word in layout.words if word.component.startswith("normal.")}
     way = 0 if layout.rounding == "nearest" else ROUNDINGS.index(layout.rounding) + 1
     plain = (target.storage.is_integer or target.storage.curved for target in layout.targets)
@@ -26,7 +27,7 @@ def ways_of(layout: Layout) -> tuple[int, ...]:
 
 @dataclass(frozen=True)
 class Number:
-    """A word of a layout, as text of GLSL."""
+    """A word of a layout, as GLSL text."""
 
     layout: Layout
     word: Word
@@ -41,7 +42,7 @@ class Number:
 
     @property
     def _is_unit(self) -> bool:
-        """Whether texels hold a number of the normal in [0, 1], whatever their format."""
+        """Whether the word is a number of the normal in [0, 1], whatever the format of its texels."""
         return self._is_normal and self.layout.encoding.is_unit
 
     @property
@@ -50,7 +51,7 @@ class Number:
 
     @property
     def is_whole(self) -> bool:
-        """Whether it is a whole number of the surface."""
+        """Whether the word is a whole number of the surface."""
         return self.word.component in (*WHOLE_NUMBERS, OTHER)
 
     @property
@@ -59,7 +60,7 @@ class Number:
 
     @property
     def is_open(self) -> bool:
-        """Whether numbers beyond 1 keep their value in it."""
+        """Whether numbers above 1 keep their value in the word."""
         return not self.word.bits and storage_kind(self._storage) >= HALF
 
     @property
@@ -68,7 +69,7 @@ class Number:
 
     @property
     def is_carrier(self) -> bool:
-        """Whether a number of the normal's code is stored as its sign; signed depths do not count."""
+        """Whether the word's sign holds a number of the normal's code; signed depths do not count."""
         return bool(self.word.sign) and not self.is_depth
 
     @property
@@ -77,8 +78,8 @@ class Number:
         return bool(self.word.bits) or storage_kind(self._storage) in (UNORM, SMALL)
 
     def carried_text(self, x: str, sign: str) -> str:
-        """Return the GLSL expression of a share `x` of [0, 1] with the sign of `sign`, as texels hold it: kept off 0,
-        so that rounding leaves the sign."""
+        """Return the GLSL expression for a share `x`, in [0, 1], with the sign of `sign`, as stored in texels. The
+        share is kept above 0, so that rounding preserves the sign."""
         bits = self.word.bits or self._storage.bits[self.word.first]
         least = glsl_value(least_carried(self._storage, bits))
         number = f"sign_not_zero({sign}) * clamp({x}, {least}, 1.0)"
@@ -107,7 +108,7 @@ class Number:
         return "{x} * 2.0 - 1.0" if self._is_signed or self._is_unit else "{x}"
 
     def bits_text(self, x: str) -> str:
-        """Return the GLSL expression of the unsigned integer that is stored for the number `x`, given as text."""
+        """Return the GLSL expression for the unsigned integer that stores the number with the expression `x`."""
         scale = self._scale
         if self.is_whole:
             return f"{x} & {scale}u"
@@ -125,7 +126,7 @@ class Number:
         return f"uint({whole if self.word.bits <= SURE_BITS else f'min({whole}, {scale}.0)'})"
 
     def bits_value(self, integer: str) -> str:
-        """Return the GLSL expression of the number that an unsigned integer, given by its name, stands for."""
+        """Return the GLSL expression for the number that an unsigned integer stands for, from the integer's name."""
         if self.is_whole:
             return integer
         if self.is_depth:
@@ -139,14 +140,14 @@ class Number:
         return self._unit_out.format(x=f"float({integer}) / {self._scale}.0")
 
     def channel_text(self, x: str, is_float: bool = False) -> str:
-        """Return the GLSL expression that is written to a channel of its own for the number `x`: the format converts
-        the number, or it is rounded before."""
+        """Return the GLSL expression that is written for the number `x` to a channel of its own. The format converts
+        the number, or the expression rounds it first."""
         way = ways_of(self.layout)[self.word.target]
         return self._rounded_text(self._plain_text(x, is_float), way - 1) if way else self._plain_text(x, is_float)
 
     def _rounded_text(self, x: str, way: int) -> str:
-        """Return the GLSL expression of the number `x` rounded to a value of the format, in a way as `storage.glsl`
-        counts them; `x` itself for 32-bit floats."""
+        """Return the GLSL expression for the number `x` rounded to a value of the format; `x` itself for 32-bit
+        floats. `way` is the number of the rounding in `storage.glsl`."""
         kind, bits = storage_kind(self._storage), self._storage.bits[self.word.first]
         if kind in (HALF, SMALL):
             form = "5, 10, true" if kind == HALF else f"5, {bits - 5}, false"
@@ -165,7 +166,7 @@ class Number:
         return f"{x} * 0.5 + 0.5" if is_halved else x
 
     def channel_value(self, x: str, is_float: bool = False) -> str:
-        """Return the GLSL expression of the number that is read from a channel of its own, `x`."""
+        """Return the GLSL expression for the number stored in a channel of its own, from the channel's value `x`."""
         kind = storage_kind(self._storage)
         if self.is_depth and self.layout.depth_encoding.signed and kind < HALF:
             return f"from_fixed_code(uint({x} * {self._scale}.0 + 0.5), {self._scale}.0, true)"

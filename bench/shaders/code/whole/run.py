@@ -1,4 +1,4 @@
-"""Runs a file of a layout's code: rows of surfaces and texels in, rows of texels and surfaces out."""
+"""Runners for files of a layout's code: rows of surfaces and texels in, rows of texels and surfaces out."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ def run(code: GBufferCode, rows: np.ndarray, settings: np.ndarray) -> np.ndarray
     Args:
         rows: uint32 of shape (count, numbers of a surface and of the targets), floats by their bits: the input of
             `pack`, then the input of `unpack`.
-        settings: the other inputs of both, as from `surfaces.settings`.
+        settings: the other inputs of both functions, as from `surfaces.settings`.
 
     Returns:
         uint32 of the shape of `rows`: the results of `pack`, then the results of `unpack`.
 
     Raises:
         MissingError: a tool is missing; what to install.
-        ShaderError: it does not compile or run.
+        ShaderError: the file does not compile or run.
         NoDeviceError: there is no OpenGL device.
     """
     given = np.concatenate([rows, *(settings[:, PLACES[name]] for name in code.settings)], axis=1)
@@ -74,8 +74,8 @@ def _wrapped(name: str, code: GBufferCode) -> str:
 
 
 def _settings_text(code: GBufferCode) -> tuple[str, int]:
-    """Return the text of the arguments of both functions after the first, each after a comma, and how many numbers a
-    row has with them; empty text without settings."""
+    """Return the text of both functions' arguments after the first, each preceded by a comma, and the number of
+    values in a row that includes them; empty text without settings."""
     number, vector = ARGUMENTS.get(code.language, ("", ""))
     text, offset = "", _made(code)
     for name in code.settings:
@@ -87,7 +87,7 @@ def _settings_text(code: GBufferCode) -> tuple[str, int]:
 
 
 def dispatched(compute: Any, rows: np.ndarray, width: int) -> np.ndarray:
-    """Run a compute shader of OpenGL on rows and return its output: uint32 of shape (count, width)."""
+    """Run an OpenGL compute shader on rows and return its output: uint32 of shape (count, width)."""
     gl, count = device(), len(rows)
     with ExitStack() as stack:
         given = gl.owned(stack, gl.context.buffer(np.ascontiguousarray(rows)))

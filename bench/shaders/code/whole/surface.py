@@ -1,4 +1,4 @@
-"""The attributes of a surface that a layout holds, as the fields of a structure."""
+"""Surface attributes that a layout stores, as the fields of a structure."""
 
 from __future__ import annotations
 
@@ -25,14 +25,15 @@ WORDS_OF_LANGUAGES = BUILTINS.union(*(language.writer.reserved for language in L
 
 @dataclass(frozen=True)
 class Field:
-    """A field of the surface.
+    """A field of the surface structure.
 
     Attributes:
         name: its name in the structure.
-        kind: its type in GLSL.
-        components: the layout's components that its numbers are, in order.
-        words: the words that hold these, one word for an `other`; empty for the normal, whose words hold its code.
-        kept: the curve or the encoding of its stored numbers, or None.
+        kind: its GLSL type.
+        components: the layout components that make up the field, in order; empty for the normal.
+        words: the words that store these components, a single word for `other`; empty for the normal, whose words
+            store its code.
+        kept: the curve or the encoding of the stored numbers, or None.
     """
 
     name: str
@@ -47,8 +48,8 @@ class Contents:
     """The contents of a layout.
 
     Raises:
-        UsageError: it holds something that cannot be written, such as a normal that is rounded with noise; one
-            line.
+        UsageError: no code can be written for part of the layout, such as a normal that is rounded with noise; the
+            message is one line.
     """
 
     layout: Layout
@@ -59,13 +60,13 @@ class Contents:
 
     @cached_property
     def words(self) -> tuple[Word, ...]:
-        """All words, including those of `other`, in the order of the targets."""
+        """All words in target order, including `other` words."""
         name, targets = self.layout.name, self.layout.targets
         return tuple(word for i, target in enumerate(targets) for word in all_placed(name, i, target))
 
     @cached_property
     def fields(self) -> tuple[Field, ...]:
-        """The fields: the normal first, then those of the material, then the others."""
+        """The fields: the normal, then the material's fields, then the `other` fields."""
         return (Field("normal", "vec3", ()), *self._material_fields(), *self._other_fields())
 
     def _material_fields(self) -> Iterator[Field]:
@@ -79,7 +80,7 @@ class Contents:
             yield Field(self._name(first), kind, parts, words, words[0].kept)
 
     def _name(self, component: str) -> str:
-        """Return a component's name in the structure; without metallic, the surface colour is `diffuse_color`."""
+        """Return a component's field name; if the layout has no metallic, `base_color` becomes `diffuse_color`."""
         if component == "base_color" and "metallic" not in self.layout.components:
             return "diffuse_color"
         # Of metal/rough materials a roughness lies where others have a power.
@@ -98,12 +99,12 @@ class Contents:
 
 
 def _components(quantity: str, numbers: str) -> tuple[str, ...]:
-    """Return the components of a quantity, such as motion.x and motion.y; if it is one number, the quantity."""
+    """Return the components of a quantity, such as motion.x and motion.y; for one number, the quantity."""
     return tuple(f"{quantity.partition('.')[0]}.{number}" for number in numbers) or (quantity,)
 
 
 def _unwritten(layout: Layout) -> str:
-    """Return the part of a layout that cannot be written, in words; empty if all of it can."""
+    """Return a description of the part of a layout that cannot be written as code; empty if all of it can."""
     encoding, components = layout.encoding, layout.components - {"power"}
     if layout.has_signed_depth and "depth" not in components:
         return f"the sign of {encoding.name}, which needs a depth in a target"
@@ -129,5 +130,5 @@ def _unwritten_other(layout: Layout) -> str:
 
 
 def code_is_whole(kept: Kept | None) -> bool:
-    """Whether the numbers of a field are one code: a light's, or a motion's."""
+    """Whether a field's numbers form a single code, as for light and motion vectors."""
     return kept is not None and (isinstance(kept.encoding, LightEncoding) or kept.encoding in MOTION_ENCODINGS.values())

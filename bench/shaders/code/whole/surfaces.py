@@ -1,4 +1,4 @@
-"""Random surfaces for a layout's code, as rows of 32-bit words."""
+"""Random surfaces for testing a layout's code, as rows of 32-bit words."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ PLACES = {"view": slice(0, 3), "near": slice(3, 4), "far": slice(4, 5)}
 
 
 def surfaces(contents: Contents, count: int, seed: int = 0) -> np.ndarray:
-    """Return surfaces with random values of every field, including its ends and values beyond them.
+    """Return surfaces with random field values, some at the ends of a field's range and some beyond it.
 
     Returns:
-        uint32 of shape (count, numbers), in the order of the structure; floats by their bits.
+        uint32 of shape (count, numbers), in the structure's order; floats are stored as their bits.
     """
     random = np.random.default_rng(seed)
     view = settings(count, seed)[:, PLACES["view"]].view(np.float32)
@@ -30,10 +30,10 @@ def surfaces(contents: Contents, count: int, seed: int = 0) -> np.ndarray:
 
 
 def settings(count: int, seed: int = 0) -> np.ndarray:
-    """Return the other inputs of each surface's functions: its view-space position, and the near and far planes.
+    """Return the other function inputs for each surface: its view-space position, and the near and far planes.
 
     Returns:
-        uint32 of shape (count, 5), in the order of PLACES; floats by their bits.
+        uint32 of shape (count, 5), in the order of PLACES; floats are stored as their bits.
     """
     view = np.random.default_rng(seed).uniform((-1.0, -1.0, -3.0), (1.0, 1.0, -0.5), (count, 3))
     planes = np.broadcast_to([NEAR, FAR], (count, 2))
@@ -65,7 +65,7 @@ def _numbers(contents: Contents, field: Field, random: np.random.Generator, view
 
 
 def _bits(contents: Contents, field: Field) -> int:
-    """Return the number of bits of a whole number; in a float, the number of its mantissa bits."""
+    """Return the number of bits in a field's whole number; if a float stores it, the number of mantissa bits."""
     (word,) = field.words
     storage = contents.layout.targets[word.target].storage
     if word.bits or storage.kind != "float":
@@ -74,7 +74,7 @@ def _bits(contents: Contents, field: Field) -> int:
 
 
 def _normals(contents: Contents, random: np.random.Generator, view: np.ndarray) -> np.ndarray:
-    """Return unit normals of the encoding's domain, (count, 3), those along axes and next to them first."""
+    """Return unit normals in the encoding's domain, (count, 3), starting with those on and near the axes."""
     normals = random.normal(size=view.shape)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     hard = directions()[: len(view) // 2]

@@ -1,4 +1,4 @@
-"""The two functions of a layout as text of GLSL: lines of `gbuffer.glsl.j2`."""
+"""GLSL text of a layout's two functions, as lines for the template `gbuffer.glsl.j2`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ JOINED, SHORT = 3, 12
 
 @dataclass(frozen=True)
 class TargetText:
-    """A target of the structure: its name and its type in GLSL."""
+    """The GLSL name and type of a target, as a field of the structure."""
 
     name: str
     kind: str
@@ -49,7 +49,7 @@ class Texts:
 
     @property
     def targets(self) -> list[TargetText]:
-        """The targets: four numbers, or as many whole numbers as the format has."""
+        """The targets: each a vec4, or as many unsigned integers as the format has channels."""
         kinds = {1: "uint", 2: "uvec2", 4: "uvec4"}
         storages = [target.storage for target in self._layout.targets]
         return [
@@ -71,8 +71,7 @@ class Texts:
             yield from self._packed_target(index, target, names)
 
     def _coded(self, field: Field, names: dict[str, str]) -> Iterator[str]:
-        """Yield lines of GLSL that put a field on its curve or into its code, if it has one; the text of each
-        component is added to `names`."""
+        """Yield GLSL lines that apply a field's curve or encoding, if any; add the components' texts to `names`."""
         parts = [f"s.{field.name}"]
         if field.kind.startswith("vec"):
             parts = [f"s.{field.name}.{axis}" for axis in AXES[: len(field.components)]]
@@ -89,7 +88,7 @@ class Texts:
                 yield f"float {_local(component)} = {encoding.name}_encode_curve({part}, {limit});"
 
     def _depth_number(self, word: Word, names: dict[str, str]) -> Iterator[str]:
-        """Yield GLSL lines that compute a depth's number, with the sign stored in it; it is added to `names`."""
+        """Yield GLSL lines that compute a depth's stored number, signed if the layout needs it; add it to `names`."""
         depth, names["depth"] = "s.depth", "depth_number"
         if self._layout.has_signed_depth:
             depth = "signed_depth"
@@ -97,7 +96,7 @@ class Texts:
         yield f"float depth_number = DEPTH_ENCODE(depth_or_far({depth}, far), near, {self._far(word)});"
 
     def _far(self, word: Word) -> str:
-        """Return the text of the far plane: "1.0" if floats hold depths in the scene's own units, else "far"."""
+        """Return the GLSL text for the far plane: "1.0" if floats hold depths in the scene's units, else "far"."""
         return "1.0" if self._layout.depth_encoding.own_units and Number(self._layout, word).is_open else "far"
 
     @property
@@ -135,7 +134,7 @@ class Texts:
         yield f"{target.kind} {target.name} = {_listed(target.kind, channels)};"
 
     def _channel(self, words: list[Word], index: int, channel: int, names: dict[str, str]) -> tuple[list[str], str]:
-        """Return the lines of GLSL before a target's, and the text of a channel's value, 0 if it is empty."""
+        """Return the GLSL lines to place before a target's line, and the text of a channel's value (0 if empty)."""
         name = f"channel_{index}_{AXES[channel]}"
         own = next((word for word in words if not word.bits and word.first == channel), None)
         if own:
@@ -166,8 +165,8 @@ class Texts:
             yield from self._field_lines(field, names)
 
     def _signed_lines(self, word: Word, names: dict[Word, str], signs: dict[str, str]) -> Iterator[str]:
-        """Yield lines of GLSL that compute a number with a sign. The text of this number, or of a depth, is replaced
-        in `names`, and the sign's text is added to `signs`."""
+        """Yield GLSL lines that compute a number with a stored sign. Replace the text of the number, or of a depth,
+        in `names`, and add the text of the sign to `signs`."""
         name, number = f"signed_{_local(word.component)}", names[word]
         if word.component == "depth":
             decoded = f"DEPTH_DECODE({number}, near, {self._far(word)})"
@@ -182,7 +181,7 @@ class Texts:
             yield f"float {name} = {number};"
 
     def _taken_words(self, index: int, names: dict[Word, str]) -> Iterator[str]:
-        """Yield GLSL lines that take integers out of a target; each word's number is added to `names`."""
+        """Yield GLSL lines that extract integers from a target; add the text of each word's number to `names`."""
         storage = self._layout.targets[index].storage
         words = [word for word in self.contents.words if word.target == index]
         held = {}
@@ -224,7 +223,7 @@ class Texts:
         yield f"{field.kind} {field.name} = {self._joined(field, parts)};"
 
     def _decoded(self, field: Field, text: str) -> str:
-        """Return the GLSL text of a number with its curve undone; unchanged without a curve, or for a code."""
+        """Return GLSL text that undoes the curve of a number; the text unchanged for a code or without a curve."""
         if field.kept is None or code_is_whole(field.kept):
             return text
         return f"{field.kept.encoding.name}_decode_curve({text}, {glsl_value(field.kept.range)})"
@@ -241,7 +240,7 @@ class Texts:
     # Names.
 
     def _words_of(self, field: Field) -> list[Word]:
-        """Return the words of a field's components; a code of light has one word more than the field has numbers."""
+        """Return the words of a field's components; a light code has one more word than the field has numbers."""
         by_component = {word.component: word for word in self.contents.words}
         return [by_component[component] for component in _components_of(field)]
 
@@ -258,7 +257,7 @@ class Texts:
 
 
 def _components_of(field: Field) -> tuple[str, ...]:
-    """Return the components that hold the codes of a field: its own, and for a code of light a fourth, NAME.a."""
+    """Return the components that store a field: its own and, for a light code, a fourth, NAME.a."""
     is_light = field.kept is not None and isinstance(field.kept.encoding, LightEncoding)
     return (*field.components, f"{field.name}.a") if is_light else field.components
 

@@ -42,11 +42,11 @@ class Agreement:
 
     Attributes:
         count: the number of surfaces.
-        differing: surfaces with a different bit in some target.
-        steps: the largest difference of a number there, in steps.
-        unpacked: numbers of surfaces that come back different: whole numbers with another value, and other numbers
-            by more than DECODED of their value, or of 1.
-        decoded: the largest difference of a number that comes back, as a share of its value, or of 1.
+        differing: the number of surfaces with a different bit in any target.
+        steps: the largest difference between stored numbers, in steps.
+        unpacked: the number of unpacked numbers that differ: whole numbers by any amount, other numbers by more than
+            DECODED, relative to the larger of their magnitude and 1.
+        decoded: the largest difference between unpacked floats, relative to the larger of their magnitude and 1.
     """
 
     count: int
@@ -77,7 +77,7 @@ def agreement(code: GBufferCode, count: int = COUNT, seed: int = 0) -> Agreement
 
     Raises:
         MissingError: the tool that runs the language is not installed.
-        ShaderError: it does not compile or run.
+        ShaderError: the code does not compile or run.
         NoDeviceError: there is no OpenGL device.
     """
     contents = code.texts.contents
@@ -92,9 +92,9 @@ class Expected:
     """The results of the renderer's GLSL for surfaces.
 
     Attributes:
-        stored: uint32 of shape (count, targets, 4): the contents of targets, as texels of whole numbers or floats
-            by bits.
-        surfaces: uint32 of shape (count, numbers), the surfaces that are decoded from them.
+        stored: uint32 of shape (count, targets, 4): the contents of the targets, as integer texels or as the bits of
+            floats.
+        surfaces: uint32 of shape (count, numbers), the surfaces that are decoded from `stored`.
     """
 
     def __init__(self, contents: Contents, given: np.ndarray, besides: np.ndarray):
@@ -118,7 +118,7 @@ class Expected:
             return np.concatenate([dispatched(self._program, part, rows.shape[1]) for part in parts])
 
     def _columns(self) -> dict[str, int]:
-        """Return the column of each component's number in the rows of surfaces."""
+        """Return the column of each component in the rows of surfaces, by the component's name."""
         columns, column = {}, NORMAL
         for field in self.contents.fields[1:]:
             for component in field.components:
@@ -127,7 +127,7 @@ class Expected:
         return columns
 
     def _numbers(self) -> np.ndarray:
-        """Return the normal and the numbers that the renderer is given, uint32 of shape (count, numbers): floats by
+        """Return the renderer's inputs, the normal and the numbers, as uint32 of shape (count, numbers): floats as
         their bits, whole numbers as floats, and 0 for components that the layout lacks."""
         numbers = np.zeros((len(self._given), NORMAL + len(COMPONENTS)), np.float32)
         numbers[:, :NORMAL] = self._given[:, :NORMAL].view(np.float32)
@@ -140,7 +140,7 @@ class Expected:
         return numbers.view(np.uint32)
 
     def _add_others(self) -> None:
-        """Store the values that the renderer does not keep at their places in the layout."""
+        """Put the values of `other` fields, which the renderer does not store, at their places in the targets."""
         columns = self._columns()
         for field in self.contents.fields:
             if field.words and field.words[0].component == OTHER:
@@ -148,8 +148,8 @@ class Expected:
                 _put(self.contents.layout, field.words[0], value, field.kind == "float", self.stored)
 
     def _surfaces(self, decoded: np.ndarray) -> np.ndarray:
-        """Return surfaces with the renderer's normals and numbers. Other fields are as given, with floats as the
-        format stores them."""
+        """Return the surfaces expected after unpacking: the renderer's decoded normals and numbers, and the other
+        fields as given, with floats as their format stores them."""
         expected = self._given.copy()
         for field in self.contents.fields:
             if field.kind == "float" and field.words[0].component == OTHER:
@@ -165,7 +165,7 @@ class Expected:
         return expected
 
     def read(self, code: GBufferCode) -> np.ndarray:
-        """Return the values read from targets, in the order of the structure: uint32 of shape (count, numbers)."""
+        """Return the values to read from the targets, in the structure's order: uint32 of shape (count, numbers)."""
         places = (leaf.path.removeprefix("target_").partition(".") for leaf in target_leaves(code.texts))
         return np.stack([self.stored[:, int(target), "xyzw".index(axis or "x")] for target, _, axis in places], axis=1)
 
@@ -179,7 +179,7 @@ def _reference_text(layout: Layout) -> str:
 
 
 def written_texels(code: GBufferCode, packed: np.ndarray) -> np.ndarray:
-    """Return a file's output to targets, as the renderer lays it out: uint32 of shape (count, targets, 4)."""
+    """Return a file's packed targets in the renderer's arrangement: uint32 of shape (count, targets, 4)."""
     texels = np.zeros((len(packed), len(code.texts.targets), CHANNELS), np.uint32)
     for column, leaf in enumerate(target_leaves(code.texts)):
         target, _, axis = leaf.path.removeprefix("target_").partition(".")
@@ -188,7 +188,7 @@ def written_texels(code: GBufferCode, packed: np.ndarray) -> np.ndarray:
 
 
 def stored_texels(layout: Layout, texels: np.ndarray) -> np.ndarray:
-    """Return texels as they are read back from targets, after each format's own conversion."""
+    """Return texels as they are read back from the targets, after each format's conversion."""
     stored = np.zeros_like(texels)
     for index, target in enumerate(layout.targets):
         for channel in range(target.storage.channels):
@@ -201,7 +201,7 @@ def stored_texels(layout: Layout, texels: np.ndarray) -> np.ndarray:
 
 
 def _put(layout: Layout, word: Word, value: np.ndarray, is_float: bool, stored: np.ndarray) -> None:
-    """Store a whole number, or a float by its bits, at the place of a word in `stored`."""
+    """Write a field's values, whole numbers or the bits of floats, to the place of their word in `stored`."""
     storage = layout.targets[word.target].storage
     if not word.bits:
         texel = value.view(np.float32) if is_float else _unit(value, storage, word.first)
@@ -243,14 +243,15 @@ def _compared(expected: Expected, stored: np.ndarray, back: np.ndarray) -> Agree
 
 
 def _float_steps(number: np.ndarray, bits: int) -> np.ndarray:
-    """Return floats of `bits` bits as integers in order. Unsigned floats are half floats whose last bits are 0."""
+    """Return floats of `bits` bits as integers in the same order, whose differences are in steps. Unsigned floats are
+    half floats whose last bits are 0."""
     held = number.astype(np.float16).view(np.int16) if bits < 32 else number.view(np.int32)
     magnitude = held.astype(np.int64) & np.iinfo(held.dtype).max
     return np.where(held < 0, -magnitude, magnitude) >> max(0, 15 - bits)
 
 
 def _steps(layout: Layout, word: Word, stored: np.ndarray) -> np.ndarray:
-    """Return the integers that store a word's number, int64 of shape (count,): differences count steps."""
+    """Return the integers that store a word's number, int64 of shape (count,); their differences are in steps."""
     storage, texels = layout.targets[word.target].storage, stored[:, word.target]
     if not word.bits:
         number = np.ascontiguousarray(texels[:, word.first]).view(np.float32)

@@ -1,1 +1,1 @@
-"""Results of NVIDIA's CUDA compiler for an encoding's GLSL, without a GPU and without a graphics driver."""
+"""Results of NVIDIA's CUDA compiler for an encoding's GLSL, which need neither a GPU nor a graphics driver."""

@@ -32,7 +32,7 @@ MEMORY = 4 << 30
 
 
 def main() -> int:
-    """Compile every job in the JSON on standard input, print the answers as lines of JSON, and return 0."""
+    """Compile the jobs in the JSON on standard input, write the results as JSON lines, and return 0."""
     limit_memory(MEMORY)
     given = json.load(sys.stdin)
     out = own_output()
@@ -69,7 +69,7 @@ def _compile_all(jobs: Sequence[dict[str, str]], architecture: str, say: Callabl
 
 
 def _listed(compiled: dict[str, Kernel], architecture: str, lister: Path) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield each kernel's key and its answer, as a dictionary: `kernels` with figures and listing, or `failed` with
+    """Yield each kernel's key and its result, a dictionary: `kernels` with statistics and listing, or `failed` with
     the reason. Kernels are listed one by one if they cannot be listed together."""
     if not compiled:
         return
@@ -87,8 +87,8 @@ def _listed(compiled: dict[str, Kernel], architecture: str, lister: Path) -> Ite
 
 
 def statistics(kernel: Kernel, assembly: str) -> dict[str, int]:
-    """Return a kernel's known figures by the names that the columns of `cost` are made from; counts of spills are
-    left out unless they are 0."""
+    """Return a kernel's known statistics, under the names that the columns of `cost` are computed from; spill counts
+    are included only if they are 0."""
     count = len(sass.instructions(assembly))
     figures = {"Instructions": count, "Registers": kernel.registers, "Code size": count * sass.SIZE}
     figures |= {"Stall cycles": sass.stall_cycles(assembly)}

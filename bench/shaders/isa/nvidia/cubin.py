@@ -19,7 +19,7 @@ SIZED, REGISTERS, STACK = 4, 0x2F, 0x11
 
 @dataclass(frozen=True)
 class Kernel:
-    """A kernel's machine code, registers per lane and stack in bytes. Figures that the file lacks are None."""
+    """A kernel's machine code, registers per lane and stack size in bytes. Numbers that the file lacks are None."""
 
     code: bytes
     registers: int | None
@@ -27,7 +27,7 @@ class Kernel:
 
 
 def kernel_of(cubin: bytes) -> Kernel:
-    """Return the kernel in an ELF file. Raises DriverError unless the file is sound and has exactly one function."""
+    """Return the kernel in an ELF file. Raises DriverError unless the file is valid and has exactly one function."""
     try:
         sections = list(_sections(cubin))
         code = [data for name, data in sections if name.startswith(TEXT)]
@@ -40,7 +40,7 @@ def kernel_of(cubin: bytes) -> Kernel:
 
 
 def _sections(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Yield (name, contents) of each section of a 64-bit ELF file. Raises ValueError for another kind of file."""
+    """Yield (name, contents) for each section in a 64-bit ELF file. Raises ValueError for any other file."""
     if data[:5] != b"\x7fELF\x02":
         raise ValueError("not a 64-bit ELF file")
     (start,) = struct.unpack_from("<Q", data, 0x28)
@@ -53,7 +53,7 @@ def _sections(data: bytes) -> Iterator[tuple[bytes, bytes]]:
 
 
 def _attributes(data: bytes) -> Iterator[tuple[int, int]]:
-    """Yield (number, figure) of each attribute whose value is two words; the figure is the second word."""
+    """Yield (number, value) for each attribute with two words of data; the value is the second word."""
     offset = 0
     while offset < len(data):
         kind, number, size = struct.unpack_from("<BBH", data, offset)

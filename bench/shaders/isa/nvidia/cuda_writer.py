@@ -1,4 +1,4 @@
-"""CUDA C++, by way of glsl.cuh, which has GLSL's vectors and functions under their own names."""
+"""A writer of CUDA C++ that uses glsl.cuh, which defines GLSL's vectors and functions under their own names."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FIELDS = "xyzw"
 
 
 class CudaWriter(Writer):
-    """Device functions, all inline; tables are handles in constant memory."""
+    """A writer of inline device functions; lookup tables are sampler handles in constant memory."""
 
     float_suffix = "f"
     splats = True
@@ -86,12 +86,12 @@ class CudaWriter(Writer):
         return unrolls + super()._block(head, body, indent)
 
     def _choice_and_level(self, value: Choice) -> tuple[str, int]:
-        """Return the text and level of a choice: both values are computed and one is taken, as for `?:` in shaders."""
+        """Return the text and level of a conditional: both values are computed and one is selected, as in shaders."""
         return f"chosen({', '.join(map(self._text, (value.condition, value.chosen, value.other)))})", PRIMARY
 
 
 def kind_text(kind: str) -> str:
-    """Return a type of GLSL as glsl.cuh has it: `Array<float, 4>` for `float[4]`, and any other type unchanged."""
+    """Return a GLSL type in the notation of glsl.cuh: `Array<float, 4>` for `float[4]`; other types are unchanged."""
     scalar, bracket, count = kind.partition("[")
     return f"Array<{scalar}, {count.rstrip(']')}>" if bracket else kind
 

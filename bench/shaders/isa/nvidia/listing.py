@@ -1,4 +1,4 @@
-"""nvdisasm: machine code of several kernels as a listing of each. It takes a fifth of a second to start."""
+"""Listings of several kernels' machine code by one nvdisasm process, which takes a fifth of a second to start."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _JUMP = re.compile(r"\b(?:BRA|BSSY|JMP|CALL|WARPSYNC|BREAK)\b[^;]*?(0x[0-9a-f]+)
 
 
 def listings(codes: Sequence[bytes], architecture: str, program: Path) -> list[str]:
-    """Return nvdisasm's listing of each kernel, as a text whose places are counted from the kernel's start.
+    """Return nvdisasm's listing of each kernel, with addresses relative to the kernel's start.
 
     Args:
         codes: the machine code of each kernel.
-        architecture: such as sm_86.
+        architecture: the GPU architecture, such as sm_86.
         program: the path of nvdisasm.
 
     Raises:
@@ -44,8 +44,8 @@ def listings(codes: Sequence[bytes], architecture: str, program: Path) -> list[s
 
 
 def _parted(lines: Sequence[str], sizes: Sequence[int]) -> list[str]:
-    """Return nvdisasm's lines split into one text for each kernel, by the kernels' sizes in bytes. Raises DriverError
-    if the lines do not match the sizes."""
+    """Return nvdisasm's lines as one text per kernel, split according to the kernels' sizes in bytes. Raises
+    DriverError if the lines do not match the sizes."""
     starts = [sum(sizes[:i]) for i in range(len(sizes) + 1)]
     parts: list[list[str]] = [[] for _ in sizes]
     index, is_inside = 0, False
@@ -65,7 +65,7 @@ def _parted(lines: Sequence[str], sizes: Sequence[int]) -> list[str]:
 
 
 def _relative_line(line: str, place: int, start: int) -> str:
-    """Return a line with its own place, and that of its jump target, counted from the kernel's start."""
+    """Return a line of a listing with its address, and that of its jump target, relative to the kernel's start."""
     line = line.replace(f"/*{place:04x}*/", f"/*{place - start:04x}*/", 1)
     code, mark, words = line.partition(";")
     if jump := _JUMP.search(code + ";"):

@@ -1,4 +1,4 @@
-"""NVRTC, which compiles CUDA C++ for a GPU that need not be there. Runs in a child process (`child`)."""
+"""NVRTC, which compiles CUDA C++ without needing the GPU. It runs in a child process (`child`)."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ OPTIONS = ("--use_fast_math", "--device-as-default-execution-space", "--std=c++1
 
 
 class Nvrtc:
-    """The library.
+    """The NVRTC library.
 
     Attributes:
-        version: its own, as "12.9".
+        version: its version, such as "12.9".
 
     Raises:
-        DriverError: it cannot be loaded.
+        DriverError: the library cannot be loaded.
     """
 
     def __init__(self, path: Path):
@@ -41,7 +41,7 @@ class Nvrtc:
             raise DriverError(f"NVRTC {self.version} does not compile for {architecture}; known: {', '.join(known)}")
 
     def cubin(self, text: str, architecture: str) -> bytes:
-        """Compile a program for an architecture, and return it as an ELF file. Raises DriverError."""
+        """Compile a program's text for an architecture, and return the ELF file. Raises DriverError."""
         program = ctypes.c_void_p()
         self._asked("nvrtcCreateProgram", ctypes.byref(program), text.encode(), b"kernel.cu", 0, None, None)
         try:
@@ -54,7 +54,7 @@ class Nvrtc:
             self._library.nvrtcDestroyProgram(ctypes.byref(program))
 
     def _log(self, program: ctypes.c_void_p) -> str:
-        """Return the first line of the compiler's log with an error, else its first line; at most 200 characters."""
+        """Return the first error line in a program's log, or else the log's first line; at most 200 characters."""
         lines = self._output_bytes("ProgramLog", program).decode(errors="replace").strip("\0\n").splitlines()
         return next((line for line in lines if "error" in line), lines[0] if lines else "no message")[:200]
 

@@ -1,10 +1,10 @@
-"""The contents of a listing of NVIDIA's machine code (SASS), from Turing to Blackwell: the kind of each instruction,
-its jumps, and for how long the compiler holds a warp back after it.
+"""The contents of a listing of NVIDIA's machine code (SASS), from Turing to Blackwell: the kinds of its instructions,
+its jumps, and the cycles for which the compiler stalls a warp after each instruction.
 
 Names are those of the CUDA Binary Utilities' instruction set reference. An instruction has 128 bits, which nvdisasm
-prints as two words. The second word's upper part controls the scheduler: 4 bits of cycles to wait, a bit to yield,
-3 + 3 bits of barriers, 6 bits of barriers to wait for (Z. Jia et al., Dissecting the NVIDIA Volta GPU Architecture
-via Microbenchmarking, 2018).
+prints as two words. The upper part of the second word controls the scheduler: 4 bits for stall cycles, a yield bit,
+3 + 3 bits for barriers and 6 bits for barriers to wait for (Z. Jia et al., Dissecting the NVIDIA Volta GPU
+Architecture via Microbenchmarking, 2018).
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ _STALL = 41
 
 
 class Instruction(NamedTuple):
-    """One instruction: its place in bytes, whether it has a predicate, its name without modifiers, its operands, and
-    its second word, 0 if the listing has none."""
+    """An instruction: its byte offset, whether it has a predicate, its name without modifiers, its operands, and its
+    second word, 0 if the listing has none."""
 
     place: int
     is_predicated: bool
@@ -72,7 +72,7 @@ def every(assembly: str) -> list[Instruction]:
 
 
 def instructions(assembly: str) -> list[Instruction]:
-    """Return all instructions except the padding: the NOPs behind the jump to itself that ends every kernel."""
+    """Return all instructions except the padding: the NOPs after the self-jump that ends every kernel."""
     listed = every(assembly)
     while listed and listed[-1].name == "NOP":
         listed.pop()
@@ -99,30 +99,30 @@ def issue_slots(_: Mapping[str, int], __: str) -> None:
 
 
 def packed(_: str) -> None:
-    """Return None: packed instructions are not counted, because the same ones compute one 16-bit number or two."""
+    """Return None: the same instructions compute one 16-bit number or two, so packed ones cannot be counted."""
     return
 
 
 def rates(family: str) -> Mapping[str, int]:
-    """Return the issue slots of an instruction of each kind. A multiprocessor computes 16 special functions per cycle;
-    64 additions on Turing, and 128 after it (CUDA C++ Programming Guide, Arithmetic Instructions)."""
+    """Return the issue slots per instruction, by kind. Per cycle, a multiprocessor computes 16 special functions, and
+    64 additions on Turing or 128 after it (CUDA C++ Programming Guide, Arithmetic Instructions)."""
     return {**dict.fromkeys(KINDS, 1), "waiting": 0, "transcendental": 4 if family == "sm_75" else 8}
 
 
 def kinds_in_order(assembly: str, _: str) -> list[str]:
-    """Return the kind of each instruction of a listing, in order. All its instructions must be known."""
+    """Return the kind of each instruction in a listing, in order. All instructions must be known."""
     return [_KIND[name] for name in names(assembly)]
 
 
 def loops(assembly: str) -> list[range]:
-    """Return the instruction indices of each loop: from the target of a jump back, to that jump."""
+    """Return each loop's range of instruction indices: from the target of a backward jump to that jump."""
     jumps_back = ((instruction.place, distance) for instruction, _, distance in _jumps(assembly) if distance < 0)
     return [range((place + distance) // SIZE, place // SIZE + 1) for place, distance in jumps_back]
 
 
 def jumps(assembly: str) -> tuple[int, int]:
-    """Return (branches, loops): the number of conditional jumps ahead, and of jumps back. A jump to itself, such as a
-    kernel's last one, is in neither."""
+    """Return (branches, loops): the number of conditional forward jumps, and of backward jumps. A jump to itself,
+    such as a kernel's last jump, counts as neither."""
     ahead = back = 0
     for _, is_conditional, distance in _jumps(assembly):
         back += distance < 0
@@ -131,7 +131,7 @@ def jumps(assembly: str) -> tuple[int, int]:
 
 
 def _jumps(assembly: str) -> Iterator[tuple[Instruction, bool, int]]:
-    """Yield each jump, whether it is conditional, and how many bytes it goes ahead."""
+    """Yield each jump, whether it is conditional, and its distance in bytes, positive for a forward jump."""
     for instruction in instructions(assembly):
         if instruction.name in ("BRA", "JMP") and (target := _TARGET.search(instruction.operands)):
             is_conditional = instruction.is_predicated or bool(_CONDITION.match(instruction.operands))
@@ -139,8 +139,8 @@ def _jumps(assembly: str) -> Iterator[tuple[Instruction, bool, int]]:
 
 
 def stall_cycles(assembly: str) -> int | None:
-    """Return the sum of the cycles that the compiler makes a warp wait after each instruction of a listing; None if
-    an instruction has no second word there."""
+    """Return the sum of the stall cycles that the compiler sets after the instructions of a listing; None if the
+    listing lacks an instruction's second word."""
     listed = instructions(assembly)
     return (
         sum(instruction.control >> _STALL & 15 for instruction in listed)

@@ -1,4 +1,4 @@
-"""An operation as CUDA: its own GLSL, translated, between loads and stores."""
+"""The CUDA kernel of an operation: its GLSL, translated, between loads and stores."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MACROS = ("GROUP", "BESIDE_PLANE", "GIVEN", "BESIDE", "MADE")
 
 
 def cuda_of(operation: Operation) -> str:
-    """Return the whole text of an operation's kernel in CUDA. Raises ShaderError as `functions_of` does."""
+    """Return the complete CUDA text of an operation's kernel. Raises ShaderError as `functions_of` does."""
     head = "".join(f"#define {name} {kind_text(str(operation.defines[name]))}\n" for name in MACROS)
     try:
         parts = (judged(head, "cuda"), own(LANGUAGE), judged(bare(functions_of(operation)), "cuda"), own(KERNEL))
@@ -34,12 +34,12 @@ def cuda_of(operation: Operation) -> str:
 
 
 def functions_of(operation: Operation) -> str:
-    """Return the operation's own functions in the language of glsl.cuh, with `kernel_operation` last. The result is
-    cached by the GLSL.
+    """Return the text of an operation's own functions, written for glsl.cuh, with `kernel_operation` last. Results
+    are cached by GLSL text.
 
     Raises:
-        ShaderError: its GLSL cannot be read, or contains something that cannot be translated; the message names file
-            and line.
+        ShaderError: the GLSL cannot be read, or contains something that cannot be translated; the message names the
+            file and the line.
     """
     source = operation.source(str(ROOT))
 
@@ -49,12 +49,12 @@ def functions_of(operation: Operation) -> str:
             return {"text": CudaWriter(PREFIX, {}).program(program)}
         except TranslationError as error:
             message = source.explain(re.sub(r"^(\d+):\d+: ", r"0:\1: ", str(error)))
-            raise ShaderError(f"{message}; CUDA, which NVIDIA counts use, does not allow that") from error
+            raise ShaderError(f"{message}; CUDA does not allow that, and the counts for NVIDIA use CUDA") from error
 
     key = kept.key_of("cuda", source.text, *(path.read_text(encoding="utf-8") for path in _own_files()))
     return kept.kept(key, make)["text"]
 
 
 def _own_files() -> list[Path]:
-    """Return the files that decide how GLSL is translated."""
+    """Return the paths of the source files that determine how GLSL is translated."""
     return [*sorted(Path(tree.__file__).parent.glob("*.py")), FOLDER / "cuda_writer.py"]

@@ -1,4 +1,4 @@
-"""The places of NVIDIA's CUDA compiler and its disassembler on this machine: pip packages, or an installed CUDA."""
+"""The paths of NVIDIA's CUDA compiler and disassembler on this machine, from pip packages or an installed CUDA."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def disassembler() -> Path | None:
 
 
 def _folders() -> Iterator[Path]:
-    """Yield the folders that may hold CUDA's parts: first pip's packages, in the versions that normalbench asks for."""
+    """Yield the folders that may contain parts of CUDA: those of pip packages, then those of an installed CUDA."""
     package = find_spec("nvidia")
     for root in (package.submodule_search_locations or ()) if package else ():
         yield from sorted(path for path in Path(root).glob("*") if path.is_dir())
@@ -53,7 +53,7 @@ def _libraries(folder: Path) -> list[Path]:
 
 
 def missing() -> str:
-    """Return what this machine lacks, in one line; empty if nothing is missing."""
+    """Return a one-line message on what this machine lacks; empty if nothing is missing."""
     return NO_COMPILER if not library() else NO_DISASSEMBLER if not disassembler() else ""
 
 
@@ -66,8 +66,8 @@ def found() -> tuple[Path, Path]:
 
 
 def identity() -> str:
-    """Return a text that changes with either tool, or with the program that uses their results. Raises
-    MissingDriverError."""
+    """Return a key that changes with either tool or with the code that uses their results.
+    Raises MissingDriverError."""
     compiler, lister = found()
     builtins = sorted(compiler.parent.glob("libnvrtc-builtins.so*"))
     own = sorted(path for path in Path(__file__).parent.glob("*.py"))
@@ -78,7 +78,7 @@ def title(number: str) -> str:
     """Return one text with both tools' names and versions. Raises MissingDriverError.
 
     Args:
-        number: NVRTC's own version, which is used if its library is not from a package of pip's."""
+        number: NVRTC's own version number, used if its library is not from a pip package."""
     compiler, lister = found()
     compiler_title = f"NVRTC {_package_version(compiler) or number} (CUDA's compiler, not the graphics driver's)"
     return f"{compiler_title}, nvdisasm {_version(lister)}"
@@ -86,7 +86,7 @@ def title(number: str) -> str:
 
 @cache
 def _package_version(path: Path) -> str:
-    """Return the version of the pip package of NVRTC that a file belongs to; empty if it belongs to none."""
+    """Return the version of the NVRTC pip package that contains a file; empty if no such package does."""
     for package in distributions():
         name = package.metadata["Name"] or ""
         if name.startswith("nvidia-cuda-nvrtc") and any(package.locate_file(f) == path for f in package.files or ()):

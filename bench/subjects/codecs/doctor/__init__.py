@@ -1,1 +1,1 @@
-"""Likely mistakes in a user's encoder and decoder: each is tried by itself, and both together."""
+"""The search for likely mistakes in a user's encoder and decoder, which are tried separately and together."""

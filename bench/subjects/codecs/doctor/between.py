@@ -1,7 +1,7 @@
-"""Causes that keep two functions from being a pair: a step between them, or axes that they interpret differently.
+"""The reason why two functions are not a pair: a missing step between them, or a different choice of axes.
 
-Steps are tried on the codes: another range, numbers swapped or negated, the rotation by 45 degrees that fills the
-square, the fold of the other function. The simplest step that makes a pair is named.
+Steps are tried on the codes: a different range, components swapped or negated, the 45° rotation that fills the
+square, or the fold of the other function. The simplest step that makes a pair is named.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ Change = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class Step:
-    """A change of codes between the two functions.
+    """A change of codes between encoder and decoder.
 
     Attributes:
-        said: its description, as the result for a code c; empty for no change.
-        change: a function of codes of shape (count, size).
+        said: the change as an expression of a code c; empty for no change.
+        change: a function that changes codes of shape (count, size).
     """
 
     said: str
@@ -68,7 +68,7 @@ TURNS = (
 
 
 def _other_fold(codes: np.ndarray) -> np.ndarray:
-    """Return codes with the magnitudes of the two numbers swapped outside of the diamond; signs are kept."""
+    """Swap the magnitudes of the two components of codes outside the diamond |x| + |y| <= 1, and keep the signs."""
     swapped = np.copysign(np.abs(codes[:, ::-1]), codes)
     return np.where((np.abs(codes).sum(axis=1) > 1)[:, None], swapped, codes)
 
@@ -78,8 +78,8 @@ FOLDS = (NOTHING, Step("the other fold, with .yx instead of .xy,", _other_fold))
 
 @cache
 def _orders(size: int) -> tuple[Step, ...]:
-    """Return a Step for every way to swap and negate the numbers of a code, with the shortest description first: the
-    step that changes nothing."""
+    """Return a Step for every way to swap and negate the components of a code, shortest description first, so that
+    the step that changes nothing comes first."""
     orders = []
     for order in itertools.permutations(range(size)):
         for signs in itertools.product((1, -1), repeat=size):
@@ -102,8 +102,8 @@ def _order_text(order: Sequence[int], signs: Sequence[int]) -> str:
 
 @cache
 def steps(size: int) -> tuple[Step, ...]:
-    """Return every Step to try between an encoder and a decoder whose code has `size` numbers, the simplest first,
-    except for the step that changes nothing."""
+    """Return every Step to try between an encoder and a decoder of codes with `size` components, simplest first,
+    without the step that changes nothing."""
     kinds = (RANGES, _orders(size), TURNS, FOLDS) if size == 2 else (RANGES, _orders(size))
     combined_steps = [_one_after_another(parts) for parts in itertools.product(*kinds)]
     return tuple(sorted(combined_steps, key=lambda step: (step.said.count(THEN), len(step.said))))[1:]
@@ -119,15 +119,16 @@ def _one_after_another(parts: Sequence[Step]) -> Step:
 
 
 def decoded_after(probe: Probe, codes: np.ndarray, changes: Sequence[Step]) -> np.ndarray:
-    """Decode codes after each step by itself; return directions of shape (steps, count, 3)."""
+    """Decode codes after each of several steps; return directions of shape (steps, count, 3)."""
     given = np.concatenate([step.change(codes) for step in changes])
     return probe.decode(given).reshape(len(changes), len(codes), 3)
 
 
 def step_between(trip: Trip, probe: Probe) -> tuple[Step, Domain] | None:
-    """Return the simplest step that makes a pair, and the directions for which it does; None if no step does.
+    """Return the simplest step that makes a pair, and the domain on which it does; None if no step does.
 
-    A decoder that normalises accepts codes in several ranges: the widest range that a storage holds is chosen.
+    A decoder that normalises its result accepts codes in several ranges; the widest range that a storage can hold is
+    chosen.
     """
     few = trip.of(np.arange(len(trip.n) - TRIED, len(trip.n)))
     tried, candidates = steps(probe.size), []
@@ -140,13 +141,13 @@ def step_between(trip: Trip, probe: Probe) -> tuple[Step, Domain] | None:
 
 
 def _unlikely(step: Step, codes: np.ndarray) -> tuple[int, bool, float]:
-    """Return a sort key, smallest for the likeliest step: few changes, codes within [-1, 1], a wide range."""
+    """Return a sort key that is smallest for the likeliest step: few changes, codes within [-1, 1], a wide range."""
     changed = step.change(codes)
     return step.said.count(THEN), bool(np.abs(changed).max() > 1 + BEYOND), -round(float(np.ptp(changed)), 1)
 
 
 def axes_of(trip: Trip) -> str:
-    """Return in words which axes are swapped or reversed in the decoded directions; empty if no axes are."""
+    """Return in words how the axes of decoded directions are swapped or reversed; empty if they are not."""
     for order, signs in turns():
         if (angles_deg(trip.n[:, order] * np.array(signs), trip.decoded) < SAME_DEG).mean() > MOST:
             return axes_said(order, signs)
@@ -154,7 +155,7 @@ def axes_of(trip: Trip) -> str:
 
 
 def turns() -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
-    """Yield (order, signs) for every order of the axes with every sign, except for the pair that changes nothing."""
+    """Yield (order, signs) for every permutation of the axes with every choice of signs, except the identity."""
     for order in itertools.permutations(range(3)):
         for signs in itertools.product((1, -1), repeat=3):
             if (order, signs) != ((0, 1, 2), (1, 1, 1)):
@@ -162,7 +163,7 @@ def turns() -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
 
 
 def axes_said(order: Sequence[int], signs: Sequence[int]) -> str:
-    """Return in words how axes are swapped or reversed: `x and y swapped and z reversed`; empty if none is."""
+    """Return in words how axes are swapped or reversed, such as `x and y swapped and z reversed`; may be empty."""
     moved = [AXES[axis] for axis in range(3) if order[axis] != axis]
     reversed_ = [AXES[axis] for axis in range(3) if signs[axis] < 0]
     parts = [f"{' and '.join(moved)} swapped" if len(moved) == 2 else "x, y and z permuted"] if moved else []

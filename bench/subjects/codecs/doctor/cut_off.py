@@ -1,10 +1,10 @@
-"""Detection of codes that are truncated instead of rounded, however the encoder packs them.
+"""Detection of codes that are truncated instead of rounded, for any packing.
 
-The directions that have the same code fill a cell. If codes are rounded, the decoder returns the middle of the
-cell; if they are truncated, it returns a corner. So all directions in a small patch of the sphere decode with the
-same shift, half a cell long. Each patch is judged by itself, because the shifts cancel over the whole sphere. The
-squared length of the shift, relative to the covariance of the decoded directions, does not depend on the shape of
-the cells: it is 3 for each truncated number. It is 0 for a decoder that adds the half that the encoder truncates.
+The directions that share a code form a cell. If codes are rounded, the decoder returns the middle of the cell; if
+they are truncated, it returns a corner. So all directions in a small patch of the sphere decode with the same shift,
+half a cell long. Each patch is judged separately, because the shifts cancel over the whole sphere. The squared length
+of the shift, relative to the covariance of the decoded directions, does not depend on the shape of the cells: it is 3
+per truncated component. It is 0 for a decoder that adds the half step that the encoder truncates.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ SHIFT = "codes are shifted, and without the shift errors would be {:.0f}% as lar
 
 
 def cut_off(held: Trip, probe: Probe) -> Iterator[str]:
-    """Yield one line if codes are truncated or otherwise shifted; nothing if decode returns the middle of each cell,
-    or if too few patches can be compared.
+    """Yield one line if codes are truncated or otherwise shifted; nothing if the decoder returns the middle of each
+    cell, or if too few patches can be compared.
 
     Args:
-        held: directions that the encoding is made for, and the directions that they decode to.
+        held: directions that the encoding is made for, with their decoded directions.
     """
     radius = np.radians(min(IN_ERRORS * float(np.median(held.angles())), LARGEST_DEG))
     patches = _patches(held.n[-PATCHES:], probe, radius)
@@ -56,11 +56,11 @@ def cut_off(held: Trip, probe: Probe) -> Iterator[str]:
 
 
 def _patches(centres: np.ndarray, probe: Probe, radius: float) -> Iterator[np.ndarray]:
-    """Yield for each patch, of random directions around a centre, directions less decoded directions in the tangent
-    plane: (count, 2). Shifts of `radius` or more are left out, because they cross a seam.
+    """Yield the shifts in each patch of random directions around a centre: directions minus decoded directions in the
+    tangent plane, of shape (count, 2). Shifts of `radius` or more are left out, because they cross a seam.
 
     Args:
-        centres: a direction per patch, (patches, 3).
+        centres: a direction per patch, of shape (patches, 3).
         radius: half the width of a patch, in radians."""
     inside = np.random.default_rng(3).uniform(-radius, radius, size=(len(centres), INSIDE, 2))
     planes = _planes(centres)
@@ -72,7 +72,7 @@ def _patches(centres: np.ndarray, probe: Probe, radius: float) -> Iterator[np.nd
 
 
 def _planes(n: np.ndarray) -> np.ndarray:
-    """Return two tangents at right angles for each direction: (count, 2, 3)."""
+    """Return two perpendicular tangents for each direction, of shape (count, 2, 3)."""
     tangent = unit(np.cross(n, np.eye(3)[np.argmin(np.abs(n), axis=1)]))
     return np.stack([tangent, np.cross(n, tangent)], axis=1)
 
@@ -84,7 +84,7 @@ def _squared_shift(shifts: np.ndarray) -> float:
 
 
 def _errors(shifts: np.ndarray) -> tuple[float, float]:
-    """Return a patch's mean error, and its mean error without the shift."""
+    """Return the mean length of a patch's shifts, before and after subtracting the mean shift."""
     return _mean_length(shifts), _mean_length(shifts - shifts.mean(axis=0))
 
 

@@ -1,6 +1,6 @@
 """Likely mistakes in an encoder and its decoder, found by round trips of directions without any storage.
 
-Each diagnosis is a line with its figure and a direction that shows it.
+Each diagnosis is one line with a figure and an example direction.
 """
 
 from __future__ import annotations
@@ -31,13 +31,14 @@ NO_PAIR, MAKES_ONE = "encode and decode are not a pair", "between the two makes 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The diagnosis of a pair.
+    """The diagnosis of an encoder and a decoder.
 
     Attributes:
-        domain: the directions it is made for.
+        domain: the directions that the two functions are made for.
         wrong: likely mistakes, as lines.
-        broken: a direction of the domain where a function is not finite, if many are; nothing can be measured then.
-        hole: a direction outside of the domain where a function is not finite; otherwise empty.
+        broken: a direction in the domain where a function is not finite, if there are too many to measure the
+            functions; otherwise empty.
+        hole: a direction outside the domain where a function is not finite; otherwise empty.
     """
 
     domain: Domain
@@ -47,18 +48,19 @@ class Diagnosis:
 
 
 def bad(probe: Probe, domain: Domain) -> np.ndarray:
-    """Return the directions of a domain that do not round-trip, (count, 3), as marks for a picture of the sphere."""
+    """Return the directions in a domain that do not round-trip, of shape (count, 3), to mark them in an image of the
+    sphere."""
     held = domain.held(trip_of(probe, np.concatenate([directions(), circles()])))
     held = held.of(held.is_finite)
     return held.n[held.angles() > exact.unusual(held)]
 
 
 def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
-    """Return the Diagnosis of two functions: domain, likely mistakes as lines, and where they are not finite.
+    """Return the Diagnosis of two functions: domain, likely mistakes as lines, and where a function is not finite.
 
     Args:
         probe: the two functions.
-        name: the domain that the user says it is made for; empty to find out.
+        name: the domain that the user states; empty to find out.
     """
     trip = trip_of(probe, directions())
     whole, kept = finite(trip), trip.of(trip.is_finite)
@@ -83,10 +85,10 @@ def diagnosed(probe: Probe, gl: Device, name: str = "") -> Diagnosis:
 
 
 def _finite_diagnosis(trip: Trip, probe: Probe, gl: Device, meant: Domain | None) -> Diagnosis:
-    """Return the Diagnosis of a trip whose codes and decoded directions are all finite.
+    """Return the Diagnosis of a trip with finite codes and decoded directions.
 
     Args:
-        meant: the domain that the user says it is made for; None to find out.
+        meant: the domain that the user states; None to find out.
     """
     # What packs by itself has few codes, as many as it likes.
     within = NEARLY_DEG if probe.is_packed else _same_within_deg(trip)
@@ -102,13 +104,13 @@ def _finite_diagnosis(trip: Trip, probe: Probe, gl: Device, meant: Domain | None
 
 
 def _nearly_back(trip: Trip, domain: Domain) -> Domain | None:
-    """Return a domain that nearly round-trips and is wider than `domain`; None if no such domain exists."""
+    """Return a domain that nearly round-trips and differs from `domain`; None if no such domain exists."""
     wider = guessed(trip, NEARLY_DEG)
     return wider if wider.name and wider != domain else None
 
 
 def _near_diagnosis(trip: Trip, probe: Probe, domain: Domain, mistakes: list[str]) -> Diagnosis:
-    """Return the Diagnosis of a domain that nearly round-trips: mistakes, then lines on lengths and ranges."""
+    """Return the Diagnosis for a domain that nearly round-trips: mistakes, then lines about lengths and ranges."""
     return Diagnosis(domain, [*mistakes, *exact.lengths(domain.held(trip)), *exact.ranges(trip, domain, probe)])
 
 
@@ -119,7 +121,7 @@ def _same_within_deg(trip: Trip) -> float:
 
 
 def _is_lost(trip: Trip, domain: Domain, within: float) -> bool:
-    """Whether a domain that a user gives does not round-trip."""
+    """Whether too few directions in a domain round-trip, as can happen if the user states the domain."""
     return (domain.held(trip).angles() < within).mean() <= MOST
 
 
@@ -127,7 +129,7 @@ def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[s
     """Return the mistakes in a pair that round-trips on a domain.
 
     Args:
-        is_meant: whether its author says that it is made for that domain; unused codes are then intended as well.
+        is_meant: whether the user states this domain; unused codes are then intended.
     """
     held, ranges = domain.held(trip), list(exact.ranges(trip, domain, probe))
     wasted = [] if is_meant else [*unread(probe, trip.codes), *(() if ranges else unused(held, probe))]
@@ -135,7 +137,7 @@ def _of_pair(trip: Trip, probe: Probe, domain: Domain, is_meant: bool) -> list[s
 
 
 def _of_held(held: Trip, probe: Probe) -> list[str]:
-    """Return the mistakes in directions that the encoding is made for, as lines."""
+    """Return the mistakes at directions that the encoding is made for, as lines."""
     mistakes = list(_inexact(held, probe)) if np.median(held.angles()) > EXACT_DEG else []
     # What is scaled or shifted is far off where the map is steep, which says nothing more.
     seams = [] if mistakes else [*exact.seam(held, probe), *exact.poles(held)]
@@ -143,7 +145,7 @@ def _of_held(held: Trip, probe: Probe) -> list[str]:
 
 
 def _inexact(held: Trip, probe: Probe) -> Iterator[str]:
-    """Yield why directions only nearly round-trip. The steps of a packed code are not those of its halves."""
+    """Yield reasons why directions only nearly round-trip. The halves of packed codes are not examined separately."""
     mistakes = [] if probe.is_packed else list(nearly.mistakes(held, probe))
     rounds_itself = probe.is_packed or nearly.lattice_of(held.codes)
     mistakes = mistakes or (list(nearly.scaled_angles(held)) if rounds_itself else [])
@@ -151,7 +153,8 @@ def _inexact(held: Trip, probe: Probe) -> Iterator[str]:
 
 
 def _half_faults(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
-    """Yield the mistakes if only one half round-trips; nothing if the encoding is designed for that half."""
+    """Yield the mistakes that explain why only one half of the sphere round-trips; nothing if the encoding is
+    designed for that half."""
     sides = Sides(trip, probe, half)
     gone = sides.gone
     if not sides.encoder_knows and not sides.decoder_reaches:
@@ -167,14 +170,14 @@ def _half_faults(trip: Trip, probe: Probe, half: Domain) -> Iterator[str]:
 
 
 def _elsewhere_text(half: Domain, gone: Trip) -> str:
-    """Return in words how directions decode in a half that both functions know."""
+    """Return in words how the directions in the other half decode, if both functions support that half."""
     if axes := axes_of(gone):
         return f"directions with {half.lost_text} come back with {axes}: {gone.worst}"
     return f"directions with {half.lost_text}: {exact.lost(gone)}; {gone.worst}"
 
 
 def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
-    """Return the Diagnosis of functions that are not a pair, or not a pair on the domain that a user gives."""
+    """Return the Diagnosis of two functions that are not a pair, or not a pair on the domain that the user states."""
     nearby = given if given.name else guessed(trip, NEARLY_DEG)
     if given.name and (mistakes := list(nearly.mistakes(given.held(trip), probe))):
         return _near_diagnosis(trip, probe, given, mistakes)
@@ -195,13 +198,14 @@ def _of_none(trip: Trip, probe: Probe, gl: Device, given: Domain) -> Diagnosis:
 
 
 def _is_back_unclipped(trip: Trip, probe: Probe) -> bool:
-    """Whether codes beyond the range of storages round-trip if they are not clipped."""
+    """Whether directions whose codes exceed the range of storages round-trip if the codes are not clipped."""
     whole = replace(trip, decoded=probe.decode(trip.codes))
     return bool(np.median(whole.angles()) < SAME_DEG)
 
 
 def _scale_text(trip: Trip, held: Trip, probe: Probe) -> str:
-    """Return in words the scale between the two functions that makes a pair, if only on one half; else empty."""
+    """Return in words the scale between the two functions that makes a pair, even if only on one half; empty if no
+    scale does."""
     begin = nearly.start(held, probe)
     decoded = probe.decode(begin.of(trip.codes).astype(np.float32))
     domain = guessed(replace(trip, decoded=decoded), NEARLY_DEG)
@@ -215,8 +219,8 @@ def _apart_text(held: Trip, likely: Domain) -> str:
 
 
 def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
-    """Return one line on why directions do not round-trip: swapped or reversed axes, everywhere or in one half;
-    otherwise the mean error, with what would make a pair or the worst direction."""
+    """Return one line on why directions do not round-trip: axes swapped or reversed, either everywhere or in one
+    half; otherwise the mean error, with what would make a pair or with the worst direction."""
     if axes := axes_of(trip):
         return f"every direction comes back with {axes}{_or_numbers(trip, probe)}: {trip.worst}"
     for half in HALVES:
@@ -227,8 +231,8 @@ def _why(trip: Trip, held: Trip, probe: Probe, gl: Device, likely: Domain) -> st
 
 
 def _or_numbers(trip: Trip, probe: Probe) -> str:
-    """Return in words, after a comma, the change of the code's numbers that makes a pair as other axes would; empty
-    if no change does."""
+    """Return in words, after a comma, the change of the code's components that would also explain the changed axes;
+    empty if no change does."""
     between = step_between(trip, probe)
     return f", as with {between[0].said} between the two" if between else ""
 
@@ -238,7 +242,7 @@ def _domain_text(domain: Domain) -> str:
 
 
 def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
-    """Return in words what would make the two functions a pair; empty if nothing known would."""
+    """Return in words what would make the two functions a pair; empty if no known change would."""
     if mistakes := folds.mistakes(probe):
         return mistakes[0]
     if between := step_between(trip, probe):
@@ -257,7 +261,7 @@ def _what_fits(trip: Trip, probe: Probe, gl: Device, likely: Domain) -> str:
 
 
 def _likely_domain(trip: Trip) -> Domain:
-    """Return the first half whose mean error is far below that of the other directions; else the sphere."""
+    """Return the first half whose mean error is far below that of the other directions; otherwise the sphere."""
     angles = trip.angles()
     for half in HALVES:
         inside = half.holds(trip)

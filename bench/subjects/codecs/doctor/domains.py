@@ -1,4 +1,4 @@
-"""The directions that an encoding is made for: the directions that round-trip, unless its author names others."""
+"""The directions that an encoding is made for: the directions that round-trip, unless the user states a domain."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Domain:
     """The directions that an encoding is made for.
 
     Attributes:
-        name: its name in rows: "sphere", "hemisphere" or "view"; empty if nothing round-trips.
-        axis: for a hemisphere, the component that is at least 0, or at most 0 if `side` is -1: 0, 1 or 2.
+        name: the domain's name in rows: "sphere", "hemisphere" or "view"; empty if no directions round-trip.
+        axis: for a hemisphere, the index of the component that is at least 0 (at most 0 if `side` is -1).
         side: 1 or -1.
     """
 
@@ -31,7 +31,7 @@ class Domain:
     side: int = 1
 
     def holds(self, trip: Trip) -> np.ndarray:
-        """Return which directions of a trip are in the domain, bool of shape (count,)."""
+        """Return whether each direction of a trip is in the domain, bool of shape (count,)."""
         if self.name == HEMISPHERE:
             return trip.n[:, self.axis] * self.side >= 0
         return np.sum(trip.n * trip.view, axis=1) < 0 if self.name == "view" else np.full(len(trip.n), True)
@@ -41,7 +41,7 @@ class Domain:
         return trip.of(self.holds(trip))
 
     def lost(self, trip: Trip) -> Trip:
-        """Return the part of a trip in the other half of a hemisphere, without its rim."""
+        """Return the part of a trip in the opposite half of a hemisphere, away from the rim."""
         return trip.of(trip.n[:, self.axis] * self.side < -RIM)
 
     @property
@@ -51,7 +51,7 @@ class Domain:
 
     @property
     def lost_text(self) -> str:
-        """The condition for the other half of a hemisphere, such as z < 0."""
+        """The condition for the opposite half of a hemisphere, such as z < 0."""
         return f"{AXES[self.axis]} {'<' if self.side > 0 else '>'} 0"
 
     @property
@@ -61,12 +61,12 @@ class Domain:
 
     @property
     def is_turned(self) -> bool:
-        """Whether it is a hemisphere of another axis than +z."""
+        """Whether the axis or side differs from that of the hemisphere z >= 0."""
         return (self.axis, self.side) != (2, 1)
 
     def measured(self, encoding: Encoding) -> Encoding:
-        """Return an encoding with this domain; if the domain is a hemisphere of another axis, rotated so that the
-        axis is z, with the unrotated encoding as `own`."""
+        """Return an encoding with this domain. If `is_turned`, the result is rotated so that the hemisphere's axis is
+        z, and the unrotated encoding is its `own`."""
         unturned = replace(encoding, domain=self.name or SPHERE.name)
         # Where z becomes its y, components move one place back: by the turn whose pole is x.
         turn = {0: "y", 1: "x", 2: "z"}[self.axis]
@@ -86,7 +86,7 @@ AS_WELL, EXACT_DEG = 1.1, 5e-5
 
 
 def guessed(trip: Trip, within: float) -> Domain:
-    """Return the domain that round-trips within an angle in degrees, apart from seams and poles; NONE if none does."""
+    """Return the domain that round-trips to within an angle in degrees, except at seams and poles; may be NONE."""
     is_same = trip.angles() < within
     shares = {domain: is_same[domain.holds(trip)].mean() for domain in IN_TURN}
     # A code of the sphere undoes seams of a half a little better; z >= 0 and what faces the viewer share most.
@@ -95,15 +95,15 @@ def guessed(trip: Trip, within: float) -> Domain:
 
 
 def finite(trip: Trip) -> list[Domain]:
-    """Return the domains in which encode and decode are finite for every direction tested; empty if no domain is."""
+    """Return the domains in which encode and decode are finite for every tested direction; may be empty."""
     return [domain for domain in IN_TURN if trip.is_finite[domain.holds(trip)].all()]
 
 
 def asked(name: str, trip: Trip, among: Collection[Domain] = IN_TURN) -> Domain:
-    """Return the domain that a user names; for a hemisphere, the first half that round-trips as well as any.
+    """Return the domain that a user names; for a hemisphere, the first half that is about as accurate as the best.
 
     Args:
-        among: the domains where the code is finite. If they include a half, the half is chosen among them.
+        among: the domains where the code is finite. If they include any half, only these halves are considered.
     """
     if name != HEMISPHERE:
         return SPHERE if name == SPHERE.name else VIEWED

@@ -1,4 +1,4 @@
-"""Mistakes in a pair that round-trips, at some directions or in a storage: seams, poles, lengths, unused ranges."""
+"""Mistakes in a pair that round-trips, for some directions or in a storage: seams, poles, lengths, unused ranges."""
 
 from __future__ import annotations
 
@@ -39,9 +39,10 @@ FEW_VALUES = 16
 
 
 def is_unit(codes: np.ndarray, share: float = NEARLY_FULL) -> bool:
-    """Whether every number of some codes is in [0, 1] and, unless it has few values, fills a share of that range.
+    """Whether all components of some codes are in [0, 1], and each component that takes more than a few values fills
+    a share of that range.
 
-    A large share of numbers in [-1, 1] is negative, so the few that rounding pushes out of [0, 1] make no
+    Many components of codes in [-1, 1] are negative, so the few values that rounding pushes out of [0, 1] make no
     difference.
     """
     low, high = codes.min(axis=0), codes.max(axis=0)
@@ -52,8 +53,8 @@ def is_unit(codes: np.ndarray, share: float = NEARLY_FULL) -> bool:
 
 
 def values(codes: np.ndarray, number: int) -> np.ndarray:
-    """Return the values of number `number` of the codes if few are distinct, such as the face of a cube, ascending;
-    otherwise an empty array."""
+    """Return the distinct values of component `number` of the codes in ascending order, such as a cube's faces; empty
+    if there are many values."""
     levels = np.unique(np.round(codes[:, number], 4))
     return levels if len(levels) <= FEW_VALUES else levels[:0]
 
@@ -66,13 +67,13 @@ def lost(trip: Trip, within: float = SAME_DEG) -> str:
 
 
 def unusual(trip: Trip) -> float:
-    """Return the error in degrees above which a direction is lost: more than rounding to few codes causes."""
+    """Return the error in degrees above which a direction counts as lost: more than rounding to few codes causes."""
     return max(SAME_DEG, UNUSUAL * float(np.median(trip.angles())))
 
 
 def seam(trip: Trip, probe: Probe) -> Iterator[str]:
     """Yield one line if more than a few directions are lost: at a single pole, only where components are 0 or equal,
-    or at a seam. Nothing is yielded otherwise."""
+    or at a seam."""
     off = trip.angles() > unusual(trip)
     at_a_pole = np.abs(trip.n).max(axis=1) > np.cos(np.radians(2 * POLE_DEG))
     if off.mean() <= FEW:
@@ -89,7 +90,7 @@ def seam(trip: Trip, probe: Probe) -> Iterator[str]:
 
 
 def _is_only_there(gone: Trip, probe: Probe) -> bool:
-    """Whether all random directions immediately next to the lost directions round-trip."""
+    """Whether all random directions next to the lost directions round-trip."""
     random = np.random.default_rng(2).normal(size=(TRIES, *gone.n.shape)) * BESIDE
     beside = (gone.n + random).reshape(-1, 3).astype(np.float32)
     back = probe.decode(np.clip(probe.encode(beside), -1, 1))
@@ -97,15 +98,15 @@ def _is_only_there(gone: Trip, probe: Probe) -> bool:
 
 
 def _where(gone: Trip, is_fold: bool) -> str:
-    """Return in words what the lost directions have in common: in an octahedral fold, or if each has a component of
-    0, that sign() returns 0; otherwise that components are equal or 0."""
+    """Return in words what the lost directions have in common: that sign() returns 0, for an octahedral fold or if
+    each direction has a component of 0; otherwise that components are equal or 0."""
     if is_fold or (gone.n == 0).any(axis=1).all():
         return "sign() returns 0 for 0: only directions with a component of 0 are lost, not their neighbours"
     return "only directions with equal components or a 0 are lost, not their neighbours: check comparisons and sign()"
 
 
 def poles(trip: Trip) -> Iterator[str]:
-    """Yield a line for each pole where nearby directions are off by a large part of their distance from it."""
+    """Yield a line for each pole near which directions are off by a large part of their distance from the pole."""
     for axis, side in itertools.product(range(3), (1.0, -1.0)):
         pole = side * np.eye(3)[axis]
         beside = angles_deg(trip.n, np.broadcast_to(pole, trip.n.shape))
@@ -132,8 +133,8 @@ def lengths(trip: Trip) -> Iterator[str]:
 
 
 def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
-    """Yield a line on each number that is constant, that uses too little of a storage's range for all directions, or
-    that exceeds the range for directions that the encoding is made for; nothing for packed codes."""
+    """Yield a line for each component that is constant, that uses too little of the range of a storage, or that
+    exceeds the range for directions that the encoding is made for. Nothing is yielded for packed codes."""
     if probe.is_packed:
         return
     held = domain.held(trip)
@@ -156,9 +157,9 @@ def ranges(trip: Trip, domain: Domain, probe: Probe) -> Iterator[str]:
 
 
 def bits_used(codes: np.ndarray) -> int:
-    """Return how many of the 32 bits of integers, whose halves are two numbers in [-1, 1], differ between the integers.
+    """Return how many bits of 32-bit integers differ among the integers, which are given as two halves in [-1, 1].
 
-    If the integers hold floats with whole values, count the bits of these values.
+    If the integers are the bits of floats with whole values, count the bits of these values.
     """
     halves = np.rint((codes.astype(np.float64) * 0.5 + 0.5) * (2**16 - 1)).astype(np.uint32)
     whole = halves[:, 0] | halves[:, 1] << 16
@@ -170,8 +171,8 @@ def bits_used(codes: np.ndarray) -> int:
 
 
 def spared(trip: Trip, probe: Probe) -> Iterator[str]:
-    """Yield a line on each number of few values that does not reach both ends of its range, or on a packed code that
-    does not use all 32 bits. Such codes lose nothing unless bits are short."""
+    """Yield a line for each component with few values that do not reach both ends of the range, or for packed codes
+    that do not use all 32 bits. This is a waste only if bits are scarce."""
     if probe.is_packed:
         used = bits_used(trip.codes)
         yield from [f"only {used} of the code's 32 bits are used"] if used < 32 else ()

@@ -1,9 +1,9 @@
-"""Common mistakes in an octahedral map, for each of the two functions by itself.
+"""Common mistakes in an octahedral map, in each of the two functions separately.
 
 An octahedral map projects a direction m, in some axes, to p = m.xy / (|m.x| + |m.y| + |m.z|), and folds points with
-m.z < 0 outwards: (1 - |p.yx|) sign(p). Every mistake here is such a map with one change. A function has a mistake if
-it is that map for nearly all directions that are tried, and the other function is right in the same axes. Only the
-results of the functions are compared, however these are written.
+m.z < 0 outwards: (1 - |p.yx|) sign(p). Every mistake here is such a map with one change. A function has the mistake
+if it matches the changed map for nearly all tested directions, and the other function is right in the same axes. Only
+the results of the functions are compared, not their code.
 """
 
 from __future__ import annotations
@@ -34,23 +34,23 @@ def _signs(p: np.ndarray) -> np.ndarray:
 
 
 def _sum(v: np.ndarray, bare: Numbers) -> np.ndarray:
-    """Return |v.x| + |v.y| + ..., without the absolute value for the components in `bare`: (count, 1)."""
+    """Return |v.x| + |v.y| + ..., without the absolute value for the components in `bare`, of shape (count, 1)."""
     return np.where(np.isin(np.arange(v.shape[1]), bare), v, np.abs(v)).sum(axis=1, keepdims=True)
 
 
 def _fold(p: np.ndarray, bare: Numbers = ()) -> np.ndarray:
-    """Return (1 - |p.yx|) sign(p), (count, 2), without the absolute value for the components of p.yx in `bare`."""
+    """Return (1 - |p.yx|) sign(p), of shape (count, 2), without absolute values for the p.yx components in `bare`."""
     swapped = p[:, ::-1]
     return (1 - np.where(np.isin(np.arange(2), bare), swapped, np.abs(swapped))) * _signs(p)
 
 
 def _encoder(fold: Fold = _fold, bare: Numbers = (), in_place: bool = False) -> Side:
-    """Return an octahedral encode from (count, 3) to (count, 2), right or with a mistake.
+    """Return an octahedral encode from (count, 3) to (count, 2), correct or with a mistake.
 
     Args:
         fold: the function for the half with negative z.
         bare: the components without an absolute value in the sum.
-        in_place: whether m itself is divided, so that a negative sum changes the sign of the z that decides the fold.
+        in_place: whether m itself is divided; a negative sum then changes the sign of the z that decides the fold.
     """
 
     def encode(m: np.ndarray) -> np.ndarray:
@@ -71,8 +71,8 @@ def _decoder(unfold: Fold = _fold, bare: Numbers = (), everywhere: bool = False)
 
 
 def _by_size(bare: Numbers) -> Side:
-    """Return a decode that unfolds by n.xy -= sign(n.xy) max(-n.z, 0), where the sum in n.z has no absolute value for
-    the components in `bare`."""
+    """Return a decode that unfolds by n.xy -= sign(n.xy) max(-n.z, 0). The sum in n.z has no absolute value for the
+    components in `bare`."""
 
     def decode(c: np.ndarray) -> np.ndarray:
         z = 1 - _sum(c, bare)
@@ -82,7 +82,7 @@ def _by_size(bare: Numbers) -> Side:
 
 
 def _beyond(c: np.ndarray) -> np.ndarray:
-    """Return |x| + |y| - 1 of each point, (count, 1): positive outside of the diamond."""
+    """Return |x| + |y| - 1 for each point, of shape (count, 1); positive outside the diamond."""
     return _sum(c, ()) - 1
 
 
@@ -127,17 +127,17 @@ DECODERS: Mapping[str, Sequence[Side]] = MappingProxyType(
 
 @dataclass(frozen=True, eq=False)
 class Axes:
-    """The axes of an octahedron, where a direction n is m = matrix n. Its codes may also be rotated by 45 degrees."""
+    """The axes of an octahedron: m = matrix n for a direction n. The codes may also be rotated by 45 degrees."""
 
     matrix: np.ndarray
     is_turned: bool = False
 
     def code(self, p: np.ndarray) -> np.ndarray:
-        """Return the code of a point of the octahedron's square."""
+        """Return the codes of points in the octahedron's square, of shape (count, 2)."""
         return self._turned_points(p) / 2 if self.is_turned else p
 
     def point(self, c: np.ndarray) -> np.ndarray:
-        """Return the point of the square that a code stands for."""
+        """Return the points in the octahedron's square for codes of shape (count, 2)."""
         return self._turned_points(c) if self.is_turned else c
 
     def _turned_points(self, p: np.ndarray) -> np.ndarray:
@@ -147,8 +147,8 @@ class Axes:
 
 @cache
 def frames() -> tuple[Axes, ...]:
-    """Return the Axes of every order and sign of the axes: as they are, turned by 45 degrees about the pole, and
-    turned in the codes."""
+    """Return the Axes for every order and sign of the axes: unrotated, rotated by 45 degrees around the pole, and
+    with rotated codes."""
     half = np.sqrt(0.5)
     about = np.array([[half, half, 0], [half, -half, 0], [0, 0, 1]])
     plain = [
@@ -162,13 +162,13 @@ def frames() -> tuple[Axes, ...]:
 
 @dataclass(frozen=True)
 class Found:
-    """The octahedral maps that two functions match: by mistake, "" for none, the indices of the axes in `frames`."""
+    """The octahedral maps that two functions match: by mistake, "" for none, the indices of axes in `frames`."""
 
     encoder: Mapping[str, set[int]]
     decoder: Mapping[str, set[int]]
 
     def mistakes(self) -> Iterator[str]:
-        """Yield the mistake of one side if the other is right in the same axes; nothing if both are right."""
+        """Yield the mistake in one function if the other is correct in the same axes; nothing if both are correct."""
         right = self.encoder.get("", set()), self.decoder.get("", set())
         if right[0] & right[1]:
             return
@@ -178,15 +178,15 @@ class Found:
 
 
 def mistakes(probe: Probe) -> list[str]:
-    """Return the mistakes of an octahedral map, with codes in [-1, 1] or [0, 1], as lines; else empty."""
+    """Return the mistakes in an octahedral map with codes in [-1, 1] or [0, 1], as lines; may be empty."""
     if probe.size != 2:
         return []
     return list(found(probe).mistakes()) or list(found(of_unit(probe)).mistakes())
 
 
 def found(probe: Probe) -> Found:
-    """Return the octahedral maps, right or with a known mistake, that the two functions match, and in which axes.
-    Codes must have two numbers."""
+    """Return the octahedral maps, correct or with a known mistake, that the two functions match, and in which axes.
+    Codes must have two components."""
     n, codes = directions()[-COUNT:], np.random.default_rng(1).uniform(-1, 1, size=(COUNT, 2)).astype(np.float32)
     given, back = probe.encode(n), unit(probe.decode(codes))
     # In every axes at once: (axes, count, 3), and the points that codes stand for.
@@ -218,8 +218,8 @@ def _matching_axes(models: Mapping[str, Sequence[Side]], alike: Callable[[Side],
 
 
 def _alike(modelled: np.ndarray, own: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """Return in which axes results, (axes, count, size), match a user's results for nearly all rows that count: bool
-    of shape (axes,)."""
+    """Return for each choice of axes whether a model's results, of shape (axes, count, size), match the user's
+    results in nearly all rows for which `counts` is true; bool of shape (axes,)."""
     with np.errstate(invalid="ignore"):
         near = (np.abs(modelled - own) < NEAR * np.maximum(1, np.abs(own))).all(axis=2)
     # A sum that is 0 is finite in neither.

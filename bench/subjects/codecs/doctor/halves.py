@@ -1,9 +1,9 @@
 """The reason why a half of the sphere does not round-trip: by design, or because one of the functions loses it.
 
-Each function is looked at by itself. The encoder knows the half if its directions have codes of their own: the
-directions that these codes decode to have other codes. The decoder reaches the half if codes of the square, used or
-not, decode to most of it. In a design for a half neither is the case: xy, which uses the disc, and hemi-octahedral,
-which uses the square.
+Each function is examined separately. The encoder knows the half if its directions have codes of their own, that is,
+if the directions that these codes decode to have different codes. The decoder reaches the half if codes in the
+square, used or not, decode to most of it. Neither is true of an encoding designed for the other half, such as xy,
+which uses the disc, or hemi-octahedral, which uses the square.
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ CELLS, RIM_OF_CELLS = 16, 0.15
 
 
 def square(size: int) -> np.ndarray:
-    """Return codes on a regular grid over all that a storage holds, corners and edges included: (count, size)."""
+    """Return codes on a regular grid over the full range of a storage, ends included, of shape (count, size)."""
     axis = np.linspace(-1, 1, ACROSS.get(size, 3))
     return np.array(list(itertools.product(axis, repeat=size)), np.float32)
 
 
 class Sides:
-    """The treatment by each function of the directions that a hemisphere loses.
+    """How each function treats the directions that a hemisphere loses.
 
     Attributes:
-        gone: these directions, without those of the other half that still round-trip.
-        share: in words, how many of the other half they are, if they are not nearly all.
-        encoder_knows: whether they have codes of their own.
-        decoder_reaches: whether codes of the square decode to most of them.
+        gone: the directions in the opposite half that do not round-trip.
+        share: their share of the opposite half, in words; empty if nearly all are lost.
+        encoder_knows: whether most of the lost directions have codes of their own.
+        decoder_reaches: whether codes in the square decode to most of the lost directions.
     """
 
     def __init__(self, trip: Trip, probe: Probe, half: Domain):
@@ -63,8 +63,8 @@ class Sides:
 
 
 def _cells(n: np.ndarray, half: Domain) -> np.ndarray:
-    """Return the cell of the sphere that each direction is in, as a whole number; negative in the half itself, and
-    for a direction that is not finite."""
+    """Return the index of the cell of the sphere that contains each direction, for the half that is lost; negative
+    for other directions and for directions that are not finite."""
     height = -half.side * n[:, half.axis]
     x, y = (n[:, (half.axis + step) % 3] for step in (1, 2))
     sector = np.floor((np.arctan2(y, x) / (2 * np.pi) + 0.5) * SECTORS).clip(max=SECTORS - 1)
@@ -73,7 +73,7 @@ def _cells(n: np.ndarray, half: Domain) -> np.ndarray:
 
 
 def lost(sides: Sides, half: Domain) -> str:
-    """Return in words which function loses the half that a hemisphere lacks; empty if both have it, or neither."""
+    """Return in words which function loses the half that a hemisphere lacks; empty unless exactly one does."""
     axes = axes_of(sides.gone)
     which = f"{sides.share}directions with {half.lost_text}{f', which come back with {axes}' if axes else ''}"
     if sides.encoder_knows and not sides.decoder_reaches:
@@ -85,7 +85,7 @@ def lost(sides: Sides, half: Domain) -> str:
 
 
 def unread(probe: Probe, codes: np.ndarray) -> Iterator[str]:
-    """Yield a line on each number that encode fills and decode does not read."""
+    """Yield a line for each component that encode writes and decode does not read."""
     before = probe.decode(np.clip(codes, -1, 1))
     for number in range(probe.size):
         if np.ptp(np.clip(codes[:, number], -1, 1)) < SAME_CODE:
@@ -97,8 +97,8 @@ def unread(probe: Probe, codes: np.ndarray) -> Iterator[str]:
 
 
 def unused(trip: Trip, probe: Probe) -> Iterator[str]:
-    """Yield a line with the share of the square that codes use, if it is small; nothing unless codes have two numbers
-    and are not packed."""
+    """Yield a line with the share of the square that codes use, if it is small; nothing for packed codes or codes
+    that do not have two components."""
     cells = np.unique(np.floor((np.clip(trip.codes, -1, 1) * 0.5 + 0.5) * CELLS).clip(max=CELLS - 1), axis=0)
     # Cells at the rim count whole. Where most are used nothing is wasted, and encode is not asked for more.
     if probe.size != 2 or probe.is_packed or len(cells) / CELLS**2 > LEAST_USED + RIM_OF_CELLS:

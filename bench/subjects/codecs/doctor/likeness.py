@@ -1,4 +1,4 @@
-"""The encodings of the catalogue that two functions match, each by itself: in any axes, range and order of numbers."""
+"""Encodings in the catalogue that each of two functions matches, in any axes, range and order of components."""
 
 from __future__ import annotations
 
@@ -25,24 +25,24 @@ AXES = 48
 
 @dataclass(frozen=True)
 class Likeness:
-    """The encodings that the two functions match.
+    """The encodings that each of two functions matches.
 
     Attributes:
-        encoder, decoder: the names of the encodings of the catalogue that each matches, empty if it matches none.
+        encoder, decoder: the names of the encodings in the catalogue that the function matches; may be empty.
     """
 
     encoder: tuple[str, ...]
     decoder: tuple[str, ...]
 
     def shared(self, domain: str = "") -> str:
-        """Return the name of the first encoding that both functions match, only of this domain if one is given; empty
-        if they share no encoding."""
+        """Return the name of the first encoding that both functions match, with this domain if one is given; empty if
+        they share no such encoding."""
         both = [name for name in self.encoder if name in self.decoder]
         return next((name for name in both if domain in ("", ENCODINGS[name].domain)), "")
 
 
 def likeness(gl: Device, probe: Probe, domain: Domain) -> Likeness:
-    """Return the names of the catalogue's encodings that a user's encode and decode each match on a domain."""
+    """Return the names of the encodings in the catalogue that a user's encode and decode each match on a domain."""
     n = domain.held(trip_of(probe, directions())).n[-COUNT:]
     matrices = np.stack([axes.matrix for axes in frames()[:AXES]])
     # Of shape (axes, count, 3): each direction in each axes.
@@ -55,8 +55,8 @@ def likeness(gl: Device, probe: Probe, domain: Domain) -> Likeness:
 
 
 def names_alone(gl: Device, probe: Probe, is_encoder: bool) -> tuple[str, ...]:
-    """Return the names of the catalogue's encodings that one function alone matches, on all directions, otherwise on
-    those with z >= 0; empty if none match."""
+    """Return the names of the encodings in the catalogue that one function matches: for all directions or, failing
+    that, for directions with z >= 0. May be empty."""
     for domain in (SPHERE, HALVES[0]):
         resemblance = likeness(gl, probe, domain)
         if names := resemblance.encoder if is_encoder else resemblance.decoder:
@@ -65,7 +65,7 @@ def names_alone(gl: Device, probe: Probe, is_encoder: bool) -> tuple[str, ...]:
 
 
 def _is_comparable(encoding: Encoding, size: int, domain: Domain) -> bool:
-    """Whether an encoding has `size` numbers and a map of its own, and includes a domain."""
+    """Whether an encoding has `size` components, has its own map, and covers a domain."""
     is_alike = encoding.components + encoding.sign_bits == size and not encoding.is_precise
     return is_alike and (encoding.domain == SPHERE.name or domain.name != SPHERE.name)
 
@@ -76,12 +76,12 @@ def _codes_of(gl: Device, encoding: Encoding, turned: np.ndarray) -> np.ndarray:
 
 
 def _held_mask(encoding: Encoding, turned: np.ndarray) -> np.ndarray:
-    """Return which directions an encoding is made for, bool of shape (axes, count)."""
+    """Return whether an encoding is made for each direction, bool of shape (axes, count)."""
     return turned[..., 2] > 0 if encoding.domain != "sphere" else np.full(turned.shape[:2], True)
 
 
 def _is_encoder(own: np.ndarray, codes: np.ndarray, turned: np.ndarray, encoding: Encoding) -> bool:
-    """Whether a user's codes equal an encoding's in some axes, up to a matrix and a shift of the numbers."""
+    """Whether a user's codes equal an encoding's codes in some axes, up to an affine map of the components."""
     return any(
         _is_linear_fit(own[held], its[held]) for its, held in zip(codes, _held_mask(encoding, turned), strict=True)
     )
@@ -99,7 +99,7 @@ def _is_linear_fit(own: np.ndarray, codes: np.ndarray) -> bool:
 
 
 def _decoders(probe: Probe, codes: Mapping[str, np.ndarray], turned: np.ndarray) -> tuple[str, ...]:
-    """Return the names of the encodings whose codes a user's decoder takes, up to a range, a turn and axes."""
+    """Return the names of the encodings whose codes a user's decoder accepts, up to a range, a rotation and axes."""
     changes = _code_steps(probe.size)
     names = []
     for name, its in codes.items():

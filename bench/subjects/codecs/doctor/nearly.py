@@ -1,7 +1,7 @@
 """Mistakes in a pair that nearly round-trips: codes that are scaled, shifted or truncated between the two functions.
 
-The code that the decoder wants for a direction is the code that decodes to it, found by Newton's method from the
-encoder's code. The difference between the two codes identifies the mistake, whatever the map.
+The code that the decoder expects for a direction is the code that decodes to this direction; Newton's method finds it
+from the encoder's code. The difference between the two codes identifies the mistake for any map.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ HALF_STEP, WHOLE = 0.08, 0.02
 
 @dataclass(frozen=True)
 class Fit:
-    """The value that the decoder wants in place of a number c of a code, counted from 1: scale c + shift."""
+    """A change to a component c of a code, counted from 1: the decoder expects scale c + shift."""
 
     number: int
     scale: float
@@ -54,10 +54,10 @@ class Fit:
 
 @dataclass(frozen=True)
 class Lattice:
-    """Steps whose whole multiples are the numbers of codes: `steps` of them from 0 to 1.
+    """A regular grid that components of codes are rounded to, with `steps` steps from 0 to 1.
 
     Attributes:
-        is_unit: whether (c + 1) / 2 is a multiple, as in UNORM; else c, as in SNORM.
+        is_unit: whether (c + 1) / 2 is a multiple of the step, as in UNORM; otherwise c is, as in SNORM.
         is_one_more: whether there is one more step than the bits hold: 256 instead of 255.
     """
 
@@ -75,18 +75,18 @@ class Lattice:
         return storage.kind == ("unorm" if self.is_unit else "snorm") and scales == {self.steps}
 
     def whole(self, codes: np.ndarray) -> np.ndarray:
-        """Return codes counted in steps: whole numbers if they are on the lattice."""
+        """Return codes in units of steps: whole numbers if the codes are on the lattice."""
         return (codes * 0.5 + 0.5 if self.is_unit else codes) * self.steps
 
     @property
     def step(self) -> float:
-        """The step of a number in [-1, 1]."""
+        """The step size of a component in [-1, 1]."""
         return (2.0 if self.is_unit else 1.0) / self.steps
 
 
 def lattice_of(codes: np.ndarray) -> Lattice | None:
-    """Return the coarsest lattice that nearly all numbers of the codes are on; None if no lattice fits, or if the
-    codes have too few values to tell."""
+    """Return the coarsest lattice that contains nearly all components of the codes; None if no lattice fits, or if
+    the codes have too few values to decide."""
     for bits in BITS:
         for lattice in (Lattice(bits, True), Lattice(bits, False), Lattice(bits, True, True)):
             whole = lattice.whole(codes.astype(np.float64))
@@ -97,14 +97,14 @@ def lattice_of(codes: np.ndarray) -> Lattice | None:
 
 @dataclass(frozen=True)
 class Start:
-    """The start of the search for a scale: codes times `scale`, about a point of each number."""
+    """The initial guess in the search for a scale: each component is scaled by `scale` about the value `about`."""
 
     scale: float = 1.0
     about: float = 0.0
 
     @property
     def shift(self) -> float:
-        """The number that is added to scale times a number."""
+        """The offset to add to a component times `scale`."""
         return self.about * (1 - self.scale)
 
     def of(self, codes: np.ndarray) -> np.ndarray:
@@ -116,7 +116,7 @@ UNCHANGED = Start()
 
 
 def start(trip: Trip, probe: Probe) -> Start:
-    """Return the Start with the smallest median angle, among a few scales about 0 and about 0.5."""
+    """Return the Start with the smallest median angular error, from several scales about 0 and about 0.5."""
     scales = np.geomspace(1 / FARTHEST, FARTHEST, SCALES)
     tried = [Start(float(scale), about) for about in (0.0, 0.5) for scale in scales]
     few = trip.of(np.arange(max(len(trip.n) - FEW, 0), len(trip.n)))
@@ -126,8 +126,8 @@ def start(trip: Trip, probe: Probe) -> Start:
 
 
 def wanted(trip: Trip, probe: Probe, begin: Start) -> np.ndarray:
-    """Return the codes that decode to the trip's directions, found from `begin` by Newton's method: (count, size);
-    NaN where the method fails."""
+    """Return the codes that decode to the trip's directions, of shape (count, size), found by Newton's method
+    starting from `begin`; NaN where the method fails."""
     codes = begin.of(trip.codes.astype(np.float64))
     for _ in range(ROUNDS):
         codes = codes + _towards(trip.n, codes, probe)
@@ -135,8 +135,8 @@ def wanted(trip: Trip, probe: Probe, begin: Start) -> np.ndarray:
 
 
 def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
-    """Return the Newton step of each code toward direction n, by the slope of decode: (count, size); NaN where the
-    slope is not finite."""
+    """Return the Newton step of each code towards its direction in n, of shape (count, size), from the slope of
+    decode; NaN where the slope is not finite."""
     size = codes.shape[1]
     # Of what float32 makes of a code, so that a difference is one of codes that are.
     rounded_codes = codes.astype(np.float32)
@@ -155,8 +155,8 @@ def _towards(n: np.ndarray, codes: np.ndarray, probe: Probe) -> np.ndarray:
 
 
 def _fit(index: int, given: np.ndarray, wanted_codes: np.ndarray, begin: Start) -> Fit:
-    """Return the line through most of the wanted numbers, by repeated least squares on the nearest of them; scale 1
-    and shift 0 if too few are left."""
+    """Return the line through most of the wanted values of component `index`, by repeated least squares without
+    outliers; scale 1 and shift 0 if too few values are left."""
     x, y = given[:, index], wanted_codes[:, index]
     scale, shift = begin.scale, begin.shift
     kept = np.isfinite(y) & (np.abs(y - begin.of(x)) < 0.5)
@@ -170,7 +170,7 @@ def _fit(index: int, given: np.ndarray, wanted_codes: np.ndarray, begin: Start) 
 
 
 def mistakes(trip: Trip, probe: Probe, begin: Start = UNCHANGED) -> Iterator[str]:
-    """Yield lines on how the numbers of codes are scaled, shifted or truncated between the two functions.
+    """Yield lines on how the components of codes are scaled, shifted or truncated between the two functions.
 
     Args:
         begin: the approximate change that the codes need.
@@ -206,20 +206,20 @@ def _rounding_sentences(fits: list[Fit], trip: Trip, probe: Probe) -> Iterator[s
 
 
 def _is_shift(scale: np.ndarray, shift: np.ndarray) -> bool:
-    """Whether all numbers are shifted by the same, and not scaled."""
+    """Whether all components are shifted by the same amount and not scaled."""
     most = ALIKE_SHIFTS * np.abs(shift).max()
     return bool(np.ptp(shift) < most and np.abs(scale - 1).max() < most)
 
 
 def _half_step(shift: float) -> int:
-    """Return the bit count whose half step codes are shifted by; 0 if no bit count fits."""
+    """Return the bit count for which the shift is half a step; 0 if no bit count fits."""
     halves = ((bits, abs(shift) * steps) for bits in BITS for steps in (2**bits - 1, 2**bits))
     return next((bits for bits, share in halves if abs(share - 1) < NEAR_A_HALF), 0)
 
 
 def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Probe) -> str:
-    """Return scales in words: one for all numbers, or each number's own with its shift, without the numbers whose
-    scale is right."""
+    """Return the scales in words: one scale for all components, or each component's scale and shift, without
+    components whose scale is right."""
     if max(np.ptp(scale), np.ptp(shift)) <= ALIKE * np.abs(scale - 1).max():
         mean_scale = float(scale.mean())
         fixed_point = _fixed_point_text(mean_scale, float(shift.mean()), probe)
@@ -232,8 +232,8 @@ def _scale_said(fits: list[Fit], scale: np.ndarray, shift: np.ndarray, probe: Pr
 
 
 def _fixed_point_text(scale: float, shift: float, probe: Probe) -> str:
-    """Return in words, after a comma, the point that stays fixed when codes are scaled, if it is 0.5; otherwise the
-    shift in the user's own range. Empty if the point is 0."""
+    """Return in words, after a comma, the fixed point of the scaling if it is 0.5; otherwise the shift in the user's
+    own range. Empty if the fixed point is 0."""
     own = (1 - scale + shift) / 2 if probe.is_unit else shift
     stays = own / (1 - scale)
     # Codes in [0, 1] that have become [-1, 1] by the user's own doing are scaled about -1.
@@ -245,21 +245,21 @@ def _fixed_point_text(scale: float, shift: float, probe: Probe) -> str:
 
 
 def _of_steps(shift: float) -> str:
-    """Return a shift as one step of some bits, such as `1/255`, if one fits; otherwise as a decimal number."""
+    """Return a shift as one step at some bit count, such as `1/255`, if one fits; otherwise as a decimal number."""
     steps = next((2**bits - 1 for bits in BITS if abs(shift * (2**bits - 1) - 1) < NEAR_A_HALF), 0)
     return f"1/{steps}" if steps else f"{shift:.3g}"
 
 
 def _shift_said(scale: float, shift: float) -> str:
-    """Return a shift as ` plus 0.1` or ` minus 0.1`, with the leading space; empty if numbers are not shifted, either
-    in [-1, 1] or in [0, 1]."""
+    """Return a shift as ` plus 0.1` or ` minus 0.1`, with the leading space; empty if a component is not shifted in
+    [-1, 1] or not shifted in [0, 1]."""
     is_told = min(abs(shift), abs(shift - (scale - 1))) > ALIKE * abs(scale - 1)
     return f" {'plus' if shift > 0 else 'minus'} {abs(shift):.3g}" if is_told else ""
 
 
 def _fraction(scale: float) -> str:
-    """Return a scale as a fraction of the integers that stand for 1, such as `254/255`, if one fits; otherwise as a
-    decimal number."""
+    """Return a scale as a ratio of the integers that represent 1, such as `254/255`, if such a ratio fits; otherwise
+    as a decimal number."""
     fractions = {}
     for steps in (count for bits in BITS for count in (2**bits - 1, 2**bits, 2 ** (bits - 1) - 1)):
         fractions |= {f"{steps - 1}/{steps}": 1 - 1 / steps, f"{steps}/{steps - 1}": steps / (steps - 1)}
@@ -269,8 +269,8 @@ def _fraction(scale: float) -> str:
 
 
 def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]:
-    """Yield at most one line on codes that the encoder rounds by itself: rounded to another number of steps, rounded
-    down, truncated, or half a step too large.
+    """Yield at most one line about codes that the encoder itself rounds: rounded to the wrong number of steps,
+    rounded down, truncated, or half a step too large.
 
     Args:
         x, y: the encoder's codes, and the codes that the decoder needs."""
@@ -290,7 +290,7 @@ def _of_lattice(x: np.ndarray, y: np.ndarray, lattice: Lattice) -> Iterator[str]
 
 
 def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator[str]:
-    """Yield a line if codes are rounded to one step more or fewer than they are divided by, such as 254 for 255."""
+    """Yield a line if codes are rounded to one step more or fewer than expected, such as 254 instead of 255."""
     slopes = [_slope(x[:, i], off[:, i]) for i in range(x.shape[1])]
     # One step too many or too few from end to end.
     steps = np.array(slopes) * (2.0 if lattice.is_unit else 1.0)
@@ -300,10 +300,10 @@ def _lattice_scale(x: np.ndarray, off: np.ndarray, lattice: Lattice) -> Iterator
 
 
 def scaled_angles(held: Trip) -> Iterator[str]:
-    """Yield a line if the two functions divide a turn into different numbers of steps, such as 256 and 255.
+    """Yield a line if the two functions divide a full turn into different numbers of steps, such as 256 and 255.
 
     Args:
-        held: directions that the encoding is made for, and the directions that they decode to.
+        held: directions that the encoding is made for, with their decoded directions.
     """
     for axis, name in enumerate("xyz"):
         across = [(axis + 1) % 3, (axis + 2) % 3]

@@ -1,1 +1,1 @@
-"""Half arithmetic on a device that computes so: the same GLSL in 16-bit types, through Vulkan."""
+"""Half arithmetic on a device with 16-bit floats: the same GLSL with 16-bit types, through Vulkan."""

@@ -1,4 +1,4 @@
-"""A device that computes in 16 bits, by Vulkan through wgpu, and the results of a compute shader on it."""
+"""A device that computes in 16 bits, through wgpu and Vulkan, and the running of compute shaders on it."""
 
 from __future__ import annotations
 
@@ -22,10 +22,11 @@ EXCESS = Path(__file__).with_name("excess.comp")
 
 @cache
 def half_device() -> Any:
-    """Return the wgpu device.
+    """Return the wgpu device with 16-bit floats.
 
     Raises:
-        MissingError: wgpu is not installed, or no Vulkan device here has 16-bit floats; what to install.
+        MissingError: wgpu is not installed, or no Vulkan device here has 16-bit floats; the message says what to
+            install.
     """
     try:
         from wgpu.utils import device
@@ -41,26 +42,26 @@ def half_device() -> Any:
 
 
 def name() -> str:
-    """Return one text for rows: the device's name, its API, and whether it rounds every step. Raises MissingError as
-    `half_device` does."""
+    """Return the device's description for rows: its name, its API, and whether it rounds every step. Raises
+    MissingError like `half_device`."""
     steps = "some steps keep more digits" if keeps_digits() else "every step rounded"
     return f"{half_device().adapter.info['device']}, {API}, {steps}"
 
 
 @cache
 def keeps_digits() -> bool:
-    """Whether a step's result may have more digits than a half, until it is stored."""
+    """Whether intermediate results may have more digits than a half."""
     first, two = (np.full((GROUP, 4), 1 + 2.0**-power, np.float32) for power in (10, 9))
     return bool(computed(Source(EXCESS), first, two).any())
 
 
 def computed(source: Source, given: np.ndarray, views: np.ndarray) -> np.ndarray:
-    """Run a compute shader on float32 arrays of shape (count, 4); return an array of that shape.
+    """Run a compute shader on two float32 arrays of shape (count, 4); return an array of the same shape.
 
     Raises:
-        MissingError: there is no device or no compiler.
+        MissingError: no device or no compiler is installed.
         ShaderError: the shader does not compile.
-        FormatError: the device refuses it.
+        FormatError: the device rejects the shader.
     """
     from wgpu.utils.compute import compute_with_buffers
 

@@ -1,4 +1,4 @@
-"""An encoding's operations in 16-bit types, whose cost compilers report."""
+"""An encoding's operations in 16-bit types, for compilers to report their cost."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ KERNELS = ("GIVEN", "BESIDE", "MADE")
 
 @dataclass(frozen=True, eq=False)
 class HalfOperation(Operation):
-    """A 16-bit operation between 32-bit numbers; the empty operation only converts as many numbers both ways."""
+    """A 16-bit operation with 32-bit inputs and outputs; the empty operation only converts the same numbers."""
 
     @property
     def empty(self) -> Operation:
@@ -34,8 +34,8 @@ class HalfOperation(Operation):
 
 
 def half_operation(encoding: Encoding, operation: str) -> Operation:
-    """Return an encoding's "encode" or "decode" as an operation in 16-bit types. Raises ShaderError as
-    `encoding_defines` does, or if the encoding rounds precisely."""
+    """Return an encoding's "encode" or "decode" as an operation in 16-bit types. Raises ShaderError like
+    `encoding_defines`, and if the encoding uses precise rounding."""
     if encoding.is_precise:
         raise ShaderError(f"{encoding.name}: precise rounding is not counted in half arithmetic")
     size = encoding.components + encoding.sign_bits

@@ -1,4 +1,4 @@
-"""A codec in half arithmetic on the device: its own GLSL in 16-bit types, and the storage emulated between."""
+"""A codec in half arithmetic on the device: its own GLSL with 16-bit types, with an emulated storage in between."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class HalfPasses:
     """A codec's encoder and decoder in 16-bit types.
 
     Raises:
-        ShaderError: its GLSL cannot be read or lacks one of the two functions.
+        ShaderError: the codec's GLSL cannot be read or lacks one of the two functions.
     """
 
     def __init__(self, codec: Codec):
@@ -33,12 +33,12 @@ class HalfPasses:
         self._encode, self._decode = (HalfSource(SHADER, defines | {"ENCODES": side}, names) for side in (1, 0))
 
     def round_trip(self, n: np.ndarray, views: np.ndarray) -> np.ndarray:
-        """Return normals after encode, storage and decode in half arithmetic: float32 of shape (count, 3).
+        """Return normals after encode, storage and decode in half arithmetic, float32 of shape (count, 3).
 
         Args:
             n, views: normals and view-space positions, float32 of shape (count, 4).
 
-        Raises as `compute.computed` does.
+        Raises the exceptions of `compute.computed`.
         """
         texels = computed(self._encode, n, views)
         return computed(self._decode, self._stored_texels(texels), views)[:, :3]

@@ -1,4 +1,4 @@
-"""An encoding's GLSL in 16-bit types: the same file, with every float, vector and number of 16 bits."""
+"""An encoding's GLSL in 16-bit types: the same file, with 16-bit floats, vectors and literals throughout."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ BITS = re.compile(r"\b(floatBitsToUint|floatBitsToInt|uintBitsToFloat|intBitsToF
 
 
 class HalfSource(Source):
-    """A shader whose includes, and the macros at its head, are in 16-bit types; its own lines, and the files of this
-    folder, stay as they are.
+    """A shader in which the included files and the macros at the top use 16-bit types. The shader's own lines and the
+    files in this folder are unchanged.
 
     Args:
-        path, defines, names: as `Source` takes them.
-        kept: macros that stay as they are.
+        path, defines, names: as for `Source`.
+        kept: names of macros that stay unchanged.
     """
 
     def __init__(
@@ -44,8 +44,8 @@ class HalfSource(Source):
 
 
 def in_halves(text: str) -> str:
-    """Return a line of GLSL with 16-bit types, numbers and bit conversions in place of 32-bit float ones; integers
-    are unchanged, and numbers above 65504 become 65504."""
+    """Return a line of GLSL with its float types, literals and bit conversions changed to 16 bits; integers are
+    unchanged, and literals above 65504 become 65504."""
     text = NUMBER.sub(lambda match: f"{min(float(match[1]), LARGEST)!r}hf", text)
     text = TYPES.sub(lambda match: "float16_t" if match[1] == "float" else f"f16{match[1]}", text)
     return BITS.sub(lambda match: f"half_{match[1]}", text)

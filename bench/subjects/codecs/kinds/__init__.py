@@ -1,1 +1,1 @@
-"""Users' own codes of something else than normals."""
+"""Users' own encodings of quantities other than normals."""

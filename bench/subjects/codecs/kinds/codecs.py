@@ -1,4 +1,4 @@
-"""Codecs of every kind by their names on the command line: encodings, users' files and storages."""
+"""Codecs of every kind, by the names of encodings, users' files and storages on the command line."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from .named import kind_of as kind_of_file
 
 
 def depth_storages_named(names: Names) -> list[DepthStorage]:
-    """Return storages of depths by their names, or by their bits: unorm:20. Raises UsageError."""
+    """Return depth storages by name, or by bits such as unorm:20. Raises UsageError."""
     storages = storages_said(map(str, names), {*DEPTH_STORAGES, *OTHER_WORDS["depth storage"]})
     by_bits = ((word, storage and depth_storage_of(storage)) for word, storage in storages.items())
     known = {**DEPTH_STORAGES, **{word: storage for word, storage in by_bits if storage}}
@@ -44,7 +44,7 @@ def depth_storages_named(names: Names) -> list[DepthStorage]:
 
 
 def curve_codec(encoding: CurveEncoding, storage: Storage, rounding: str) -> CurveCodec:
-    """Return a codec of a curve over its usual range."""
+    """Return a codec for a curve encoding over its usual range."""
     return CurveCodec(encoding, storage, encoding.usual_range, rounding)
 
 
@@ -68,10 +68,11 @@ NAMED: Mapping[str, Kind] = MappingProxyType({kind.word: kind for kind in (NORMA
 
 
 def kinds_named(names: Names, of: str) -> dict[Kind, Names]:
-    """Return names by their kind: the kind `of` if it is given, otherwise the kind of each name; normals if in doubt.
+    """Return names grouped by kind: all in the kind `of` if it is given, otherwise each name in its own kind; normals
+    if in doubt.
 
     Raises:
-        UsageError: an unknown kind, or names that belong to several kinds.
+        UsageError: the kind is unknown, or a name belongs to several kinds.
     """
     if of:
         (kind,) = choose("kind", (of,), NAMED)
@@ -87,13 +88,13 @@ def kinds_named(names: Names, of: str) -> dict[Kind, Names]:
 
 
 def _has(kind: Kind, word: str) -> bool:
-    """Whether a kind of the catalogue has an encoding of a name, over whatever range."""
+    """Whether the catalogue has an encoding of this kind and name; a range in the name is ignored."""
     return spelled(f"{kind.name} encoding", name_and_range(word)[0], BY_KIND[kind]) is not None
 
 
 def _kind_of_word(word: str) -> Kind:
-    """Return the kind of one name or file; normals for an unknown name. Raises UsageError if several kinds have the
-    name and normals do not, or if the name is a misspelling of a name of another kind."""
+    """Return the kind of one name or file; normals for an unknown name. Raises UsageError if several kinds other than
+    normals have the name, or if it is a misspelling of another kind's name."""
     if names_an_encoder(word):
         return _kind_of_file(UserFile(str(file_of(word))))
     kinds = [kind for kind in NAMED.values() if _has(kind, word)]
@@ -107,7 +108,8 @@ def _kind_of_word(word: str) -> Kind:
 
 
 def _kind_of_file(file: UserFile) -> Kind:
-    """Return the kind of a user's file: by its functions' names, else normals if they fit, else a kind that fits."""
+    """Return the kind of a user's file: from its function names, otherwise normals if they fit, otherwise a kind that
+    fits."""
     from ..encoding_names import encodings_named
 
     if (spoken := kind_by_names(file)) and spoken in MADE:
@@ -123,14 +125,14 @@ def _kind_of_file(file: UserFile) -> Kind:
 def codecs_of_kind(
     kind: Kind, names: Names, storages: Names | None, roundings: Sequence[str], usual: slice = slice(None)
 ) -> list[Any]:
-    """Return codecs of a kind other than normals: each encoding in each storage, rounded in each way.
+    """Return codecs of a kind other than normals: each encoding in each storage, with each rounding mode.
 
     Args:
-        names: of encodings and of users' files; for light and curves also with a range: rgbm:8.
-        usual: which of an encoding's usual storages, if none is named.
+        names: names of encodings or users' files; for light and curves optionally with a range, such as rgbm:8.
+        usual: which of an encoding's usual storages to use if no storage is named.
 
     Raises:
-        UsageError: an unknown name, or an invalid range.
+        UsageError: a name is unknown, or a range is invalid.
     """
     ranged = [word for word in names if isinstance(word, str) and ":" in word and not names_an_encoder(word)]
     plain = tuple(word for word in names if word not in ranged)
@@ -153,7 +155,7 @@ def codecs_of_kind(
 
 
 def _in_bytes(code: DepthEncoding, rounding: str) -> Iterator[DepthCodec]:
-    """Return a codec of a user's encoding over bytes for each depth that it may be given: linear, window and reversed
+    """Return codecs for a user's encoding over bytes, one per depth that it may receive: linear, window and reversed
     window."""
     form = STORAGES["rg8" if code.bytes == 2 else "rgba8"]
     storage = DepthStorage(code.name, f"{code.bytes} bytes of {code.title}", form, "bytes", 8 * code.bytes, code)
@@ -161,8 +163,8 @@ def _in_bytes(code: DepthEncoding, rounding: str) -> Iterator[DepthCodec]:
 
 
 def _with_range(kind: Kind, word: str) -> tuple[Any, float | None]:
-    """Return the encoding of a name with a range, such as `rgbm:8`, and the range; None in its place for light, whose
-    encoding already has it. Raises UsageError for kinds without ranges."""
+    """Return the encoding for a name with a range, such as `rgbm:8`, and the range. For light the range is None,
+    because the encoding already includes it. Raises UsageError for kinds without ranges."""
     name, text = name_and_range(word)
     if kind is LIGHT:
         return ranged_light_buffer(word).encoding, None

@@ -1,4 +1,4 @@
-"""Users' own codes of roughness and the like: curves."""
+"""Users' own encodings of roughness and similar quantities: curves."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .own import COUNT, Own, OwnKind, Values, number, of_range, one_number_error
 
 
 def _quantities(_: Own) -> Values:
-    """Return evenly spaced quantities from 0 to 1, for a range of 1."""
+    """Return evenly spaced values from 0 to 1, for functions with a range of 1."""
     return Values(rows(np.linspace(0, 1, COUNT)), of_range(COUNT))
 
 

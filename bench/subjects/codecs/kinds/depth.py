@@ -27,8 +27,8 @@ def _is_over_bytes(own: Own) -> bool:
 
 
 def _depths(own: Own) -> Values:
-    """Return depths between the planes, as many in each power of ten; for an encoding over bytes, numbers spread
-    evenly from 0 to 1."""
+    """Return depths between the planes, spaced evenly on a logarithmic scale; for an encoding over bytes, numbers
+    spread evenly from 0 to 1."""
     if _is_over_bytes(own):
         even = (np.arange(COUNT) + np.random.default_rng(SEED).random(COUNT)) / COUNT
         return Values(rows(even), rows(np.zeros(COUNT), EVEN))
@@ -37,14 +37,14 @@ def _depths(own: Own) -> Values:
 
 
 def _depth_errors(values: Values, trial: Tried) -> np.ndarray:
-    """Return errors relative to the depth; for an encoding over bytes, with even steps, to the range."""
+    """Return errors relative to the depth; for an encoding over bytes, relative to the range."""
     return one_number_errors(values, trial) / np.where(values.more[:, 1] == EVEN, 1.0, values.given[:, 0])
 
 
 def _depth_facts(own: Own, gl: Device) -> dict[str, Any]:
-    """Return findings by name: `planes`, the nearest and farthest depth that round-trip if the functions take no
-    planes, otherwise the usual planes; `is_open`, whether codes exceed 1, as depths in the scene's own units do; and
-    `notes`. An encoding over bytes has only `wrong` and `notes`."""
+    """Return findings by name: `planes`, the nearest and farthest depths that round-trip if the functions take no
+    planes, otherwise the usual planes; `is_open`, whether codes exceed 1, as depths in scene units do; and `notes`.
+    An encoding over bytes has only `wrong` and `notes`."""
     if _is_over_bytes(own):
         return {"wrong": list(_faults_of_bytes(own, gl)), "notes": [OF_BYTES]}
     planes = (NEAR, FAR)
@@ -63,7 +63,7 @@ def _depth_facts(own: Own, gl: Device) -> dict[str, Any]:
 
 
 def _faults_of_bytes(own: Own, gl: Device) -> Iterator[str]:
-    """Yield the mistakes in an encoding over bytes: a digit that it lacks, or a number that is not a whole byte."""
+    """Yield the mistakes in an encoding over bytes: a missing digit, or a component that is not a whole byte."""
     values, size = _depths(own), own.made.components
     x = values.given[:, 0].astype(np.float64)
     trial = own.tried(gl, values.given, values.more)
@@ -87,7 +87,7 @@ def _faults_of_bytes(own: Own, gl: Device) -> Iterator[str]:
 
 
 def _is_lost(back: np.ndarray, x: np.ndarray, digits: int) -> bool:
-    """Whether decoded depths are the depths without their first `digits` bytes."""
+    """Whether the decoded depths `back` equal the depths `x` without their first `digits` bytes."""
     whole = 256.0**digits
     return float(np.abs(back - np.modf(x * whole)[0] / whole).max()) < DEPTH_NEARLY / whole
 

@@ -1,4 +1,4 @@
-"""Users' own codes of tangent frames, and of quaternions."""
+"""Users' own encodings of tangent frames, including quaternions."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ HANDS = "{0:.3g}% of the tangent frames decode with the opposite handedness"
 
 
 def _frames(own: Own) -> Values:
-    """Return random rotations, half of them mirrored: as quaternions and handedness, or as normals with handedness
-    and tangents."""
+    """Return random rotations, half of them mirrored, either as quaternions and handedness, or as normals with
+    handedness and tangents."""
     random = np.random.default_rng(SEED)
     q = random.normal(size=(COUNT, 4))
     q *= np.sign(q[:, 3:]) / np.linalg.norm(q, axis=1, keepdims=True)
@@ -45,7 +45,7 @@ def _frames(own: Own) -> Values:
 
 
 def _largest_first(q: np.ndarray) -> np.ndarray:
-    """Return quaternions with the sign that makes the number of largest magnitude positive, as in `quaternion_of`."""
+    """Return quaternions, negated where needed to make the component of largest magnitude positive."""
     largest = np.take_along_axis(q, np.abs(q).argmax(axis=1)[:, None], axis=1)
     return q * np.sign(largest)
 
@@ -61,7 +61,7 @@ def _axes(given: np.ndarray, more: np.ndarray, of_rotation: bool) -> tuple[np.nd
 
 
 def _frame_errors(values: Values, trial: Tried) -> np.ndarray:
-    """Return the larger of the angles by which normal and tangent are off, in degrees."""
+    """Return the angular error of the normal or the tangent, whichever is larger, in degrees."""
     of_rotation = len(trial.back) < len(RESULTS)
     (n, t), (n_back, t_back) = (
         _axes(first, other, of_rotation) for first, other in ((values.given, values.more), trial.back[:2])
@@ -71,8 +71,8 @@ def _frame_errors(values: Values, trial: Tried) -> np.ndarray:
 
 
 def _frame_facts(own: Own, gl: Device) -> dict[str, Any]:
-    """Return findings by name: `is_unit`; `levels`, the number of values of each component, 0 for many; and those of
-    `_of_hands`."""
+    """Return findings by name: `is_unit`; `levels`, the number of values of each component, 0 for many; and the
+    findings of `_of_hands`."""
     values = _frames(own)
     trial = own.tried(gl, values.given, values.more)
     codes = trial.codes[:, : own.made.components]
@@ -84,7 +84,7 @@ def _frame_facts(own: Own, gl: Device) -> dict[str, Any]:
 
 
 def _level_count(numbers: np.ndarray) -> int:
-    """Return how many values numbers have: 1, or a few that are evenly spread from -1 to 1; otherwise 0."""
+    """Return the number of distinct values: 1, or a few that are evenly spaced from -1 to 1; otherwise 0."""
     values = np.unique(np.round(numbers, 4))
     if len(values) == 1:
         return 1
@@ -93,8 +93,8 @@ def _level_count(numbers: np.ndarray) -> int:
 
 
 def _of_hands(own: Own, values: Values, trial: Tried) -> dict[str, Any]:
-    """Return findings by name: `notes` and a false `has_hand` if decode returns no handedness, `wrong` if it reverses
-    some; otherwise an empty dict."""
+    """Return findings by name: `notes` and a false `has_hand` if decode returns no handedness, or `wrong` if it
+    reverses the handedness of some frames; otherwise an empty dictionary."""
     gives = [part for part in ("hand", "bitangent") if own.size(part)[1]]
     if not gives and own.size("tangent")[1] < 4:
         return {"notes": [NO_HAND], "has_hand": False}

@@ -27,7 +27,7 @@ NOT_BLACK = "a cleared texel ({0:g} in all channels) decodes to a light of {1:.3
 
 
 def _lights(own: Own) -> Values:
-    """Return random colours with a fourth number, up to the limit, evenly over eight factors of two."""
+    """Return random four-component colours up to the limit, spread evenly over eight powers of two."""
     random = np.random.default_rng(SEED)
     largest = own.found.get("limit", 1.0)
     bright = largest * 2.0 ** random.uniform(-8, 0, (COUNT, 1)) * random.uniform(0, 1, (COUNT, 4))
@@ -35,7 +35,7 @@ def _lights(own: Own) -> Values:
 
 
 def _light_errors(values: Values, trial: Tried) -> np.ndarray:
-    """Return the errors of the colours, relative to the brightest channel or to 1/256, whichever is larger."""
+    """Return the errors in colours, relative to the brightest component or to 1/256, whichever is larger."""
     return _light_apart(values.given, trial.back[0])[:, :3].max(axis=1)
 
 
@@ -45,9 +45,8 @@ def _light_apart(given: np.ndarray, back: np.ndarray) -> np.ndarray:
 
 
 def _light_facts(own: Own, gl: Device) -> dict[str, Any]:
-    """Return findings by name: `limit`, the brightest white light that comes back from a fixed-point format;
-    `open_limit`, the same from floats; `is_open`, whether a code of light 1 requires floats; and those of
-    `_added`."""
+    """Return findings by name: `limit`, the brightest white that round-trips with codes in [0, 1]; `open_limit`, the
+    brightest with any codes; `is_open`, whether the codes need a float format; and the findings of `_added`."""
     white = np.geomspace(DIMMEST, BRIGHTEST, COUNT)
     values = Values(np.repeat(rows(white)[:, :1], 4, axis=1), rows(np.zeros(COUNT)))
     trial = own.tried(gl, values.given, values.more)
@@ -62,8 +61,8 @@ def _light_facts(own: Own, gl: Device) -> dict[str, Any]:
 
 
 def _added(own: Own, gl: Device, held: Values) -> dict[str, Any]:
-    """Return findings by name: `blend`, how texels of lights add: "add" or "multiply" of codes, or "read" as lights;
-    `has_alpha`, whether the fourth number round-trips; `notes`; and `wrong` if a cleared target is not black."""
+    """Return findings by name: `blend`, how texels of light add up ("add" or "multiply" for codes, otherwise "read");
+    `has_alpha`, whether the fourth component round-trips; `notes`; and `wrong` if a cleared target is not black."""
     trial = own.tried(gl, held.given, held.more)
     both = held.given + held.given[::-1]
     blend = "read"
@@ -82,8 +81,8 @@ def _added(own: Own, gl: Device, held: Values) -> dict[str, Any]:
 
 
 def _light_encoding(own: Own) -> LightEncoding:
-    """Return the encoding in the format that the file's name gives, or that its codes fit. Raises UsageError for an
-    unknown format, or a format with too few channels."""
+    """Return the encoding in the format that the file's name gives, or else in a format that holds its codes. Raises
+    UsageError for an unknown format, or a format with too few channels."""
     is_open = own.found.get("is_open", False)
     (kept,) = choose("format", [own.file.settings.format or FORMATS[is_open]], LIGHT_STORAGES)
     if kept.channels < own.made.components:

@@ -1,11 +1,12 @@
-"""A first look at a user's own encoding of anything except normals, in a process that may hang or die.
+"""A first look at a user's own encoding of anything except normals, in a process that may hang or crash.
 
     python -m normalbench.bench.subjects.codecs.kinds.look KIND FILE
 
 Prints a line of JSON: `error`, what is wrong with the file, with `pairs`, the names of several pairs; `missing`, what
-this machine lacks; `broken`, a value for which the code is not finite or does not end. Otherwise `functions`, its
-encoder and its decoder, `pair`, the only one of several pairs that round-trips, `error_max`, the largest error of the
-values that were tried, `wrong`, `notes` and `measured`, lines, and the findings of its kind: see `own.py`.
+this machine lacks; or `broken`, a value for which the encoding is not finite or does not end. Otherwise `functions`,
+the encoder and the decoder; `pair`, the only one of several pairs that round-trips; `error_max`, the largest error
+among the tested values; `wrong`, `notes` and `measured`, lists of lines; and the findings for its kind (see
+`own.py`).
 """
 
 from __future__ import annotations
@@ -41,8 +42,8 @@ NOT_EXACT = "{} is not exact, but off by {:.3g} {} before any storage"
 
 
 def look(kind: OwnKind, file: UserFile) -> dict[str, Any]:
-    """Return the findings on a file, with the keys listed in this module's docstring: those of its only pair, or of
-    the only pair that round-trips; otherwise `error` and `pairs`."""
+    """Return the findings on a file's only pair, or on the only pair that round-trips; otherwise `error` and `pairs`.
+    The module describes the keys."""
     try:
         return _look_at_one(kind, file)
     except SeveralEncodersError as error:
@@ -60,8 +61,8 @@ def _undoes_itself(kind: OwnKind, file: UserFile) -> bool:
 
 
 def _look_at_one(kind: OwnKind, file: UserFile) -> dict[str, Any]:
-    """Return the findings on a file that has, or names, a single pair; `missing`, `error` or `broken` in place of the
-    rest. Raises SeveralEncodersError."""
+    """Return the findings on a file that has a single pair, or whose word names a pair; only `missing`, `error` or
+    `broken` if the pair cannot be measured. Raises SeveralEncodersError."""
     try:
         gl, translation = device(), translated(file, kind=kind.kind)
         own = Own(file, translation, {})
@@ -81,7 +82,7 @@ def _look_at_one(kind: OwnKind, file: UserFile) -> dict[str, Any]:
 
 
 def _endless(kind: OwnKind, own: Own, gl: Device) -> str:
-    """Describe a loop that the device has ended; empty if it has ended none."""
+    """Describe a loop that the device has cut short; empty if no loop was."""
     values = kind.values(own)
     trial = own.tried(gl, values.given, values.more)
     for what, flags in (("encode", trial.encode_ended), ("decode", trial.decode_ended)):
@@ -123,7 +124,7 @@ def _reach(trial: Tried, size: int) -> Iterator[str]:
 
 
 def _beyond(kind: OwnKind, own: Own, values: Values, trial: Tried) -> Iterator[str]:
-    """Yield a line on each number of a code that exceeds the range of storages, with the worst value."""
+    """Yield a line for each component of a code that exceeds the range of storages, with the worst value."""
     least = 0 if own.is_unit or not own.shape.has_sign else -1
     if own.found.get("is_open"):
         return
@@ -136,7 +137,7 @@ def _beyond(kind: OwnKind, own: Own, values: Values, trial: Tried) -> Iterator[s
 
 
 def _inexact(kind: OwnKind, own: Own, gl: Device) -> dict[str, str]:
-    """Return, by name, a line on each value that should round-trip exactly and does not."""
+    """Return a line, by name, for each value that should round-trip exactly but does not."""
     lines: dict[str, str] = {}
     for name, values in kind.exactly(own).items():
         error = float(kind.errors(values, own.tried(gl, values.given, values.more))[0])
@@ -149,7 +150,7 @@ def main(words: Sequence[str]) -> None:
     """Write the findings on a file to stdout, as a line of JSON.
 
     Args:
-        words: the name of a kind, and the file."""
+        words: the name of a kind, and the path of a file."""
     children.limit_this_process()
     # Whatever users' code prints goes to stderr.
     answer = os.dup(1)

@@ -23,7 +23,7 @@ DIRECTIONS = ((1, 0), (-1, 0), (0, 1), (0, -1))
 
 
 def _motions(own: Own) -> Values:
-    """Return motions up to the range: in random directions, of lengths that differ by factors, and along axes."""
+    """Return motion vectors up to the range: in random directions with log-uniform lengths, and along axes."""
     random = np.random.default_rng(SEED)
     angles, lengths = random.uniform(0, 2 * np.pi, COUNT), 2.0 ** random.uniform(-12, 0, COUNT)
     x, y = np.cos(angles) * lengths, np.sin(angles) * lengths
@@ -37,7 +37,7 @@ def _motion_errors(values: Values, trial: Tried) -> np.ndarray:
 
 
 def _motion_facts(own: Own, gl: Device) -> dict[str, Any]:
-    """Return findings by name: `is_unit`, by the code of no motion; `own_range`, if functions take no range."""
+    """Return findings by name: `is_unit`, from the code for zero motion; `own_range`, if functions take no range."""
     at_rest = own.tried(gl, rows(np.zeros(1)), of_range(1)).codes[0, : own.made.components]
     is_unit = bool((np.abs(at_rest - 0.5) < MIDDLE).all())
     if own.settings:
@@ -49,10 +49,10 @@ def _motion_facts(own: Own, gl: Device) -> dict[str, Any]:
 
 
 def _reach(own: Own, gl: Device, is_unit: bool, comes_back: bool) -> float:
-    """Return the largest motion along the axes up to which a fixed-point storage holds the codes.
+    """Return the largest motion along the axes whose codes fit a fixed-point storage.
 
     Args:
-        comes_back: whether motions must come back as well: an encoder may clip by itself.
+        comes_back: whether motions must also round-trip, because an encoder may clip its own codes.
     """
     low, high = LEAST_RANGE, MOST_RANGE
     # Each pass divides the ratio of the two ends by many steps.

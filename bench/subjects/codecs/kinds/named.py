@@ -1,4 +1,4 @@
-"""Encodings of a kind by their names on the command line: the catalogue's, and users' own files."""
+"""Encodings of a kind by their names on the command line: from the catalogue, and from users' own files."""
 
 from __future__ import annotations
 
@@ -38,17 +38,17 @@ T = TypeVar("T", bound=AnyEncoding)
 
 
 def own_codes_named(kind: Kind, names: Names, catalogue: Mapping[str, T], what: str = "") -> list[T]:
-    """Return the encodings of a kind that names stand for: the catalogue's, or users' files of shaders.
+    """Return the encodings of a kind with these names: from the catalogue, or from users' shader files.
 
-    A file gets a first look in a process of its own: if it does not compile, does not end or is not finite, it is
-    named on standard error and left out.
+    A file gets a first look in a separate process. If its encoding does not compile, does not end or is not finite,
+    the file is reported on standard error and left out.
 
     Args:
-        what: the word for the names in messages; by default the kind's encoding.
+        what: the word for an encoding in messages; by default, the kind's name and `encoding`.
 
     Raises:
-        UsageError: an unknown name, or nothing left.
-        MissingError: nothing left, because a compiler or a device is missing.
+        UsageError: a name is unknown, or no encoding is left.
+        MissingError: no encoding is left, because a compiler or a device is missing.
     """
     for word in names:
         if isinstance(word, str):
@@ -59,9 +59,9 @@ def own_codes_named(kind: Kind, names: Names, catalogue: Mapping[str, T], what: 
 
 
 def light_codecs_named(names: Names) -> list[LightCodec]:
-    """Return the light buffers that names stand for, including users' files: see `light_buffers_named`.
+    """Return the light buffers with these names, including users' files (see `light_buffers_named`).
 
-    Raises: as own_codes_named.
+    Raises: the exceptions of `own_codes_named`.
     """
     own = tuple(word for word in names if isinstance(word, str) and names_an_encoder(word))
     others = [word for word in names if word not in own]
@@ -83,13 +83,13 @@ def _looked_at(kind: Kind, file: UserFile) -> tuple[Any, list[str]]:
 
 
 def said_of(own: Own) -> list[str]:
-    """Return the remarks on an encoding that can be measured: first the likely mistakes, then notes."""
+    """Return the remarks on an encoding that can be measured: likely mistakes first, then notes."""
     quiet = {UNIT, *own.found.get("measured", [])}
     return [*own.found.get("wrong", []), *(line for line in notes_of(own) if line not in quiet)]
 
 
 def notes_of(own: Own) -> list[str]:
-    """Return the guesses and findings about a file, in sentences."""
+    """Return what was assumed and found about a file, in sentences."""
     findings = own.found
     guessed = [*([IN_32_BITS] if has_halves(own.made.text) else []), *([UNIT] if own.is_unit else [])]
     return [*own.made.notes, *findings.get("notes", []), *guessed, *findings.get("measured", [])]
@@ -97,10 +97,10 @@ def notes_of(own: Own) -> list[str]:
 
 def kind_of(file: UserFile, reason: str) -> OwnKind | None:
     """Return the kind of a user's file that is not an encoding of normals: the first kind that fits, or the kind that
-    `reason` names; None if there is no such kind.
+    `reason` names; None if no kind does.
 
     Args:
-        reason: why it is not an encoding of normals.
+        reason: the message that the file is not an encoding of normals.
     """
     fitting = (kind for kind in OWN if _fits(file, kind))
     spoken = (kind for kind in OWN if f"is of {kind.plural}, not of" in reason)
@@ -109,7 +109,8 @@ def kind_of(file: UserFile, reason: str) -> OwnKind | None:
 
 
 def kind_by_names(file: UserFile) -> Kind | None:
-    """Return the only kind that a file's function names give, if the file has a pair of that kind; else None."""
+    """Return the kind that a file's function names indicate, if it is the only one and the file has a pair of that
+    kind; otherwise None."""
     try:
         text = file.path.read_text(encoding="utf-8", errors="replace")
     except OSError:
@@ -123,7 +124,7 @@ def kind_by_names(file: UserFile) -> Kind | None:
 
 
 def _fits(file: UserFile, kind: Kind) -> bool:
-    """Whether a file has a pair, or several, of a kind."""
+    """Whether a file has at least one pair of functions of a kind."""
     try:
         translated(file, kind=kind)
     except SeveralEncodersError:
@@ -137,7 +138,7 @@ def own_code(kind: Kind, file: UserFile) -> Own:
     """Return a user's own encoding of a kind, after a first look in a separate process.
 
     Raises:
-        UsageError: it cannot be translated or measured.
+        UsageError: the encoding cannot be translated or measured.
         MissingError: a compiler or a device is missing.
     """
     own = examined_code(OWN[kind], file)
@@ -147,9 +148,10 @@ def own_code(kind: Kind, file: UserFile) -> Own:
 
 
 def examined_code(kind: OwnKind, file: UserFile) -> Own:
-    """Return an encoding as `own_code` does, even if it is not finite or does not end: that is its first mistake then.
+    """Return an encoding like `own_code`, but accept functions that are not finite or do not end; this is then listed
+    as the first mistake.
 
-    Raises: as `own_code`.
+    Raises: the exceptions of `own_code`.
     """
     findings = _found(kind.kind, file)
     if "missing" in findings:
@@ -165,7 +167,7 @@ def examined_code(kind: OwnKind, file: UserFile) -> Own:
 
 
 def _found(kind: Kind, file: UserFile) -> dict[str, Any]:
-    """Return the findings of the first look. Raises UsageError if its process does not end well."""
+    """Return the findings of the first look. Raises UsageError if its process crashes or does not end."""
     try:
         done = forks.finished(LOOK, [kind.name, file.word], TIME_LIMIT)
         output, ended = done.stdout, children.how_it_ended(done)

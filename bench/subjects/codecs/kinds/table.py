@@ -1,4 +1,4 @@
-"""The kinds that users' own codes may be of, those with words that others' names have too at last."""
+"""The kinds of users' own encodings. Kinds with words that other kinds' names also contain come last."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The site of readers' devices: an index to search, and a page for each device."""
+"""The site of readers' devices: a searchable index with a section for each device."""

@@ -1,4 +1,4 @@
-"""The encoding to use on a device: `pick`'s decision from the device's own errors."""
+"""The recommended encoding for a device: `pick`'s decision, based on errors measured on the device."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ MANY = 1 << 16
 
 
 class Known:
-    """Facts that `pick` knows about the codecs of devices: issue slots, and errors of length. They are computed on
-    first use, which imports JAX and calls compilers.
+    """The issue slots and length errors of the devices' codecs, which `pick` needs. They are computed on first use,
+    which imports JAX and calls compilers.
 
     Args:
         rows: rows of all devices, one sequence for each device.
@@ -46,11 +46,11 @@ class Known:
 
     @property
     def family(self) -> str:
-        """The GPU family that slots are counted for."""
+        """The GPU family whose issue slots are counted: the default of pick."""
         return str(PickOptions().family[0])
 
     def of(self, row: Row) -> Row:
-        """Return the issue slots and length errors of a device's codec as columns; empty for a reader's own codec."""
+        """Return a codec's issue slots and length error as columns; empty for a codec not in the catalogue."""
         codec = _codec(row)
         return self._price_rows.get(codec.name, {}) if codec else {}
 
@@ -58,13 +58,13 @@ class Known:
 def _codec(row: Row) -> Codec | None:
     """Return a row's codec; None unless its encoding and storage are in the catalogue.
 
-    Its rounding is to nearest, because rounding affects neither cost nor length."""
+    The codec rounds to nearest, because rounding affects neither cost nor length."""
     encoding, storage = ENCODINGS.get(row["encoding"]), STORAGES.get(row["storage"])
     return Codec(encoding, storage) if encoding and storage else None
 
 
 def answers(rows: Sequence[Row], known: Known) -> Iterator[Sheet]:
-    """Yield for each storage of a device the encoding to use, in sentences, and the Pareto-optimal encodings.
+    """Yield for each storage the recommended encoding on a device, in sentences, and the Pareto-optimal encodings.
 
     Args:
         rows: the device's rows of the table `devices`.

@@ -1,4 +1,4 @@
-"""The page of a site's devices, from their files."""
+"""The page on readers' devices, made from their files."""
 
 from __future__ import annotations
 
@@ -64,13 +64,13 @@ class Entry:
 
     @property
     def words(self) -> str:
-        """The words, separated by spaces, by which the index finds the device, in addition to its cells."""
+        """The search terms for the device, in addition to the cells of its row, separated by spaces."""
         known = (str(row[name]) for row in self.rows for name in ("encoding", "storage", "target"))
         return " ".join(dict.fromkeys([*known, self.device.file.renderer, self.device.file.vendor]))
 
 
 def pages(devices: Sequence[Device], site: Site = ALONE) -> dict[str, str]:
-    """Return a dict with the HTML of the devices page by its path in the site's folder."""
+    """Return a dict from the path of the devices page in the site's folder to its HTML."""
     rows = [codec_rows(device) for device in devices]
     keys = (f"device-{name}" for name in plain_names((device.called for device in devices), "one"))
     known = Known(rows)
@@ -95,7 +95,7 @@ def _device_section(entry: Entry) -> DeviceSection:
 
 
 def _front_table(sheet: Sheet, device: str) -> PageTable:
-    """Return the table of an answer's Pareto-optimal encodings; an empty table if no encoding qualifies."""
+    """Return the table of the Pareto-optimal encodings in an answer; an empty table if no encoding qualifies."""
     title = f"{device}, {sheet.title}"
     return table(title, sheet.rows, lambda _: "") if sheet.rows else PageTable(title, [], [], "")
 
@@ -105,7 +105,7 @@ def _row_without(row: Row, names: Sequence[str]) -> Row:
 
 
 def _shown_table(title: str, rows: Sequence[Row]) -> PageTable:
-    """Return rows as a table for a page, in the order of the table's columns and with their definitions."""
+    """Return rows as a page table, in the column order of the devices table and with its column definitions."""
 
     def says(name: str) -> str:
         column = TABLE.column(name)
@@ -162,7 +162,7 @@ def _codec_row(rows: Sequence[Row]) -> Row:
 
 
 def _taken_list(entries: Sequence[Entry]) -> Searched:
-    """Return the searchable list of the recommended encoding on each device, with a column for each storage."""
+    """Return the searchable list of recommended encodings, with a row per device and a column per storage."""
     titles = dict.fromkeys(_column_name(sheet) for entry in entries for sheet in entry.answers)
     rows = [{"device": e.device.called} | {**dict.fromkeys(titles), **_codecs_taken_on(e)} for e in entries]
     intro = "The encoding that pick recommends for each storage, from errors measured on the device."
@@ -172,7 +172,8 @@ def _taken_list(entries: Sequence[Entry]) -> Searched:
 
 
 def _column_name(sheet: Sheet) -> str:
-    """Return the name of the column for a question's storage; a storage of a reader's own may be called "device"."""
+    """Return the column heading for a sheet's storage, with "in", because a reader's own storage may be called
+    "device"."""
     return f"in {sheet.keys['storage']}"
 
 

@@ -7,7 +7,7 @@ const COLUMNS = [
   ["codec", "The encoding and its storage."],
   ["target", "The WebGL format rendered to. R32UI, RG32UI and RGBA32UI hold codes that the shader rounded and packed."],
   ["equal", "Percentage of codes that match the run's, bit for bit.", true],
-  ["one step", "Codes with one component one step away from the run's.", true],
+  ["one step", "Codes that differ from the run's by one step in one component.", true],
   ["further", "Codes that differ by more, and codes in groups whose differences a checksum cannot distinguish.", true],
   ["mean", "The mean angle between normals and what this device decodes, in degrees.", true],
   ["run", "The same angle of the run's own codes.", true],

@@ -84,7 +84,7 @@ BAD = {
     "too many": (["quality", "--count", "9999999999999"], ["9999999999999", "1099511627776"]),
     "not a count": (["quality", "--count", "many"], ["--count"]),
     "a negative seed": (["quality", "--seed", "-1"], ["--seed -1"]),
-    "a seed beyond 64 bits": (["quality", "--seed", str(2**63)], [f"--seed {2**63}", "from 0 to"]),
+    "a seed beyond 64 bits": (["quality", "--seed", str(2**63)], [f"--seed {2**63}", "use 0 to"]),
     "no room": (["quality", "--encoding", "xyz", "--storage", "rg8"], ["xyz/rg8", "3 components", "2 channels"]),
     "a format": (["quality", "--format", "xml"], ["xml", "markdown"]),
     "an option": (["quality", "--colour"], ["--colour"]),

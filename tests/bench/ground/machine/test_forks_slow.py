@@ -9,7 +9,7 @@ from normalbench.bench.ground.machine.systems import forks, linux_forks
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere each process imports for itself")
 
 
-def test_work_continues_without_a_forking_process_that_ends(monkeypatch):
+def test_work_continues_if_the_forking_process_ends(monkeypatch):
     """Each process then does its own imports."""
     linux_forks._forking.end()
     monkeypatch.setattr(linux_forks, "_command", lambda _: ["false"])

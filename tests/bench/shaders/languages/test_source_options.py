@@ -56,7 +56,7 @@ def test_define_applies_only_to_users_files():
     [
         ({"define": "A=f(1,2)"}, r"-D '2\)': must be NAME or NAME=VALUE"),
         ({"define": "A=1\r#error"}, "not a valid value"),
-        ({"define": "A=b:c"}, "a colon ends a setting"),
+        ({"define": "A=b:c"}, "the value must not contain a colon"),
         ({"language": "metal"}, "must be one of hlsl, slang, wgsl, glsl"),
         ({"prelude": "gone.hlsl"}, "gone.hlsl: there is no such file"),
         ({"prelude": "\0.hlsl"}, "not a valid value"),

@@ -40,7 +40,7 @@ TWINS = {
     "exits": ("raise SystemExit(0)", "pass", "SystemExit"),
     "is_flat": ("", "return Vec2(n.x[0], n.y[:2])", "IndexError|ValueError|TypeError"),
     "lists": ("", "return [n.x, n.y]", "encode returns list, not a Vec2 or a Vec3"),
-    "has_three": ("", "return Vec3(n.x, n.y, n.z)", "encode gives 3 numbers"),
+    "has_three": ("", "return Vec3(n.x, n.y, n.z)", "encode returns 3 numbers"),
     "recurses": ("", "return encode(n, view)", "RecursionError"),
 }
 
