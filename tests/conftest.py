@@ -1,4 +1,4 @@
-"""Strict JAX, and the GL device. Where CI is set, a missing GL driver fails the tests that need it."""
+"""Strict JAX settings, and the OpenGL device. If CI is set, tests that need a missing OpenGL driver fail."""
 
 import fcntl
 import json
@@ -72,7 +72,7 @@ def pytest_configure(config):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """Leave out files of tiers that were not requested, unless the command line names the file."""
+    """Leave out files of tiers that were not requested, unless the command line names them."""
     if is_in(collection_path, config.option.tier):
         return None
     named = {Path(word.partition("::")[0]).absolute() for word in config.args}
@@ -87,7 +87,7 @@ LONG_FIXTURES = frozenset(
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items, config):
-    """Skip tests that Firefox cannot run, and leave out those that this commit does not draw."""
+    """Skip tests that Firefox cannot run, and deselect tests that are not drawn for this commit."""
     for item in items:
         if config.option.firefox and (mark := item.get_closest_marker("chromium")):
             item.add_marker(pytest.mark.skip(reason=mark.args[0]))
@@ -97,13 +97,13 @@ def pytest_collection_modifyitems(items, config):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item):
-    """Fail a test of a quick file that opens a browser, starts workers or asks for a vendor's compilers."""
+    """Fail a test in a quick file if it opens a browser, starts workers or asks for a vendor's compilers."""
     if tier_of(item.path) == TIERS[0] and (asked := LONG_FIXTURES.intersection(item.fixturenames)):
         pytest.fail(f"it asks for {', '.join(asked)}: move it to a file test_..._slow.py", pytrace=False)
 
 
 def _leave_out_undrawn(items, config):
-    """Leave out the tests that this commit does not draw."""
+    """Deselect tests that are not drawn for this commit."""
     marks = [(item, item.get_closest_marker("drawn")) for item in items]
     undrawn = {item for item, mark in marks if mark and not is_drawn(item.nodeid, *mark.args)}
     config.hook.pytest_deselected(items=list(undrawn))
@@ -111,7 +111,7 @@ def _leave_out_undrawn(items, config):
 
 
 def pytest_collection_finish():
-    """Keep all objects that exist by now until the end, as a run does."""
+    """Exclude all existing objects from garbage collection and set memory limits, as a run does."""
     look_for_garbage_seldom()
     keep_what_is_imported()
     have_few_heaps()
@@ -119,13 +119,13 @@ def pytest_collection_finish():
 
 @pytest.fixture(scope="session")
 def held():
-    """The number of bytes that this process may hold before it gives memory back; the fixture below updates it."""
+    """A one-item list: the bytes that this process may hold before it gives memory back; the next fixture sets it."""
     return [LARGE]
 
 
 @pytest.fixture(autouse=True)
 def memory_is_given_back(held):
-    """Memory returned after a test, which a command would keep for its next step; here it would grow to gigabytes."""
+    """Memory given back after a test. A command would keep it for the next step, but tests would hold gigabytes."""
     yield
     if _resident_bytes() > held[0]:
         for give_back in (give_back_what_is_freed, give_back_what_a_table_needed):
@@ -182,7 +182,7 @@ def run(monkeypatch, capsys):
 
 @pytest.fixture(scope="session")
 def radv():
-    """Mesa's compiler for AMD GPUs and the SPIR-V tools; where CI is set, a machine without them fails the tests."""
+    """Mesa's compiler for AMD GPUs and the SPIR-V tools; if CI is set, tests fail on a machine without them."""
     _need([RADV], {spirv.COMPILER: spirv.NO_COMPILER, spirv.OPTIMISER: spirv.NO_OPTIMISER})
 
 
@@ -194,13 +194,13 @@ def intel(radv):  # noqa: ARG001 (asks for the other compilers)
 
 @pytest.fixture(scope="session")
 def nvidia(radv):  # noqa: ARG001 (asks for the other compilers)
-    """NVIDIA's CUDA compiler, which users install themselves; without it the tests are skipped, also in CI."""
+    """NVIDIA's CUDA compiler, which users install themselves; without it the tests are skipped, even in CI."""
     if reason := tools.missing():
         pytest.skip(reason)
 
 
 def _need(libraries: list[str], tools: dict[str, str]) -> None:
-    """Skip if a driver or a tool is missing; where CI is set, fail instead."""
+    """Skip the test if a driver or a tool is missing; if CI is set, fail instead."""
     missing = [driver_files.no_driver(library) for library in libraries if isa.driver_file(library) is None]
     missing += [reason for tool, reason in tools.items() if not shutil.which(tool)]
     if missing and not os.environ.get("CI"):
@@ -221,7 +221,7 @@ def shared_folder(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def once(shared_folder):
-    """A function `once(name, do)` that does once what all workers need; if it fails, the next worker tries again."""
+    """A function `once(name, do)` that calls `do` once for all workers; if `do` fails, the next worker calls it."""
 
     def done_once(name, do):
         with (shared_folder / f"{name}.lock").open("w") as lock:
@@ -235,7 +235,7 @@ def once(shared_folder):
 
 @pytest.fixture(scope="session")
 def results(once, tmp_path_factory):
-    """A run of the quality table by the command: its folder, and what it printed to stdout and stderr.
+    """A run of the quality table from the command line: its folder, and its output to stdout and stderr.
 
     All workers share the run.
     """
@@ -254,7 +254,7 @@ def results(once, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def browser_path(request):
-    """The browser that opens reports; where CI is set, a machine without it fails the tests that need it."""
+    """The browser that opens reports; if CI is set, tests that need it fail on a machine without it."""
     name = "firefox-esr" if request.config.option.firefox else "chromium"
     path = shutil.which(name)
     if not path and not os.environ.get("CI"):

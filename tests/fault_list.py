@@ -128,7 +128,7 @@ FAULTS = (
         "SLACK = 2.0**-10",
         "SLACK = 0.0",
         "test_light_encodings.py",
-        "again",
+        "again or rewritten",
     ),
     Fault(
         "nao32-digits",
@@ -258,7 +258,7 @@ FAULTS = (
         "if self.encoding.own_units and self.storage.is_open else far",
         "if self.encoding.own_units else far",
         "test_depth.py",
-        "test_16_bits_in_two_bytes_are_exact_to_half_a_code",
+        "test_16_bits_in_two_bytes_are_accurate_to_half_a_code",
     ),
     Fault(
         "bits-of-the-sign",
@@ -267,7 +267,7 @@ FAULTS = (
         "return sum(self.storage.bits[: self.encoding.components]) + self.encoding.sign_bits",
         "return sum(self.storage.bits[: self.encoding.components])",
         "test_kinds.py test_reference_figures.py test_quality_order.py",
-        "sign or allow or grouped or limit",
+        "sign or allow or grouped or test_the_theoretical_bound_has_all_effective_bits",
     ),
     Fault(
         "fingerprint-without-twin",
@@ -284,7 +284,7 @@ FAULTS = (
         "code = product + (product >> bits) + 2 ** (bits - 1) >> bits",
         "code = product + (product >> bits) >> bits",
         "test_lights.py",
-        "device_adds or random_lights",
+        "device_sums or random_lights",
     ),
     # G-buffer: layouts.
     Fault(
@@ -314,7 +314,7 @@ FAULTS = (
         "return self.bytes_per_pixel + LIGHT_BUFFERS[self.light].bytes_per_pixel if",
         "return self.bytes_per_pixel if",
         "test_engine_layouts.py",
-        "takes_the_bytes",
+        "test_a_complete_layout_has_the_bytes_of_its_engine",
     ),
     Fault(
         "packing-of-everything",
@@ -332,7 +332,7 @@ FAULTS = (
         "s.direction = DECODE(CODE(code), axes * s.position) * axes;",
         "s.direction = axes * DECODE(CODE(code), axes * s.position);",
         "test_layouts.py",
-        "directions_come or world_space",
+        "test_directions_in_the_gbuffer_match_the_codec or world_space",
     ),
     Fault(
         "too-many-targets",
@@ -769,7 +769,7 @@ FAULTS = (
         "apart = np.linalg.norm(rebuilt.positions - on.positions(case.camera), axis=1)",
         "apart = np.abs(rebuilt.positions - on.positions(case.camera))[:, 0]",
         "test_depth.py",
-        "eyes_ray",
+        "view_ray",
         "test_depth_command.py",
     ),
     Fault(
@@ -779,7 +779,7 @@ FAULTS = (
         "figures = sorted((row[figure] for row in group), reverse=True)",
         "figures = sorted(row[figure] for row in group)",
         "test_render.py",
-        "ranked or rows_say",
+        "ranked or test_rows_describe_the_rendering_and_its_error",
     ),
     # Bench: runs, comparisons, gates, options.
     Fault(
@@ -849,7 +849,7 @@ FAULTS = (
         'return figure >= self.value if self.side == "at least" else figure <= self.value',
         'return figure > self.value if self.side == "at least" else figure < self.value',
         "test_check.py",
-        "test_thresholds_include_their_value_and_reject_what_is_not_a_number",
+        "test_thresholds_include_their_value_and_reject_values_that_are_not_numbers",
     ),
     Fault(
         "failed-gate-exits-well",
@@ -1287,7 +1287,7 @@ FAULTS = (
         "(_tile_from(self.frame * NUMBERS + number) - 0.5) * step",
         "_tile_from(self.frame * NUMBERS + number) * step",
         "test_dither.py",
-        "step_wide or mean",
+        "test_noise_spans_one_step or mean",
         "test_quality_dithered.py test_curves_command.py",
     ),
     Fault(
@@ -1338,7 +1338,7 @@ FAULTS = (
         "return single * along + (multiple + s.albedo * (1.0 - single - multiple)) * even;",
         "return single * along + s.albedo * (1.0 - single) * even;",
         "test_metal_rough.py",
-        "even_light",
+        "in_uniform_light",
         "test_material_programs.py",
     ),
     Fault(
@@ -1377,7 +1377,7 @@ FAULTS = (
         "return self.full * layout.bytes_per_pixel + sum(_bytes_of(layout, part) for part in self.parts)",
         "return self.full * layout.bytes_per_pixel",
         "test_budget_cost.py",
-        "reader",
+        "decoding_pass",
     ),
     Fault(
         "changes-that-nobody-sees-are-advised",
@@ -1386,7 +1386,7 @@ FAULTS = (
         "{**now, best: theirs[best][1]}, classes) < LEAST_DB:",
         "{**now, best: theirs[best][1]}, classes) <= 0:",
         "test_budget.py",
-        "brings_nothing",
+        "test_a_change_that_gains_nothing_is_not_suggested",
     ),
     # Bench: images of users, mixes, roughness, curves.
     Fault(
@@ -1424,7 +1424,7 @@ FAULTS = (
         "    apart = back.astype(np.float64) - x\n",
         "    apart = x - back.astype(np.float64)\n",
         "test_curves_command.py",
-        "test_truncation_has_a_bias_of_half_a_step_and_dithering_has_none",
+        "test_truncation_has_a_bias_of_half_a_step_and_dithering_is_unbiased",
     ),
     # Bench: histories of runs.
     Fault(
@@ -1443,7 +1443,7 @@ FAULTS = (
         "chance = mann_whitney(earlier, other) * tests",
         "chance = mann_whitney(earlier, other)",
         "test_history.py",
-        "step or test_only_a_lasting_change_of_times_is_named or waver or few",
+        "step or test_only_a_lasting_change_in_timings_is_reported or waver or few",
     ),
     Fault(
         "filters-of-submodules-are-run",
@@ -1491,7 +1491,7 @@ FAULTS = (
         'turn = {0: "y", 1: "x", 2: "z"}[self.axis]',
         'turn = {0: "x", 1: "y", 2: "z"}[self.axis]',
         "test_halves.py",
-        "on_its_half or own_axes",
+        "test_encoding_finite_only_on_its_hemisphere_is_measured_there or own_axes",
     ),
     Fault(
         "doctor-takes-a-scale-for-a-cut",
@@ -1530,7 +1530,7 @@ FAULTS = (
         "key=lambda number: (turns[number][1] > 0, turns[number][0]), reverse=True)",
         "key=lambda number: (turns[number][1] > 0, turns[number][0]))",
         "test_executed.py",
-        "as_often",
+        "test_slots_in_a_loop_are_counted_once_per_turn",
     ),
     Fault(
         "price-of-one-reader",
@@ -1559,7 +1559,7 @@ FAULTS = (
         "order = sorted(range(len(values)), key=lambda index: axis.share(values[index]))",
         "order = list(range(len(values)))",
         "test_charts.py",
-        "ends",
+        "end_labels or ends",
     ),
     Fault(
         "pages-of-one-name-replace-each-other",
@@ -1568,7 +1568,7 @@ FAULTS = (
         "free = next(candidate for candidate in numbered if candidate not in taken)",
         "free = next(iter(numbered))",
         "test_devices_site.py",
-        "one_address",
+        "test_devices_whose_names_give_the_same_address_have_separate_sections",
         "test_site.py",
     ),
     Fault(

@@ -1,6 +1,6 @@
-"""Faults for `faults.py --blind`, by an author who had not seen a test, at statements drawn with a seed.
+"""Faults for `faults.py --blind`, by an author who had not seen the tests, at statements drawn with a seed.
 
-The other list chooses which tests stay at every landing; this list judges the choice. Each fault is tried with all
+The other list decides which tests run at every commit; this list judges that choice. Each fault is tried with all
 tests.
 """
 

@@ -2,10 +2,10 @@
 
     python tests/faults.py [--tree DIR] [--blind] [--tier TIER] [--only NAME,...] [--results FILE] [--skip] [--check]
 
-This is not part of the tests: a run takes half an hour, and changes files of the tree meanwhile. Any end except
-`kill -9` restores the file; after `kill -9`, `git diff` shows the fault. With --results a stopped run continues. At
-the end the tests that noticed a fault are run without it: a test that fails then has noticed nothing. Exit status: 0
-if every fault was noticed, 1 if not, 2 if a fault has no place in the tree.
+This is not part of the tests: a run takes half an hour, and changes files of the tree meanwhile. Each file is
+restored however the run ends, except after `kill -9`; then `git diff` shows the fault. With --results a stopped run
+continues. At the end the tests that noticed a fault are run without it: a test that fails then has noticed nothing.
+Exit status: 0 if every fault was noticed, 1 if not, 2 if the text of a fault does not occur exactly once in the tree.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class Result:
 
 
 def place_of(fault: Fault, product: Mapping[Path, str]) -> Place | str:
-    """Return the only place of a fault, or a line that says why it has none."""
+    """Return the place of a fault, or a message if its text does not occur exactly once."""
     counts = []
     for old, new in ((fault.old, fault.new), *fault.also):
         paths = [path for path, text in product.items() if old in text]
@@ -90,7 +90,7 @@ def place_of(fault: Fault, product: Mapping[Path, str]) -> Place | str:
 
 @contextmanager
 def injected(place: Place) -> Iterator[None]:
-    """Put a fault into its file; at the end restore the file and its time, because byte code depends on the time."""
+    """Put a fault into its file; then restore the file and its modification time, on which byte code depends."""
     before, times = place.path.read_bytes(), place.path.stat()
     try:
         place.path.write_bytes(place.faulty.encode())
@@ -158,7 +158,7 @@ def noticed_by(tree: Tree, names: str, chosen: str) -> str:
 
 
 def tried(tree: Tree, fault: Fault, place: Place) -> Result:
-    """Return the result of a fault under its tests, and under the wider tests if these notice nothing."""
+    """Return the result of a fault with its own tests, or with the wider tests if its own tests notice nothing."""
     start = time.monotonic()
     with injected(place):
         by = noticed_by(tree, fault.tests, fault.chosen)
@@ -168,7 +168,7 @@ def tried(tree: Tree, fault: Fault, place: Place) -> Result:
 
 
 def failing_without(tree: Tree, results: Sequence[Result]) -> set[str]:
-    """Return the tests that noticed a fault but also fail without any."""
+    """Return the tests that noticed a fault but also fail without a fault."""
     tests = list(dict.fromkeys(result.by for result in results if "::" in result.by))
     done = ran(tree, tests, None) if tests else None
     return set(FAILED.findall(done[1])) if done else set()
@@ -236,7 +236,7 @@ def _terminated(number: int, _: object) -> NoReturn:
 
 
 def main() -> int:
-    """Check that every fault has its place, then try each."""
+    """Check that every fault can be placed, then try each fault. Return the exit status."""
     asked = arguments()
     root = asked.tree.resolve()
     tree = Tree(root, asked.python or root / ".venv" / "bin" / "python", asked.tier)
@@ -262,7 +262,7 @@ def main() -> int:
 
 
 def counted(results: Sequence[Result], failing: set[str]) -> int:
-    """Print the last lines and return the exit status."""
+    """Print the summary and return the exit status."""
     for test in sorted(failing):
         print(f"fails without a fault: {test}")
     noticed = [result for result in results if result.by and result.by not in failing]

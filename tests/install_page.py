@@ -1,4 +1,4 @@
-"""The manual's table of what each extra adds.
+"""The manual's table of the extras and their sizes.
 
 `python -m tests.install_page` downloads all packages (650 MB) and writes the table.
 """
@@ -86,19 +86,19 @@ def text(found: Mapping[str, Path]) -> str:
     """Return the table as text."""
     there = {name: unpacked(path) for name, path in found.items() if path.suffix == ".whl"}
     there |= {name: _Bare() for name, path in found.items() if path.suffix != ".whl"}
-    lines = ["| extra        | to download | on disk | what for |", "|--------------|------------:|--------:|---|"]
+    lines = ["| extra        | to download | on disk | purpose |", "|--------------|------------:|--------:|---|"]
     for extra in ("", *EXTRAS):
         names = added(extra, there)
         download = max(1, sum(found[name].stat().st_size for name in names) / 1e6)
         disk = max(1, sum(size_on_disk(found[name]) for name in names))
         shown = f"`{extra}`" if extra else "normalbench"
-        says = EXTRAS[extra] if extra else "all else, without an extra"
+        says = EXTRAS[extra] if extra else "everything else, without extras"
         lines.append(f"| {shown:12} | {download:8.0f} MB | {disk:4.0f} MB | {says} |")
     return "\n".join(lines) + "\n"
 
 
 class _Bare(Distribution):
-    """A package without metadata; it is taken to need no other packages."""
+    """A package without metadata; it is assumed to need no other packages."""
 
     requires = None
 
@@ -108,7 +108,7 @@ class _Bare(Distribution):
 
 
 def shown() -> dict[str, tuple[int, int]]:
-    """Return the page's megabytes to download and on disk by extra; "" is the install without extras."""
+    """Return the page's download and disk sizes in MB by extra; "" is the install without extras."""
     part = PART.search(PAGE.read_text())
     assert part
     rows = ROW.findall(part[2])

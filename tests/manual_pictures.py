@@ -1,9 +1,9 @@
-"""Draw the manual's pictures anew, with the commands that their pages show.
+"""Redraw the manual's pictures with the commands that their pages show.
 
     python -m tests.manual_pictures studio occlusion
 
-Without names all are drawn, in two minutes. README's two pictures are screenshots of a run's page, and `scenes` needs
-the three models that its caption names.
+Without names, all pictures are drawn, which takes two minutes. README's two pictures are screenshots of a run's page,
+and `scenes` needs the three models that its caption names.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ MOST_WIDE = 960
 
 
 class Picture(NamedTuple):
-    """A picture of the manual.
+    """A picture in the manual.
 
     Attributes:
-        command: the start of the command that draws it, as its page shows it.
-        rows: patterns of the files that the command writes, laid side by side and row by row.
+        command: the start of the command that draws the picture, as its page shows it.
+        rows: for each row, patterns of the files that are placed side by side; the command writes these files.
     """
 
     command: str

@@ -1,4 +1,4 @@
-"""Count the engine shader files that are read unchanged: `python -m tests.real_files FOLDER` prints a line for each.
+"""Count the engine shader files that are read unchanged: `python -m tests.real_files FOLDER` prints a line per file.
 
 A file is measured in RG16, or in RGBA16 if its code has three numbers, on 2^16 directions of the sphere. Its mean
 angle is compared with those of the catalogue's encodings, which other tests compare with float64: CODE is an encoding

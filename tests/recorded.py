@@ -2,9 +2,9 @@
 
     python -m tests.recorded
 
-writes suprema.json next to the search for them, over the domain of each encoding, and uses.json of the mix table: how
-filtering, blending, resolving and upsampling affect each codec. It takes a quarter of an hour; figures that were
-recorded from the same sources are kept.
+writes suprema.json next to the module that searches for suprema, over the domain of each encoding, and uses.json of
+the mix table: how filtering, blending, resolving and upsampling affect each codec. The command takes a quarter of an
+hour; figures that were recorded from the same sources are kept.
 """
 
 import json

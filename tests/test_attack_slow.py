@@ -1,4 +1,4 @@
-"""A short form of `python -m tests.attack`: every kind that needs no process of its own, from the first seeds."""
+"""A short form of `python -m tests.attack`: every kind that needs no separate process, with the first seeds."""
 
 import sys
 import time
@@ -56,8 +56,8 @@ def of(kinds, share: int) -> list:
 @pytest.mark.parametrize(
     "kind, count", [*of((k for k in FEW if k.name not in COSTLY), 1), *of((k for k in FEW if k.name in COSTLY), 8)]
 )
-def test_damaged_input_is_measured_or_refused_in_a_line(kind, count, tmp_path, monkeypatch, opened):
-    """Cases end within the time of their kind, and open no file outside the folder."""
+def test_damaged_input_is_measured_or_refused_in_one_line(kind, count, tmp_path, monkeypatch, opened):
+    """Cases end within the time limit of their kind, and open no file outside the folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     attack, counts = kind.prepare(tmp_path), Counter()
@@ -87,7 +87,7 @@ def test_programs_mean_the_same_in_every_language(seed, tmp_path, monkeypatch):
 
 
 def _is_known(path: Path, folder: Path) -> bool:
-    """Whether a file is in the test's folder, or read by Python and its packages at the start, as by JAX in /sys."""
+    """Whether a file is in the test's folder, or is read by Python and its packages at startup (JAX reads /sys)."""
     ours = any(path.is_relative_to(root) for root in (folder, sys.prefix, sys.base_prefix))
     return (
         ours or path.suffix in (".py", ".pyc", ".so") or path.name == "entry_points.txt" or path.is_relative_to("/sys")

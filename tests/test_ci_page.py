@@ -1,4 +1,4 @@
-"""docs/ci.md: the steps of its workflows run, and write the files that they promise."""
+"""docs/ci.md: the steps of its workflows run and write the promised files."""
 
 import re
 
@@ -18,7 +18,7 @@ LEAST = ".github/workflows/gates.yml"
 ACTION = (ROOT / "action.yml").read_text()
 
 
-def test_actions_have_versions_and_install_the_packages_of_the_manual():
+def test_actions_have_versions_and_install_packages_named_in_the_manual():
     assert set(FILES) == {LEAST, WORKFLOW, PIPELINE, JENKINSFILE, ".pre-commit-config.yaml", "normals.toml"}
     used = [step["uses"] for step in yaml.safe_load(FILES[WORKFLOW])["jobs"]["normals"]["steps"] if "uses" in step]
     assert used and all(re.fullmatch(r"actions/[\w-]+@v\d+", name) for name in used)
@@ -28,12 +28,12 @@ def test_actions_have_versions_and_install_the_packages_of_the_manual():
 
 
 def test_scripts_contain_no_untrusted_text():
-    """Branch names are passed as variables: GitHub would run them as part of a script."""
+    """Branch names are passed as variables, because GitHub would run a name that is inserted into a script."""
     steps = yaml.safe_load(FILES[WORKFLOW])["jobs"]["normals"]["steps"] + yaml.safe_load(ACTION)["runs"]["steps"]
     assert not any("${{" in step.get("run", "") for step in steps)
 
 
-def test_the_smallest_workflow_has_ten_lines_and_uses_the_action():
+def test_the_smallest_workflow_has_at_most_ten_lines_and_uses_the_action():
     """The workflow's steps and `check` test everything that the action runs besides pip."""
     text = FILES[LEAST]
     (step,) = (step for step in yaml.safe_load(text)["jobs"]["gates"]["steps"] if "with" in step)

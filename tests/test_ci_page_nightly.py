@@ -1,4 +1,4 @@
-"""docs/ci.md: the steps of its workflows run, and write the files that they promise."""
+"""docs/ci.md: the steps of its workflows run and write the promised files."""
 
 import os
 import re
@@ -98,7 +98,7 @@ def checkout(tmp_path):
 
 
 def run_all(steps: list[Step], folder: Path, system: str) -> int:
-    """Run the steps as a system does; return the status of the first step that fails."""
+    """Run the steps as a CI system does; return the status of the first step that fails."""
     path = f"{folder.parent}/programs:{os.environ['PATH']}"
     failed = 0
     for step in steps:
@@ -114,8 +114,8 @@ def run_all(steps: list[Step], folder: Path, system: str) -> int:
 
 @pytest.mark.usefixtures("gl", "radv")
 @pytest.mark.parametrize("system", SYSTEMS)
-def test_a_workflow_fails_a_request_that_makes_the_encoder_worse(system, checkout):
-    """The comment on the request states the difference."""
+def test_a_workflow_rejects_a_change_that_makes_the_encoder_worse(system, checkout):
+    """The comment on the pull or merge request states the difference."""
     steps = SYSTEMS[system]()
     (checkout / "mine.glsl").write_text(MINE[1].replace("normalize(", "normalize(vec3(0.02, 0.0, 0.0) + "))
     git(checkout, "commit", "-q", "-a", "-m", "Lean")
@@ -130,8 +130,8 @@ def test_a_workflow_fails_a_request_that_makes_the_encoder_worse(system, checkou
 
 @pytest.mark.usefixtures("gl", "radv")
 @pytest.mark.parametrize("system", SYSTEMS)
-def test_a_workflow_keeps_the_run_of_a_push(system, checkout):
-    """The run is kept, and its gates pass."""
+def test_a_workflow_stores_the_run_of_a_pushed_commit(system, checkout):
+    """The history lists the run, and its gates pass."""
     steps = SYSTEMS[system]()
     assert run_all([step for step in steps if step.is_of_pushes], checkout, system) == 0
     kept = {path.name for path in (checkout / "history/0123abcd").iterdir()}

@@ -1,4 +1,4 @@
-"""docs/ci.md: the steps of its workflows run, and write the files that they promise."""
+"""docs/ci.md: the steps of its workflows run and write the promised files."""
 
 import json
 import re
@@ -15,7 +15,7 @@ GATES = FILES["normals.toml"]
 
 @pytest.mark.usefixtures("gl")
 def test_the_hook_checks_only_gates_that_read_a_changed_file(run, tmp_path, monkeypatch):
-    """The hook is called as pre-commit calls it: the words, the arguments, the names of the files."""
+    """The hook is called as pre-commit calls it: with the command, the arguments and the file names."""
     monkeypatch.chdir(tmp_path)
     body = MINE[1].replace("mine_", "other_")
     (tmp_path / "mine.glsl").write_text('#include "shared.glsl"\n' + MINE[1])

@@ -1,4 +1,4 @@
-"""The nightly tests passed recently enough, and a run reports when."""
+"""A CI run reports how many commits ago the nightly tests passed, and fails above a limit."""
 
 from manual import ROOT
 

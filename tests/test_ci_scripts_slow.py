@@ -1,4 +1,4 @@
-"""The nightly tests passed recently enough, and a run reports when."""
+"""A CI run reports how many commits ago the nightly tests passed, and fails above a limit."""
 
 import os
 import subprocess
@@ -18,7 +18,7 @@ def git(folder: Path, *words: str) -> None:
 
 
 def test_a_run_reports_the_nightly_age_and_fails_above_the_limit(tmp_path):
-    """The age is the number of commits since the file was last written; a copy without history cannot know it."""
+    """The age is the number of commits since the file was last written; without history the age is unknown."""
     there = tmp_path / "there"
     (there / ".ci").mkdir(parents=True)
     script = (ROOT / ".ci/nightly-age").read_text()

@@ -1,4 +1,4 @@
-"""Dockerfile: its lines, run in a chroot of Debian, yield the rows of this machine."""
+"""Dockerfile: its instructions, run in a Debian chroot, yield the same rows as this machine."""
 
 from containers import DOCKERFILE, Container, context, instructions, suite
 from manual import PAGES, ROOT

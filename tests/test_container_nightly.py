@@ -1,4 +1,4 @@
-"""Dockerfile: its lines, run in a chroot of Debian, yield the rows of this machine."""
+"""Dockerfile: its instructions, run in a Debian chroot, yield the same rows as this machine."""
 
 import json
 import shutil
@@ -22,7 +22,7 @@ NOBODY = "4321"
 
 @pytest.fixture
 def container():
-    """A chroot in which the lines of the Dockerfile were run."""
+    """A chroot in which the instructions of the Dockerfile were run."""
     if why := missing():
         pytest.skip(why)
     root = Path(tempfile.mkdtemp(prefix="normalbench-container-"))
@@ -37,7 +37,7 @@ def container():
 
 @pytest.mark.usefixtures("gl")
 def test_the_container_measures_the_same_rows_as_this_machine(container):
-    """A user other than root measures them. A second user, without the first user's caches, writes a run and page."""
+    """A user other than root measures the rows. A second user, without the first's caches, writes a run and page."""
     assert "Usage" in container.run().stdout
     done = container.run(*WORDS)
     assert done.returncode == 0 and not done.stderr, done.stderr

@@ -13,7 +13,7 @@ def test_each_example_has_the_stated_number_of_files_and_lines():
     assert counts == {name: (len(example.files), len(example.lines)) for name, example in EXAMPLES.items()}
 
 
-def test_commands_and_paths_of_the_page_exist():
+def test_commands_and_paths_on_the_page_exist():
     targets = re.findall(r"^    make (\w+)", PAGE, re.M)
     makefile = (ROOT / "Makefile").read_text()
     assert targets and all(re.search(rf"^{target}:", makefile, re.M) for target in targets)

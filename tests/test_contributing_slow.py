@@ -37,8 +37,8 @@ def test_adding_an_encoding_takes_a_pair_and_a_line(copy):
 
 
 @pytest.mark.usefixtures("gl")
-def test_adding_a_storage_takes_one_line_and_a_column_two(copy):
-    """In both languages the new storage of 5:5 bits has the figures of 5:5 bits in two bytes."""
+def test_adding_a_storage_takes_one_line_and_adding_a_column_takes_two(copy):
+    """In both languages the new 5:5 storage has the same figures as 5:5 bits in two bytes."""
     rows = rows_of(copy, "quality", "--encoding", "octahedral", "--storage", "rgb5_a1,rg8_5_5", "--normals", "sphere")
     figures = {(row["storage"], row["backend"]): float(row["psnr_db"]) for row in rows}
     assert len(figures) == 4 and max(figures.values()) - min(figures.values()) < 1e-4, figures
@@ -48,7 +48,7 @@ def test_adding_a_storage_takes_one_line_and_a_column_two(copy):
 
 @pytest.mark.usefixtures("gl")
 def test_adding_a_kind_takes_a_class_a_pair_a_module_and_six_lines(copy):
-    """Its code is compared with its twin, and the function names begin with the kind's name."""
+    """The new code is compared with its twin, and the function names begin with the kind's name."""
     (row,) = json.loads(normalbench_in(copy, "code", "metres", "--check", "--to", "glsl", "--format", "json").stdout)
     assert (row["encoding"], row["storage"], row["differing"]) == ("metres", "r16", 0), row
     assert "float height_encode(float x)" in normalbench_in(copy, "code", "metres", "--to", "glsl").stdout
@@ -64,7 +64,7 @@ def test_adding_a_kind_takes_a_class_a_pair_a_module_and_six_lines(copy):
 
 @pytest.mark.usefixtures("gl")
 def test_adding_a_scene_takes_a_file_and_two_lines(copy):
-    """The scene is drawn: marbles are more accurate in 16 bits per number than in 8."""
+    """The scene is drawn: its marbles are more accurate with 16 bits per number than with 8."""
     rows = rows_of(copy, "render", "--scene", "marbles", "--encoding", "octahedral", "--storage", "rg8,rg16", *SMALL)
     psnr = {row["storage"]: float(row["psnr_db"]) for row in rows}
     assert psnr["rg16"] > psnr["rg8"] + 20 > 40, psnr

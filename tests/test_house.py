@@ -59,7 +59,7 @@ SOURCES = [path for room in ROOMS for path in sorted((ROOT / room).rglob("*.py")
 
 @cache
 def imported(path: Path) -> set[str]:
-    """Return every module that a file imports; relative imports start at the root."""
+    """Return every module that a file imports; relative imports are resolved from the root."""
     modules = set()
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
@@ -71,7 +71,7 @@ def imported(path: Path) -> set[str]:
     return modules
 
 
-def test_rooms_import_only_the_rooms_they_may():
+def test_rooms_import_only_permitted_rooms():
     """Imports within the package are relative."""
     wrong = []
     for path in SOURCES:
@@ -140,7 +140,7 @@ def calls_and_strings(path: Path) -> tuple[set[str], set[str]]:
     return {ast.unparse(node.func) for node in called}, {value for value in strings if isinstance(value, str)}
 
 
-def test_one_folder_hands_text_to_compilers():
+def test_only_one_folder_passes_text_to_compilers():
     """Only that folder starts compilers and makes their input; other modules start only the listed programs."""
     naming, starting, making = set(), set(), set()
     named = "|".join(map(re.escape, COMPILERS))
@@ -184,7 +184,7 @@ OWN_JSON = {
 
 
 def test_one_reader_parses_json_and_toml_files():
-    """The reader checks numbers that Python would read as infinite, as NaN or not at all."""
+    """The reader checks for numbers that Python would read as infinite, as NaN or not at all."""
     words = re.compile(r"\b(?:json|tomllib)\.loads?\(")
     reading = {str(path.relative_to(ROOT)) for path in SOURCES if words.search(path.read_text())}
     assert reading - {"encodings/codecs/files.py"} == set(OWN_JSON)
@@ -212,7 +212,7 @@ def test_shape_names_are_imported_only_for_type_checkers():
 
 
 def test_names_of_test_files_state_their_tier():
-    """With any other name a file would run by day, or not at all."""
+    """With any other name a file would run in the daily tests, or not at all."""
     stems = [path.stem for path in (ROOT / "tests").rglob("*.py") if re.search(r"def test_", path.read_text())]
     plain = [stem.removesuffix("_slow").removesuffix("_nightly") for stem in stems]
     odd = re.compile(r"^(?!test_)|_(slow\w*|night\w*|tests?)$", re.IGNORECASE)
@@ -248,7 +248,7 @@ def test_the_version_is_the_same_everywhere():
 
 
 def test_python_starts_with_the_checkout_on_its_path():
-    """encodings/ has the name of a package of the standard library; without an __init__.py this is harmless."""
+    """encodings/ has the name of a standard-library package; without an __init__.py this is harmless."""
     assert not (ROOT / "encodings" / "__init__.py").exists()
     environment = {"PYTHONPATH": str(ROOT), "PATH": ""}
     done = subprocess.run([sys.executable, "-c", "pass"], env=environment, capture_output=True, text=True)
@@ -383,7 +383,7 @@ ONLY_LINUX = re.compile(r"[\"']/(?:proc|dev|sys)/(?!null\b)|\bLD_(?:PRELOAD|LIBR
 
 
 def test_only_one_folder_uses_system_specific_names():
-    """The type checker's own stubs state which names of Python's modules Windows and macOS lack."""
+    """The type checker's own stubs state which names in Python's modules are missing on Windows and macOS."""
     wrong = [f"{path.relative_to(ROOT)}: {name}" for path in SOURCES for name in only_linux(path)]
     assert not [line for line in wrong if not line.startswith(f"{SEAM.relative_to(ROOT)}/")], wrong
     assert {line.split(": ")[1] for line in wrong} > {"fcntl.flock", "os.killpg", "os.fork", "signal.SIGALRM", "/proc"}
@@ -417,7 +417,7 @@ def test_text_is_written_with_the_same_line_endings_everywhere():
     assert not wrong, wrong
 
 
-def test_a_table_imports_no_work_or_pictures_of_another_table():
+def test_a_table_imports_no_work_or_pictures_from_another_table():
     """Code that two tables share is next to their folders, or measures for one of the tables."""
     wrong = []
     for path in (BENCH / "tables").glob("*/*.py"):
@@ -471,7 +471,7 @@ def _text_of(node: ast.expr, constants: dict[str, ast.expr]) -> object:
 
 
 def _tables_asked(path: Path) -> set[object]:
-    """Return the texts by which a file looks up tables: in `tables[...]` and `tables.get(...)`."""
+    """Return the constants with which a file looks up tables, in `tables[...]` and `tables.get(...)`."""
     tree = ast.parse(path.read_text())
     constants = {
         node.targets[0].id: node.value
@@ -504,7 +504,7 @@ def _is_text_of_names(argument: ast.arg) -> bool:
 
 
 def test_text_is_split_into_names_when_a_command_is_parsed():
-    """Only options and commands call the splitter. In the rooms below the subjects, names are values."""
+    """Only options and commands call the splitter. In rooms below the subjects, no argument is text with names."""
     wrong, splitters = [], {("options.words", "names"), ("user_files", "file_names")}
     below = [ROOT / "encodings", ROOT / "gbuffer", BENCH / "shaders"]
     for path in SOURCES:
@@ -547,7 +547,7 @@ DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 def _docstrings(tree: ast.Module) -> list[str]:
-    """Return the docstrings of a file, as they are indented there."""
+    """Return the docstrings of a file with their indentation."""
     documented = (node for node in ast.walk(tree) if isinstance(node, DOCUMENTED))
     return [text for node in documented if (text := ast.get_docstring(node, clean=False))]
 
@@ -577,7 +577,7 @@ def _texts() -> dict[str, list[tuple[str, str]]]:
     return texts
 
 
-def test_texts_have_no_banned_turn():
+def test_texts_have_no_more_banned_phrases_than_allowed():
     for kind, texts in _texts().items():
         wrong = sorted(f"{name}: ...{text[max(match.start() - 40, 0) : match.end() + 40]!r}"
                        for name, text in texts if (match := BANNED.search(text)))  # fmt: skip

@@ -34,7 +34,7 @@ def write_program(path, text):
     path.chmod(0o755)
 
 
-def test_the_setup_names_each_step_and_is_never_silent(setting_up):
+def test_the_setup_reports_each_step_and_is_never_silent(setting_up):
     done = setting_up("echo Downloading jax; sleep 2.5; echo 'normalbench: no compiler' >&2")
     assert done.returncode == 0 and done.stderr == "normalbench: no compiler\n" * 3
     first, *lines, last = done.stdout.splitlines()
@@ -65,7 +65,7 @@ def test_the_page_has_the_sizes_that_the_setup_prints():
 
 
 @pytest.mark.parametrize("target", ["say-bench", "say-test", "say-test ALL=1", "say-test ALL=nightly"])
-def test_make_first_prints_what_it_does_and_how_long_it_takes(target):
+def test_make_first_prints_its_task_and_the_expected_time(target):
     """The message comes before anything is set up."""
     done = subprocess.run(["make", "-s", *target.split()], cwd=ROOT, capture_output=True, text=True)
     assert re.match(

@@ -14,7 +14,7 @@ from normalbench.bench.door.python import stub
 
 
 def test_the_page_has_the_installed_sizes():
-    """Sizes of the pinned packages are within a tenth of the page; extras that are not installed are not checked."""
+    """Sizes of pinned packages are within a tenth of the page's; extras that are not installed are not checked."""
     there = {canonicalize_name(package.metadata["Name"]): package for package in distributions()}
     shown, seen = install_page.shown(), set()
     assert set(shown) == {"", *install_page.EXTRAS} and set(install_page.EXTRAS) == set(install_page.PROJECT[OPTIONAL])
@@ -53,7 +53,7 @@ API = "bench/door/api/"
 STUB = "__init__.pyi"
 
 
-def test_an_install_is_whole_and_leaves_nothing_in_the_checkout(tmp_path):
+def test_an_install_is_complete_and_leaves_nothing_in_the_checkout(tmp_path):
     pytest.importorskip("setuptools", minversion="77", reason="pyproject.toml asks for it")
     checkout, site = copied(tmp_path / "checkout"), tmp_path / "site"
     before = files_in(checkout)
@@ -90,7 +90,7 @@ FOR_TESTS = ("tests", "docs", ".ci", "Makefile", "Dockerfile", "MANIFEST.in", "C
 OTHERS = ("CONTRIBUTING.md", ".dockerignore", ".gitignore", ".pre-commit-hooks.yaml")
 
 
-def test_a_source_archive_has_all_that_the_tests_need(tmp_path):
+def test_a_source_archive_has_everything_that_the_tests_need(tmp_path):
     """A nightly test runs tests in the archive."""
     archived(tmp_path)
 

@@ -1,4 +1,4 @@
-"""The measured tables of the manual: pages match the kept figures exactly; a nightly run measures them again."""
+"""The measured tables of the manual: pages match the stored figures exactly; a nightly run measures them again."""
 
 import math
 import re
@@ -20,7 +20,7 @@ MARKER = re.compile(
 
 
 def kept_figures(marker: str, column: str) -> dict[tuple, object]:
-    """Return the kept figures of the columns with a name, by encoding and operation."""
+    """Return the stored figures in all columns of this name, by encoding and operation."""
     table = TABLES[marker]
     columns = [nth for nth, each in enumerate(table.columns) if each.name == column]
     return {(line[0], *table.columns[nth].of.values()): line[nth] for line in table.read().lines for nth in columns}
@@ -32,8 +32,8 @@ def test_every_marker_has_a_table_and_every_table_a_marker():
 
 
 @pytest.mark.parametrize("marker", TABLES)
-def test_a_page_has_the_table_that_was_kept(marker):
-    """The text matches exactly, and the conclusions of the page hold for the table."""
+def test_a_page_shows_the_stored_table(marker):
+    """The text matches exactly, and the conclusions on the page hold for the table."""
     table = TABLES[marker]
     kept = table.read()
     _, text, _ = table.parts(page_with(marker)[1])
@@ -41,7 +41,7 @@ def test_a_page_has_the_table_that_was_kept(marker):
     table.holds(kept.lines)
 
 
-def test_the_bounds_of_the_manual_are_the_computed_bounds():
+def test_the_bounds_in_the_manual_match_the_computed_bounds():
     by_domain = {"sphere": code_limit(2**16, SPHERE), "hemisphere": code_limit(2**16, HEMISPHERE)}
     limits = [line for line in TABLES["normalbench quality"].read().lines if line[0] == "limit"]
     assert [line[1] for line in limits] == list(by_domain)
@@ -58,13 +58,13 @@ def test_the_text_has_the_lowest_roughness_at_which_reflections_are_acceptable()
     assert f"acceptable from roughness {text}" in " ".join(PAGES[README].split()), text
 
 
-def test_the_text_names_the_compilers_that_counted():
+def test_the_text_names_the_compilers_that_counted_the_instructions():
     assert {*re.findall(r"Mesa [\d.]+\d", PAGES[README])} == {*TABLES["headline"].read().drivers}
     (named,) = re.findall(r"^Counted by (NVRTC [\d.]+) and (Mesa [\d.]+)\.", VENDORS, re.M)
     assert {*named} == {*TABLES["normalbench cost nvidia"].read().drivers}
 
 
-def test_the_commands_of_the_headline_measure_it():
+def test_the_headline_table_is_measured_with_the_commands_on_the_page():
     """The commands are for `rg8`; one command counts the costs of both storages."""
     page = PAGES[ROOT / "docs/reading-a-row.md"]
     shown = set(re.findall(r"^    normalbench (.* --encoding optimised_rings.*)$", page, re.M))
@@ -72,7 +72,7 @@ def test_the_commands_of_the_headline_measure_it():
     assert shown == measured
 
 
-def test_figures_of_the_article_are_as_printed_there():
+def test_figures_from_the_article_match_the_published_figures():
     for (name, *_), psnr in kept_figures("normalbench run", "article_db").items():
         assert psnr == published.PSNR_DB.get(name)
     for (name, operation, *by), count in kept_figures("normalbench cost", "instructions").items():
@@ -85,7 +85,7 @@ def test_figures_of_the_article_are_as_printed_there():
     [("normalbench cost vendors", r"\| (encode|decode)"), ("normalbench cost nvidia", r"\| to (encode|decode)")],
 )
 def test_the_stated_orders_match_the_counts(marker, row):
-    """Orders run from cheap to expensive, by the first GPU of each column; `and` joins equal counts."""
+    """Orders run from cheap to expensive on the first GPU of each column; `and` joins equal counts."""
     counts = kept_figures(marker, "instructions")
     families = list(dict.fromkeys(family for _, _, family in counts))
     orders = re.findall(rf"^{row} \| (.+) \| (.+) \| (.+) \|$", VENDORS, re.M)

@@ -1,4 +1,4 @@
-"""The measured tables of the manual: pages match the kept figures exactly; a nightly run measures them again."""
+"""The measured tables of the manual: pages match the stored figures exactly; a nightly run measures them again."""
 
 import pytest
 from manual_tables.measuring import measure

@@ -67,8 +67,8 @@ def test_more_than_130_figures_have_unique_names():
         )
 
 
-def test_a_wrong_constant_is_found_and_its_figure_named(monkeypatch):
-    """The constant is off by a hundredth."""
+def test_a_wrong_constant_is_found_and_its_figure_is_reported(monkeypatch):
+    """The constant is off by 1%."""
     right = next(figure for _, figure in FIGURES if figure.what == "mean of oct16, 8:8")
     wrong = Source("Z. Cigolle", (right, replace(right, what="a slip", value=right.value * 1.01)))
     monkeypatch.setattr(sources, "SOURCES", (wrong,))

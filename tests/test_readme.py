@@ -101,7 +101,7 @@ def test_every_indented_line_is_a_known_command():
         assert not re.search(r"^```(sh|bash|shell|console)", text, re.M), f"{path.name}: indent commands"
 
 
-def test_every_example_is_a_file_and_files_with_the_same_name_are_the_same():
+def test_every_example_is_a_file_and_files_of_the_same_name_are_identical():
     for path, text in PAGES.items():
         fences = re.findall(r"^```(?:glsl|hlsl|json|python|toml)$", text, re.M)
         assert len(fences) == len(NAMED.findall(text)), path.name
@@ -166,7 +166,7 @@ def readers_folder(tmp_path, monkeypatch):
 
 @pytest.mark.usefixtures("gl", "readers_folder")
 @pytest.mark.parametrize("command", LONG_COMMANDS)
-def test_every_long_command_is_taken_as_written(command, monkeypatch):
+def test_every_long_command_is_accepted_as_written(command, monkeypatch):
     """The program checks its options, names and values, and stops before it begins."""
     for place, name in BEGINNINGS:
         monkeypatch.setattr(place, name, begin)
@@ -215,7 +215,7 @@ INSTALL = re.compile(r"`?pip install ([^`\n]+)")
 
 
 def installed_by(text: str) -> set[str]:
-    """Return the packages that a page's pip lines install, with those that normalbench requires."""
+    """Return the packages that a page's pip lines install, and the packages that normalbench requires."""
     known = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     words = [word for line in INSTALL.findall(text) for word in line.split() if not word.startswith("-")]
     extras = [name for word in words for names in re.findall(r"\[([\w,]+)\]", word) for name in names.split(",")]
@@ -223,7 +223,7 @@ def installed_by(text: str) -> set[str]:
     return {re.split(r"[\[<>=;/ ]", line)[0].lower() for line in asked}
 
 
-def test_a_page_installs_what_its_examples_import():
+def test_a_page_installs_the_packages_that_its_examples_import():
     """A file of tests needs pytest, which normalbench does not install."""
     scripts = [example for example in EXAMPLES if example[1].endswith(".py")]
     assert scripts
@@ -273,7 +273,7 @@ SHOTS = {"choose", "mirrors"}
 PICTURED = re.compile(r"^!\[[^]]+\]\((?:docs/)?pictures/([\w-]+)\.png\)\n(.*)$", re.M)
 
 
-def test_every_picture_of_a_page_has_a_caption_and_the_command_that_draws_it():
+def test_every_picture_on_a_page_has_a_caption_and_the_command_that_draws_it():
     pages = {path: text for path, text in PAGES.items() if path != README}
     captions = {name: caption for text in pages.values() for name, caption in PICTURED.findall(text)}
     assert sorted(captions) == sorted(

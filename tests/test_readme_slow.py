@@ -53,7 +53,7 @@ def test_every_command_runs_as_written(command, readers_folder, monkeypatch, cap
 
 @pytest.mark.usefixtures("gl")
 def test_tests_shown_in_the_manual_pass(pytester):
-    """They use the manual's encoding and commands; the command that writes the baseline runs first."""
+    """The tests use the manual's encoding and commands; the command that writes the baseline runs first."""
     write_files(pytester.path)
     tests = sum(text.count("def test_") for name, text in FILES.items() if name.startswith("test_"))
     assert len(PYTEST) == 2

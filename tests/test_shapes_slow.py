@@ -1,4 +1,4 @@
-"""Annotations state the shapes of arrays: they are true in every call that other tests make."""
+"""Annotations of array shapes are true in every call that other tests make."""
 
 import os
 import subprocess
@@ -15,9 +15,9 @@ RUN = (
     "bench/measures/metrics/test_visibility_slow.py",
     "bench/tables/test_depth_images.py",
     "bench/tables/test_lights.py::test_the_bound_is_half_a_code_per_blend",
-    "bench/tables/test_lights_slow.py::test_the_device_adds_up_like_the_model_with_its_rounding",
+    "bench/tables/test_lights_slow.py::test_the_device_sums_lights_like_the_model_with_the_same_rounding",
     "bench/tables/test_render.py::test_flip_is_measured_on_request",
-    "bench/tables/test_render.py::test_two_encoders_of_one_name_have_a_row_each",
+    "bench/tables/test_render.py::test_two_encoders_with_the_same_name_have_separate_rows",
     "encodings/test_curve_encodings.py",
     "encodings/test_depth.py",
     "encodings/test_fingerprint.py",

@@ -35,7 +35,7 @@ def test_a_command_reports_wall_and_processor_seconds(capsys):
 
 
 def test_the_exponent_is_the_slope_on_a_log_log_scale():
-    """By hand: 2 for 3 x^2, 0 for a constant, and 1.5 for 1, 10 and 1000 seconds at sizes 1, 10 and 100."""
+    """Computed by hand: 2 for 3 x^2, 0 for a constant, and 1.5 for 1, 10 and 1000 seconds at sizes 1, 10 and 100."""
     assert timing.exponent([1, 2, 4], [3, 12, 48]) == pytest.approx(2)
     assert timing.exponent([5, 50], [7, 7]) == pytest.approx(0)
     assert timing.exponent([1, 10, 100], [1, 10, 1000]) == pytest.approx(1.5)
@@ -96,11 +96,11 @@ def test_bad_input_is_a_one_line_error(words, said):
 
 @pytest.mark.parametrize(("workers", "seconds"), [(1, 1024), (4, 256), (64, 16), (2000, 1)])
 def test_steps_of_one_second_are_shared_among_workers(workers, seconds):
-    """With 1024 steps and no other costs."""
+    """The load has 1024 steps and no other costs."""
     assert simulated(Load([1.0], 1024), workers, FREE).seconds == pytest.approx(seconds)
 
 
-def test_a_command_that_is_always_busy_is_the_limit():
+def test_a_command_that_is_always_busy_is_the_bottleneck():
     """At 10 ms per row, 1000 rows cost the command 10 s with any number of workers; the last step takes 1 s more."""
     outcome = simulated(Load([1.0], 1000), 10**4, Costs(start=0, task=0, row=0.01, byte=0))
     assert outcome.seconds == pytest.approx(11.0) and outcome.command == pytest.approx(10.0)

@@ -25,7 +25,7 @@ def printed(capsys, *words):
 
 
 @pytest.mark.usefixtures("briefly")
-def test_ratios_compare_rates_of_the_same_run(capsys):
+def test_ratios_compare_rates_from_the_same_run(capsys):
     """A row without a C version states the reason. Counts are rounded down to whole blocks, and measured once."""
     counts = f"{WHOLE + 5},{WHOLE}"
     row, other = printed(capsys, "throughput", "--encoding", "octahedral,hemi_octahedral", "--counts", counts)
@@ -41,8 +41,8 @@ def test_ratios_compare_rates_of_the_same_run(capsys):
 @needs_c
 @pytest.mark.parametrize("name", sorted(c_baseline.ENCODINGS))
 def test_the_c_program_measures_the_same_as_the_table(name):
-    """Its mean, RMS and largest angle agree with the quality table's. With -ffast-math it rounds a few normals to
-    another code."""
+    """The C program's mean, RMS and largest angle agree with the quality table's. With -ffast-math it rounds a few
+    normals to another code."""
     data = throughput.normals(WHOLE)
     ours = throughput.by_jax(ENCODINGS[name], data)()
     total, squares, largest = c_baseline.work(name, "row", data.n, data.view)()
@@ -51,6 +51,6 @@ def test_the_c_program_measures_the_same_as_the_table(name):
     assert largest == pytest.approx(ours["angle_max_deg"], rel=2e-2)
 
 
-def test_the_record_that_is_kept_makes_a_table(capsys):
+def test_the_stored_record_yields_a_table(capsys):
     rows = printed(capsys, "simulate")
     assert {row["workers"] for row in rows} == set(simulate.WORKERS)

@@ -1,4 +1,4 @@
-"""The program on Python for Windows, in Wine: its figures match Linux, by JAX, OpenGL and Vulkan."""
+"""The program on Python for Windows, in Wine: its figures match Linux, with JAX, OpenGL and Vulkan."""
 
 import json
 import os
@@ -70,7 +70,7 @@ def test_a_users_encoder_is_measured_and_an_endless_twin_is_stopped(windows, tmp
 
 
 def test_commands_succeed(windows, tmp_path):
-    """They write the same files as on Linux."""
+    """The commands write the same files as on Linux."""
     write_examples(tmp_path)
     assert "apt-get" not in well(windows.command(tmp_path, "doctor"))
     assert "pass" in well(windows.command(tmp_path, "check", "gates.toml"))
@@ -83,7 +83,7 @@ def test_commands_succeed(windows, tmp_path):
     assert answer.startswith("2 bytes, on sphere: take octahedral in rg8.") and "recorded with Mesa" in answer
 
 
-def test_a_run_is_whole_and_another_system_reads_it(windows, tmp_path):
+def test_a_run_is_complete_and_readable_on_another_system(windows, tmp_path):
     well(windows.command(tmp_path, "run", "--encoding", "octahedral,xy", "--storage", "rg8", "-o", "kept"))
     # It goes on where it was.
     well(windows.command(tmp_path, "run", "--encoding", "octahedral,xy", "--storage", "rg8", "-o", "kept"))
@@ -95,7 +95,7 @@ def test_a_run_is_whole_and_another_system_reads_it(windows, tmp_path):
     assert done.returncode == 0 and "take octahedral" in done.stdout, done.stderr
 
 
-def test_the_pytest_plugin_measures(windows, tmp_path):
+def test_the_pytest_plugin_measures_a_users_encoder(windows, tmp_path):
     write_examples(tmp_path)
     (tmp_path / "test_mine.py").write_text(
         "def test_it(normalbench):\n"

@@ -253,8 +253,8 @@ class DepthCodec:
 def by_inverse_projection(
     _: DepthCodec, number: Float[Array | np.ndarray, "*shape"], place: Vec2, seen: CameraTerms
 ) -> Vec3:
-    """Return view-space positions from stored window depths, by the inverse projection; the encoding must have a
-    projection. `place` is the position on the screen, from -1 to 1."""
+    """Return view-space positions from stored window depths, by the inverse of the projection in `seen`, with which the
+    depths must have been stored. `place` is the position on the screen, from -1 to 1."""
     return position_from_window_depth(place, number, seen.clip, seen.clip_to_view)
 
 

@@ -58,7 +58,7 @@ class Operation:
 
     @property
     def names(self) -> dict[str, Path]:
-        """The paths of the files that a kernel includes, by name."""
+        """The paths of the files that a kernel includes, by macro name; OPERATION is the kernel's own file."""
         return {**self.own_names, "OPERATION": Path(shaders().get(str(self.glsl), self.glsl))}
 
     def source(self, shader: str) -> Source:

@@ -177,8 +177,8 @@ def _written(stages: Sequence[Pass]) -> dict[str, Resource]:
 
 
 def _resource_misfits(resource: Resource, earlier: Sequence[Pass]) -> Iterator[str]:
-    """Yield each reason why a pass cannot use a resource, as a predicate: the resource is invalid, or differs from an
-    earlier pass's resource of the same name."""
+    """Yield each reason why a pass cannot use a resource, as a predicate of the pass ("has the resource NAME, which
+    ..."): the resource is invalid, or differs from an earlier pass's resource of the same name."""
     if resource.misfit:
         yield f"has the resource {resource.name}, which {resource.misfit}"
     if _written(earlier).get(resource.name, resource) != resource:

@@ -60,8 +60,8 @@ def _is_named(chunk: Chunk, only: str) -> bool:
 
 
 def _each(chunks: list[Chunk]) -> Iterator[tuple[Chunk, Counter[str], list[str]]]:
-    """Yield each chunk with its counts; two run at once, in separate processes. A chunk whose process dies is tried
-    in halves, down to the case."""
+    """Yield each chunk with its counts; two chunks run at once, in separate processes. A chunk whose process dies is
+    tried in halves, down to single cases."""
     with ThreadPoolExecutor(2) as pool:
         left = {pool.submit(_alone, chunk): chunk for chunk in chunks}
         while left:

@@ -1,4 +1,4 @@
-"""Damaged shaders and twins: what a typing error, or malice, does to a good shader and its twin."""
+"""Damaged shaders and twins: typing errors and malicious changes in a good shader and its twin."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ PYTHON = (*IN_PYTHON.split(), *PHRASES)
 
 
 def slipped(text: str, words: tuple[str, ...], rng: np.random.Generator) -> bytes:
-    """Return a text with a word inserted or overwritten, a line lost or doubled, or bytes changed."""
+    """Return a text with a word inserted or overwritten, a line deleted or doubled, or bytes changed."""
     if rng.random() < 0.2:
         return mutated(text.encode(), rng)
     lines = text.splitlines(keepends=True)
@@ -81,7 +81,7 @@ def slipped(text: str, words: tuple[str, ...], rng: np.random.Generator) -> byte
 
 
 def shaders(folder: Path) -> Attack:
-    """Return an attack on the first check of a shader, in this process: it is accepted, or refused in one line."""
+    """Return an attack on the first check of shaders, in this process: they are accepted, or refused in one line."""
     path = folder / "mine.glsl"
 
     def case(seed: int) -> str:

@@ -1,4 +1,4 @@
-"""Encoders in the forms of engines, damaged or wired at random: each is translated, or refused in one line."""
+"""Encoders in the forms that engines use, damaged or wired at random: each is translated, or refused in one line."""
 
 from __future__ import annotations
 

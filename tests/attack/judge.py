@@ -170,7 +170,7 @@ def boundary(folder: Path) -> Attack:
 
 
 def compiled(folder: Path) -> Attack:
-    """Return an attack whose encoder lacks a note outside the folder: a case fails if a compiler reads the note."""
+    """Return an attack whose encoder needs a note outside the folder: a case fails if a compiler reads the note."""
 
     def case(seed: int) -> str:
         try:

@@ -1,6 +1,7 @@
 """Small programs in four shading languages, made from seeds: scopes, shadows, arrays, structures, loops, integers.
 
-Each has `mine_encode` and `mine_decode`, uses what its language defines and nothing else, and computes bounded numbers.
+Each program has `mine_encode` and `mine_decode`, uses only features that its language defines, and computes bounded
+numbers.
 """
 
 from __future__ import annotations
@@ -33,11 +34,11 @@ class Scope:
 
 
 class Program:
-    """One program of a language.
+    """A program in one language.
 
     Args:
         language: glsl, hlsl, slang or wgsl.
-        seed: decides everything else.
+        seed: determines everything else.
     """
 
     def __init__(self, language: str, seed: int):

@@ -29,7 +29,7 @@ SEAMS = 1e-3
 
 
 def written_here() -> tuple[list[str], list[str]]:
-    """Return the languages that this machine runs, and a line with the reason for every other language."""
+    """Return the languages that this machine can run, and a line with the reason for every other language."""
     languages, left_out = [], []
     for name in RUN:
         try:

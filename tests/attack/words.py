@@ -1,4 +1,4 @@
-"""Odd words on the command line, and files of odd names and kinds."""
+"""Odd words on the command line, and files with odd names or of odd kinds."""
 
 from __future__ import annotations
 

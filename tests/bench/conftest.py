@@ -1,4 +1,4 @@
-"""Compilers of the languages; where CI is set, a machine without them fails the tests that need them."""
+"""Compilers of the languages; if CI is set, tests that need them fail on a machine without them."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Decoders of compressed blocks, compared with texture2ddecoder, the OpenGL device and values by hand."""
+"""Decoders of compressed blocks, compared with texture2ddecoder, the OpenGL device and values computed by hand."""
 
 import numpy as np
 import texture2ddecoder
@@ -9,7 +9,7 @@ from normalbench.bench.tables.maps.formats import FORMATS
 
 
 def test_bc7_matches_an_independent_decoder_and_the_device(gl):
-    """All eight modes agree bit for bit: a float is a whole number of 255ths."""
+    """All eight modes agree bit for bit: every decoded float is a multiple of 1/255."""
     blocks = bc7_blocks(COUNT, seed=1)
     decoded = FORMATS["bc7"].decode(blocks)
     expected = from_bgra(texture2ddecoder.decode_bc7(blocks.tobytes(), 4 * len(blocks), 4), len(blocks))

@@ -23,8 +23,8 @@ def codec(name: str, storage: str = "rgba16f"):
     return named_codec
 
 
-def test_a_chain_is_worse_than_either():
-    """RTX Remix and Bevy give a denoiser octahedral 12:12 in half floats: their errors add up as squares."""
+def test_a_chain_is_less_accurate_than_either_codec():
+    """RTX Remix and Bevy pass octahedral 12:12 to a denoiser in half floats: the mean square errors add up."""
     n = directions(2**16)
     rms = [
         float(np.sqrt(np.mean(angles_deg(n, round_trip(one_codec, n, n)) ** 2)))
@@ -44,7 +44,7 @@ def test_both_languages_agree_on_a_chain(gl):
     assert np.mean(apart < 1e-3) > (0.995 if gl.is_software else 0.99), f"{np.mean(apart < 1e-3):.3%} the same"
 
 
-def test_a_chain_is_not_rendered():
+def test_a_chain_cannot_be_drawn_into_a_gbuffer():
     with pytest.raises(ShaderError, match="a chain of codecs cannot be drawn into a G-buffer"):
         encoding_defines(codec(CHAIN).encoding)
 

@@ -7,7 +7,7 @@ from normalbench.bench.ground.angles import angles_deg
 from normalbench.bench.tables.quality.measure import round_trip
 
 
-def test_a_chain_is_one_codec_after_the_other():
+def test_a_chain_applies_one_codec_after_the_other():
     """The results agree to a unit in the last place of the normals that are renormalised in between."""
     n = directions(4096)
     first = round_trip(codec("octahedral", "rgb8_12_12"), n, n)

@@ -1,4 +1,4 @@
-"""Curves: they rise from 0 to the range, can be undone, and have the values of their sources."""
+"""Curves: monotonicity from 0 to the range, inversion and the values in their sources."""
 
 import numpy as np
 import pytest
@@ -14,8 +14,8 @@ EVERY = sorted(CURVE_ENCODINGS)
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_a_curve_goes_from_0_to_the_range_and_back(name):
-    """0 and the range are the ends of the numbers, the curve is monotonic, and decoding gives back the input."""
+def test_a_curve_is_monotonic_over_its_range_and_can_be_inverted(name):
+    """0 and the range map to the ends of the numbers, the curve is monotonic, and decoding returns the input."""
     encoding, largest = CURVE_ENCODINGS[name], np.float32(range_of(CURVE_ENCODINGS[name]))
     x = np.sort(np.minimum(shares() * largest, largest))
     numbers = np.asarray(encoding.encode(x, largest))
@@ -48,13 +48,13 @@ def test_a_curve_goes_from_0_to_the_range_and_back(name):
         ("reflectivity", 1, 0.5, 0.52),
     ],
 )
-def test_a_curve_has_the_values_of_its_source(name, limit, quantity, number):
+def test_a_curve_matches_the_values_in_its_source(name, limit, quantity, number):
     code = float(CURVE_ENCODINGS[name].encode(np.float32(quantity), np.float32(limit)))
     assert code == pytest.approx(number, abs=1e-6)
 
 
 def test_unitys_polynomial_is_within_a_sixth_of_a_percent_of_its_curve():
-    """Decoded values are up to 0.00167 off even without a storage: 0.4 steps of 8 bits."""
+    """Decoded values are off by up to 0.00167 even without a storage: 0.4 of an 8-bit step."""
     fast = CURVE_ENCODINGS["fast_srgb"]
     x = np.linspace(0, 1, 100_001)
     off = np.abs(np.asarray(fast.decode(fast.encode(x, 1.0), 1.0)) - x).max()
@@ -65,8 +65,8 @@ def test_unitys_polynomial_is_within_a_sixth_of_a_percent_of_its_curve():
     "name, first",
     [("linear", 1 / 255), ("square_root", 1 / 255**2), ("squared", 1 / 255**0.5), ("srgb", 1 / 255 / 12.92)],
 )
-def test_the_first_step_above_0_is_that_of_the_curve(name, first):
-    """In 8 bits: the value of code 1. Values up to half a code, on the curve, decode to 0."""
+def test_the_smallest_decoded_value_above_0_matches_the_curve(name, first):
+    """In 8 bits this is the value of code 1. Inputs up to half a code on the curve decode to 0."""
     codec = CurveCodec(CURVE_ENCODINGS[name], CURVE_STORAGES["r8"])
     decoded = np.asarray(codec.round_trip(np.linspace(0, 0.1, 200_001, dtype=np.float32)))
     assert decoded[0] == 0 and decoded[decoded > 0].min() == pytest.approx(first, rel=1e-5)
@@ -82,7 +82,7 @@ MIXED = {
 
 @pytest.mark.parametrize("bits, written", MIXED.values(), ids=MIXED)
 @pytest.mark.parametrize("integer", [0, 1])
-def test_a_number_that_shares_a_byte_is_like_a_number_of_fewer_bits(bits, written, integer):
+def test_a_number_in_a_shared_byte_equals_a_number_with_fewer_bits(bits, written, integer):
     """The hardware rounds the sum to a byte, in which the number has the steps of `unorm:7` or `unorm:5`."""
     f = np.random.default_rng(0).random(2**14)
     byte = np.rint(255 * written(f, integer))

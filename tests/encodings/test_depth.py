@@ -1,4 +1,4 @@
-"""Depth encodings: their own projections, signs that survive, and errors within their bounds."""
+"""Depth encodings: projections, preserved signs and errors within their bounds."""
 
 import jax
 import jax.numpy as jnp
@@ -24,8 +24,8 @@ STRANGE = np.float32([np.nan, np.inf, -np.inf, 3e38, -3e38, 1e-45, -1e-45, 1e-40
 
 
 @pytest.mark.parametrize("name", WINDOWS)
-def test_the_projection_is_the_encodings_own(name):
-    """The inverse projection of an exact number is at the depth that the number stands for, and on the eye's ray."""
+def test_the_inverse_projection_matches_the_encoding(name):
+    """The inverse projection of an exact number is at the depth that the number encodes, on the view ray."""
     encoding, camera = DEPTH_ENCODINGS[name], CAMERAS[0]
     depths, place = np.geomspace(camera.near, camera.far, 50), np.array([0.5, -0.25])
     numbers, _ = exact_and_units(encoding.encode, depths, camera)
@@ -50,10 +50,10 @@ def test_a_depth_buffer_clamps_as_the_emulation_does(gl, name):
 
 @pytest.mark.parametrize("far", [1.0, 1000.0])
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
-def test_16_bits_in_two_bytes_are_exact_to_half_a_code(gl, backend, far):
-    """Linear depth, every code and every tie between codes with neighbours: the stored code is within half a code of
-    the exact code, whether or not the low byte carries, except for the rounding of float32 (of d / far, of its
-    product with 65535 and of the share that comes back: two units in the last place)."""
+def test_16_bits_in_two_bytes_are_accurate_to_half_a_code(gl, backend, far):
+    """Linear depth is stored at every code and every tie between codes, with neighbours. The stored code is within
+    half a code of the exact code, whether or not the low byte carries, except for float32 rounding (of d / far, of
+    its product with 65535 and of the decoded share: two units in the last place)."""
     codec, camera = DepthCodec(DEPTH_ENCODINGS["linear"], DEPTH_STORAGES["packed16"]), Camera(0.1, far, 60.0, 1.0)
     codes = np.arange(2.0**16)
     depths = around(np.concatenate([codes, codes[:-1] + 0.5]) / 65535 * far, 1)
@@ -71,7 +71,7 @@ def test_16_bits_in_two_bytes_are_exact_to_half_a_code(gl, backend, far):
 @pytest.mark.parametrize("storage", [name for name, s in DEPTH_STORAGES.items() if s.is_signed])
 @pytest.mark.parametrize("name", SIGNED)
 def test_the_sign_of_z_survives_at_the_smallest_depths(gl, name, storage, backend):
-    """Codes 0 and 1 of either sign, -0 and +0 too, come back with their signs and their magnitudes."""
+    """The lowest and highest codes of either sign, including -0 and +0, keep their signs and magnitudes."""
     codec, camera = DepthCodec(DEPTH_ENCODINGS[name], DEPTH_STORAGES[storage]), CAMERAS[0]
     scale = codec.storage.scale // 2 or 2**10
     steps = np.float32([0, 1, 2, scale // 2, scale]) / np.float32(scale) * np.float32(camera.far)

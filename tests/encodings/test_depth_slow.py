@@ -1,4 +1,4 @@
-"""Depth encodings: their own projections, signs that survive, and errors within their bounds."""
+"""Depth encodings: projections, preserved signs and errors within their bounds."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -47,7 +47,7 @@ def test_reversed_depth_beats_z_over_w_in_shaders_by_the_distance_over_near(back
     assert np.all((factors > expected / 2) & (factors < expected * 2)), story
 
 
-def test_half_a_step_is_what_the_derivative_says():
+def test_half_a_step_of_depth_matches_the_derivative():
     """Linear: f / (2 (2^n - 1)) anywhere, twice that with a sign. z/w: d^2 (f - n) / (n f) times 1 / (2 (2^n - 1)),
     to first order. Logarithmic: d ln(f / n) times the same factor. Half floats: half of 2^-10 of the depth's
     octave."""
@@ -65,8 +65,8 @@ def test_half_a_step_is_what_the_derivative_says():
     assert half("logarithmic", "packed16") == pytest.approx(d * np.log(1e4) / 131070, rel=1e-3)
 
 
-def test_an_error_is_along_the_eyes_ray():
-    """Linear depth in 16 bits: a position is as far off as its depth, times the length of the ray at depth 1."""
+def test_a_position_error_is_along_the_view_ray():
+    """Linear depth in 16 bits: a position's error is the depth error times the length of the ray at depth 1."""
     camera = Camera(0.1, 1000.0, 60.0, 16 / 9)
     on = depth.points(camera, None, 256, 0)
     codec = DepthCodec(DEPTH_ENCODINGS["linear"], DEPTH_STORAGES["packed16"])
@@ -88,8 +88,8 @@ def cases(backend: str, camera: Camera) -> list:
 @pytest.mark.parametrize("camera", CAMERAS, ids=lambda c: f"{c.near:g} to {c.far:g}")
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
 @pytest.mark.usefixtures("gl")
-def test_no_error_is_above_its_bound(backend, camera):
-    """Every encoding in every storage, reconstructed in every way: each point has its own bound, not the row's."""
+def test_no_error_exceeds_its_bound(backend, camera):
+    """Every encoding in every storage is reconstructed in every way; each point is compared with its own bound."""
     for case in cases(backend, camera):
         on = depth.all_points(camera, case.distances, case.count, case.seed)
         measured = depth.through(case, on)

@@ -1,4 +1,4 @@
-"""Noise before rounding: a tile of blue noise, one step wide, and a mean that nears the code."""
+"""Noise added before rounding: a blue-noise tile, an amplitude of one step, and a mean that approaches the code."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -16,19 +16,19 @@ CODEC = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
 
 
 def low_share(tile: np.ndarray) -> float:
-    """Return the energy at frequencies below a tenth per pixel, relative to white noise."""
+    """Return the energy at frequencies below 0.1 cycles per pixel, relative to white noise."""
     energy = abs(np.fft.fft2(tile - tile.mean())) ** 2 / tile.size / tile.var()
     frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(SIZE), np.fft.fftfreq(SIZE)))
     return float(energy[(frequency > 0) & (frequency < 0.1)].mean())
 
 
-def test_every_number_is_in_the_tile_once():
+def test_the_tile_contains_every_number_once():
     ranks = np.sort(blue_noise().ravel()) * SIZE**2 - 0.5
     assert np.allclose(ranks, np.arange(SIZE**2), atol=1e-9)
 
 
 def test_the_tile_has_little_energy_at_low_frequencies():
-    """The same numbers in random order have about a thousand times as much."""
+    """The same numbers in random order have about a thousand times as much energy there."""
     share = low_share(blue_noise())
     white = low_share(np.random.default_rng(0).permutation(blue_noise().ravel()).reshape(SIZE, SIZE))
     assert share < 1e-3, share
@@ -36,7 +36,7 @@ def test_the_tile_has_little_energy_at_low_frequencies():
 
 
 @pytest.mark.parametrize("name", FIXED)
-def test_noise_is_a_step_wide(name):
+def test_noise_spans_one_step(name):
     """A step is the distance between adjacent numbers of a channel."""
     codec = Codec(ENCODINGS["octahedral"], STORAGES[name])
     added = codec.dither(0).added.astype(np.float64)
@@ -48,7 +48,7 @@ def test_noise_is_a_step_wide(name):
     assert not added[..., 2:].any()
 
 
-def test_numbers_and_frames_have_noise_of_their_own():
+def test_each_number_and_frame_has_its_own_noise():
     """No part of the tile is used twice, and the parts are not correlated."""
     parts = [Codec(ENCODINGS["xyz"], STORAGES["rgb10a2"]).dither(frame).added[..., :NUMBERS] for frame in range(8)]
     several = np.concatenate([part.reshape(-1, NUMBERS) for part in parts], axis=1).T
@@ -56,7 +56,7 @@ def test_numbers_and_frames_have_noise_of_their_own():
     assert abs(alike).max() < 0.1, abs(alike).max()
 
 
-def test_the_mean_of_moving_noise_nears_the_code():
+def test_the_mean_over_frames_with_noise_approaches_the_code():
     """Without noise, and with still noise, more frames change nothing."""
     codes = np.random.default_rng(1).uniform(-0.95, 0.95, (2, SIZE, SIZE)).astype(np.float32)
     step = STORAGES["rg8"].step(0)
@@ -85,12 +85,12 @@ def test_the_mean_of_moving_noise_nears_the_code():
         ("octahedral_precise", "rg8", "nearest", "only with rounding to nearest"),
     ],
 )
-def test_codecs_that_are_not_dithered_say_why(encoding, storage, rounding, said):
+def test_codecs_that_cannot_be_dithered_give_a_reason(encoding, storage, rounding, said):
     reason = Codec(ENCODINGS[encoding], STORAGES[storage], rounding).undithered
     assert reason and said in reason and "\n" not in reason
 
 
-def test_a_number_of_few_values_is_left_as_it_is():
+def test_a_number_with_few_values_is_not_dithered():
     """The third number of a cube code is one of six faces."""
     codec = Codec(ENCODINGS["cube"], STORAGES["rgb8_10_10_3"])
     added = codec.dither(0).added

@@ -1,4 +1,4 @@
-"""JSON and TOML documents by others: every number is finite, or is refused with its place."""
+"""JSON and TOML files from users: numbers that are not finite are refused, and the message says where they are."""
 
 import pytest
 
@@ -10,14 +10,14 @@ TOML = ("9" * 310, "1e999", "nan", "-inf", "0x" + "f" * 257, "0b" + "1" * 1025)
 
 
 @pytest.mark.parametrize("number", JSON)
-def test_json_names_the_place_of_a_number_that_is_not_finite(number):
+def test_json_error_locates_a_number_that_is_not_finite(number):
     with pytest.raises(ValueError) as refusal:
         parsed_json(f'{{"a": [1, {{"b c": {number}}}], "d": 2}}')
     assert str(refusal.value) == "a[1].b c is not a finite number; write one below 1e308", number[:20]
 
 
 @pytest.mark.parametrize("number", TOML)
-def test_toml_names_the_place_of_a_number_that_is_not_finite(number, tmp_path):
+def test_toml_error_locates_a_number_that_is_not_finite(number, tmp_path):
     path = tmp_path / "a.toml"
     path.write_text(f"[[gate]]\nx = 1\n[[gate]]\nx = {number}\n")
     with pytest.raises(ValueError) as refusal:
@@ -26,7 +26,7 @@ def test_toml_names_the_place_of_a_number_that_is_not_finite(number, tmp_path):
 
 
 @pytest.mark.parametrize("digits", ["9" * 5000, "-" + "9_9" * 5000])
-def test_toml_names_the_line_of_a_number_that_python_does_not_read(digits, tmp_path):
+def test_toml_error_gives_the_line_of_a_number_with_too_many_digits(digits, tmp_path):
     path = tmp_path / "a.toml"
     path.write_text(f"x = 1\ny = [\n{digits}]\n")
     with pytest.raises(ValueError) as refusal:
@@ -37,11 +37,11 @@ def test_toml_names_the_line_of_a_number_that_python_does_not_read(digits, tmp_p
 @pytest.mark.parametrize(
     "text, number", [("9" * 308, int("9" * 308)), ("1e308", 1e308), ("-0", 0), ("1e-400", 0.0), ("true", True)]
 )
-def test_json_keeps_the_numbers_that_a_float_holds(text, number):
+def test_json_keeps_numbers_that_fit_in_a_float(text, number):
     assert parsed_json(text) == number
 
 
-def test_a_long_name_does_not_make_a_long_line():
+def test_a_long_name_is_shortened_in_the_message():
     with pytest.raises(ValueError) as refusal:
         parsed_json(f'{{"{"n" * 100_000}": NaN}}')
     assert len(str(refusal.value)) < 260

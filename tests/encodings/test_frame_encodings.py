@@ -1,4 +1,4 @@
-"""Tangent frame encodings: limited errors, no lost hands, and frames that are stored again unchanged."""
+"""Tangent frame encodings: bounded errors, preserved handedness and decoded frames that are stored unchanged."""
 
 import inspect
 
@@ -32,7 +32,7 @@ def test_a_frame_encoding_is_complete(name):
 
 
 def angles_between(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the angle of the rotation between frames, whatever their hands, in degrees."""
+    """Return the angle of the rotation between frames, regardless of their handedness, in degrees."""
     axes = []
     for frames in (one.astype(np.float64), other.astype(np.float64)):
         n, t = frames[:, :3], frames[:, 4:7]
@@ -55,8 +55,8 @@ STEPS = {"hexadecachoral": np.sqrt(48), "rotation_rodrigues": np.sqrt(12), "axis
 def most(codec: FrameCodec) -> float:
     """Return the largest possible error of a frame in degrees, to first order.
 
-    In steps of the widest number: sqrt(11) for smallest three, whose third number has steps twice as wide, where all
-    four are equal; 2.7 for the others. The error of float32 is added.
+    In steps of the widest number the error is sqrt(11) for smallest three, whose third number has steps twice as
+    wide, if all four components are equal, and 2.7 for most other encodings. The error of float32 is added.
     """
     step = max(2.0 / (codec.storage.levels(i) - 1) for i, levels in enumerate(codec.encoding.levels) if not levels)
     if codec.encoding.name == OF_A_ROOT:
@@ -66,7 +66,7 @@ def most(codec: FrameCodec) -> float:
 
 
 @pytest.mark.parametrize("codec", CODECS[:6], ids=lambda c: c.name)
-def test_no_frame_is_far_off_and_no_hand_is_lost(gl, codec):
+def test_frame_errors_are_bounded_and_handedness_is_kept(gl, codec):
     frames = padded(hard_frames())
     for language, back in (("JAX", trip(codec)), ("GLSL", gl_trip(gl, codec))):
         assert np.isfinite(back).all(), language
@@ -78,9 +78,9 @@ def test_no_frame_is_far_off_and_no_hand_is_lost(gl, codec):
 
 @pytest.mark.parametrize("codec", CODECS[:6], ids=lambda c: c.name)
 def test_a_decoded_frame_is_stored_again_unchanged(codec):
-    """A decoded frame has its own code: always if the angle is about the stored normal, and for nearly all
-    quaternions. If two components are nearly equal, the other may become the largest, and four components come
-    back at length 1, which is off their steps."""
+    """Encoding a decoded frame gives the same code: always for an angle about the stored normal, and for nearly all
+    quaternions. If a quaternion's two largest components are nearly equal, the other may become the largest. Four
+    components are normalised when decoded, which moves them off their steps."""
     first = trip(codec)
     second = round_trip(codec)(first)
     moved = angles_between(first, second) > (BY_A_ROOT_DEG if codec.encoding.name == OF_A_ROOT else 1e-4)
@@ -89,8 +89,8 @@ def test_a_decoded_frame_is_stored_again_unchanged(codec):
     assert share <= (0 if settled else 0.02), f"{share:.4%} of the frames have moved"
 
 
-def test_half_turns_and_the_identity_have_their_quaternions():
-    """The identity is w; a half turn about an axis is that axis."""
+def test_half_turns_and_the_identity_have_the_expected_quaternions():
+    """The identity is (0, 0, 0, 1); a half turn about an axis is that axis with w = 0."""
     x, _, z = np.eye(3)
     frames = np.float32([[*n, 1, *t, 0] for n, t in ((z, x), (-z, x), (-z, -x), (z, -x))])
     quaternions = rows(quaternion_of(as_frame(frames)))
@@ -98,7 +98,7 @@ def test_half_turns_and_the_identity_have_their_quaternions():
     assert quaternions == pytest.approx(expected, abs=1e-7)
 
 
-def test_both_ends_of_the_angle_are_the_same_angle():
+def test_both_ends_of_the_angle_range_decode_to_the_same_tangent():
     """A tangent opposite to the fixed tangent is stored as -1 or 1; both decode to the same tangent."""
     encoding = FRAME_ENCODINGS["octahedral_angle"]
     ends = np.float32([[0.3, -0.2, angle, 1] for angle in (-1, 1)])
@@ -106,7 +106,7 @@ def test_both_ends_of_the_angle_are_the_same_angle():
     assert lower == pytest.approx(other, abs=2 * ULP)
 
 
-def test_a_number_of_many_values_does_not_fit_a_single_bit():
-    """The fourth number of qtangent does not fit the one bit of 10:10:11:1."""
+def test_an_ordinary_component_does_not_fit_in_one_bit():
+    """The fourth component of qtangent does not fit in the single bit of 10:10:11:1."""
     reason = FrameCodec(FRAME_ENCODINGS["qtangent"], FRAME_STORAGES["rgba8_10_10_11_1"]).misfit
     assert reason == "component 4 has only 1 bits in 10:10:11:1 in RGBA8; ordinary components need at least 4"

@@ -1,4 +1,4 @@
-"""Tangent frame encodings: limited errors, no lost hands, and frames that are stored again unchanged."""
+"""Tangent frame encodings: bounded errors, preserved handedness and decoded frames that are stored unchanged."""
 
 import pytest
 import test_frame_encodings
@@ -6,8 +6,8 @@ from test_frame_encodings_slow import MORE
 
 
 @pytest.mark.parametrize("codec", MORE, ids=lambda c: c.name)
-def test_no_frame_is_far_off_and_no_hand_is_lost_of_every_codec(gl, codec):
-    test_frame_encodings.test_no_frame_is_far_off_and_no_hand_is_lost(gl, codec)
+def test_frame_errors_are_bounded_and_handedness_is_kept_in_every_codec(gl, codec):
+    test_frame_encodings.test_frame_errors_are_bounded_and_handedness_is_kept(gl, codec)
 
 
 @pytest.mark.parametrize("codec", MORE, ids=lambda c: c.name)

@@ -1,4 +1,4 @@
-"""Tangent frame encodings: limited errors, no lost hands, and frames that are stored again unchanged."""
+"""Tangent frame encodings: bounded errors, preserved handedness and decoded frames that are stored unchanged."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ from normalbench.encodings.codecs.frame_codec import FrameCodec
 from normalbench.encodings.storages.rules import by_rule
 
 
-def test_a_hand_at_an_end_of_its_range_is_kept():
+def test_handedness_is_kept_if_its_number_would_be_0():
     """If the third of three numbers is at its lower end, or if w is 0, a step is stored instead of 0."""
     third = of_quaternions(np.array([[1.0, 0.0, 0.0, 1e-6 - 1.0]]))
     half_turn = of_quaternions(np.array([[0.6, 0.0, 0.8, 0.0]]))
@@ -29,8 +29,8 @@ def test_a_hand_at_an_end_of_its_range_is_kept():
 
 
 @pytest.mark.parametrize("name", ["qtangent", "smallest_three"])
-def test_a_hand_is_kept_in_floats_of_any_form(name):
-    """The smallest number is the smallest normal float of the form."""
+def test_handedness_is_kept_in_floats_of_any_form(name):
+    """The smallest stored number is the smallest normal float of the form."""
     codec = FrameCodec(FRAME_ENCODINGS[name], by_rule("float", (4, 3)))
     frames = hard_frames()
     assert codec.least == 2.0**-6 and np.array_equal(as_rows(codec.round_trip(as_frame(frames)))[:, 3], frames[:, 3])
@@ -40,8 +40,8 @@ MORE = CODECS[6:]
 
 
 @pytest.mark.parametrize("codec", a_tenth(MORE), ids=lambda c: c.name)
-def test_no_frame_is_far_off_and_no_hand_is_lost_of_any_codec(gl, codec):
-    test_frame_encodings.test_no_frame_is_far_off_and_no_hand_is_lost(gl, codec)
+def test_frame_errors_are_bounded_and_handedness_is_kept_in_any_codec(gl, codec):
+    test_frame_encodings.test_frame_errors_are_bounded_and_handedness_is_kept(gl, codec)
 
 
 @pytest.mark.parametrize("codec", a_tenth(MORE), ids=lambda c: c.name)

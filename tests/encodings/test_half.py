@@ -31,7 +31,7 @@ def directions(count: int) -> np.ndarray:
 
 
 def by_numpy(n: np.ndarray, divides: bool) -> np.ndarray:
-    """Return octahedral 10:10 with each operation rounded to float16; by division or by a reciprocal."""
+    """Return normals from octahedral 10:10 with each operation rounded to float16, by division or by a reciprocal."""
     x, y, z = (c.astype(H) for c in n.T)
     size = abs(x) + abs(y) + abs(z)
     p = [c / size if divides else c * (H(1) / size) for c in (x, y)]
@@ -47,7 +47,7 @@ def by_numpy(n: np.ndarray, divides: bool) -> np.ndarray:
 
 
 def test_the_emulation_rounds_every_step():
-    """NumPy, one operation at a time, has the same angles: nothing is kept in 32 bits between steps."""
+    """NumPy, one operation at a time, has the same mean angle to 0.1%: no step keeps 32 bits."""
     n = directions(2**18)
     ours = angles_deg(n, round_trip(Codec(in_half(ENCODINGS["octahedral"]), STORAGES["rgb10a2"]), n, n))
     theirs = angles_deg(n, by_numpy(n, divides=False))
@@ -55,9 +55,9 @@ def test_the_emulation_rounds_every_step():
     assert ours.max() == pytest.approx(theirs.max(), rel=0.05), f"{ours.max():.4f}, {theirs.max():.4f} by NumPy"
 
 
-def test_octahedral_10_10_loses_a_fifth_in_half_arithmetic():
-    """By division the mean grows by 21% and the largest error is 0.42 degrees, as measured elsewhere; the reciprocal
-    adds one rounding."""
+def test_half_arithmetic_raises_the_error_of_octahedral_10_10_by_a_fifth():
+    """With a division the mean error grows by 21% and the largest error is 0.42 degrees, as measured elsewhere; the
+    reciprocal adds one rounding."""
     n = directions(2**20)
     exact = angles_deg(n, round_trip(Codec(ENCODINGS["octahedral"], STORAGES["rgb10a2"]), n, n)).mean()
     divided, multiplied = (angles_deg(n, by_numpy(n, divides)) for divides in (True, False))
@@ -66,8 +66,8 @@ def test_octahedral_10_10_loses_a_fifth_in_half_arithmetic():
 
 
 @pytest.mark.parametrize("codec", CODECS, ids=lambda codec: codec.name)
-def test_codes_and_decodes_are_halves(codec):
-    """Codes are floats of 16 bits, and decodes have no more digits."""
+def test_codes_and_decoded_normals_are_half_floats(codec):
+    """Codes are 16-bit floats, and decoded normals have no more precision than that."""
     n = from_array(directions(512))
     assert {number.dtype for number in codec.encoding.encode(n, n)} == {jnp.dtype(jnp.float16)}
     decoded = np.stack(codec.round_trip(n, n))
@@ -82,7 +82,7 @@ ROUNDED = "every step rounded"
 @pytest.mark.parametrize("codec", CODECS, ids=lambda codec: codec.name)
 def test_a_device_with_16_bit_types_agrees(codec):
     """The same GLSL in 16-bit types: RMS angles agree within 7% if each step is rounded, and within 40% if the device
-    keeps more digits in some steps. An H200 does, and loses up to 34% more in 10 bits."""
+    keeps more digits in some steps. An H200 keeps more digits and differs by up to 34% in 10 bits."""
     try:
         compute.half_device()
     except MissingError as error:
@@ -95,7 +95,7 @@ def test_a_device_with_16_bit_types_agrees(codec):
     assert abs(rms[1] / rms[0] - 1) <= most, f"{rms[1]:.5f} degrees, {rms[0]:.5f} by emulation"
 
 
-def test_a_device_says_whether_it_rounds_every_step():
+def test_a_device_name_states_whether_every_step_is_rounded():
     try:
         name = compute.name()
     except MissingError as error:
@@ -138,17 +138,17 @@ def test_half_arithmetic_is_chosen_by_name_or_by_option():
         ("xyz", None),
     ],
 )
-def test_encodings_that_do_not_suit_half_arithmetic_say_why(name, said):
+def test_encodings_unsuitable_for_half_arithmetic_give_a_reason(name, said):
     misfit = Codec(in_half(ENCODINGS[name]), STORAGES["rgb10a2"]).misfit
     assert misfit is None if said is None else said in (misfit or "")
 
 
-def test_a_renderer_of_32_bits_refuses_half_arithmetic():
+def test_the_32_bit_renderer_refuses_half_arithmetic():
     with pytest.raises(ShaderError, match="OpenGL computes shaders in 32 bits"):
         encoding_defines(in_half(ENCODINGS["octahedral"]))
 
 
-def test_the_table_names_the_encodings_that_survive():
+def test_the_table_lists_the_encodings_that_survive_half_arithmetic():
     rows = [
         {"encoding": name, "storage": "rg8", "rounding": "nearest", "normals": "sphere", "backend": "jax"}
         | {"angle_rms_deg": rms}

@@ -110,8 +110,8 @@ def test_codecs_of_every_kind_have_the_same_interface(kind):
     assert all(leaf.shape == (1,) and np.isfinite(leaf).all() for leaf in leaves)
 
 
-def test_a_sign_is_a_bit_of_the_codec():
-    """x and y have a byte each, and the sign of z is one bit more."""
+def test_a_separate_sign_counts_as_one_bit_of_the_codec():
+    """x and y have a byte each, and the sign of z adds one bit."""
     codec = Codec(BY_KIND[NORMAL]["xy_sign"], STORAGES["rg8"])
     assert (codec.bits, codec.codes) == (17, 2**17)
 
@@ -130,7 +130,7 @@ def test_an_encoding_that_is_not_named_after_its_file_is_refused(monkeypatch):
 @pytest.mark.parametrize(
     "folder", sorted({path.parent for path in (ROOT / "encodings").rglob("*.py")}), ids=lambda path: path.name
 )
-def test_a_folder_can_be_taken_in_at_a_glance(folder):
-    """A folder holds at most 15 encodings; a pair of files counts as one. Normal encodings are the exception."""
+def test_a_folder_holds_at_most_15_encodings(folder):
+    """A pair of files counts as one encoding. The folder of normal encodings is exempt."""
     things = {path.stem for path in folder.iterdir() if path.name != "__pycache__"}
     assert len(things) <= 15 or folder.name == NORMAL.folder, f"{folder.name} holds {len(things)} things"

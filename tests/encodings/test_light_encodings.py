@@ -1,4 +1,4 @@
-"""Light encodings: their ranges, and formats that store as emulated."""
+"""Light encodings: their ranges, and formats that store values as emulated."""
 
 from pathlib import Path
 
@@ -49,7 +49,7 @@ def round_trip(name: str, light) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_zero_light_is_stored_exactly_and_is_what_an_empty_buffer_holds(name):
+def test_zero_light_is_exact_and_an_empty_buffer_decodes_to_zero(name):
     encoding = LIGHT_BUFFERS[name]
     assert np.all(round_trip(name, 0.0) == 0.0)
     empty = Vec4(*[jnp.full(1, encoding.no_light, jnp.float32)] * 4)
@@ -57,8 +57,8 @@ def test_zero_light_is_stored_exactly_and_is_what_an_empty_buffer_holds(name):
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_the_limit_is_the_brightest_white_light_that_comes_back(name):
-    """The catalogue's figure: log2(255) = 7.994 for log, the range of linear, sRGB and RGBM, a format's largest."""
+def test_the_limit_is_the_brightest_white_light_that_round_trips(name):
+    """The limit is log2(255) = 7.994 for log, the range for linear, sRGB and RGBM, or a format's largest value."""
     encoding = LIGHT_BUFFERS[name]
     below = np.float32(min(encoding.limit * 0.999, BRIGHTEST))
     kept, most = round_trip(name, below)[0, :3], round_trip(name, 1e30)[0, :3]
@@ -74,7 +74,7 @@ def test_the_limit_is_the_brightest_white_light_that_comes_back(name):
 
 @pytest.mark.parametrize("name", ["linear:1.7", "srgb:5.3", "rgbm:11.1"])
 def test_a_range_that_is_not_a_power_of_two_is_the_same_in_both_languages(gl, name):
-    """One unit each for the reciprocal, the product and the decoding."""
+    """The reciprocal, the product and the decoding may each be one unit off."""
     (encoding,) = light_buffers_named(name)
     light = lights(2**12)
     texels = rows(jax.jit(lambda light: encoding.encode(light_or_none(light)))(planes(light)))
@@ -85,7 +85,7 @@ def test_a_range_that_is_not_a_power_of_two_is_the_same_in_both_languages(gl, na
         assert ulps <= 4, f"{name} {what}: {ulps:.1f} ulp"
 
 
-def test_the_log_codes_range_is_7_994():
+def test_the_range_of_the_log_encoding_is_7_994():
     assert abs(LIGHT_BUFFERS["log"].limit - np.log2(255)) < 1e-12
     steps = np.diff(rows(LIGHT_BUFFERS["log"].decode(planes(np.float32([[c / 255] * 4 for c in (1, 2, 3)]))))[:, 0])
     assert abs(steps[0] + 1) < 1e-6, "the last step is a whole 1.0 of light"
@@ -99,8 +99,9 @@ def test_nao32_multiplies_by_the_inverse_of_its_matrix():
     assert np.abs(published - INVERSE).max() < 1e-3
 
 
-def test_a_half_and_three_roots_match_rtx_remix():
-    """Compared with RTX Remix in NumPy: the largest number as a half, and roots of shares of it in eight bits."""
+def test_chroma_half_matches_rtx_remix():
+    """Compared with RTX Remix in NumPy: the largest channel as a half float, and each channel's share of this largest
+    value as a square root in eight bits."""
     rng = np.random.default_rng(0)
     light = np.exp2(rng.uniform(-14, 17, (4096, 1)) + rng.uniform(-9, 0, (4096, 4))).astype(np.float32)
     clamped = np.minimum(light[:, :3], 65504).astype(np.float32)
@@ -113,8 +114,8 @@ def test_a_half_and_three_roots_match_rtx_remix():
     assert (rows(LIGHT_BUFFERS["chroma_half"].decode(endless))[:, :3] == 65504).all()
 
 
-def test_light_can_be_stored_in_any_bits_that_fit():
-    """The name and the blending of each buffer: numbers that span channels are read, not blended."""
+def test_light_can_be_stored_in_any_bit_counts_that_fit():
+    """Light whose numbers span channels is read and written again, because hardware cannot blend such numbers."""
     names = "ufloat:6:9,plain/float:8:7,linear/unorm:10:10:10,linear:4/unorm:10:10:10:2,linear/rgba16,plain/rgba16f"
     codecs = light_buffers_named(names)
     assert [(codec.name, codec.blend, codec.bits, codec.bytes_per_pixel) for codec in codecs] == [

@@ -1,4 +1,4 @@
-"""Light encodings: their ranges, and formats that store as emulated."""
+"""Light encodings: their ranges, and formats that store values as emulated."""
 
 import colorsys
 
@@ -16,7 +16,7 @@ from normalbench.encodings.vec import light_or_none
 
 
 @pytest.mark.parametrize("name", ["rgbm", "rgb9e5", "linear", "srgb"])
-def test_light_that_is_read_and_written_again_stays_as_it_is(name):
+def test_light_that_is_read_and_rewritten_is_unchanged(name):
     """A light pass that adds nothing changes nothing: rounding never loses a step, however often light is rewritten.
 
     The first time RGBM may find a smaller multiplier for the stored light; after that nothing changes.
@@ -32,7 +32,7 @@ def test_light_that_is_read_and_written_again_stays_as_it_is(name):
     assert not changed.any(), f"{name}: {light[changed][0]!r} becomes {rows(again)[changed][0]!r}"
 
 
-def test_rgb9e5_stores_what_the_specification_says():
+def test_rgb9e5_matches_the_specification():
     """Compared with the specification's arithmetic in float64: B = 15, N = 9, the largest 65408."""
     rng = np.random.default_rng(0)
     light = np.exp2(rng.uniform(-26, 17, (4096, 1)) + rng.uniform(-11, 0, (4096, 4))).astype(np.float32)
@@ -61,7 +61,7 @@ DAGORS = {
 }
 
 
-def test_hues_and_saturations_are_those_of_dagors_table():
+def test_hues_and_saturations_match_dagors_table():
     """At the largest light, 16, each code is stored as itself, except for the last hue, which equals the first."""
     code = np.array(list(DAGORS))
     texels = np.stack([(code & 63) / 63, (code >> 6) / 3, np.ones(len(code)), 0 * code], axis=1).astype(np.float32)
@@ -85,7 +85,7 @@ def test_hue_and_saturation_match_colorsys():
     assert abs(got[:, 2] - np.sqrt(exact[:, 2] / 16)).max() < 0.5001 / 255
 
 
-def test_the_srgb_curve_is_that_of_the_standard():
+def test_the_srgb_curve_matches_the_standard():
     """IEC 61966-2-1 in float64; the two branches meet, and every code comes back as itself."""
     x = np.linspace(0, 1, 100_001)
     exact = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)

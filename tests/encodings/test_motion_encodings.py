@@ -24,7 +24,7 @@ def test_unreals_velocity_is_linear_in_centred_bits_with_a_larger_range():
     assert abs(ours - theirs).max() <= 0.5 + 2.0**-7 and ours.min() > 0
 
 
-def test_the_constant_of_the_logarithm_is_a_pixel_of_2047():
+def test_the_constant_of_the_logarithm_is_2047():
     """1 + k is 2^11: the two kinds of step meet at 1 / 2047 of the range."""
     assert K == 2047 and 2**OCTAVES == K + 1
 

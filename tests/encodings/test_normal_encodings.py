@@ -20,7 +20,7 @@ def params(*given, **named) -> list:
 
 @pytest.mark.parametrize("where", ["rgb10a2", "rgba8_snorm", "rgba16f", "rgba16_snorm", "r11g11b10f"])
 @pytest.mark.parametrize("name", ["spherical_fibonacci", "signed_octahedral"])
-def test_a_number_of_few_values_uses_the_nearest_numbers_of_its_storage(name, where):
+def test_a_number_with_few_values_uses_the_nearest_numbers_of_its_storage(name, where):
     """If two numbers are equally near, the lower is used."""
     codec = Codec(ENCODINGS[name], STORAGES[where])
     few = [i for i in range(codec.encoding.components) if codec.encoding.levels_of(i)]
@@ -41,7 +41,7 @@ KINDS = [
 
 @pytest.mark.parametrize("codec", KINDS)
 @pytest.mark.usefixtures("gl")
-def test_the_two_back_ends_give_the_same_psnr(codec):
+def test_both_backends_give_the_same_psnr(codec):
     for normals in (sphere(2**17), playground()):
         by_jax, by_gl = (
             quality.measure(quality.QualityCase(codec, normals, backend))["psnr_db"] for backend in ("jax", "glsl")

@@ -23,5 +23,5 @@ DONE = [param.id for param in KINDS]
 
 @pytest.mark.parametrize("codec", [param for param in BACK_ENDS if param.id not in DONE])
 @pytest.mark.usefixtures("gl")
-def test_the_two_back_ends_give_the_same_psnr_in_every_storage(codec):
-    test_normal_encodings.test_the_two_back_ends_give_the_same_psnr(codec)
+def test_both_backends_give_the_same_psnr_in_every_storage(codec):
+    test_normal_encodings.test_both_backends_give_the_same_psnr(codec)

@@ -11,7 +11,7 @@ from normalbench.encodings.storages.storage import STORAGES
 
 @pytest.mark.usefixtures("gl")
 def test_both_languages_use_the_same_stereographic_scale():
-    """At scale 1 the disk is the hemisphere: there it is better than a scale for a wider view, in both languages."""
+    """At scale 1 the disk covers the hemisphere, and both languages are more accurate there than at scale 1.7777."""
     psnr = {}
     for scale in (1.0, 1.7777):
         codec = Codec(ENCODINGS["stereographic"].with_parameters({"scale": scale}), STORAGES["rgba8"])

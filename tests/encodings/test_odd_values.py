@@ -29,7 +29,7 @@ KEPT = {"linear/r16f", "reflectivity/r16f"}
 
 
 def light_of(name: str, light) -> np.ndarray:
-    """Return the decoded light of lights, (count, 3), each alone in a buffer."""
+    """Return the decoded light of lights that are stored one at a time, (count, 3)."""
     planes = [jnp.asarray(np.float32(light)[:, i]) for i in range(3)]
     return rows(jax.jit(LIGHT_BUFFERS[name].round_trip)(Vec4(*planes, jnp.zeros_like(planes[0]))))[:, :3]
 
@@ -56,15 +56,15 @@ def test_light_beyond_the_limit_comes_back_as_the_limit(name):
     assert np.allclose(back[1:], back[0], rtol=2e-2), back
 
 
-def test_rgb9e5_is_black_for_negative_light_and_65408_at_most():
-    """ClampRange_for_rgb9e5 of EXT_texture_shared_exponent: NaN fails the comparison with 0, and is 0."""
+def test_rgb9e5_is_black_for_negative_light_and_at_most_65408():
+    """ClampRange_for_rgb9e5 of EXT_texture_shared_exponent: NaN fails the comparison with 0, and becomes 0."""
     lights = np.float32([[-1, -1, -1], [NAN, NAN, NAN], [-INF, 1, -0.0], [INF, NAN, 2], [65409, DENORMAL, -65409]])
     expected = [[0, 0, 0], [0, 0, 0], [0, 1, 0], [65408, 0, 0], [65408, 0, 0]]
     assert np.array_equal(light_of("rgb9e5", lights), expected)
 
 
 @pytest.mark.parametrize("codec", [codec for codec in CURVES if codec.name not in KEPT], ids=lambda codec: codec.name)
-def test_a_quantity_that_is_negative_or_nan_is_0(codec):
+def test_negative_and_nan_quantities_become_0(codec):
     """The root, power or logarithm of such a quantity is undefined in GLSL. In fixed point the format makes it 0."""
     back = np.asarray(jax.jit(codec.round_trip)(jnp.asarray(NOTHING)))
     zero = np.asarray(jax.jit(codec.round_trip)(jnp.zeros(1, jnp.float32)))
@@ -72,7 +72,7 @@ def test_a_quantity_that_is_negative_or_nan_is_0(codec):
 
 
 @pytest.mark.parametrize("codec", CURVES, ids=lambda codec: codec.name)
-def test_a_quantity_beyond_the_range_is_the_range_in_fixed_point(codec):
+def test_fixed_point_clips_quantities_beyond_the_range_and_floats_keep_them(codec):
     largest = np.float32(codec.range)
     given = np.float32([largest, np.nextafter(largest, np.float32(INF)), 3e38, INF])
     back = np.asarray(jax.jit(codec.round_trip)(jnp.asarray(given)))
@@ -83,7 +83,7 @@ def test_a_quantity_beyond_the_range_is_the_range_in_fixed_point(codec):
 @pytest.mark.parametrize("storage", ["rg8", "rg16_snorm", "rg16_centred", "rg16f", "rgba32f"])
 @pytest.mark.parametrize("name", MOTION_ENCODINGS)
 def test_nan_motion_becomes_rest_and_infinite_motion_becomes_the_range(name, storage):
-    """`linear` leaves NaN to the format: code 0 of UNORM, which is the range to the left."""
+    """`linear` leaves NaN to the format: in UNORM it becomes code 0, the full range to the left."""
     codec = MotionCodec(MOTION_ENCODINGS[name], MOTION_STORAGES[storage])
     given = np.float32([0.0, NAN, -0.0, DENORMAL, INF, -INF, 1.0, -1.0])
     planes = Vec2(jnp.asarray(given), jnp.asarray(given[::-1].copy()))
@@ -106,6 +106,6 @@ def test_nan_motion_becomes_rest_and_infinite_motion_becomes_the_range(name, sto
     ],
     ids=["unorm", "half", "r11g11b10f"],
 )
-def test_a_format_has_an_answer_for_every_float(storage, value, kept):
+def test_formats_store_invalid_and_extreme_floats_as_specified(storage, value, kept):
     back = np.asarray(store_texel(jnp.float32(value), storage, 0))
     assert np.array_equal(back, np.float32(kept), equal_nan=True), back

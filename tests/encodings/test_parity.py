@@ -29,7 +29,7 @@ def test_the_languages_agree_before_storage_within_the_stated_error(gl, kind, en
 
 
 @pytest.mark.parametrize("kind, codec", codecs("codecs"))
-def test_after_storage_the_codes_are_the_same(gl, kind, codec):
+def test_codes_are_the_same_after_storage(gl, kind, codec):
     """A few codes may differ where float32 falls on either side of a tie; the module of the kind says how many."""
     for comparison in PARITY[kind].stored(gl, codec, False):
         assert comparison.agrees, comparison
@@ -58,7 +58,7 @@ def test_invalid_values_have_the_same_code_in_both_languages(gl, kind, encoding)
         ([0.0, 0.0], [True, False], False),
     ],
 )
-def test_a_comparison_fails_if_one_row_is_too_far_or_too_few_are_equal(apart, same, agrees):
+def test_a_comparison_fails_if_one_row_is_too_far_off_or_too_few_rows_are_equal(apart, same, agrees):
     """At most 2 units apart, and 60% equal; a value that is not a number is too far apart."""
     rows = np.zeros((2, 1))
     comparison = Comparison("a codec", rows, rows, rows, np.array(apart), 2.0, same=np.array(same), share=0.6)
@@ -66,7 +66,7 @@ def test_a_comparison_fails_if_one_row_is_too_far_or_too_few_are_equal(apart, sa
 
 
 def swaps(kind, encoding) -> list:
-    """Return every exchange of two arguments of a call in the GLSL of an encoding: what, the file and its text."""
+    """Return every swap of two arguments of a call in an encoding's GLSL: a description, the file and its text."""
     all_swaps = mutants(encoding.glsl, PARITY[kind].shared.get(encoding.name, ()))
     return [swap for swap in all_swaps if swap[0] not in PARITY[kind].same]
 

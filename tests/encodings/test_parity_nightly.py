@@ -13,5 +13,5 @@ def test_every_swap_of_two_arguments_is_noticed(gl, monkeypatch, kind, encoding)
 
 
 @pytest.mark.parametrize("kind, codec", codecs("more_codecs"))
-def test_after_storage_all_codes_are_the_same(gl, kind, codec):
-    test_parity_slow.test_after_storage_more_codes_are_the_same(gl, kind, codec)
+def test_all_codes_are_the_same_after_storage(gl, kind, codec):
+    test_parity_slow.test_more_codes_are_the_same_after_storage(gl, kind, codec)

@@ -11,7 +11,7 @@ from normalbench.gbuffer.gl.shader import ShaderError
 
 # The quick test has each encoding; these are further inputs and storages of one.
 @pytest.mark.parametrize("kind, codec", a_tenth(codecs("more_codecs")))
-def test_after_storage_more_codes_are_the_same(gl, kind, codec):
+def test_more_codes_are_the_same_after_storage(gl, kind, codec):
     """The quick test has fewer inputs and fewer storages."""
     for comparison in PARITY[kind].stored(gl, codec, True):
         assert comparison.agrees, comparison

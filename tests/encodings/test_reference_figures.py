@@ -61,7 +61,7 @@ def test_the_reference_figures_are_reproduced(normalbench, encoding, storage, ro
 
 
 def test_the_lambert_spheremap_loses_the_far_pole_in_float32(normalbench):
-    """As published, 8 z + 8 cancels: mean and RMS stay, but 3e-4 rad from -z a direction turns by tens of degrees."""
+    """As published, 8 z + 8 cancels: mean and RMS stay, but normals 3e-4 rad from -z turn by tens of degrees."""
     row = normalbench.quality(encoding="spheremap", storage="rg8", normals="sphere", count=COUNT)
     assert row["angle_mean_deg"] == pytest.approx(0.492355, rel=0.005)
     assert row["angle_rms_deg"] == pytest.approx(0.719445, rel=0.01)
@@ -77,7 +77,7 @@ def test_the_lambert_spheremap_loses_the_far_pole_in_float32(normalbench):
     assert 10 < largest["spheremap"] < 100 and max(largest["spheremap_classic"], largest["cryengine3"]) < 0.2, largest
 
 
-def test_the_limit_itself_has_all_effective_bits():
+def test_the_theoretical_bound_has_all_effective_bits():
     """65536 codes at the hexagonal bound, RMS 0.31773 degrees, are worth 16 bits."""
     from normalbench.bench.measures.metrics.code_limits import effective_bits
 
@@ -85,14 +85,14 @@ def test_the_limit_itself_has_all_effective_bits():
 
 
 def test_unorm8_cannot_hold_an_axis_and_snorm8_can(normalbench):
-    """Every floor and wall: octahedral UNORM8 is 0.32 degrees off, SNORM8 is exact except for the ulps of the set."""
+    """For floors and walls octahedral UNORM8 is 0.32 degrees off, and SNORM8 is at most 1e-4 degrees off."""
     largest = {storage: normalbench.quality(storage=storage, normals="axes") for storage in ("rg8", "rg8_snorm")}
     # The nearest code to the centre is (1/255, 1/255), which is the direction (1, 1, 253) / 255.
     assert largest["rg8"]["angle_max_deg"] == pytest.approx(math.degrees(math.atan(math.sqrt(2) / 253)), abs=1e-4)
     largest["rg8_snorm"].assert_that(angle_max_deg="at most 1e-4")
 
 
-def test_lattices_are_as_good_as_published(normalbench):
+def test_lattices_are_as_accurate_as_published(normalbench):
     """2^16 codes: the Fibonacci lattice's mean; the rings' largest error, which is their covering radius."""
     fibonacci, rings = (
         normalbench.quality(encoding=name, storage="rg8", normals="sphere", backend="jax", count=COUNT)
@@ -129,7 +129,7 @@ def test_no_normal_is_farther_from_its_tetrahedrons_face_than_a_corner():
     assert np.hypot(code.x, code.y).max() == pytest.approx(math.sqrt(8) / 3, abs=1e-3)
 
 
-def test_twelve_truncated_bits_match_the_figures_by_hand(normalbench):
+def test_twelve_truncated_bits_match_figures_computed_by_hand(normalbench):
     """floor(f 4095) doubles the mean error of octahedral 12:12; floor(f 4095.5) raises it by 39%."""
     mean = {
         rounding: normalbench.quality(
@@ -143,7 +143,7 @@ def test_twelve_truncated_bits_match_the_figures_by_hand(normalbench):
 
 @pytest.mark.parametrize("kind", ["unorm", "snorm"])
 @pytest.mark.parametrize("bits", range(2, 17))
-def test_octahedral_of_any_bits_is_as_accurate_as_in_float64(kind, bits):
+def test_octahedral_at_any_bit_count_is_as_accurate_as_in_float64(kind, bits):
     """The mean angle over 2^16 normals is within half a percent of that of a separate NumPy version in float64."""
     n = np.random.default_rng(0).normal(size=(2**16, 3))
     n /= np.linalg.norm(n, axis=1, keepdims=True)

@@ -35,7 +35,7 @@ PUBLISHED = [
 
 
 @pytest.mark.parametrize("codec, mean, largest", PUBLISHED, ids=lambda value: getattr(value, "name", ""))
-def test_published_maxima_are_those_of_samples(codec, mean, largest):
+def test_published_maxima_are_sampled_maxima(codec, mean, largest):
     """A few hundred thousand samples have about the published maximum; the supremum is 1.0 to 1.4% above it."""
     few, many = (quality.measure(quality.QualityCase(codec, sphere(2**bits), "jax")) for bits in (14, 22))
     assert many["angle_mean_deg"] == pytest.approx(mean, rel=0.002)

@@ -53,7 +53,7 @@ OUTSIDE = np.array([0.0, -0.0, 1, -1, 1.5, -1.5, 1e-30, -1e-30, 3e38, -3e38, np.
 
 
 def integer_inputs(storage) -> np.ndarray:
-    """Return every code and every tie between codes with neighbours, values out of range, infinities and random
+    """Return every code and every tie between codes with their neighbours, values out of range, infinities and random
     values."""
     scale = storage.scale(0)
     codes = np.arange(-scale if storage.kind == "snorm" else 0, storage.most(0) + 1)
@@ -98,8 +98,8 @@ def assert_same_bits(values, expected, got, what: str) -> None:
 
 
 def assert_same_texels(gl, values, expected, got, held, what: str) -> None:
-    """Check the texels of a device: bit for bit in software. A GPU may divide by a format's scale instead of
-    multiplying by its reciprocal: it holds the same whole numbers, and gives them back to 2^-23.
+    """Check the texels of a device: bit for bit on a software device. A GPU may divide by a format's scale instead of
+    multiplying by its reciprocal: the whole numbers must be the same, and the values within 2^-23.
 
     Args:
         held: the function from texels to the whole numbers that the format holds; None for floats.
@@ -118,7 +118,7 @@ def assert_all(same, values, expected, got, what: str) -> None:
 
 
 @pytest.mark.parametrize("name", [*INTEGERS, *FLOATS])
-def test_the_device_stores_what_the_emulation_says(gl, name):
+def test_the_device_stores_the_same_values_as_the_emulation(gl, name):
     """The format's own conversion is compared, with the rounding that the device was found to use."""
     storage = STORAGES[name]
     rounding = gl.native_rounding(storage)
@@ -177,8 +177,8 @@ def test_the_shader_rounds_as_the_emulation_does(gl, name, rounding):
 
 
 def form_inputs(form) -> np.ndarray:
-    """Return every float of up to 16 bits, or 2^16 of more, ties between neighbours, and values beyond the largest;
-    mostly from -1 to 1."""
+    """Return every float of a form of up to 16 bits, or about 2^16 floats of a larger form, ties between neighbours,
+    and values beyond the largest; mostly from -1 to 1."""
     every = every_float(form)
     some = every[:: max(1, len(every) // 2**16)]
     ties = ((some[1:].astype(np.float64) + some[:-1]) / 2).astype(np.float32)
@@ -189,7 +189,8 @@ def form_inputs(form) -> np.ndarray:
 
 
 def every_float(form) -> np.ndarray:
-    """Return the finite floats of a form from 0 on, ascending, from the meaning of their bits; of many, a sample."""
+    """Return the finite floats of a form from 0 up, in ascending order, computed from their bits; a sample if the
+    form has very many."""
     count = (2**form.exponent - 1) << form.mantissa
     bits = np.arange(0, count, max(1, count // 2**18))
     exponent, mantissa = bits >> form.mantissa, bits & 2**form.mantissa - 1
@@ -223,7 +224,7 @@ def test_floats_of_any_form_round_to_nearest_or_toward_zero(storage, rounding):
 @pytest.mark.parametrize("rounding", FLOAT_ROUNDINGS)
 @pytest.mark.parametrize("storage", FORMS_SAID, ids=lambda s: s.name)
 def test_floats_of_any_form_come_back_from_their_bits(gl, storage, rounding):
-    """The floats are rounded, their bits are put across channels and read. The result is that of the emulation."""
+    """The floats are rounded, their bits split across channels and read back: the result equals the emulation's."""
     values = np.concatenate([form_inputs(storage.form), -form_inputs(storage.form)])
     with np.errstate(over="ignore"):
         numbers = values * 2 - 1 if storage.is_biased else values
@@ -238,15 +239,15 @@ def test_floats_of_any_form_come_back_from_their_bits(gl, storage, rounding):
         assert len(counted) == len(every) and counted[0] == 0
 
 
-def test_truncating_half_a_code_wider_is_floor_of_f_times_4095_and_a_half():
-    """As engines write it: 12 bits of f in [0, 1] are floor(f 4095.5)."""
+def test_truncate_half_is_the_floor_of_f_times_4095_and_a_half():
+    """Engines write 12 bits of f in [0, 1] as floor(f 4095.5)."""
     f = np.random.default_rng(0).random(2**16, np.float32)
     stored = np.asarray(store_unorm(jnp.asarray(f), scale_of(4095), "truncate_half")) * 4095
     assert np.array_equal(np.round(stored), np.floor(f * np.float32(4095.5)))
 
 
 @pytest.mark.parametrize("rounding", ROUNDINGS)
-def test_the_two_bits_of_alpha_are_rounded_by_their_own_scale(gl, rounding):
+def test_the_two_bits_of_alpha_are_rounded_with_their_own_scale(gl, rounding):
     storage = STORAGES["rgb10a2"]
     values = np.concatenate([around(np.arange(4) / 3), around((np.arange(3) + 0.5) / 3), OUTSIDE])
     got = rounded_in_the_shader(gl, values, storage, rounding)[:, 3]
@@ -317,7 +318,7 @@ def test_snorm_has_no_code_below_minus_one():
 
 
 @pytest.mark.parametrize("name", [name for name, s in STORAGES.items() if s.bits[0] <= 16])
-def test_every_number_has_bits_of_its_own(name):
+def test_every_number_has_distinct_bits(name):
     """The bits of a channel's numbers are all different, and in the order of the numbers if the format is UNORM."""
     storage = STORAGES[name]
     for channel, bits in enumerate(storage.bits):
@@ -347,15 +348,15 @@ def test_every_number_has_bits_of_its_own(name):
         ("rg16f", np.nan, 0x7E00),
     ],
 )
-def test_the_bits_of_a_number_are_those_of_the_format(name, number, bits):
+def test_the_bits_of_a_number_match_the_format(name, number, bits):
     """OpenGL 4.6, sections 2.3.4 and 2.3.5; an 11-bit float has the exponent of a half and six bits of mantissa."""
     assert int(words(np.array(number), STORAGES[name], 0)) == bits
 
 
 @pytest.mark.parametrize("name", sorted(STORAGES))
-def test_a_format_that_stands_for_others_stores_the_same(name):
-    """One program serves all formats that `shared` gives the same stand-in: with a format's own scales its numbers
-    are the same as the format's, bit for bit, however many channels are used."""
+def test_a_stand_in_format_stores_the_same_numbers(name):
+    """One program serves all formats to which `shared` gives the same stand-in. With a format's own scales, the
+    numbers of the stand-in equal the format's numbers, bit for bit, for any number of channels."""
     storage = STORAGES[name]
     c = jnp.asarray(np.random.default_rng(1).uniform(-1.1, 1.1, 4096), jnp.float32)
     for count in range(1, storage.channels + 1):

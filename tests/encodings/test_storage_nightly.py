@@ -6,5 +6,5 @@ from test_storage_slow import DRAWN, params
 
 
 @pytest.mark.parametrize("storage, rounding", params(DRAWN))
-def test_numbers_across_channels_in_any_storage_come_back_as_the_emulation_says(gl, storage, rounding):
-    test_storage_slow.test_numbers_across_channels_come_back_as_the_emulation_says(gl, storage, rounding)
+def test_numbers_across_channels_in_any_storage_match_the_emulation(gl, storage, rounding):
+    test_storage_slow.test_numbers_across_channels_match_the_emulation(gl, storage, rounding)

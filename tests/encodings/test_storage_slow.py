@@ -44,8 +44,8 @@ DRAWN += [(storage, ROUNDINGS[0]) for storage in BY_RULE if storage.is_packed an
 
 
 @pytest.mark.parametrize("storage, rounding", params([*NEAREST, *a_tenth(DRAWN)]))
-def test_numbers_across_channels_come_back_as_the_emulation_says(gl, storage, rounding):
-    """Every code of every number and every tie, by the integer's own bits; all numbers of a texel have one value."""
+def test_numbers_across_channels_match_the_emulation(gl, storage, rounding):
+    """The inputs are every code of every number and every tie. All numbers of a texel have the same value."""
     values = integer_inputs(storage)
     with np.errstate(over="ignore"):
         values = values * 2 - 1 if storage.is_biased else values

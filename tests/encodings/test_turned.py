@@ -39,7 +39,7 @@ def test_the_pole_of_the_encoding_is_the_requested_axis(name, values):
 
 
 @pytest.mark.parametrize("name", CAN_TURN)
-def test_a_turned_encoding_is_as_good_on_the_sphere(name):
+def test_a_turned_encoding_is_equally_accurate_on_the_sphere(name):
     """Except for sampling, the error of uniform directions does not depend on the axis."""
     n = directions(2**15)
     rms = []
@@ -52,7 +52,7 @@ def test_a_turned_encoding_is_as_good_on_the_sphere(name):
     assert rms[1] == pytest.approx(rms[0], rel=0.03), f"{rms[1]:.4f} degrees, {rms[0]:.4f} where it is not turned"
 
 
-def test_a_turned_encoding_has_a_fingerprint_of_its_own():
+def test_a_turned_encoding_has_its_own_fingerprint():
     turned = variant(ENCODINGS["octahedral"], {"axis": "y"})
     assert turned.fingerprint != ENCODINGS["octahedral"].fingerprint and turned.name == "octahedral:axis=y"
 

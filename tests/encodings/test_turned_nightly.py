@@ -6,5 +6,5 @@ from test_turned_slow import EACH
 
 
 @pytest.mark.parametrize("name, values", EACH, ids=str)
-def test_both_languages_turn_each_alike(gl, name, values):
-    test_turned_slow.test_both_languages_turn_alike(gl, name, values)
+def test_both_languages_turn_every_encoding_alike(gl, name, values):
+    test_turned_slow.test_both_languages_turn_encodings_alike(gl, name, values)

@@ -17,8 +17,9 @@ EACH = [*product(["octahedral", "spheremap", "spherical", "cube", "best_fit", "t
 
 
 @pytest.mark.parametrize("name, values", a_tenth(EACH), ids=str)
-def test_both_languages_turn_alike(gl, name, values):
-    """Except at singular points, codes and decodes differ by no more than those of the unturned encoding."""
+def test_both_languages_turn_encodings_alike(gl, name, values):
+    """The share of equal codes is at most 1% below that of the unturned encoding, and the 98th percentile of the
+    decoded angles is at most twice as large, or 0.001 degrees."""
     figures = []
     for encoding in (ENCODINGS[name], variant(ENCODINGS[name], values)):
         n = directions(1024)

@@ -25,7 +25,7 @@ def test_a_numpy_array_on_the_left_scales_each_component():
         assert isinstance(scaled, Vec2) and scaled.y.tolist() == [3, 6]
 
 
-def test_vectors_of_different_size_do_not_mix():
+def test_vectors_of_different_sizes_cannot_be_added():
     with pytest.raises(TypeError):
         _ = Vec2(1.0, 2.0) + Vec3(1.0, 2.0, 3.0)
 
@@ -61,7 +61,7 @@ def test_the_polynomials_are_as_accurate_as_stated():
     assert abs(np.polyval(COS_PI[::-1], s) - np.cos(np.pi * r)).max() < 1e-8
 
 
-def test_the_angle_is_the_arc_tangent_within_two_units():
+def test_the_angle_is_within_two_units_of_the_arc_tangent():
     """Compared with float64 over the whole circle, axes, diagonals and both zeros; all scales from 1e-18 to 1e18."""
     turns = np.linspace(-1, 1, 200_001)
     y, x = (np.concatenate([f(np.pi * turns) * s for s in (1, 1e-18, 1e18)]) for f in (np.sin, np.cos))

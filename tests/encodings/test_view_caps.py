@@ -44,7 +44,7 @@ def rms_deg(encoding, held: np.ndarray) -> float:
 
 @pytest.mark.parametrize("cap", [90.0, 100.0, 150.0])
 @pytest.mark.parametrize("name", NAMES)
-def test_normals_up_to_the_cap_come_back_and_others_come_to_its_rim(name, cap):
+def test_normals_inside_the_cap_round_trip_and_others_go_to_its_rim(name, cap):
     encoding = ENCODINGS[name].with_parameters({"cap": cap})
     back, held = unrounded(encoding), cap >= ANGLES
     assert np.abs(back - N)[held].max() < 1e-5
@@ -55,7 +55,7 @@ def test_normals_up_to_the_cap_come_back_and_others_come_to_its_rim(name, cap):
         assert np.abs(rim - cap).max() < 0.01
 
 
-def test_half_of_the_octahedron_is_hemi_octahedral_in_the_per_pixel_frame():
+def test_a_90_degree_cap_is_hemi_octahedral_in_the_per_pixel_frame():
     encoding = ENCODINGS["view_octahedral"].with_parameters({"cap": 90.0})
     facing = ANGLES < 90.0
     x, y, z = view_frame(planes(VIEW))

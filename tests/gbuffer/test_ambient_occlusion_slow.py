@@ -79,7 +79,8 @@ def normals_and_sights(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_arcs_are_the_integrals_between_horizons():
-    """The integrals of cos(t - g)|sin t|, and of that times sin t and cos t: 1e-7, the error of 20 000 midpoints."""
+    """The integrals of cos(t - g)|sin t|, and of that times sin t and cos t, agree to 1e-7, the error of 20,000
+    midpoints."""
     rng = np.random.default_rng(2)
     g = rng.uniform(-1.5, 1.5, 50)
     h0, h1 = (np.clip(h, g - np.pi / 2, g + np.pi / 2) for h in (-rng.uniform(0, 3, 50), rng.uniform(0, 3, 50)))
@@ -174,7 +175,7 @@ def test_the_shader_computes_the_same_arcs(slices):
 
 
 def test_open_slices_of_the_shader_have_a_mean_of_one(slices):
-    """Over 256 slices, for every normal: 1e-6."""
+    """The mean over 256 slices is 1 to within 1e-6 for every normal."""
     off = np.abs(slices[1][:, 1] - 1)
     assert off.max() < 1e-6, f"{off.max():.2g} at normal {slices[0]['given_normal'][off.argmax()]}"
 
@@ -192,7 +193,7 @@ FORMS = ("ball on the floor", "deep pit")
 
 @pytest.mark.parametrize("name", FORMS)
 def test_gtao_matches_the_closed_form(gl, name):
-    """The tolerance is 0.02: at the horizon one of 80 steps is 6 cm long, and finds the horizon that much late."""
+    """The tolerance is 0.02: at the horizon each of 80 steps is 6 cm long, so the horizon may be found 6 cm late."""
     meshes, expected = CLOSED[name]
     visibility = middle_of_floor(gl, meshes)
     assert abs(visibility - expected) < 0.02, f"{name}: {visibility:.4f}, not {expected:.4f}"
@@ -200,7 +201,7 @@ def test_gtao_matches_the_closed_form(gl, name):
 
 @pytest.mark.parametrize("x", [1.0, 1.2])
 def test_gtao_treats_everything_behind_a_surface_as_solid(gl, x):
-    """A ball that hides the air under it darkens like a ball on a pillar by rays, to 0.01. The closed form of the
+    """A ball above the floor darkens the floor like a ray-traced ball on a pillar, to 0.01. The closed form of the
     ball alone is brighter by at least twice that."""
     y = 1.0
     meshes = (floor(), ball(0.5, x, y))
@@ -216,7 +217,7 @@ SLANTED = View((0.0, 2.0, 4.0), (0.0, 0.0, 0.0), 40.0, 0.5, 60.0, up=(0.3, 1.0, 
 
 
 def open_to(gl) -> float:
-    """Return the visibility of open surfaces; a GPU's mean of ones may be two units in the last place lower."""
+    """Return the lowest visibility of open surfaces; a GPU's mean of ones may be two units in the last place low."""
     return 1.0 if gl.is_software else 1 - 2.0**-22
 
 
@@ -246,8 +247,8 @@ def test_the_bent_normal_of_an_open_plane_is_its_normal(gl):
 
 @pytest.mark.parametrize("text", [*METHODS, "gtao:size=half"])
 def test_turning_scene_and_camera_changes_nothing(gl, text):
-    """Noise and taps are the same. Fewer than 1% of the pixels differ by more than 1e-3: a tap falls on another pixel
-    there, or over an edge."""
+    """Noise and taps are the same. Fewer than 1% of the pixels differ by more than 1e-3, because a tap falls on
+    another pixel or crosses an edge."""
     room = replace(scene_of("room"), lights=())
     turn = rotation(0.7, 0.4, 1.1)
     before, after = (drawn_effect(gl, scene, text, SIZE)[0] for scene in (room, turned(room, turn)))
@@ -291,8 +292,8 @@ void main() {
 
 
 def test_upsampling_keeps_to_the_surface(gl, tmp_path):
-    """A buffer of half size is 0 and 1 on alternate surfaces: each pixel gets the value of its own surface, except
-    for 2% at silhouettes, whose surface is in none of their four texels."""
+    """A half-size buffer is 0 and 1 on alternate surfaces: each pixel gets the value of its own surface, except for
+    at most 2% at silhouettes, whose surface is in none of their four texels."""
     (tmp_path / "steps.frag").write_text(STEPS)
     stages = list(passes("sao.frag", "half", False, SEED=0))
     stages[1] = replace(
@@ -309,7 +310,7 @@ def test_upsampling_keeps_to_the_surface(gl, tmp_path):
     assert wrong < 0.02, f"{wrong:.2%} of the pixels"
 
 
-def test_hair_uses_the_normal_from_its_depths(gl):
+def test_hair_uses_the_normal_derived_from_its_depths(gl):
     """The room's ball of hair is convex, like its ball of skin: facets and seams darken its mean by at most 0.1."""
     room = scene_of("room")
     visibility, _, direction = drawn_effect(gl, room, "hbao", (160, 120))
@@ -317,7 +318,7 @@ def test_hair_uses_the_normal_from_its_depths(gl):
     assert hair > skin - 0.1, f"hair {hair:.3f}, skin {skin:.3f}"
 
 
-def test_one_pipeline_takes_one_method():
+def test_a_pipeline_accepts_only_one_occlusion_method():
     gtao, other = effect("gtao"), effect("hbao")
     with pytest.raises(PipelineError) as refused:
         PIPELINES["deferred"].with_effect(gtao.passes()).with_effect(other.passes())
@@ -346,7 +347,7 @@ def test_settings_out_of_range_are_refused(name, given, said):
 
 @pytest.mark.parametrize("size", [(1, 1), (2, 1), (5, 3)])
 @pytest.mark.parametrize("text", [f"{name}:size=half" for name in METHODS])
-def test_half_of_the_smallest_picture_is_one_pixel(gl, text, size):
+def test_half_of_the_smallest_image_is_one_pixel(gl, text, size):
     visibility, *_ = drawn_effect(gl, scene_of_meshes(floor(), view=FROM_ABOVE), text, size)
     assert (visibility >= open_to(gl)).all(), visibility.min()
 
@@ -374,7 +375,7 @@ def test_the_spirals_turns_share_no_factor_with_its_taps():
 
 
 @pytest.mark.parametrize("text", ["gtao", "hbao", "gtao:slices=16:steps=16"])
-def test_the_change_by_a_less_accurate_normal_shrinks_with_its_error(gl, text):
+def test_the_change_in_occlusion_shrinks_with_the_error_of_the_normal(gl, text):
     """Octahedral codes of 10 bits against 6, in the room: the mean change per degree of error stays within a factor
     of 2. A threshold at open surfaces would make it grow without limit."""
 

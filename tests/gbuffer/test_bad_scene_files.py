@@ -1,4 +1,4 @@
-"""Bad mesh files: each is refused in one line, and nothing outside its folder is read."""
+"""Bad mesh files: each is a one-line error, and nothing outside its folder is read."""
 
 import json
 import os
@@ -178,7 +178,7 @@ def test_every_instance_of_a_mesh_counts_toward_the_limit(tmp_path, monkeypatch)
         read_mesh_file(path)
 
 
-def test_two_files_of_the_same_name_are_refused(run, tmp_path):
+def test_two_files_with_the_same_name_are_refused(run, tmp_path):
     for folder in ("a", "b"):
         (tmp_path / folder).mkdir()
         chained().write(tmp_path / folder / "x.glb")

@@ -1,4 +1,4 @@
-"""Bad mesh files: each is refused in one line, and nothing outside its folder is read."""
+"""Bad mesh files: each is a one-line error, and nothing outside its folder is read."""
 
 from damaged import refusal
 from written import ply

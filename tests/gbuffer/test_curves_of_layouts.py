@@ -1,4 +1,4 @@
-"""Material attributes on a curve or in a light encoding: the image follows, and layouts report bad requests."""
+"""Material attributes on a curve or in a light encoding: their effect on the image, and errors for bad requests."""
 
 from dataclasses import replace
 

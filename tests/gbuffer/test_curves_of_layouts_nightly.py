@@ -1,4 +1,4 @@
-"""Material attributes on a curve or in a light encoding: the image follows, and layouts report bad requests."""
+"""Material attributes on a curve or in a light encoding: their effect on the image, and errors for bad requests."""
 
 import json
 import re
@@ -12,7 +12,7 @@ exact = test_curves_of_layouts.exact
 
 @pytest.mark.parametrize("first", ["roughness", "f0", "base_color"])
 def test_the_manual_gives_the_psnr_of_each_curve(gl, run, tmp_path, first):  # noqa: ARG001 # a device is needed
-    """Each row of the manual's table that stores this quantity, by `render` of a layout file; to 0.1 dB."""
+    """Each row of the manual's table for this attribute matches `render` with a layout file to 0.1 dB."""
     page = (Path(__file__).parents[2] / "docs" / "render.md").read_text()
     rows = re.findall(rf"^\| `([\w:.]*\(?{first}\)?)`[^|]*\| ([\d.]+) \|$", page, re.M)
     others = {"base_color", "metallic", "roughness", "f0", "ao"} - {first}

@@ -1,4 +1,4 @@
-"""Material attributes on a curve or in a light encoding: the image follows, and layouts report bad requests."""
+"""Material attributes on a curve or in a light encoding: their effect on the image, and errors for bad requests."""
 
 from dataclasses import replace
 
@@ -23,8 +23,8 @@ DARK = replace(
     ],
     ids=["sRGB", "square root", "square", "range"],
 )
-def test_in_few_bits_the_curve_decides(gl, scene, better, worse):
-    """Colours need a gamma, roughness even steps, and an f0 of 0.04 its own range: at least 3 dB better."""
+def test_the_right_curve_gains_at_least_3_db_in_few_bits(gl, scene, better, worse):
+    """Colours need a gamma, roughness needs equal steps, and an f0 of 0.04 needs its own range."""
     floats = {"base_color", "metallic", "roughness", "f0", "ao"} - {worse.rstrip("):45").split("(")[-1]}
     targets = "; ".join(f"rgba32f: {quantity}" for quantity in sorted(floats))
     right = draw(gl, "hybrid", scene).image

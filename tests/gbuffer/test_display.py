@@ -1,4 +1,4 @@
-"""The path to a display: exposure, tone mapping, clipping, the sRGB curve."""
+"""The path to a display: exposure, tone mapping, clipping and the sRGB curve."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def test_light_is_exposed_and_tone_mapped(display, expected):
     assert display.light(LIGHT) == pytest.approx(expected, abs=2e-7)
 
 
-def test_the_curve_is_that_of_srgb():
+def test_the_display_curve_is_srgb():
     """IEC 61966-2-1: 0.18 is 117.6 of 255, half is 187.5; values below 0 and above 1 are clipped."""
     assert displayed(np.array([-1.0, 0.0, 0.18, 0.5, 1.0, 9.0])) * 255 == pytest.approx(
         [0, 0, 117.6, 187.5, 255, 255], abs=0.05
@@ -35,7 +35,7 @@ def test_the_curve_is_that_of_srgb():
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_measured_exposure_is_the_largest_that_clips_at_most_a_hundredth(seed):
+def test_a_measured_exposure_is_the_largest_that_clips_at_most_one_percent(seed):
     rng = np.random.default_rng(seed)
     count = int(rng.integers(1, 3000))
     linear = np.exp(rng.normal(rng.uniform(-8, 8), rng.uniform(0, 3), (count, 3)))

@@ -106,7 +106,7 @@ WRITES, READS = Pass("first", (), (HALF,), nothing), Pass("second", (HALF,), (FI
         ),
     ],
 )
-def test_a_pipeline_that_does_not_fit_is_refused_in_one_line(stages, said):
+def test_invalid_pipeline_is_a_one_line_error(stages, said):
     with pytest.raises(PipelineError) as refused:
         piped(*stages)
     assert str(refused.value).startswith(f"pipeline mine: {said}") and "\n" not in str(refused.value), refused.value
@@ -141,7 +141,7 @@ def test_a_pass_cannot_use_resources_that_it_does_not_declare(gl, tmp_path):
         pass
 
 
-def test_the_needs_of_a_pipeline_follow_from_its_passes():
+def test_the_requirements_of_a_pipeline_follow_from_its_passes():
     facts = {n: (p.light_targets, p.scaled, p.starts_light, "shading_model" in p.needs) for n, p in PIPELINES.items()}
     assert facts == {
         "forward": ((), False, False, False),
@@ -153,9 +153,9 @@ def test_the_needs_of_a_pipeline_follow_from_its_passes():
     }
 
 
-def test_a_resource_counts_in_the_bytes_of_a_pixel():
-    """Half the size counts as a quarter, and every copy that the next frame reads counts. Resources with a size in
-    pixels do not count, nor does the image."""
+def test_a_resource_counts_toward_the_bytes_per_pixel():
+    """A half-size resource counts as a quarter, and every copy that the next frame reads counts. Resources with a
+    size in pixels do not count, nor does the image."""
     plain = bytes_per_pixel(piped(shadow_map(), forward()), PLAN)
     assert plain == 5, "depth and stencil"
     sizes = {
@@ -212,7 +212,7 @@ def test_a_volume_is_drawn_in_slices_and_read_as_a_whole(gl, tmp_path):
 
 
 def one_more(tmp_path, name: str) -> Path:
-    """Return the path of a shader that adds 1 to the previous copy."""
+    """Write a shader that adds 1 to the previous copy and return its path."""
     path = tmp_path / "more.frag"
     path.write_text(
         f"{HEAD}uniform sampler2D {name}_before;\nout vec4 o;\n"
@@ -221,8 +221,8 @@ def one_more(tmp_path, name: str) -> Path:
     return path
 
 
-def test_copies_are_read_and_written_in_turn(gl, tmp_path):
-    """Five turns that add 1 each make 5, again in every frame."""
+def test_copies_are_read_and_written_alternately(gl, tmp_path):
+    """Five draws that each add 1 give 5 in every frame."""
     pong = Resource("pong", "rgba32f", scale=0.25, copies=2)
 
     def build(canvas):

@@ -31,8 +31,8 @@ def stepped_aside(scene: Scene, by: float) -> Scene:
 
 @pytest.mark.parametrize("pipeline", ["hybrid", "inferred", "forward_multipass"])
 def test_a_scene_may_move_between_frames(gl, pipeline):
-    """Moments that are drawn in sequence, with a moving camera, equal those that are drawn alone, bit for bit.
-    Another scene is refused."""
+    """Frames drawn in sequence with a moving camera equal the same frames drawn alone, bit for bit. Another scene is
+    refused."""
     moments = [stepped_aside(SCENES["room"].make(Setting(lights=4, time=time)), time) for time in (0.0, 0.3, 0.6)]
     plan, alone = replace(PLAN, shadows=True), []
     for moment in moments:
@@ -130,7 +130,7 @@ np.savez(sys.argv[1], **found)
 
 
 def copied_tree(folder: Path) -> Path:
-    """Copy the renderer's folders into a package of their own and return its path."""
+    """Copy the renderer's folders into a separate package and return its path."""
     package = folder / "normalbench"
     for room in ("encodings", "gbuffer"):
         shutil.copytree(ROOT / room, package / room, ignore=shutil.ignore_patterns("__pycache__"))
@@ -139,8 +139,8 @@ def copied_tree(folder: Path) -> Path:
 
 
 @pytest.mark.usefixtures("gl")
-def test_an_effect_is_a_pair_of_files_and_one_line(tmp_path):
-    """In a copy of the tree, the effect multiplies the image by a factor of the depth and its setting."""
+def test_adding_an_effect_takes_two_files_and_one_line(tmp_path):
+    """In a copy of the tree, the effect scales the image by a factor that depends on the depth and its setting."""
     effects = copied_tree(tmp_path) / "gbuffer" / "effects"
     (effects / "dusk.py").write_text(EFFECT)
     (effects / "dusk.frag").write_text(SHADER)

@@ -1,4 +1,4 @@
-"""The layouts of engines: their encodings have the errors measured for them elsewhere, and all of them render."""
+"""Engine layouts: their encodings have the errors measured for them elsewhere, and all layouts render."""
 
 from dataclasses import replace
 from itertools import accumulate
@@ -86,7 +86,7 @@ def plan(layout: Layout, **changes) -> Plan:
     return replace(Plan((96, 72), 1, layout, LIGHT_BUFFERS["rgba16f"], 2, True, 1.0), **changes)
 
 
-def test_there_are_forty_presets_with_their_engine_and_source():
+def test_at_least_forty_presets_name_their_engine_and_source():
     assert len(LAYOUTS) >= 40 and len(ENGINES) >= 40
     assert all(LAYOUTS[name].source for name in ENGINES)
 
@@ -101,7 +101,7 @@ def test_the_encoding_of_a_preset_has_the_axis_error_measured_elsewhere(name):
     assert abs(got - wanted) <= max(0.01 * wanted, 0.6e-3), f"{got:.5f}, {wanted} outside"
 
 
-def test_a_whole_layout_takes_the_bytes_of_its_engine():
+def test_a_complete_layout_has_the_bytes_of_its_engine():
     """The layout also stores reflectance as its engine does."""
     figures = {
         name: (layout.bytes_per_pixel, layout.bytes_with_light, layout.reflects_by)
@@ -111,14 +111,14 @@ def test_a_whole_layout_takes_the_bytes_of_its_engine():
     assert figures == WHOLE
 
 
-def test_an_unsuitable_pipeline_is_refused_with_one_that_suits_the_layout(gl):
+def test_refusal_of_an_unsuitable_pipeline_names_a_suitable_pipeline(gl):
     granite = plan(LAYOUTS["granite"])
     message = r"^hybrid needs shading_model, which layout granite does not store; --pipeline deferred does not need it$"
     with pytest.raises(LayoutError, match=message):
         check(gl, PIPELINES["hybrid"], granite, is_metal_rough=True)
 
 
-def test_a_layout_of_a_normal_alone_says_so():
+def test_the_title_of_a_normal_only_layout_says_so():
     others = [LAYOUTS[name] for name in ENGINES if not LAYOUTS[name].is_whole]
     assert len(others) > 20 and all(layout.title.startswith(f"the normal of {layout.engine}: ") for layout in others)
 

@@ -1,4 +1,4 @@
-"""The layouts of engines: their encodings have the errors measured for them elsewhere, and all of them render."""
+"""Engine layouts: their encodings have the errors measured for them elsewhere, and all layouts render."""
 
 from functools import cache
 from itertools import product

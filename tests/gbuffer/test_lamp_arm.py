@@ -44,7 +44,7 @@ def test_the_shares_with_negative_z_and_facing_away_match_the_original():
 
 
 def test_the_normals_of_the_arms_are_distributed_like_the_original():
-    """A bin differs by at most about half of its share, and by at most 5 of 100 pixels."""
+    """A bin differs by at most about half of its share, and by at most 5 percentage points."""
     normals, to_eye = seen()
     for values, expected in ((normals[:, 2], BY_Z), (np.sum(normals * to_eye, axis=1), BY_FACING)):
         shares, known = percent(values, len(expected)), np.array(expected)

@@ -10,7 +10,7 @@ from normalbench.gbuffer.scenes.catalogue import SCENES
 from normalbench.gbuffer.scenes.setting import Setting
 
 
-def test_an_open_frame_is_lit_the_same_after_others_were_drawn(gl, monkeypatch):
+def test_an_open_frame_is_lit_the_same_after_other_frames_are_drawn(gl, monkeypatch):
     """The device keeps nothing that is not in use."""
     for kept in (gl._programs, gl._textures):
         monkeypatch.setattr(kept, "_most", 0)

@@ -1,4 +1,4 @@
-"""Layouts: the places of fields, conflicts, and presets that give back every value to within its bits."""
+"""Layouts: field positions, conflicts, and presets that return every value to within the precision of its bits."""
 
 from dataclasses import replace
 from functools import cache
@@ -50,7 +50,7 @@ def layout(*targets: Target, encoding: str = "octahedral", **more) -> Layout:
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
-def test_a_preset_says_what_it_is_and_where_it_comes_from(name):
+def test_a_preset_has_a_title_and_a_source(name):
     preset = LAYOUTS[name]
     assert preset.name == name and preset.title and preset.source
     assert 4 <= preset.bytes_per_pixel <= 64 and preset.normal_bits >= 16
@@ -63,7 +63,7 @@ def test_words_fill_a_target_in_order_from_the_most_significant_bit():
     assert words["base_color.g"] == (0, 1, 0), "a word without bits counts channels"
 
 
-def test_a_sign_in_the_depth_is_a_bit_of_the_normal():
+def test_a_sign_in_the_depth_counts_as_one_bit_of_the_normal():
     assert LAYOUTS["xy_depth_sign"].normal_bits == 2 * 16 + 1
 
 
@@ -173,7 +173,7 @@ def test_a_layout_is_read_from_a_file(tmp_path):
     assert read.normal_storage == "rgba8 12:12"
 
 
-def test_a_codec_takes_the_place_of_a_layouts_normal():
+def test_a_codec_replaces_the_normal_of_a_layout():
     """The normal moves to its own target; the other fields of its old target stay in their channels."""
     changed = LAYOUTS["normal_depth"].with_codec(Codec(ENCODINGS["octahedral"], STORAGES["rg16_snorm"]))
     assert [t.holds for t in changed.targets] == ["- - depth:16", "normal.x normal.y"]
@@ -195,7 +195,7 @@ def test_more_targets_than_the_device_has_are_refused(gl, monkeypatch):
     check(gl, PIPELINES["prepass"], plan(LAYOUTS["fp32"]))
 
 
-def test_a_pipeline_says_what_a_layout_lacks(gl):
+def test_components_missing_from_a_layout_are_reported(gl):
     with pytest.raises(LayoutError, match=r"deferred needs base_color.b, .*, which layout normal_depth does not store"):
         check(gl, PIPELINES["deferred"], plan(LAYOUTS["normal_depth"], light_targets=1))
     with pytest.raises(LayoutError, match="one light target needs an alpha channel"):
@@ -222,9 +222,9 @@ def steps(name: str, component: str) -> float | None:
 
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.usefixtures("gl")
-def test_depth_comes_back_to_half_a_code(name):
-    """Linear depth in n bits over the distance of the far plane, or within half a unit of a float; native depth to
-    the precision of float32 there."""
+def test_depth_round_trips_to_within_half_a_code(name):
+    """The bound is half a code of linear depth in n bits up to the far plane, or half a unit of a float; native depth
+    is accurate to the precision of float32 there."""
     exact, got = (kept(n)[0][..., 2][covered()].astype(np.float64) for n in ("fp32", name))
     stored = "depth" in LAYOUTS[name].components
     step = (steps(name, "depth") if stored else None) or 0.0
@@ -240,8 +240,8 @@ def test_depth_comes_back_to_half_a_code(name):
 
 @pytest.mark.parametrize("holds", ["depth:16 power", "depth:24", "depth"])
 @pytest.mark.parametrize("name", DEPTH_ENCODINGS)
-def test_every_depth_code_comes_back_within_its_bound(gl, name, holds):
-    """The layout names its depth encoding: packed in 16 and 24 bits, and in a float of its own."""
+def test_every_depth_encoding_round_trips_within_its_bound(gl, name, holds):
+    """The layout names its depth encoding: packed in 16 and 24 bits, and in a separate float."""
     normal = "xy_sign" if DEPTH_ENCODINGS[name].signed else "octahedral"
     home = Target("r32f" if holds == "depth" else "rgba8", holds)
     mine = layout(Target("rgba16f", "normal.x normal.y"), home, encoding=normal, depth=DEPTH_ENCODINGS[name])
@@ -256,15 +256,15 @@ def test_every_depth_code_comes_back_within_its_bound(gl, name, holds):
     assert abs(got - exact)[worst] <= bounds[worst], f"{exact[worst]} came back as {got[worst]}, bound {bounds[worst]}"
 
 
-def test_a_layout_keeps_the_depth_that_suits_its_normal():
+def test_the_depth_encoding_of_a_layout_suits_its_normal():
     assert LAYOUTS["normal_depth"].depth_encoding.name == "linear"
     assert LAYOUTS["xy_depth_sign"].depth_encoding.name == "linear_sign"
 
 
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.usefixtures("gl")
-def test_material_comes_back_to_half_a_code(name):
-    """Colours, powers by their logarithm, roughness; material kinds exactly."""
+def test_materials_round_trip_to_within_half_a_code(name):
+    """Colours, logarithms of powers and roughness are within half a code; material kinds are exact."""
     exact, got = ([image[covered()].astype(np.float64) for image in kept(n)] for n in ("fp32", name))
     for image, channel, component in [(2, c, f"albedo.{'rgb'[c]}") for c in range(3)] + [(3, 0, "specular.r")]:
         if component in LAYOUTS[name].components:
@@ -280,7 +280,7 @@ def test_material_comes_back_to_half_a_code(name):
 
 
 def check_kept(name: str, component: str, exact: np.ndarray, got: np.ndarray) -> None:
-    """Check that numbers in [0, 1] come back to half a code; a sign stored with them takes one bit, as in SNORM."""
+    """Check that numbers in [0, 1] are within half a code; a sign stored with them takes one bit, as in SNORM."""
     preset = LAYOUTS[name]
     word = next(w for w in preset.words if w.component == component)
     storage = preset.targets[word.target].storage
@@ -317,7 +317,7 @@ def test_only_the_normal_is_packed_as_the_layout_says(gl):
 
 
 def expected_directions(name: str, n: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """Return directions through a layout's codec as the JAX half computes it, its packing in NumPy; (count, 3)."""
+    """Return directions after a layout's codec, encoded and decoded in JAX and packed in NumPy, (count, 3)."""
     preset = LAYOUTS[name]
     axes = np.linalg.inv(ROOM.view.matrix())[:3, :3] if preset.space == "world" else np.eye(3)
     n, view = (from_array((a @ axes.T).astype(np.float32)) for a in (n, position))
@@ -346,7 +346,7 @@ def expected_directions(name: str, n: np.ndarray, position: np.ndarray) -> np.nd
 
 @pytest.mark.parametrize("name", LAYOUTS)
 @pytest.mark.usefixtures("gl")
-def test_directions_come_back_as_the_codec_says(name):
+def test_directions_in_the_gbuffer_match_the_codec(name):
     """The G-buffer's normal is that of the JAX codec for the exact normal; a code near a tie may be off by one."""
     here = covered() & (kept("fp32")[1][..., 3] != HAIR)
     position, exact, got = kept("fp32")[0][here][:, :3], kept("fp32")[1][here][:, :3], kept(name)[1][here][:, :3]
@@ -393,7 +393,7 @@ def test_motion_is_from_the_previous_camera_to_the_current_one(gl):
         ("gltf_specular", "f0", ("linear", 0.04)),
     ],
 )
-def test_names_of_engines_are_understood_with_their_curves(typed, components, curve):
+def test_attribute_names_from_engines_are_understood_with_their_curves(typed, components, curve):
     words = list(placed("mine", 0, Target("rgba8", typed)))
     assert [word.component for word in words] == components.split()
     kept = words[0].kept
@@ -409,7 +409,7 @@ def test_names_of_engines_are_understood_with_their_curves(typed, components, cu
         ("squared(smoothness)", r"has its own curve, inverted\(roughness\); inside another curve write roughness"),
     ],
 )
-def test_a_word_that_means_several_things_says_what_to_write(typed, why):
+def test_error_for_an_ambiguous_word_says_what_to_write(typed, why):
     with pytest.raises(LayoutError, match=why):
         list(placed("mine", 0, Target("rgba8", typed)))
 

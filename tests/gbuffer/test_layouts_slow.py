@@ -1,4 +1,4 @@
-"""Layouts: the places of fields, conflicts, and presets that give back every value to within its bits."""
+"""Layouts: field positions, conflicts, and presets that return every value to within the precision of its bits."""
 
 from dataclasses import replace
 
@@ -37,9 +37,9 @@ def test_a_layout_with_noise_uses_the_noise_of_its_codec(gl):
 
 
 @pytest.mark.parametrize("name", ["sqrt", "cube_root"])
-def test_packed_motion_is_that_of_the_codec(gl, name):
-    """A motion encoding in 14-bit words stores the codes that `vectors` measures in SNORM 14:14. A camera at rest
-    moves nothing by more than a thousandth of a pixel of 1920."""
+def test_packed_motion_equals_the_motion_of_the_codec(gl, name):
+    """A motion encoding in 14-bit words stores the codes that `vectors` measures in SNORM 14:14. With a camera at
+    rest, motion is at most a thousandth of a pixel at a width of 1920 pixels."""
     x, y, z = ROOM.view.eye
     moved = replace(ROOM, previous=replace(ROOM.view, eye=(x + 0.3, y - 0.1, z + 0.2)))
     mine = layout(

@@ -29,9 +29,9 @@ def shaded(gl, scene: Scene, size) -> tuple[np.ndarray, relighting.Surfaces]:
         return np.array([query.samples for query in lights.run.queries]), surfaces(scene, r.gbuffer())
 
 
-def test_bounds_of_spots_hold_their_cones(gl):
-    """In the room: at least as many pixels as are within a spot's radius and outer angle, and together at most half
-    as many again."""
+def test_bounds_of_spot_lights_contain_their_cones(gl):
+    """In the room the bounds shade at least as many pixels as are within a spot's radius and outer angle, and in
+    total at most 1.5 times as many."""
     scene = scene_of("room")
     counted, seen = shaded(gl, scene, SIZE)
     spots = [index for index, light in enumerate(lamps(scene)) if light.kind == "spot"]
@@ -54,7 +54,7 @@ def in_world(light: Light, view: View) -> Light:
 
 
 @pytest.mark.parametrize("index", [0, 5, 11])
-def test_the_eye_can_be_inside_a_light(gl, index):
+def test_the_eye_can_be_inside_the_bounds_of_a_light(gl, index):
     """Among the objects, deferred shading agrees with forward shading to 70 dB."""
     scene = scene_of("objects")
     eye = np.array(lamps(scene)[index].position)

@@ -15,8 +15,8 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 
 def test_bounds_shade_little_more_than_lights_reach(gl):
-    """64 point lights over the objects at 640 x 480: at least as many pixels as are within each radius, and together
-    at most half as many again."""
+    """With 64 point lights over the objects at 640 x 480, the bounds shade at least as many pixels as are within each
+    radius, and in total at most 1.5 times as many."""
     scene = SCENES["objects"].make(Setting(lights=64))
     counted, seen = shaded(gl, scene, (640, 480))
     reached = np.array(
@@ -52,7 +52,8 @@ IN_VIEW = {
 @pytest.mark.parametrize("far", [40.0, 11.0])
 @pytest.mark.parametrize("placed_at", IN_VIEW)
 def test_bounds_around_the_eye_and_across_the_planes_miss_nothing(gl, placed_at, far):
-    """Deferred against forward shading in the room with one light, the far plane behind the room or in it: 70 dB."""
+    """In the room with one light, deferred and forward shading agree to 70 dB. The far plane is behind the room or in
+    the room."""
     scene = scene_of("room")
     view = replace(scene.view, far=far)
     scene = replace(scene, view=view, lights=(in_world(IN_VIEW[placed_at], view),))

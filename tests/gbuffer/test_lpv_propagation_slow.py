@@ -98,7 +98,7 @@ def stepped(gl):
     return {steps: tuple(f[0] for f in run(gl, [lit()], steps)) for steps in range(9)}
 
 
-def test_constants_are_the_integrals_they_stand_for():
+def test_constants_equal_the_integrals_that_define_them():
     """By quadrature over the sphere, to 1e-9: the basis is orthonormal, the lobe is its projection of max(n.w, 0),
     and the faces have the solid angles that the centre of the next cell sees."""
     nodes, weights = np.polynomial.legendre.leggauss(400)
@@ -148,7 +148,8 @@ def test_the_twin_has_the_same_constants():
     ids=["1/pi", "1/(2 pi)", "1/(4 pi)", "1", "1/pi clamped"],
 )
 def test_only_one_normaliser_conserves_flux(normaliser, clamps, expected):
-    """Of the published normalisers: the flux of a VPL that faces z, after each of five steps, to a relative 1e-8."""
+    """The flux of a VPL that faces z is compared for the published normalisers, after each of five steps, to a
+    relative 1e-8."""
     field, fluxes = lit(coefficients=twin.lobe((0, 0, 1)) / np.pi), []
     for _ in expected:
         field = twin.step(field, normaliser=normaliser, clamps=clamps)
@@ -157,14 +158,15 @@ def test_only_one_normaliser_conserves_flux(normaliser, clamps, expected):
 
 
 def test_flux_of_the_travelling_light_is_constant(stepped):
-    """On the device, in each channel, to 1e-5 at every step. The sum has k + 1 times the flux after k steps."""
+    """On the device, the flux of each channel is 1 to 1e-5 at every step. The sum has k + 1 times the flux after k
+    steps."""
     for steps, (wave, light) in stepped.items():
         travelling, total = twin.flux(wave) / [1, 0.5, 0.25], twin.flux(light) / [1, 0.5, 0.25]
         assert np.abs(travelling - 1).max() < 1e-5, f"step {steps}: {travelling}"
         assert np.abs(total - (steps + 1)).max() < 1e-5 * (steps + 1), f"sum of {steps} steps: {total}"
 
 
-def test_light_reaches_one_cell_further_with_each_step(stepped):
+def test_light_reaches_one_more_cell_with_each_step(stepped):
     """1, 25, 129 cells for 0, 2, 4 steps: (2k + 1)(2k^2 + 2k + 3) / 3, the cells within a Manhattan distance of k."""
     distance = np.abs(np.indices((CELLS,) * 3) - CELLS // 2).sum(axis=0)
     for steps, (_, light) in stepped.items():
@@ -194,7 +196,7 @@ def turned(field: np.ndarray, turn: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("who", ["twin", "device"])
-def test_light_of_an_isotropic_source_has_the_48_symmetries(stepped, who):
+def test_light_from_an_isotropic_source_has_the_48_symmetries(stepped, who):
     """The field equals itself after any axis swap or sign flip, to 1e-6 of its brightest number."""
     field = twin.propagated(lit(), 8) if who == "twin" else stepped[8][1]
     worst = max(np.abs(turned(field, turn) - field).max() for turn in cube_symmetries()) / np.abs(field).max()
@@ -202,8 +204,9 @@ def test_light_of_an_isotropic_source_has_the_48_symmetries(stepped, who):
 
 
 @pytest.mark.parametrize("who", ["twin", "device"])
-def test_a_source_that_is_turned_gives_the_turned_field(gl, who):
-    """A lobe along an axis and a slanted lobe, turned by 90 degrees about two axes: to 1e-6 of the brightest."""
+def test_a_turned_source_gives_the_turned_field(gl, who):
+    """A lobe along an axis and a slanted lobe are turned by 90 degrees about two axes; the fields agree to 1e-6 of
+    the brightest number."""
     go = partial(run, gl, steps=6) if who == "device" else None
     slanted = np.array([0.48, 0.6, 0.64])
     turns = [np.array(t, float) for t in ([[1, 0, 0], [0, 0, -1], [0, 1, 0]], [[0, -1, 0], [1, 0, 0], [0, 0, 1]])]
@@ -240,10 +243,10 @@ def test_a_full_surfel_leaks_a_quarter_along_its_normal():
 
 
 @pytest.mark.parametrize("amplifier", [0.0, 1.0, 4 / 3])
-def test_a_wall_lets_through_as_much_as_its_potential_says(gl, amplifier):
-    """A VPL faces a wall two cells away. The first step is free, the second meets the wall: the device has the twin's
-    field. Behind the wall is 1/4 of the light that went ahead and 30.3% of the light to side faces; with an amplifier
-    of 4/3 none and 7.0%; all of it if nothing blocks. To 1e-5 of the flux."""
+def test_the_light_through_a_wall_follows_from_its_potential(gl, amplifier):
+    """A VPL faces a wall two cells away. The first step is free, the second meets the wall, and the device has the
+    twin's field. The wall passes 1/4 of the light ahead and 30.3% of the light to side faces, with an amplifier of
+    4/3 none and 7.0%, and with an amplifier of 0 all light. The tolerance is 1e-5."""
     before = lit((*MIDDLE[:2], MIDDLE[2] - 1), twin.lobe((0, 0, 1)) / np.pi)
     once, layer = twin.step(before), np.s_[:, :, MIDDLE[2]]
     wave = run(gl, [before], 2, [wall(CELLS)], amplifier)[0][0]
@@ -259,7 +262,7 @@ def test_a_wall_lets_through_as_much_as_its_potential_says(gl, amplifier):
     assert abs(passed - expected) < 1e-5, f"{passed:.6f} passed, not {expected:.6f} of {ahead + aside:.6f}"
 
 
-def test_surfels_of_several_views_block_no_more_than_a_full_one(gl):
+def test_surfels_from_several_views_block_no_more_than_a_full_surfel(gl):
     """Three times the potential of a wall blocks like that wall, except for rounding: 1e-6."""
     field = lit(coefficients=twin.lobe((0, 0, 1)) / np.pi)
     single, three = (run(gl, [field], 4, [wall(CELLS, share)], 1.0)[1] for share in (1.0, 3.0))
@@ -267,7 +270,7 @@ def test_surfels_of_several_views_block_no_more_than_a_full_one(gl):
     assert worst < 1e-6, f"{worst:.3g}"
 
 
-def test_cascades_do_not_know_of_each_other(gl):
+def test_cascades_are_independent_of_each_other(gl):
     """Each of three cascades in one run has the same light as alone, bit for bit."""
     fields = [lit((2, 3, 16)), lit((8, 0, 0)), lit()]
     together = run(gl, fields, 3)[1]
@@ -289,9 +292,9 @@ def above_a_patch(cell: int, steps: int, heights: list[float], begins: int = 8) 
 
 def test_half_the_cell_size_needs_four_times_the_steps():
     """Light spreads as by diffusion: its reach in cells grows with the square root of the steps. Two, four and six
-    metres above a lit floor, cells of one metre have after 32 steps the light of cells of two metres after 8, to a
-    quarter of it. After the same 8 steps, they have less than 0.6, 0.2 and 0.05 of it. That is the seam between
-    cascades."""
+    metres above a lit floor, one-metre cells after 32 steps have the light of two-metre cells after 8 steps, to
+    within a quarter of it. After the same 8 steps they have less than 0.6, 0.2 and 0.05 of it, which causes the seam
+    between cascades."""
     heights = [2.0, 4.0, 6.0]
     coarse = above_a_patch(2, 8, heights)
     ratios = {steps: above_a_patch(1, steps, heights) / coarse for steps in (8, 16, 32)}
@@ -299,7 +302,7 @@ def test_half_the_cell_size_needs_four_times_the_steps():
     assert np.all(ratios[8] < [0.6, 0.2, 0.05]) and np.all(ratios[16] < ratios[32]), ratios
 
 
-def test_sources_outside_a_volume_are_missed_only_at_its_end():
+def test_a_volume_misses_sources_outside_it_only_near_its_end():
     """A volume that ends in the middle of a lit floor has half the light two metres above its end. Sources more than
     four cells outside add less than a hundredth."""
     whole, ended, four_more = (above_a_patch(1, 8, [2.0], begins)[0] for begins in (8, 16, 12))
@@ -308,7 +311,7 @@ def test_sources_outside_a_volume_are_missed_only_at_its_end():
 
 
 def random_field(cells: int) -> np.ndarray:
-    """Return a field of VPLs with random places, directions and fluxes over four decades."""
+    """Return a field of VPLs with random positions, directions and fluxes over four decades."""
     rng = np.random.default_rng(5)
     ways = rng.normal(size=(200, 3))
     fluxes = 10 ** rng.uniform(-3, 1, (200, 3))
@@ -329,7 +332,7 @@ def test_the_loss_of_a_format_follows_from_its_mantissa(gl, form, least):
     assert decibels >= least, f"{form}: {decibels:.1f} dB"
 
 
-def test_a_packed_texel_is_32_bits():
+def test_a_packed_texel_has_32_bits():
     """Four mantissas and an exponent use all bits; one more level would not fit."""
     assert EXPONENTS * LEVELS**4 <= 2**32 < EXPONENTS * (LEVELS + 1) ** 4
 

@@ -1,4 +1,4 @@
-"""Light propagation volumes over scenes: injected light, the places of the volumes, and the light on surfaces."""
+"""Light propagation volumes over scenes: injected light, the positions of the volumes, and the light on surfaces."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def floor(light: Light) -> Scene:
 
 def test_the_sun_injects_the_light_that_the_floor_reflects(gl):
     """Flux = colour x albedo x area x cosine, in a volume that contains the floor: to 1% at 256 texels, because the
-    map's pixels cover it in steps. The injected coefficients have the map's flux to 1e-5."""
+    map's pixels cover the floor in steps. The injected coefficients have the map's flux to 1e-5."""
     cosine = 0.8
     drawn = draw(gl, floor(Light("sun", (2.0, 1.0, 0.5), direction=(0.6, -cosine, 0.0))), cascades=1, texels=256)
     expected = np.array([2.0, 1.0, 0.5]) * FLOOR_ALBEDO * 24 * cosine
@@ -193,9 +193,9 @@ def check_flux(found: Lit, expected: np.ndarray, share: float) -> None:
     assert injected == pytest.approx(flux, rel=1e-5), f"{injected} injected, not {flux}"
 
 
-def test_light_outside_the_volume_is_left_out(gl):
-    """A volume of two metres in the room, without a step, has the light that NumPy injects from the spot's map, to
-    1e-5 of the brightest coefficient. The map has more."""
+def test_light_outside_the_volume_is_omitted(gl):
+    """A volume of two metres in the room, without propagation, has the light that NumPy injects from the spot's map,
+    to 1e-5 of the brightest coefficient. The map has more light."""
     scene, spot = only(VIEWED, SENDERS[1]), SENDERS[1]
     drawn = draw(gl, scene, extent=2.0, cascades=1, iterations=0)
     cell = 2.0 / CELLS
@@ -221,8 +221,8 @@ def points_of(found: Lit, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, n
 
 
 def surfel_areas(found: Lit, there: np.ndarray, sight, size) -> np.ndarray:
-    """Return the square metres that each texel shows, and -1 for surfaces that face away: dx dy / cos, and for a
-    perspective z^2 dx dy times z / |n.p|."""
+    """Return the area in square metres that each texel shows, and -1 for surfaces that face away: dx dy / cos, and
+    for a perspective z^2 dx dy times z / |n.p|."""
     _, normal, position = (data[there, :3] for data in found.last)
     right, up, *_ = sight.rays(size)
     texel = 4 * right * up / TEXELS**2
@@ -290,7 +290,7 @@ def test_the_light_of_each_pixel_agrees_with_numpy(chain):
 
 
 @pytest.mark.parametrize("given, least", [({"format": "rgba16f"}, 55), ({"sums": "rgba16f"}, 25)], ids=str)
-def test_the_formats_of_volumes_and_sums_lose_as_much_as_expected(gl, given, least):
+def test_the_formats_of_volumes_and_sums_have_the_expected_accuracy(gl, given, least):
     """PSNR over the brightest pixel against 32-bit floats, at 128 texels. Volumes lose little: 63 dB, and 44 with a
     shared exponent. Adding VPLs in 16 bits is worse, 36 dB: in a large sum, small VPLs fall below the last bit, and a
     device that truncates loses light with each of them."""
@@ -342,7 +342,7 @@ STILL = {"extent": 4.0, "cascades": 1, "amplifier": 0.0, "iterations": 4}
 CELL = 4.0 / CELLS
 
 
-def test_the_volumes_do_not_move_by_less_than_a_cell(gl):
+def test_the_volumes_move_only_by_whole_cells(gl):
     """If the camera moves and its own surfels block nothing, the volumes stay the same, bit for bit, until they move
     by a whole cell: steps of a quarter of a cell move them once per cell."""
     box, origins, fields = box_of(VIEWED), [], []
@@ -361,9 +361,9 @@ def test_the_volumes_do_not_move_by_less_than_a_cell(gl):
 
 
 @pytest.mark.parametrize("by", [(1, 0, 0), (-2, 0, 0), (1, 0, 1)], ids=str)
-def test_whole_cells_move_the_volumes_over_the_same_light(gl, by):
+def test_moving_the_volumes_by_whole_cells_keeps_the_light(gl, by):
     """Cells in both volumes, farther from the moved ends than light travels, have the same light in the world: 100 dB
-    over the brightest. Texels of the sun's map keep their places, so no VPL changes its cell."""
+    over the brightest. Texels of the sun's map keep their positions, so no VPL changes its cell."""
     views = [moved(VIEWED, tuple(np.array(way) * CELL)) for way in ((0, 0, 0), by)]
     first, second = (draw(gl, scene, **STILL).light[0] for scene in views)
     ends = [STILL["iterations"] + abs(way) if way else 0 for way in by]
@@ -374,10 +374,10 @@ def test_whole_cells_move_the_volumes_over_the_same_light(gl, by):
     assert decibels >= 100, f"{decibels:.1f} dB; {np.mean(here != there):.1%} of the numbers differ"
 
 
-def test_half_a_cell_is_hardly_visible(gl):
+def test_moving_a_volume_by_half_a_cell_hardly_changes_the_light(gl):
     """On surfaces that are in a volume before and after, with the camera's own surfels blocking light, the light
-    changes by 0.2% of the brightest (RMS) and by 2% at most; measured 0.09 and 1.3, most of it at the ends of the
-    volume."""
+    changes by 0.2% of the brightest (RMS) and by 2% at most. The measured changes are 0.09% and 1.3%, mostly at the
+    ends of the volume."""
     settings, to_world = STILL | {"amplifier": 1.0}, np.linalg.inv(VIEWED.view.matrix())
     box, lights = box_of(VIEWED), []
     first = draw(gl, VIEWED, **settings)
@@ -427,7 +427,7 @@ def test_cascades_meet_without_a_seam_where_their_light_is_the_same(gl, blend):
 
 
 def uniform(volumes: Volumes, brightness: tuple[float, ...]) -> Pass:
-    """Return a pass that fills the volumes with light without direction, with another number for each cascade."""
+    """Return a pass that fills the volumes with directionless light of a different brightness in each cascade."""
 
     def build(canvas):
         def run():
@@ -450,13 +450,13 @@ def uniform(volumes: Volumes, brightness: tuple[float, ...]) -> Pass:
         ({"format": "rgb9e5"}, "effect lpv: format=rgb9e5 is not rgba32f or rgba16f or shared"),
     ],
 )
-def test_a_setting_out_of_range_is_refused_in_one_line(given, said):
+def test_a_setting_out_of_range_is_a_one_line_error(given, said):
     with pytest.raises(EffectError) as refused:
         chosen(LPV, given)
     assert str(refused.value) == said
 
 
-def test_a_volume_beyond_the_device_is_refused_in_one_line(gl, monkeypatch):
+def test_a_volume_too_large_for_the_device_is_a_one_line_error(gl, monkeypatch):
     """The volume is refused before anything is drawn."""
     monkeypatch.setattr(gl, "max_volume", 40)
     effect = chosen(LPV, {"cells": "16", "cascades": "3"})
@@ -468,6 +468,6 @@ def test_a_volume_beyond_the_device_is_refused_in_one_line(gl, monkeypatch):
         pass
 
 
-def test_a_scene_without_injected_light_says_so():
+def test_a_scene_without_injected_light_is_reported():
     assert LPV.lacks(ROOM) is None
     assert LPV.lacks(only(ROOM, *lamps(ROOM)[3:])) == "no sun or spot light lights the volume"

@@ -1,4 +1,4 @@
-"""Metallic-roughness surfaces: against their formulas in float64, in every pipeline and in several layouts."""
+"""Metallic-roughness surfaces, compared with their formulas in float64, in every pipeline and in several layouts."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_a_normal_map_tilts_the_normal_in_the_tangent_frame(gl):
 
 
 def _answers(gl, light, eye, roughness, albedo, f0) -> tuple[np.ndarray, np.ndarray]:
-    """Return the results of GLSL for single lights and for even light, (count,) each."""
+    """Return the results of GLSL for single lights and for uniform light, (count,) each."""
     count = len(light)
     columns = [np.broadcast_to(np.asarray(x, float), (count,)) for x in (roughness, albedo, f0)]
     lights = np.concatenate([light, columns[0][:, None]], axis=1)
@@ -98,7 +98,7 @@ def _halves(count: int = 96) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _reflected(gl, n_v: float, roughness: float, f0: float) -> float:
-    """Return the integral of the light that a black surface reflects, over all directions, by the normals of GGX."""
+    """Return the integral of the light that a black surface reflects, over all directions, sampled by GGX normals."""
     (u, p), weight = _halves()
     a2 = roughness**4
     # D n.h dw is uniform in u where tan^2 of the angle is a^2 u / (1 - u).
@@ -115,7 +115,7 @@ def _reflected(gl, n_v: float, roughness: float, f0: float) -> float:
 
 
 def _scattered(gl, n_v: float, roughness: float) -> float:
-    """Return the integral of the light that a white dielectric reflects more than a black one, by the cosine."""
+    """Return the cosine-weighted integral of the light that a white dielectric reflects beyond a black one."""
     (u, p), weight = _halves(48)
     eye = np.array([np.sqrt(1 - n_v**2), 0, n_v])
     light = np.stack([np.sqrt(u) * np.cos(p), np.sqrt(u) * np.sin(p), np.sqrt(1 - u)], axis=1)
@@ -124,7 +124,7 @@ def _scattered(gl, n_v: float, roughness: float) -> float:
 
 
 @pytest.mark.parametrize("roughness", [0.045, 0.1, 0.3, 0.5, 0.7, 1.0])
-def test_a_white_surface_gives_back_all_light(gl, roughness):
+def test_a_white_surface_reflects_all_light(gl, roughness):
     """A white furnace of single lights, metal and dielectric: within 1%, n.v from 0.05."""
     for n_v in (0.05, 0.2, 0.5, 0.8, 1.0):
         metal = _reflected(gl, n_v, roughness, 1.0)
@@ -133,7 +133,7 @@ def test_a_white_surface_gives_back_all_light(gl, roughness):
         assert abs(white - 1) < 0.01, f"white dielectric at n.v {n_v}: {white:.4f}"
 
 
-def test_even_light_makes_white_surfaces_white(gl):
+def test_white_surfaces_are_white_in_uniform_light(gl):
     """A furnace with light from all directions, metal and dielectric, every roughness: within 1%."""
     n_v, roughness = (x.ravel() for x in np.meshgrid(np.linspace(0.05, 1, 20), np.linspace(0, 1, 21)))
     eyes = np.stack([np.sqrt(1 - n_v**2), 0 * n_v, n_v], axis=1)
@@ -142,7 +142,7 @@ def test_even_light_makes_white_surfaces_white(gl):
         assert np.abs(even - 1).max() < 0.01, f"{name}: {even.min():.4f} to {even.max():.4f}"
 
 
-def test_without_multiple_scattering_the_lobe_is_the_split_sum(gl):
+def test_the_lobe_without_multiple_scattering_is_the_split_sum(gl):
     """Divided by its gain, the lobe of a metal is scale + bias, within 0.002."""
     for roughness in (0.3, 0.7, 1.0):
         for n_v in (0.2, 0.5, 1.0):
@@ -218,8 +218,8 @@ def test_each_attribute_in_one_or_two_bits_changes_the_image(gl, pipeline, name)
 
 
 @pytest.mark.parametrize("layout", ["fp32", "metal_rough"])
-def test_extremes_are_finite(gl, layout):
-    """A stored roughness of exactly 0, metallic of 0 and of 1, a black base colour, under every kind of light."""
+def test_extreme_materials_give_finite_images(gl, layout):
+    """A stored roughness of exactly 0, a metallic of 0 and 1 and a black base colour, under every kind of light."""
     extremes = [MetalRough((base,) * 3, metalness, 0.0) for base in (0.0, 1.0) for metalness in (0.0, 1.0)]
     scene = scene_of(*extremes, ambient=(1.0, 1.0, 1.0))
     spot = Light("spot", (5.0, 5.0, 5.0), (0.0, 0.0, 5.0), 20.0, (0.0, 0.0, -1.0), 20.0, 40.0)
@@ -229,15 +229,15 @@ def test_extremes_are_finite(gl, layout):
         assert np.isfinite(image).all() and image.max() > 0, f"{name}: {np.sum(~np.isfinite(image))} are not finite"
 
 
-def test_a_mirror_in_even_light_has_the_colour_of_its_reflectance(gl):
-    """In even light, a mirror of reflectance (0.9, 0.6, 0.3) has this colour."""
+def test_a_mirror_in_uniform_light_has_the_colour_of_its_reflectance(gl):
+    """In uniform light, a mirror of reflectance (0.9, 0.6, 0.3) has this colour."""
     image = draw(gl, "hybrid", scene_of(MetalRough((0.9, 0.6, 0.3), 1.0, 0.0), ambient=(1, 1, 1), lamps=())).image
     middle = image[SIZE[1] // 2, SIZE[0] // 2]
     assert middle == pytest.approx((0.9, 0.6, 0.3), rel=2e-3)
 
 
 def test_a_pixel_that_covers_many_normals_is_rougher(gl):
-    """The rim of a mirror ball is rougher, a plane hardly. Without antialiasing neither is."""
+    """Antialiasing makes the rim of a mirror ball rougher, but hardly a plane. Without it, both stay at 0."""
     scene = scene_of(MetalRough(metalness=1.0, roughness=0.0))
     widened, plain = (draw(gl, "hybrid", scene, antialiased=on).gbuffer[2][..., 3] for on in (True, False))
     assert plain.max() == 0
@@ -247,8 +247,8 @@ def test_a_pixel_that_covers_many_normals_is_rougher(gl):
 @pytest.mark.parametrize("authored", [False, True], ids=["made tangents", "the file's tangents"])
 @pytest.mark.parametrize("way", range(len(WAYS)), ids=["as it is", "turned", "mirrored", "mirrored and turned"])
 def test_a_normal_mapped_dome_is_lit_like_a_modelled_dome(gl, tmp_path, way, authored):
-    """From the same side and as bright: each half of the two domes has the same mean colour within 3%. Both are
-    rough, because the eye sees them from two sides."""
+    """The light comes from the same side and is as bright: each half of the two domes has the same mean colour within
+    3%. Both domes are rough, because the eye sees them from two sides."""
     material = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0}}
     file = read_mesh_file(halves(WAYS[way], authored, **material).write(tmp_path / "halves.glb"))
     sun = Light("sun", (1.0, 1.0, 1.0), direction=(0.6, -0.48, -0.64))
@@ -266,7 +266,7 @@ def test_a_normal_mapped_dome_is_lit_like_a_modelled_dome(gl, tmp_path, way, aut
     assert mean(1.1, -0.9, -0.1)[0] > 1.2 * mean(1.1, 0.1, 0.9)[0], "the light comes from the left"
 
 
-def test_a_mirror_shows_the_environment_where_it_points(gl):
+def test_a_mirror_reflects_the_environment_behind_the_eye(gl):
     """The half of the directions behind the eye has its own colour, which a mirror ball shows in its middle."""
     towards = directions(64)
     light = np.where(towards[..., 2:] > 0, (0.1, 0.8, 0.2), (0.7, 0.1, 0.1)).astype(np.float32)
@@ -288,7 +288,7 @@ def test_a_sun_in_an_environment_becomes_the_scenes_sun():
     assert len(scene.lights) == 1 + len(LAMPS)
 
 
-def test_a_bump_of_a_normal_map_is_a_hollow_from_behind(gl):
+def test_a_bump_in_a_normal_map_is_a_hollow_from_behind(gl):
     """A sheet that is seen from its back has the normal of its front, reversed."""
     mapped = MetalRough(normal_map=slanted())
     away = plane(8.0, 8.0).placed(UPRIGHT @ np.diag([1.0, 1.0, -1.0]), (0.0, 0.0, -1.0))

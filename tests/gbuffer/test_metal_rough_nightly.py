@@ -1,4 +1,4 @@
-"""Metallic-roughness surfaces: against their formulas in float64, in every pipeline and in several layouts."""
+"""Metallic-roughness surfaces, compared with their formulas in float64, in every pipeline and in several layouts."""
 
 from __future__ import annotations
 

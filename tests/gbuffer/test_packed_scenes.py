@@ -46,7 +46,7 @@ def corners(mesh: Mesh) -> np.ndarray:
 
 @pytest.mark.parametrize("kind", [np.uint16, np.int16, np.uint8, np.int8])
 @pytest.mark.parametrize("is_normalised", [True, False])
-def test_quantised_attributes_are_what_their_integers_mean(tmp_path, kind, is_normalised):
+def test_quantised_attributes_are_decoded_as_specified(tmp_path, kind, is_normalised):
     """KHR_mesh_quantization: positions and uv as integers, plain or as shares of the largest; normals and tangents as
     signed shares. The remaining error is half a step."""
     most = np.iinfo(kind).max
@@ -101,7 +101,7 @@ def meshopt(change=None, required: bool = True) -> Document:
 
 
 @pytest.mark.parametrize("required", [True, False])
-def test_meshopt_gives_the_plain_files_mesh(tmp_path, required):
+def test_meshopt_gives_the_same_mesh_as_the_plain_file(tmp_path, required):
     """The extension may also be optional, without a plain copy."""
     unpacked, expected = (corners(read(document, tmp_path)) for document in (meshopt(required=required), plain()))
     assert np.array_equal(unpacked, expected)
@@ -132,7 +132,7 @@ def filtered(name: str, stored: np.ndarray, width: int, components: int, normali
 
 
 def test_the_octahedral_filter_gives_normals(tmp_path):
-    """By the text of the extension: x and y of the octahedron, 1 as the third number, as signed bytes."""
+    """The extension specifies x and y of the octahedron, and 1 as the third number, as signed bytes."""
     n = BALL.normals / abs(BALL.normals).sum(axis=1, keepdims=True)
     folded = (1 - abs(n[:, 1::-1])) * np.where(n[:, :2] < 0, -1, 1)
     xy = np.where(n[:, 2:] < 0, folded, n[:, :2])
@@ -142,7 +142,7 @@ def test_the_octahedral_filter_gives_normals(tmp_path):
 
 
 def test_the_exponential_filter_gives_floats(tmp_path):
-    """By the text of the extension: a 24-bit integer, times 2 to an 8-bit exponent."""
+    """The extension specifies a 24-bit integer, times 2 to the power of an 8-bit exponent."""
     exponent = -20
     whole = np.round(BALL.normals * 2.0**-exponent).astype(np.int64)
     stored = ((exponent & 255) << 24 | (whole & 0xFFFFFF)).astype(np.uint32)
@@ -201,7 +201,7 @@ def draco(change=None) -> Document:
     return document
 
 
-def test_draco_gives_the_plain_files_mesh(tmp_path):
+def test_draco_gives_the_same_mesh_as_the_plain_file(tmp_path):
     """The meshes agree within the quantisation: 16 bits for positions and uv, 8-bit octahedral normals by default."""
     unpacked, expected = (corners(read(document, tmp_path)) for document in (draco(), plain()))
     assert unpacked.shape == expected.shape
@@ -248,7 +248,7 @@ def test_bad_draco_primitive_is_a_one_line_error(tmp_path, what):
 
 
 @pytest.mark.parametrize("make, package", [(draco, "DracoPy"), (meshopt, "meshoptimizer")])
-def test_missing_package_is_an_error_that_says_what_to_install(tmp_path, monkeypatch, make, package):
+def test_missing_package_error_says_what_to_install(tmp_path, monkeypatch, make, package):
     document = make()
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(SceneFileError, match=rf"a\.glb: .*needs {package}; pip install normalbench\[compressed\]"):

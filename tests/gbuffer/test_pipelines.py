@@ -29,7 +29,7 @@ def test_near_glass_covers_far_glass(gl, name, heights):
 
 
 @pytest.mark.parametrize("name", ["objects", "room"])
-def test_special_materials_look_the_same_forward_and_hybrid(gl, name):
+def test_special_materials_look_the_same_in_forward_and_hybrid(gl, name):
     """The images agree to 60 dB over the pixels of each kind."""
     forward, hybrid = (drawn(gl, pipeline, name, False) for pipeline in ("forward", "hybrid"))
     kind = hybrid.gbuffer[1][..., 3]
@@ -42,8 +42,8 @@ def test_special_materials_look_the_same_forward_and_hybrid(gl, name):
 
 def test_inferred_lighting_leaves_no_surface_dark(gl):
     """At a quarter of the size some pixels find their own surface in none of the four texels; they use the light of
-    the nearest. The room has no background and no ambient light here. Fewer than one pixel in 200 stays dark,
-    because the nearest is in the dark itself."""
+    the nearest texel. The room has no background and no ambient light here. Fewer than one pixel in 200 stays dark,
+    because its nearest texel is dark too."""
     scene = replace(scene_of("room"), ambient=(0.0, 0.0, 0.0))
     opaque = ~covered_by_glass(gl, "room")
     lit_pixels = opaque & (draw(gl, "forward", scene).image.max(axis=2) > 0.01)
@@ -63,7 +63,7 @@ def triangles_of(scene: Scene, wanted) -> int:
 
 
 @pytest.mark.parametrize("name", BLINN_PHONG)
-def test_passes_draw_the_triangles_they_are_for(gl, name):
+def test_each_pass_draws_only_its_own_triangles(gl, name):
     """The geometry pass draws all opaque triangles once. The second geometry pass draws all of them again in light
     pre-pass, and exactly the special triangles in hybrid. The shadow map has the triangles that cast shadows."""
     scene = scene_of(name)

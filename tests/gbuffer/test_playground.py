@@ -37,7 +37,7 @@ def test_an_independent_float64_implementation_gives_the_same_row(normalbench, n
         assert row[column] == pytest.approx(value, rel=2e-3), f"{name} {column}"
 
 
-def test_the_scene_is_that_of_the_article():
+def test_the_scene_matches_the_article():
     """Facts about the original: about 2% background, 15% of the rest with z < 0, under 0.5% facing away."""
     seen = rendered()
     normals, positions = seen.normals[seen.covered], seen.positions[seen.covered]

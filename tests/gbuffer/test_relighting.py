@@ -26,7 +26,7 @@ from normalbench.gbuffer.scenes.scene import KINDS, LIGHT_KINDS, Light, Material
 
 @cache
 def lit(gl, scene: str):
-    """Return a scene's surfaces, and the light on them by the formulas, with shadows."""
+    """Return a scene's surfaces, and the light on them computed with the formulas, with shadows."""
     frame = drawn(gl, "prepass", scene, True)
     seen = surfaces(scene_of(scene), frame.gbuffer)
     return seen, relight(scene_of(scene), seen, frame.shadow_map)
@@ -97,7 +97,7 @@ def test_hardly_any_shadow_is_undecided(gl):
 
 
 def test_the_room_shows_every_kind_of_light_and_of_material(gl):
-    """Each material covers at least 20 pixels; each kind of light gives at least 500 pixels a D above a hundredth."""
+    """Each material covers at least 20 pixels; each kind of light gives at least 500 pixels a D above 0.01."""
     scene, (seen, _) = scene_of("room"), lit(gl, "room")
     assert all(np.sum(seen.kind == number) >= 20 for number in range(len(KINDS)))
     for kind in LIGHT_KINDS:
@@ -134,7 +134,7 @@ def line_up() -> Scene:
 
 @pytest.mark.parametrize("kind", LIGHT_KINDS)
 def test_each_kind_of_light_matches_the_formulas_on_each_material(gl, kind):
-    """One lamp alone: the errors of D and S on each ball are 80 dB below their own peak, which is bright enough."""
+    """With a single lamp, the errors of D and S on each ball are 80 dB below their peak; over 50 pixels are lit."""
     scene = replace(line_up(), lights=(line_up().lights[LIGHT_KINDS.index(kind)],))
     frame = draw(gl, "prepass", scene)
     seen = surfaces(scene, frame.gbuffer)
@@ -206,9 +206,9 @@ def test_one_target_holds_diffuse_light_and_specular_luminance(gl, name):
     assert decibels >= 80, f"{name}: image {decibels:.1f} dB"
 
 
-def test_a_single_white_light_gets_its_power_back_in_the_material_pass(gl):
-    """[S / sum(N.L att)]^(m/n) sum(N.L att) is exact for a single white light: 60 dB to forward shading, on general
-    materials; highlights of power 4 to 1024 from a power of 32."""
+def test_the_material_pass_restores_the_power_for_a_single_white_light(gl):
+    """[S / sum(N.L att)]^(m/n) sum(N.L att) is exact for a single white light. On general materials the image agrees
+    with forward shading to 60 dB, for highlights of power 4 to 1024 from a power of 32."""
     lamp = Light("point", (3.0, 3.0, 3.0), (2.0, 1.5, 5.0), 14.0)
     scene = replace(scene_of("gloss"), lights=(lamp,))
     bare = Layout("bare", "", (Target("rgba32f", "normal.x normal.y normal.z depth"),), ENCODINGS["xyz"], "")
@@ -259,7 +259,7 @@ def within_block(points: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("pipeline", ["forward", "deferred"])
 def test_shadows_are_where_rays_to_the_sun_are_blocked(gl, pipeline):
-    """On the floor, except for three texels on either side of the shadow's edge: dark inside, N.L outside. The sides
+    """Except within three texels of the shadow's edge, the floor is dark inside the shadow and N.L outside. The sides
     of the box that face the sun are fully lit up to three texels from their edges."""
     scene = block_over_floor()
     image = draw(gl, pipeline, scene, shadows=True).image[..., 0]
@@ -278,7 +278,7 @@ def test_shadows_are_where_rays_to_the_sun_are_blocked(gl, pipeline):
     assert np.allclose(image[side], facing[side], atol=1e-5), f"{np.sum(image[side] < facing[side] - 1e-5)} with acne"
 
 
-def test_a_coarse_ball_does_not_shadow_what_its_normals_say_is_lit(gl):
+def test_a_coarse_ball_does_not_shadow_pixels_that_its_normals_light(gl):
     """Smooth normals on flat faces: some faces that look away from the sun are still lit. All pixels with an N.L of
     at least 0.05 are lit."""
     view = View((-3.0, 3.0, 5.0), (0.0, 0.0, 0.0), 30.0, 0.5, 50.0)

@@ -1,4 +1,4 @@
-"""The renderer's light, shadows and positions against formulas in float64."""
+"""The renderer's light, shadows and positions, compared with formulas in float64."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_special_materials_can_emit_light(gl):
         assert decibels >= 80, f"{pipeline}: {decibels:.1f} dB"
 
 
-def test_the_shadow_map_holds_the_far_sides_of_casters(gl):
+def test_the_shadow_map_stores_the_far_sides_of_casters(gl):
     """Except near outlines and edges, each texel stores the depth at which the sun's ray through its centre leaves
     the box. The depth is offset by a multiple of that side's slope, by either measure that OpenGL allows, and by
     steps of 24-bit depth. Where the ray misses the box, the depth is 1."""

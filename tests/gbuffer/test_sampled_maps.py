@@ -108,7 +108,7 @@ def test_every_level_has_the_mean_of_the_map(shape):
 
 @pytest.mark.parametrize("wrap, mode", [("repeat", "wrap"), ("mirror", "symmetric"), ("clamp", "edge")])
 def test_texels_outside_an_image_follow_its_wrap_mode(wrap, mode):
-    """Texel centres up to twice the image's size outside are compared with NumPy's padding modes."""
+    """Texels up to twice the image's size beyond its edges are compared with NumPy's padding modes."""
     texels = np.random.default_rng(0).integers(0, 256, (3, 5, 4), np.uint8)
     padded = np.pad(texels, ((6, 6), (10, 10), (0, 0)), mode)[..., :3] / 255 * 2 - 1
     row, column = np.indices(padded.shape[:2]).reshape(2, -1)
@@ -131,7 +131,7 @@ def test_pixels_record_their_triangle(tmp_path):
 
 @pytest.mark.parametrize("cutoff, share", [(0.0, 1.0), (0.5, 0.75), (1.5, 0.0)])
 def test_masked_texels_show_the_surface_behind(tmp_path, cutoff, share):
-    """A square with a transparent upper left quarter is in front of one that fills the view and faces up."""
+    """A square with a transparent upper left quarter is in front of a square that fills the view and faces up."""
     texels = np.full((64, 64, 4), 255, np.uint8)
     texels[:32, :32, 3] = 0
     document = square(picture(dome), uv_of(WAYS[0]))
@@ -149,7 +149,7 @@ def test_masked_texels_show_the_surface_behind(tmp_path, cutoff, share):
 
 
 def test_error_of_an_8_bit_map_matches_the_16_bit_map(tmp_path):
-    """The error is estimated without the 16-bit map, to a fifth. Half of the image has no map and is exact."""
+    """The error is estimated without the 16-bit map, to within 20%. Half of the image has no map and is exact."""
     fine, coarse = (
         seen(read_mesh_file(halves(WAYS[0], kind=kind).write(tmp_path / f"{kind.__name__}.glb")), (160, 120))
         for kind in (np.uint16, np.uint8)

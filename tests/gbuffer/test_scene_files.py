@@ -15,7 +15,7 @@ from normalbench.gbuffer.scenes.setting import Setting
 
 
 @pytest.mark.parametrize("how", ["glb", "beside", "data"])
-def test_chain_with_a_mirrored_uneven_node_gives_hand_computed_normals(tmp_path, how):
+def test_mirrored_non_uniformly_scaled_node_gives_hand_computed_normals(tmp_path, how):
     """The normal (1, 2, 2) is scaled by (-1/2, 1, 2) to (-1/2, 2, 4), which is (-1, 4, 8) / 9 when normalised; a
     quarter turn about z takes (x, y, z) to (-y, x, z). The tangent (2, 1, -2) is scaled like positions, by (-2, 1,
     1/2), and then turned. A mirror flips the tangent's sign, so that the bitangent stays on the side of the mirrored
@@ -37,7 +37,7 @@ def test_chain_with_a_mirrored_uneven_node_gives_hand_computed_normals(tmp_path,
 
 
 def test_renderer_stores_the_hand_computed_normals(tmp_path, gl):
-    """A square with the normal (1, 2, 2) / 3 in a mirrored, unevenly scaled node, seen by a camera on the z axis."""
+    """A square with the normal (1, 2, 2) / 3 in a mirrored, non-uniformly scaled node, seen from the z axis."""
     document = Document()
     square = [(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)]
     mesh = document.mesh(square, [(1, 2, 2)] * 4, [(0, 1, 2), (0, 2, 3)])

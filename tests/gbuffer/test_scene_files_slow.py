@@ -55,8 +55,8 @@ def test_obj_with_many_materials_and_a_long_line_is_read_quickly(tmp_path):
 
 
 def test_procedural_scene_written_to_a_file_renders_the_same(tmp_path, gl):
-    """The room's meshes are in place, with its camera, lights and materials and without shadows: more than 60 dB. The
-    difference comes from rounding vertices to float32 before they are moved."""
+    """The room's meshes, camera, lights and materials are used without shadows: the images agree to more than 60 dB.
+    The difference comes from rounding vertices to float32 before they are moved."""
     room = scene_of("room")
     document = Document()
     document.json["materials"] = [{} for _ in room.materials]
@@ -78,7 +78,7 @@ def test_procedural_scene_written_to_a_file_renders_the_same(tmp_path, gl):
 
 
 @pytest.mark.usefixtures("gl")
-def test_render_accepts_scene_names_and_files_and_lights_the_files(tmp_path, run):
+def test_render_accepts_scene_names_and_files_and_adds_lights_to_the_files(tmp_path, run):
     chained_file = tmp_path / "mine.glb"
     document = as_document([sphere(1.0, 24, 12)])
     document.write(chained_file)

@@ -1,4 +1,4 @@
-"""Lights of glTF files, by KHR_lights_punctual."""
+"""Lights in glTF files, from KHR_lights_punctual."""
 
 from dataclasses import replace
 
@@ -80,7 +80,7 @@ def test_brightest_of_several_suns_is_drawn_with_a_note(tmp_path):
     assert file.notes == ("only the brightest of 2 directional lights is drawn",)
 
 
-def test_unknown_kind_of_light_is_left_out_with_a_note(tmp_path):
+def test_unknown_kind_of_light_is_ignored_with_a_note(tmp_path):
     file = read(lit({"type": "area"}), tmp_path)
     assert file.notes == (f"{NAME}.lights[0] is ignored: not a directional, point or spot light",)
 

@@ -1,4 +1,4 @@
-"""Images of glTF files: texels, their placement and the tangents that normal maps need."""
+"""Images in glTF files: texels, their placement and the tangents that normal maps need."""
 
 import base64
 import io
@@ -106,8 +106,8 @@ def uri(data: bytes) -> str:
 
 
 def test_map_placement_uses_its_sampler_uv_set_and_transform(tmp_path):
-    """The corners of an image that is turned by 90°, repeated twice along u and moved: a positive rotation takes (1,
-    0) to (0, -1), up in the image."""
+    """The image is turned by 90°, repeated twice along u and moved. A positive rotation takes (1, 0) to (0, -1), up
+    in the image."""
     transform = {"offset": [0.25, 0.5], "rotation": np.pi / 2, "scale": [2, 1], "texCoord": 1}
     document = Document()
     document.texture(png_bytes(noise(3)), wrapS=33071, wrapT=33648)
@@ -208,7 +208,7 @@ def test_normal_map_axes_follow_the_orientation_of_its_image(tmp_path, authored,
 
 
 def test_mirrored_halves_share_no_vertices_and_have_separate_bitangents(tmp_path):
-    """The image is mirrored about x = 1: to the right of it, u runs backwards and v as before."""
+    """The image is mirrored about x = 1: to the right of it, u decreases and v is unchanged."""
     positions = [(x, y, 0) for y in (0, 1) for x in (0, 1, 2)]
     uv = [(1 - abs(x - 1), 1 - y) for x, y, _ in positions]
     triangles = [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4)]

@@ -1,4 +1,4 @@
-"""Images of glTF files that many materials share."""
+"""Images in glTF files that many materials share."""
 
 from test_scene_textures import UV, noise, read
 from written import TRIANGLE, Document, png_bytes

@@ -79,8 +79,8 @@ def test_rotation_is_roll_then_pitch_then_yaw_for_row_vectors():
     assert np.allclose(x @ shapes.rotation(0, quarter, quarter), z)
 
 
-def test_a_sphere_is_drawn_where_it_is_and_faces_the_eye():
-    """Positions and normals of a finely cut sphere against the ray's analytic hit."""
+def test_a_sphere_is_drawn_at_its_position_and_faces_the_eye():
+    """Positions and normals of a finely tessellated sphere are compared with the ray's analytic hit."""
     ball = shapes.sphere(1.0, 256, 128).placed(np.eye(3), (0, 0, -4))
     seen = rasterise(ball, CAMERA)
     half = np.tan(np.radians(30))
@@ -96,7 +96,7 @@ def test_a_sphere_is_drawn_where_it_is_and_faces_the_eye():
     assert np.allclose(seen.normals[well_inside], (hit - (0, 0, -4))[well_inside], atol=2e-3)
 
 
-def test_the_nearest_surface_wins_whatever_the_order():
+def test_the_nearest_surface_wins_in_any_order():
     near = shapes.box(1, 1, 0.1).placed(np.eye(3), (0, 0, -3))
     far = shapes.box(4, 4, 0.1).placed(np.eye(3), (0, 0, -6))
     a, b = (rasterise(shapes.joined(order), CAMERA) for order in ([near, far], [far, near]))
@@ -121,7 +121,7 @@ def test_the_background_has_no_normal():
 
 
 def test_skipping_squares_that_no_triangle_meets_loses_no_pixels(monkeypatch):
-    """Large triangles at random, many of which reach behind the eye."""
+    """Random large triangles, many of which reach behind the eye."""
     rng = np.random.default_rng(5)
     corners = rng.uniform((-9, -9, -12), (9, 9, 2), (40, 3, 3)).reshape(-1, 3)
     normals = rng.normal(size=(120, 3))

@@ -44,7 +44,7 @@ def errors(light: np.ndarray, towards: np.ndarray, area: np.ndarray, n_v: float,
     return np.abs(relative)
 
 
-def test_the_manual_says_how_far_the_split_sum_is_off():
+def test_the_manual_gives_the_error_of_the_split_sum():
     """The figures are medians in `studio`, by roughness and n.v. Blocks of 4 x 4 texels, which even the narrowest
     lobe here covers, are averaged."""
     radiance = ENVIRONMENTS["studio"].make().radiance.astype(np.float64).mean(axis=-1)

@@ -177,7 +177,7 @@ def looks_and_samples(gl, settings: str, size=SMALL) -> tuple[float, int]:
 
 
 def test_cost_grows_with_steps_rays_and_pixels(gl):
-    """A ray takes at most one step per pixel of its path; the bisection of hits comes on top."""
+    """A ray takes at most one step per pixel of its path, plus the bisection of hits."""
     looks, samples = looks_and_samples(gl, ":steps=8:rays=1")
     assert samples == SMALL[0] * SMALL[1]
     twice, _ = looks_and_samples(gl, ":steps=16:rays=1")

@@ -63,7 +63,7 @@ def test_the_kernel_matches_the_published_kernel(samples):
 
 @pytest.mark.parametrize("samples", [11, 17, 25, 33, 65, 97])
 def test_a_kernel_conserves_light(samples):
-    """Its weights sum to 1 in each channel, to 1e-12."""
+    """The weights sum to 1 in each channel, to 1e-12."""
     for kernel in (separable_kernel(samples), gaussian_kernel(2.0, samples)):
         assert np.abs(kernel[:, :3].sum(axis=0) - 1).max() < 1e-12, kernel[:, :3].sum(axis=0)
 
@@ -118,7 +118,7 @@ def test_fewer_gaussians_fit_the_six_optimally(pairs):
     assert (total / norm) ** 0.5 < left, f"{(total / norm) ** 0.5:.3%}"
 
 
-def test_five_pairs_are_the_six_gaussians():
+def test_five_pairs_of_blurs_give_the_six_gaussians():
     """sigma_fg^2 = sigma_f^2 + sigma_g^2: the blurs' variances add up to d'Eon's."""
     five = GAUSSIANS[5]
     assert np.allclose(np.cumsum(five.increments), VARIANCES[1:], rtol=1e-12)

@@ -62,9 +62,9 @@ def spread(kernel: np.ndarray, scale: float, at: np.ndarray) -> np.ndarray:
 
 # Further samples, pairs, pipelines and codes of light are asked at night.
 @pytest.mark.parametrize("samples, along", [(11, "rows"), (25, "columns")])
-def test_a_line_of_light_spreads_to_the_kernel(gl, samples, along):
-    """A one-pixel line on a wall that faces the eye, at 1 and 2 m, spreads to the kernel, to 1e-6 of the line. The
-    kernel is `width` metres wide, so it is half as wide in the image at twice the distance."""
+def test_a_blurred_line_of_light_matches_the_kernel(gl, samples, along):
+    """A one-pixel line on a wall that faces the eye, at 1 and 2 m, is blurred into the kernel, to 1e-6 of the line.
+    The kernel is `width` metres wide, so it is half as wide in the image at twice the distance."""
     column = along == "rows"
     line = dark()
     line[(slice(None), CENTRE[1]) if column else CENTRE[0]] = 1
@@ -92,8 +92,8 @@ def six(at: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("pairs", [3, 4, 5])
-def test_reused_gaussians_sum_up_to_the_six(gl, pairs):
-    """More than 2 pixels from a dot, at 4 pixels per mm and 25 samples, the RMS error is 1e-3 of the peak."""
+def test_reused_gaussians_sum_to_the_original_six(gl, pairs):
+    """More than 2 pixels from a dot, at 4 pixels per mm and 25 samples, the RMS error is below 1e-3 of the peak."""
     blurred = scattered(gl, facing(WALL), dot(), method="gaussians", pairs=pairs, samples=25, width=WIDE)[..., :3]
     y, x = np.mgrid[:HEIGHT, :WIDTH]
     far = np.hypot(y - CENTRE[0], x - CENTRE[1]) > 2
@@ -106,7 +106,7 @@ def test_reused_gaussians_sum_up_to_the_six(gl, pairs):
 @pytest.mark.parametrize("method", ["separable", "gaussians"])
 def test_a_closed_patch_keeps_its_light(gl, method):
     """Skin under varied light, surrounded by brighter stone: the sum over the patch is unchanged, to 1e-4. A pixel
-    keeps the light that it does not pass on, and none comes from the stone."""
+    keeps the light that it does not pass on, and no light comes from the stone."""
     rng = np.random.default_rng(1)
     scene = facing((0.5, 0.5, 0.0, 0.0, 0), (9.0, 9.0, 0.0, -0.001, 1))
     light = rng.uniform(0, 1, (HEIGHT, WIDTH, 3)).astype(np.float32) ** 4
@@ -132,7 +132,7 @@ def test_uniform_light_is_unchanged(gl, method):
 @pytest.mark.parametrize("method", METHODS)
 def test_planes_ten_widths_apart_do_not_mix(gl, method):
     """Two walls of skin meet in the image: light on one wall changes nothing on the other, bit for bit. Without depth
-    following, it does."""
+    following, the light spreads to the other wall."""
     width = 0.02
     scene = facing((4.0, 9.0, -2.0, 0.0, 0), (9.0, 9.0, 0.0, -10 * width, 0))
     lights = np.stack([dark(), dark()])
@@ -161,7 +161,7 @@ def diffused(channel: int) -> np.ndarray:
     return smooth.reshape(HEIGHT, PARTS, WIDTH, PARTS).sum(axis=(1, 3)) + dot()[..., 0] * 2 * scale * np.arcsinh(1)
 
 
-def test_normalised_diffusion_spreads_a_dot_by_its_profile(gl):
+def test_normalised_diffusion_spreads_a_dot_like_its_profile(gl):
     """With 97 taps at 4 pixels per mm, the mean light over 16 seeds in each of five rings is that of the profile. The
     tolerance is four standard errors of the mean, and at most 0.02 of all light."""
     scene = facing(WALL)
@@ -190,8 +190,8 @@ def test_noise_depends_on_pixel_and_seed(gl):
 
 
 def test_shadow_edges_bleed_red(gl):
-    """By every method, a millimetre into the dark behind a straight edge, more red arrives than green and more green
-    than blue; on the bright side more red is lost."""
+    """With every method, a millimetre into the dark behind a straight edge, more red arrives than green and more
+    green than blue; on the bright side more red is lost."""
     light = dark()
     light[:, : CENTRE[1] + 1] = 1
     for method, given in METHODS.items():
@@ -207,8 +207,8 @@ THROUGH = (0.5, 1.0, 2.0, 4.0, 8.0)
 @pytest.mark.parametrize("translucency", [0.0, 0.83])
 def test_sunlight_comes_through_slabs(gl, translucency):
     """Five slabs lit straight from behind show colour x T(d) with d = 16.5 (1 - translucency) thickness / width, to
-    2e-4 of the colour. The thickness is reduced by the 0.21 widths that a point is moved in. Without a shadow map, or
-    with transmittance off, no light comes through."""
+    2e-4 of the colour. The thickness is reduced by 0.21 widths, because points are moved inwards. Without a shadow
+    map, or with transmittance off, no light comes through."""
     width, colour = 0.01, (2.0, 1.5, 1.0)
     sun = Light("sun", colour, direction=(0.0, 0.0, 1.0))
     scene = slabs(sun, width)
@@ -292,7 +292,7 @@ def test_no_skin_goes_dark(gl, pipeline, changed):
 
 @pytest.fixture(scope="module")
 def exact_light(gl):
-    """Light of the bust in 32-bit floats, blurred, and unblurred by a width of less than a pixel."""
+    """Light of the bust in 32-bit floats: blurred, and unblurred because its width is below a pixel."""
     return [scattered(gl, scene_of("head"), width=width)[..., :3] for width in BLURRED]
 
 
@@ -308,7 +308,7 @@ LIGHTS = ("rgba16f", "r11g11b10f", "rgb9e5", "hue_saturation")
 
 
 @pytest.mark.parametrize("light", LIGHTS)
-def test_light_is_read_in_every_code(gl, light, exact_light):
+def test_light_is_read_in_every_encoding(gl, light, exact_light):
     """Scattered light scores at most 0.1 dB below unscattered light in the same format, and at least 30 dB or the
     format's entry in `COARSE`. Measured: 33.7 dB in R11G11B10F, whose blending loses small lights, to 64.4 dB in
     RGB9E5."""
@@ -322,7 +322,7 @@ def test_light_is_read_in_every_code(gl, light, exact_light):
 @pytest.mark.parametrize(
     "given, blurs", [({"method": "separable"}, 2), ({"method": "gaussians"}, 6), ({"method": "burley"}, 1)]
 )
-def test_blurs_run_on_skin_alone(gl, given, blurs):
+def test_blurs_run_only_on_skin(gl, given, blurs):
     """Each blur draws as many samples as there are skin pixels, and none without skin."""
     pipeline = PIPELINES["hybrid"].with_effect(passes(given))
     names = [stage.name for stage in passes(given)][2:]

@@ -106,7 +106,7 @@ def test_fresnel_reflectance_is_accurate(gl, tmp_path):
 
 
 def test_schlick_approximation_has_its_known_error(gl, tmp_path):
-    """The largest error is 0.059 too high, near 84°."""
+    """The approximation is too high by at most 0.059, near 84°."""
     over = optics(gl, tmp_path, "schlick_fresnel(x)", np.cos(ANGLES))[:, 0] - twin.fresnel(ANGLES)
     worst, angle = np.abs(over).max(), np.degrees(ANGLES[np.abs(over).argmax()])
     assert round(over.max(), 3) == 0.059 and worst == over.max() and abs(angle - 84) < 0.5, (
@@ -114,7 +114,7 @@ def test_schlick_approximation_has_its_known_error(gl, tmp_path):
     )
 
 
-def test_two_layers_transmit_as_much_as_one_of_twice_the_depth(gl, tmp_path):
+def test_two_layers_transmit_as_much_as_one_layer_of_twice_the_depth(gl, tmp_path):
     """The product of the two transmittances agrees to a relative 2e-6; each is exp(-k d)."""
     metres = np.linspace(0, 8, 400)
     single = optics(gl, tmp_path, "transmittance(vec3(0.6, 0.22, 0.17), x), 1.0", metres)[:, :3]
@@ -137,9 +137,9 @@ def _shines(scene: Scene, part: ScenePart) -> bool:
     return max(scene.materials[part.materials[0]].emissive) > 0
 
 
-def test_still_water_mirrors_what_the_mirrored_camera_sees(gl):
-    """Pixels match the mirrored camera's times the Fresnel share in float64, to 1.5e-4 of the brightest; the water is
-    opaque."""
+def test_still_water_shows_the_view_of_the_mirrored_camera(gl):
+    """Pixels match the mirrored camera's pixels times the Fresnel reflectance in float64, to 1.5e-4 of the brightest;
+    the water is opaque."""
     scene = above_water()
     scene = replace(scene, water=Water(deep=BLACK, extinction=OPAQUE))
     drawn = draw(gl, scene, waves=0)
@@ -153,9 +153,9 @@ def test_still_water_mirrors_what_the_mirrored_camera_sees(gl):
     assert error.max() < 1.5e-4, f"{error.max():.2g}, {np.mean(error > 1e-4):.2%} of the pixels"
 
 
-def test_still_water_does_not_displace_what_is_below(gl):
-    """A pixel is that of the image without water, faded to the deep colour by exp(-k d), with no reflection: to 1e-4
-    of the brightest."""
+def test_still_water_does_not_displace_the_image_below(gl):
+    """A pixel equals the image without water, faded to the deep colour by exp(-k d), with no reflection: to 1e-4 of
+    the brightest."""
     water = Water(deep=(0.2, 0.4, 0.6))
     view = View((0.0, 3.0, 4.0), (0.0, -1.0, 0.0), 50.0, 0.5, 40.0)
     floor = ScenePart(plane(30.0, 30.0), placed((0, -1.5, 0)), np.array([0]), casts=False)
@@ -243,7 +243,7 @@ def test_grid_normals_converge_quadratically_to_the_gradients(gl, tmp_path, chop
     assert np.all((ratios > 3.8) & (ratios < 4.1)), f"errors {errors}, ratios {ratios}"
 
 
-def test_waves_are_as_steep_as_asked_and_repeat():
+def test_waves_have_the_requested_slope_and_repeat():
     """The RMS slope is right to 1e-9. After a period every wave is where it was; after half a period it is not."""
     waves = waves_of(Water(slope=0.15), 5, 3, 2.0)
     assert np.sqrt(waves.slopes[0]) == pytest.approx(0.3, rel=1e-9)
@@ -278,7 +278,7 @@ def test_the_grid_has_no_crack():
     assert len(np.unique(GRID.vertices, axis=0)) == len(GRID.vertices), "two vertices lie in one place"
 
 
-def test_the_first_rings_are_apart_in_float32():
+def test_the_first_rings_are_distinct_in_float32():
     """The gap is 10 cm, even 1 km from the origin and with a reach of 40 km; r = a0 + a1 i^4 gives 9 um there."""
     radii = GRID.radii(40000.0)
     assert radii[0] == pytest.approx(FIRST_GAP, rel=1e-3) and radii[-1] == pytest.approx(40000.0)
@@ -466,8 +466,8 @@ def test_a_setting_out_of_range_is_refused(given, said):
     assert str(refused.value) == said
 
 
-def test_inferred_lighting_is_a_one_line_error():
-    """The depth of inferred lighting is another resource after the G-buffer."""
+def test_water_with_inferred_lighting_is_a_one_line_error():
+    """After the G-buffer, inferred lighting stores depth in another resource."""
     with pytest.raises(PipelineError) as refused:
         PIPELINES["inferred"].with_effect(passes_of())
     assert str(refused.value).startswith("pipeline inferred: pass water_behind reads native_depth, which")

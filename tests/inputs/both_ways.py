@@ -1,4 +1,4 @@
-"""Charts drawn by both renderers, and what each of them shows."""
+"""Charts drawn by both renderers, and the contents of each drawing."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Shown:
 
 
 def in_files(chart: Chart) -> list[Shown]:
-    """Return what each panel shows if matplotlib draws it."""
+    """Return the contents of each panel as matplotlib draws it."""
     figure = draw.figure([chart])
     try:
         return [_in_axes(axes, part) for axes, (_, part) in zip(figure.axes, chart.still(), strict=False)]
@@ -112,11 +112,11 @@ AROUND = """<button id="theme"><span></span></button><nav></nav><style id="sides
 
 
 class Page:
-    """A page of a browser with the scripts of a report, which draws one chart after the other.
+    """A browser page with the scripts of a report, which draws one chart after another.
 
     Args:
         page: an empty page.
-        path: the file to write for it; a page without an address cannot keep a state.
+        path: the file to write for the page; a page without an address cannot save its state.
     """
 
     def __init__(self, page, path: Path):
@@ -139,13 +139,13 @@ class Page:
         return heights
 
     def panels(self, chart: Chart) -> list[dict]:
-        """Return what READ finds in each panel, with the first choice of a switch, or with every choice."""
+        """Return READ's result for each panel, with the first choice of a switch or with every choice."""
         self.put(chart)
         switch = chart.switch
         return self.page.evaluate(READ, list(switch.values) if switch and switch.has_panels else [""])
 
     def agree(self, chart: Chart) -> list[Shown]:
-        """Check that a file and the page show a chart's panels alike, as its values place them; return the panels."""
+        """Check that a file and the page agree on the panels and on the places of values; return the panels."""
         files, pages = in_files(chart), self.panels(chart)
         assert len(files) == len(pages)
         named = {name for axis in (chart.x, chart.y) for name in (*axis.names, *(name for _, name in axis.ticks))}
@@ -158,9 +158,9 @@ class Page:
 
 
 def rows_of_tables() -> dict[str, list[dict]]:
-    """Return rows of a run of every table that has charts, by table; a file keeps the columns that charts read.
+    """Return rows of every table that has charts, by table, from a file with only the columns that charts read.
 
-    The sweep's rows were measured at one number of objects, and multiplied for other numbers.
+    The sweep's rows were measured with one number of objects and multiplied for other numbers.
     """
     kept = json.loads((Path(__file__).parent / "charted_rows.json").read_text())
     return {
@@ -177,7 +177,7 @@ def same(file: Shown, page: dict) -> None:
 
 
 def stands(part: Chart, page: dict) -> None:
-    """Check that ticks of the page are within 0.1 pixels of the chart's values, and points within 0.2. d3 moves
+    """Check that ticks on the page are within 0.1 pixels of their values, and points within 0.2 pixels. d3 shifts
     anything with a line by half a pixel to keep it sharp."""
     left, top, right, bottom = page["box"]
     for axis, ticks, index, (start, end) in zip(
@@ -201,7 +201,7 @@ def stands(part: Chart, page: dict) -> None:
 
 
 def _at(axis: Axis, value: Any, start: float, end: float) -> float:
-    """Return the pixel of a value, or of a tick's text, on an axis between two pixels; names begin top or left."""
+    """Return the pixel of a value or a tick's text on an axis between two pixels; names begin at the top or left."""
     if axis.scale == Scale.NAMES:
         low, high = min(start, end), max(start, end)
         return low + (axis.names.index(value) + 0.5) / len(axis.names) * (high - low)

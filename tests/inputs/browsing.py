@@ -31,8 +31,8 @@ def within(browser, theme="light", motion="reduce") -> dict:
 
 
 def scale_of(browser) -> float:
-    """Return the pixels of a laboratory per layout pixel. SwiftShader takes a second per frame at full scale, and
-    half as many pixels per side show the same. Firefox, which is tested at night, draws all pixels."""
+    """Return the laboratory's pixels per layout pixel. SwiftShader takes a second per frame at full scale, and half
+    as many pixels per side are enough. Firefox, which is tested at night, draws all pixels."""
     return 0.5 if browser.browser_type.name == "chromium" else 1
 
 
@@ -80,7 +80,7 @@ class Opened:
         self.is_new = False
 
     def come_to(self, selector: str, until: str = "") -> None:
-        """Show the view of an element, scroll to the element, and wait for what is drawn when it comes into view."""
+        """Show the view of an element, scroll to the element, and wait for the selector `until`, if given."""
         place = self.page.locator(selector).first
         place.evaluate("place => change({ view: place.closest('.view')?.dataset.view ?? state.view })")
         place.scroll_into_view_if_needed()
@@ -202,7 +202,7 @@ class Laboratory(Opened):
         return self.page.evaluate(STATE)
 
     def reset(self) -> None:
-        """Return to the state of a fresh load, and reload if a test changed what the page cannot reset itself."""
+        """Return to the state of a fresh load, and reload if a test changed anything that the page cannot reset."""
         width, height = self.size
         self.page.mouse.move(0, 0)
         if self.page.viewport_size != {"width": width, "height": height}:
@@ -221,7 +221,7 @@ class Laboratory(Opened):
         self.page.evaluate(DRAWN)
 
     def choose(self, **chosen: str) -> None:
-        """Choose options of See it by the names of their controls."""
+        """Choose options of "See it" by the names of their controls."""
         for name, value in chosen.items():
             self.page.locator(f"[data-see={name}]").select_option(value)
         self.settle()
@@ -233,7 +233,7 @@ class Laboratory(Opened):
         self.settle()
 
     def picture(self) -> np.ndarray:
-        """Return what is drawn, int of shape (height, width, 3), top row first."""
+        """Return the drawn image, int of shape (height, width, 3), top row first."""
         uri = self.page.locator("[data-live=canvas]").evaluate("canvas => canvas.toDataURL()")
         with Image.open(io.BytesIO(base64.b64decode(uri.partition(",")[2]))) as image:
             return np.asarray(image.convert("RGB")).astype(int)

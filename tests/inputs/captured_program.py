@@ -60,7 +60,7 @@ def projection():
 
 
 def view():
-    """Return the view of a camera in front of the sphere, looking at it."""
+    """Return the view matrix of a camera in front of the sphere, looking at it."""
     matrix = np.eye(4, dtype=np.float32)
     matrix[2, 3] = -DISTANCE
     return matrix

@@ -1,4 +1,4 @@
-"""A Dockerfile's lines, run in a chroot of Debian: what `docker build` and `docker run` would do, without Docker."""
+"""The lines of a Dockerfile, run in a Debian chroot as `docker build` and `docker run` would run them."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _is_ignored(path: Path) -> bool:
 
 @dataclass
 class Container:
-    """A chroot, with the settings of the Dockerfile for the lines to come."""
+    """A chroot, with the Dockerfile's settings for the remaining lines."""
 
     root: Path
     variables: dict[str, str] = field(default_factory=dict)
@@ -105,7 +105,7 @@ class Container:
                 getattr(self, f"_{word.lower()}")(text)
 
     def run(self, *words: str, user: str = "") -> subprocess.CompletedProcess[str]:
-        """Run these words as `docker run` does, by the entry point."""
+        """Run these words as `docker run` does, through the entry point."""
         return self._within([*self.entry, *(words or self.command)], user or self.user)
 
     def _within(self, words: list[str], user: str) -> subprocess.CompletedProcess[str]:

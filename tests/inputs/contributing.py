@@ -22,7 +22,7 @@ class Example:
 
     Attributes:
         files: texts of new files by their paths.
-        lines: path, the line above, and the line with its end.
+        lines: path, the line above, and the new line with its line break.
     """
 
     files: dict[str, str]
@@ -58,6 +58,6 @@ def a_copy_of_the_rooms(folder: Path) -> Path:
 
 
 def normalbench_in(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
-    """Run the command of a copy."""
+    """Run the command of a copied package in its folder."""
     command = [sys.executable, "-m", "normalbench", *arguments]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True)

@@ -7,8 +7,8 @@ from normalbench.encodings.catalogue import ENCODINGS
 
 
 def glsl(tmp_path: Path, name: str, encode: str, decode: str, size: int, before: str = ""):
-    """Return an encoding with this GLSL, after functions of its own. Its Python belongs to another encoding, because
-    nothing here runs it."""
+    """Return an encoding with this GLSL, preceded by its own functions in `before`. Its Python belongs to another
+    encoding, because no test runs the Python."""
     path = tmp_path / f"{name}.glsl"
     path.write_text(
         f"{before}vec{size} {name}_encode(vec3 n, vec3 view) {{ return {encode}; }}\n"

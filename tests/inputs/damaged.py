@@ -48,7 +48,7 @@ WORDS = [
 
 
 def mutated(data: bytes, rng: np.random.Generator) -> bytes:
-    """Return the data with a few bytes changed, a run cut out or doubled, a word inserted, or the end lost."""
+    """Return the data with a few bytes changed, a run cut out or doubled, a word inserted, or the end cut off."""
     mutant = bytearray(data)
     for _ in range(rng.integers(1, 4)):
         start, length = int(rng.integers(max(len(mutant), 1))), int(rng.integers(1, 9))
@@ -68,7 +68,7 @@ def mutated(data: bytes, rng: np.random.Generator) -> bytes:
 
 
 def revalued(text: bytes, rng: np.random.Generator) -> bytes:
-    """Return JSON with a few of its values replaced by others, so that readers get deep into it."""
+    """Return JSON with a few of its values replaced by others, so that readers get past its syntax."""
     document = json.loads(text)
     for _ in range(rng.integers(1, 4)):
         holder = document

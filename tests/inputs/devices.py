@@ -1,7 +1,7 @@
 """Device files for tests. Their figures are real rows of the catalogue, altered: none of these devices was measured.
 
-`real_rows.json` says where its rows come from. An altered device truncates some formats where the emulation rounds, or
-computes on normals of half precision, as a GPU with other rounding or precision would.
+`real_rows.json` says where its rows come from. An altered device truncates some formats where the emulation rounds,
+or computes with half-precision normals, as a GPU with other rounding or precision would.
 """
 
 import json
@@ -35,7 +35,7 @@ TEN = (
 
 
 def codec_rows(truncated=(), half=False, ms_per_bit=0.05) -> list[dict]:
-    """Return real rows; those of some targets are truncated, or all are in half precision."""
+    """Return real rows, with the rows of some targets truncated or all rows in half precision."""
     return [
         _row(row, "mediump" if half else "truncates" if row["target"] in truncated else "run", ms_per_bit)
         for row in RECORDED["rows"]

@@ -7,14 +7,14 @@ import numpy as np
 
 
 def _kept(array: np.ndarray) -> np.ndarray:
-    """Return the array as read-only, because all tests share it."""
+    """Make the array read-only, because all tests share it, and return it."""
     array.flags.writeable = False
     return array
 
 
 @cache
 def hard_directions() -> np.ndarray:
-    """Return axes, diagonals with both zeros, poles and fold seams with a few ulps around; float32 (count, 3)."""
+    """Return axes, diagonals with both zeros, poles and fold seams, with their neighbours; float32 (count, 3)."""
     steps = [0.0, -0.0, *(s * k for k in (2.0**-24, 2.0**-23, 3e-7, 1e-5, 3e-4) for s in (1, -1))]
     near_axes = [np.insert([a, b], i, s) for i, s, a, b in itertools.product(range(3), (1.0, -1.0), steps, steps)]
     diagonals = [d for d in itertools.product((-1.0, 0.0, -0.0, 1.0), repeat=3) if any(d)]

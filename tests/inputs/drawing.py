@@ -27,7 +27,7 @@ EXACT = ("forward", "forward_multipass", "deferred", "prepass", "hybrid", "infer
 
 @dataclass(frozen=True)
 class Drawn:
-    """A frame read back, row 0 on top: the image, light targets, the G-buffer unpacked; the shadow map from row 0."""
+    """A frame read back: image, light targets and unpacked G-buffer, top row first; shadow map, row 0 first."""
 
     image: np.ndarray
     light: list[np.ndarray]

@@ -12,7 +12,7 @@ DECODE = "vec3 mine_decode(vec2 e, vec3 view) { return normalize(vec3(e, 1.0 - a
 
 
 def _encode(body: str, before: str = "") -> str:
-    """Return a shader whose encoder ends in these statements; `a` is the code."""
+    """Return a shader whose encoder ends with these statements; `a` is the code."""
     return f"{before}\nvec2 mine_encode(vec3 n, vec3 view) {{ {FOLD} {body} return a; }}\n{DECODE}"
 
 

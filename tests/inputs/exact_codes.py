@@ -17,7 +17,7 @@ def storage(kind: str, *bits: int) -> Storage:
 
 
 def nearest_of(points: np.ndarray, side: int) -> Encoding:
-    """Return an encoding to the number of the nearest of side x side points."""
+    """Return an encoding that stores the index of the nearest of side x side points."""
 
     def encode(n: Vec3, _: Vec3) -> Vec2:
         table = jnp.asarray(points, n.z.dtype)
@@ -46,7 +46,7 @@ def nearest_of(points: np.ndarray, side: int) -> Encoding:
 
 
 def fibonacci(count: int) -> np.ndarray:
-    """Return points of equal area along a spiral, shape (count, 3)."""
+    """Return points along a spiral, each for an equal area of the sphere; shape (count, 3)."""
     index = np.arange(count) + 0.5
     z, angle = 1 - 2 * index / count, np.pi * (1 + np.sqrt(5)) * index
     r = np.sqrt(1 - z * z)

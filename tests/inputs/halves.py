@@ -1,4 +1,4 @@
-"""A dome in normals of vertices next to the same dome in a normal map, as files have them."""
+"""A glTF file with a dome in vertex normals next to the same dome in a normal map."""
 
 from __future__ import annotations
 
@@ -65,6 +65,6 @@ def halves(
 
 
 def file_tangents(way: np.ndarray) -> list[tuple[float, ...]]:
-    """Return glTF tangents: where the image's right is on the square, and on which side its up is."""
+    """Return glTF tangents: the direction of the image's right on the square, and the sign that gives its up."""
     right, up = way
     return [(*right, 0, np.sign(right[0] * up[1] - right[1] * up[0]))] * 4

@@ -1,4 +1,4 @@
-"""A start-up module of Python that hides what a system lacks from the program, and adds what only the system has.
+"""A Python start-up module that hides names that a system lacks from the program, and adds names that only it has.
 
 Other packages still see all of Linux, because they are installed for Linux here.
 """
@@ -17,14 +17,14 @@ GONE = set(TOLD["gone"])
 
 
 def _of_windows():
-    """Return what only Windows has, as far as the program uses it, by module."""
+    """Return the names that only Windows has and that the program uses, by module."""
     import ctypes
     import fcntl
     import os
     import signal
 
     class Kernel:
-        """kernel32: jobs that hold a process each."""
+        """kernel32: jobs that each hold a process."""
 
         def __init__(self):
             self.held = {}

@@ -99,7 +99,7 @@ def _times(pipeline: str, noise: np.random.Generator) -> dict[str, Any]:
 
 
 def write_history(folder: Path, commits: int = COMMITS, more: int = 0, seed: int = 0) -> Path:
-    """Write a folder with a run of each commit, whose names are in no particular order."""
+    """Write a folder with a run for each commit; the folders' names are in no particular order."""
     noise = np.random.default_rng(seed)
     for number in range(commits):
         write_run(folder / name_of(number)[:8], number, steps(number, noise, more))

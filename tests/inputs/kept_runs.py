@@ -22,7 +22,7 @@ Run = Callable[..., subprocess.CompletedProcess[bytes]]
 
 
 def kept(run: Run, folder: Path) -> Run:
-    """Return a `tools._piped` that keeps results; it takes a command, its input and a descriptor of an output."""
+    """Return a `tools._piped` that keeps results; it takes a command, its input and an output descriptor."""
 
     def kept_run(command: list[str], given: bytes, *files: int) -> subprocess.CompletedProcess[bytes]:
         tool = shutil.which(command[0])

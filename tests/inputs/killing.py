@@ -1,10 +1,10 @@
-"""Writers of files that are killed before each of their changes, one after the other.
+"""Writers of files, each killed before each of its changes in turn.
 
     python tests/inputs/killing.py WRITER FOLDER
 
 Prints how often the writer was killed. Raises AssertionError if a file is neither the old version nor the new, or if
-the writer does not end with the files of an undisturbed writer. A process that runs no thread forks for each kill, so
-that slow imports happen once.
+the writer does not end with the files of an undisturbed writer. A process without threads forks for each kill, so
+that slow imports happen only once.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ ROWS = [Step({"number": number}, None, "") for number in range(4)]
 
 
 def keep_rows(folder: Path, count: int = len(ROWS)) -> None:
-    """Keep rows as `run` does: those that are missing, and then the mark that the run is finished."""
+    """Keep the missing rows as `run` does, and then the mark that the run is finished."""
     rows = both_ways.rows_of_tables()["depth"]
     with opened(folder / "run", FACTS) as run:
         for step, row in zip(ROWS[:count], rows, strict=False):

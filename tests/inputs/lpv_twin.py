@@ -1,7 +1,7 @@
 """Light propagation volumes in NumPy and float64, written from the papers: a reference for the shaders.
 
-A field has the shape (x, y, z, 4, channels): four coefficients of spherical harmonics in each cell. A point is in
-cells from the low corner of the volume.
+A field has the shape (x, y, z, 4, channels): four coefficients of spherical harmonics in each cell. Points are given
+in cells from the low corner of the volume.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ SIDE = (square_angle(0.5) - FRONT) / 4
 
 
 def flux(field: np.ndarray) -> np.ndarray:
-    """Return all light of a field, for each channel: intensity over the sphere."""
+    """Return a field's total flux for each channel: its intensity integrated over the sphere."""
     return field[..., 0, :].sum(axis=(0, 1, 2)) * 2 * np.sqrt(np.pi)
 
 
 def added(shape: tuple[int, int, int], points: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return values of points added up in the cells of index floor(point); points outside are left out."""
+    """Return the sum of the points' values in each cell, floor(point); points outside are left out."""
     cell = np.floor(points).astype(int)
     inside = np.all((cell >= 0) & (cell < shape), axis=-1)
     field = np.zeros((*shape, *values.shape[1:]))
@@ -62,13 +62,13 @@ def injected(cells: int, points: np.ndarray, normals: np.ndarray, fluxes: np.nda
 
 
 def blocked(cells: int, points: np.ndarray, normals: np.ndarray, areas: np.ndarray) -> np.ndarray:
-    """Return the potentials of surfels at the cells' corners, (x, y, z, 4); areas are in faces of a cell."""
+    """Return the potentials of surfels at the cells' corners, (x, y, z, 4); the unit of area is a cell's face."""
     values = lobe(normals) * np.minimum(areas, 1)[:, None]
     return added((cells + 1,) * 3, points + 0.5 + (SHIFT - 0.5) * normals, values)
 
 
 def shifted(field: np.ndarray, by: np.ndarray) -> np.ndarray:
-    """Return the field moved by `by` cells, with zeros from outside."""
+    """Return the field moved by `by` cells; zeros move in from outside."""
     moved = np.zeros_like(field)
     there = tuple(slice(max(-b, 0), field.shape[i] - max(b, 0)) for i, b in enumerate(by))
     here = tuple(slice(max(b, 0), field.shape[i] + min(b, 0)) for i, b in enumerate(by))

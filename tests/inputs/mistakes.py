@@ -96,11 +96,11 @@ class Mistake(NamedTuple):
     """A mistake: the text of its finding, and the edits that make it; each edit must change the text.
 
     Attributes:
-        said: a regular expression; empty if the mistake changes no result. STEPS stands for the largest integer of
-            the given bits, BITS for their number.
-        edits: replaced texts with their replacements; of several spellings, the first in the text applies.
-        code: what becomes of the code; {} stands for it, in [0, 1] if the text uses that range, else in [-1, 1].
-        unit: whether the code is in [0, 1], into which other codes are brought.
+        said: regular expression for the finding; empty if the mistake changes no result. STEPS stands for the largest
+            integer of the given bits, BITS for their number.
+        edits: replaced texts with their replacements; of several spellings, the first that the text contains applies.
+        code: the changed code; {} stands for the old code, in [0, 1] if the text uses that range, else in [-1, 1].
+        unit: whether the code is in [0, 1]; other codes are mapped to this range.
     """
 
     said: str
@@ -193,6 +193,6 @@ def said(mistake: str, bits: int) -> str:
 
 
 def in_bits(text: str, bits: int) -> str:
-    """Return a text with the integers of these bits."""
+    """Return a text with the integers of this many bits filled in."""
     steps = 2**bits - 1
     return text.replace("STEPS", str(steps)).replace("LESS", str(steps - 1)).replace("BITS", str(bits))

@@ -52,7 +52,7 @@ def swapped_calls(text: str) -> list[tuple[str, str]]:
 
 
 def part_of(text: str, function: str) -> tuple[int, int]:
-    """Return where the definition of `function` starts and ends, or the whole text if it is empty."""
+    """Return the start and end of the definition of `function`, or of the whole text if `function` is empty."""
     if not function:
         return 0, len(text)
     start = text.index(function)
@@ -60,8 +60,8 @@ def part_of(text: str, function: str) -> tuple[int, int]:
 
 
 def mutants(glsl: Path, shared: Iterable[str] = ()) -> list[tuple[str, Path, str]]:
-    """Return (what, file, its text) for each pair of arguments exchanged in an encoding's file, and in those that it
-    shares: FILE or FILE:FUNCTION in the folder above."""
+    """Return (what, file, its text) for each pair of arguments exchanged in an encoding's file and in its shared
+    files: FILE or FILE:FUNCTION in the folder above."""
     changes = []
     for spec in ("", *shared):
         name, _, function = spec.partition(":")

@@ -35,7 +35,7 @@ def scene_of_meshes(*meshes: Mesh, view: View = FROM_ABOVE) -> Scene:
 
 
 def turned(scene: Scene, rotation: np.ndarray) -> Scene:
-    """Return scene and camera under one rotation, (3, 3), of column vectors."""
+    """Return the scene and its camera after one rotation, a (3, 3) matrix for column vectors."""
     whole = np.eye(4)
     whole[:3, :3] = rotation
     view = scene.view
@@ -107,7 +107,7 @@ def by_dome(radius: float, x: float) -> float:
 
 
 def by_pit(radius: float, height: float) -> float:
-    """Return V at the bottom of a pit: R^2 / (R^2 + h^2), which a disc in its mouth would take away."""
+    """Return V at the bottom of a pit: R^2 / (R^2 + h^2), the share that a disc over the pit's mouth would block."""
     return radius**2 / (radius**2 + height**2)
 
 

@@ -1,4 +1,4 @@
-"""Names that Windows and macOS lack in Python, by the type checker's own list, and a Python without them."""
+"""Python names that Windows and macOS lack, from the type checker's own list, and a Python without these names."""
 
 import ast
 import importlib.util
@@ -101,8 +101,9 @@ def on(system, folder, *commands, before=""):
 
     Args:
         folder: an empty folder, for the module that Python loads at its start.
-        commands: the words of one command, or several: one process runs these in turn and says how each ended.
-        before: what the process does before anything else.
+        commands: the words of one command, or several commands: one process runs these in turn and reports how each
+            ended.
+        before: code that the process runs before anything else.
     """
     names = [name for name in sys.stdlib_module_names if not name.startswith("_")]
     gone = [name for name in names if is_gone(name, system)]

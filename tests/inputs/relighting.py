@@ -76,10 +76,10 @@ class Lit:
 
 
 def relight(scene: Scene, seen: Surfaces, shadow_map: np.ndarray | None) -> Lit:
-    """Return the light of all lamps of the scene on surfaces.
+    """Return the light from all lamps of the scene on surfaces.
 
     Args:
-        shadow_map: depths, its first row at 0; None leaves the sun without shadows.
+        shadow_map: depths, row 0 first; None leaves the sun without shadows.
     """
     sums = np.zeros((4, len(seen.position), 3))
     for light in scene.lights:

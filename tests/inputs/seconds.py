@@ -1,9 +1,9 @@
-"""Seconds of each test file. `pytest --seconds FILE` adds them up and, if all tests pass, writes them; those of files
-that did not run are kept.
+"""Seconds per test file. `pytest --seconds FILE` adds up the seconds and, if all tests pass, writes them; the seconds
+of files that did not run are kept.
 
-A file's seconds run from the end of the test before its own to the end of each of its own, in the process that ran
-it: processor time, including all processes that it started, and wall time. Four processes on two cores wait for one
-another, so only processor seconds add up to a machine's.
+Each test's seconds run from the end of the test before it to its own end, in the process that ran it: processor time,
+including all processes that it started, and wall time. Four processes on two cores wait for one another, so only
+processor seconds add up to a machine's.
 """
 
 import json
@@ -35,7 +35,7 @@ def _seconds(process: psutil.Process) -> float:
 
 
 class Seconds:
-    """Seconds added up in the process that runs tests; of several processes, the parent writes the sum."""
+    """Seconds added up in each process that runs tests; if there are several, the parent writes the sum."""
 
     def __init__(self, path: Path):
         self._path = path
@@ -50,7 +50,7 @@ class Seconds:
         self._before = now
 
     def pytest_collection_finish(self):
-        """Add all that a process did before its first test."""
+        """Add the seconds that a process spent before its first test."""
         self._add(COLLECTING)
 
     @pytest.hookimpl(wrapper=True)

@@ -1,6 +1,6 @@
-"""Tests run in a process of its own, in which every call checks the shapes in annotations.
+"""A process of its own for tests, in which every call checks the shapes in annotations.
 
-Modules import the names of these annotations for type checkers alone; here they are builtins.
+Modules import the names of these annotations only for type checkers; here the names are builtins.
 """
 
 import ast
@@ -37,7 +37,7 @@ def checked(function: Callable) -> Callable:
 
 
 def with_shapes() -> Iterator[str]:
-    """Yield the functions with shapes in their annotations, by the sources."""
+    """Yield the names of the functions with shapes in their annotations, from the sources."""
     for path in (path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py")):
         module = ".".join(("normalbench", *path.relative_to(ROOT).with_suffix("").parts))
         tree = ast.parse(path.read_text())

@@ -1,4 +1,4 @@
-"""The cases of a test that run by day, drawn by the commit."""
+"""The cases of a test that run by day, drawn at random for each commit."""
 
 import random
 import subprocess
@@ -22,7 +22,7 @@ def drawn_of(values: Iterable[Any], count: int) -> list[Any]:
 
 
 def is_drawn(test: str, of: int) -> bool:
-    """Whether a test that runs for one commit in `of`, by its id, runs for this commit."""
+    """Whether a test that runs for one commit in `of` runs for this commit; `test` is its id."""
     return random.Random(f"{_commit()} {test}").randrange(of) == 0
 
 

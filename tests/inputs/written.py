@@ -1,4 +1,4 @@
-"""Small files of users' kinds, written for tests: glTF and PNG follow their specifications."""
+"""Small files such as users have, written for tests: glTF and PNG follow their specifications."""
 
 from __future__ import annotations
 
@@ -196,7 +196,7 @@ def image_spec(height: int, width: int, channels: list[tuple[str, Any]], **attri
 
 
 def write_image(path: Path, pixels: np.ndarray, **attributes) -> Path:
-    """Write a file of (height, width, channels) by OpenImageIO."""
+    """Write pixels, (height, width, channels), to a file with OpenImageIO."""
     file, names = oiio.ImageOutput.create(str(path)), "RGBA" if pixels.shape[2] > 1 else "Y"
     spec = image_spec(*pixels.shape[:2], [(name, pixels.dtype) for name in names[: pixels.shape[2]]], **attributes)
     assert file.open(str(path), spec) and file.write_image(pixels) and file.close(), file.geterror()
@@ -204,7 +204,7 @@ def write_image(path: Path, pixels: np.ndarray, **attributes) -> Path:
 
 
 def write_exr(path: Path, planes: dict[str, Any], **attributes) -> Path:
-    """Write an OpenEXR file of planes by name, or of several parts of them."""
+    """Write an OpenEXR file with planes by name, or with several parts that each have such planes."""
     parts = planes if isinstance(next(iter(planes.values())), dict) else {"": planes}
     specs = []
     for name, part in parts.items():

@@ -71,7 +71,7 @@ COST_TABLES = (
                 counted(title, way, family, arithmetic=arithmetic)
                 for way in WAYS
                 for family, in_floats in (("navi21", f"{way}: Navi 2x"), ("skl", "Skylake"))
-                for arithmetic, title in (("float", in_floats), ("half", "in halves"))
+                for arithmetic, title in (("float", in_floats), ("half", "half floats"))
             ),
             *(counted("", "encode", "navi21", name, arithmetic="float") for name in ("looped", "loops")),
         ],

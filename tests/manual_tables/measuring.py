@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def measure(table: Table, is_again: bool = False) -> Measured:
-    """Measure a table. With `is_again`, measure only what takes less time and is compared."""
+    """Measure a table. With `is_again`, use its quicker commands if it has any."""
     rows = (is_again and table.again) or table.rows
     return table.measured(rows() if callable(rows) else [row for command in rows for row in rows_of(command)])
 
@@ -47,7 +47,7 @@ def answers() -> list[Row]:
 
 
 def simulated() -> list[Row]:
-    """Return runs on many workers, by the step times of a record."""
+    """Return simulated runs on many workers, from the step times of a record."""
     command = [sys.executable, "-m", "tests.speed", "simulate"]
     return json.loads(subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout)
 
@@ -122,7 +122,7 @@ def exact_named(rows: list[Row]) -> list[Row]:
 
 
 def most_differing(rows: list[Row]) -> list[Row]:
-    """Return a row for each encoding: by storage, the most texels that differ in any language."""
+    """Return a row for each encoding: for each storage, the largest number of texels that differ in any language."""
     ran = sorted((row for row in rows if "differing" in row), key=lambda row: row["differing"])
     return [
         {"encoding": encoding} | {row["storage"]: row["differing"] for row in ran if row["encoding"] == encoding}

@@ -51,7 +51,7 @@ class Column:
         return self.empty if value is None else self.form(value)
 
     def agrees(self, kept: Any, measured: Any) -> bool:
-        """Whether a figure is near the shown figure; whether anything else is the same."""
+        """Whether a figure is close to the shown figure; for any other value, whether it is the same."""
         if not (is_figure([kept]) and is_figure([measured])):
             return kept == measured
         (shown,) = re.findall(r"-?[\d.]+(?:e-?\d+)?", self.text(kept))
@@ -170,7 +170,7 @@ class Table:
         return " ".join(str(value) for value, column in zip(line, self.columns, strict=False) if column.is_key)
 
     def differences(self, kept: Measured, measured: Measured) -> list[str]:
-        """Return a line per kept figure that the new measurement does not confirm; skip counts by other compilers."""
+        """Return a line per kept figure that the new measurement does not confirm; skip other compilers' counts."""
         names = [[*map(self.name, lines)] for lines in (kept.lines, measured.lines)]
         if names[0] != names[1]:
             return [f"the lines are {names[1]}, and were {names[0]}"]

@@ -1,4 +1,4 @@
-"""The measured tables of the manual as values: the measurement of each, its columns, and how near a figure must be
+"""The measured tables of the manual as values: each table's measurement and columns, and how close a figure must be
 when it is measured again. Imports nothing heavy."""
 
 from collections.abc import Mapping
@@ -55,7 +55,7 @@ def fifteen_times(lines: list[Line]) -> None:
 
 
 def noise_helps(lines: list[Line]) -> None:
-    """Check that noise lowers the error by at least a quarter, and in the mean of frames by nearly two bits; without
+    """Check that noise lowers the error by at least a quarter, and by nearly two bits if frames are averaged; without
     noise, more frames change nothing."""
     eight, ten = lines[3], lines[4]
     assert (eight[:3], ten[:3]) == (["rg8", "moving", 8], ["rgb10a2", "none", 1])
@@ -75,7 +75,7 @@ def a_sixth_moves(lines: list[Line]) -> None:
 
 
 def tangent_space_means(lines: list[Line]) -> None:
-    """Check the means on bumps in BC5, which docs/maps.md names."""
+    """Check the means on bumps in BC5 that docs/maps.md gives."""
     (line,) = [line for line in lines if line[0] == "bc5"]
     assert [line[2], *line[-2:]] == pytest.approx([0.463, 0.504, 0.574], abs=6e-4)
 

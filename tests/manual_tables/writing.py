@@ -6,7 +6,7 @@ WIDTH = 120
 
 
 def two_digits(value: float) -> str:
-    """Return two significant digits, without an exponent above 1."""
+    """Return two significant digits, without an exponent for values above 1."""
     return f"{float(f'{value:.2g}'):g}"
 
 

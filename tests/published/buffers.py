@@ -38,8 +38,8 @@ SHARED_EXPONENT = (_light_figure("largest number of RGB9E5", "rgb9e5", 65408.0, 
 
 FAR = 1e7
 OWN_LOGARITHM = (
-    "his code is log(C x + 1), ours log(x / near) with near = 1 / C; they differ where C x is not large, and all that "
-    "is nearer than 1 / C has one code of ours"
+    "his code is log(C x + 1), ours log(x / near) with near = 1 / C; they differ where C x is not large, and our "
+    "encoding has one code for all depths below 1 / C"
 )
 
 

@@ -1,4 +1,4 @@
-"""Figures of articles, engines and libraries for codes: how many, how large, how far apart."""
+"""Figures of articles, engines and libraries for codes: their number, size and spacing."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ KAPLANYAN = (
         1,
         "%",
         Counted(counts.share_of_cells, "kaplanyan"),
-        "as the count of texels",
+        "for the same reason as the count of texels",
     ),
 )
 
@@ -134,7 +134,7 @@ UNITY = (
         Counted(partial(counts.bits, "tetrahedral", "rgb8_10_10_2"), "unity"),
     ),
     Figure(
-        "bits of the normal before",
+        "bits per normal before the change",
         "pull request 243",
         20,
         0,
@@ -148,7 +148,7 @@ UNITY = (
         1,
         "times",
         Counted(counts.tetrahedral_over_octahedral, "unity"),
-        "similar it is not: octahedral 11:11 is a fifth better in the mean, and nearly half in the maximum",
+        "not similar: octahedral 11:11 has a mean error a fifth lower, and a maximum nearly half as large",
     ),
 )
 XEOKIT = (
@@ -159,7 +159,7 @@ XEOKIT = (
         3,
         "rad",
         Counted(counts.supremum_in_radians, "xeokit"),
-        "fifteen times less; 0.001 rad would be that of 12 bits",
+        "15 times smaller; 0.001 rad would be the worst angle of 12:12 bits",
     ),
 )
 NORMAL_PACK = (

@@ -76,19 +76,19 @@ def share_of_texels(encoding: str) -> float:
 
 
 def optimised_points(degrees: float) -> float:
-    """Return the minimum number of points on optimised rings that have every direction within this angle."""
+    """Return the minimum number of points on optimised rings with every direction within this angle of a point."""
     return min(float(points_needed(math.radians(degrees), rings).sum()) for rings in range(8, 200))
 
 
 def uniform_points(degrees: float) -> float:
-    """Return the number of points on as many rings, if each ring has as many points as the longest ring needs."""
+    """Return the number of points on equally many rings, each with as many points as the longest ring needs."""
     counts = {rings: points_needed(math.radians(degrees), rings) for rings in range(8, 200)}
     rings = min(counts, key=lambda count: counts[count].sum())
     return rings * float(counts[rings].max())
 
 
 def bits_above_the_optimum() -> float:
-    """Return 2 log2 of the supremum of octahedral 8:8 over the smallest possible maximum of as many codes."""
+    """Return 2 log2 of the supremum of octahedral 8:8 over the smallest possible maximum of equally many codes."""
     values = [Quality("octahedral", "rg8_snorm", column).figure() for column in ("angle_sup_deg", "limit_max_deg")]
     worst, least = (value or math.nan for value in values)
     return 2 * math.log2(worst / least)

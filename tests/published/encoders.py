@@ -140,11 +140,11 @@ TYLER = {
     "16P, 8:8 precise": ("octahedral_precise", "rg8", 0.327725, 0.631641),
     "18P, 9:9 precise": ("octahedral_precise", "rgb8_9_9", 0.163475, 0.315057),
     "20P, 10:10 precise": ("octahedral_precise", "rgb8_10_10", 0.081684, 0.158212),
-    "14RH, 7:7 of a half": ("hemi_octahedral", "rg8_7_7", 0.501312, 1.099875),
-    "16RH, 8:8 of a half": ("hemi_octahedral", "rg8", 0.249797, 0.546843),
-    "18RH, 9:9 of a half": ("hemi_octahedral", "rgb8_9_9", 0.124669, 0.273832),
-    "20RH, 10:10 of a half": ("hemi_octahedral", "rgb8_10_10", 0.062234, 0.136537),
-    "22RH, 11:11 of a half": ("hemi_octahedral", "rgb8_11_11", 0.031113, 0.068080),
+    "14RH, 7:7, hemisphere": ("hemi_octahedral", "rg8_7_7", 0.501312, 1.099875),
+    "16RH, 8:8, hemisphere": ("hemi_octahedral", "rg8", 0.249797, 0.546843),
+    "18RH, 9:9, hemisphere": ("hemi_octahedral", "rgb8_9_9", 0.124669, 0.273832),
+    "20RH, 10:10, hemisphere": ("hemi_octahedral", "rgb8_10_10", 0.062234, 0.136537),
+    "22RH, 11:11, hemisphere": ("hemi_octahedral", "rgb8_11_11", 0.031113, 0.068080),
 }
 CUBE = "on directions of points in a cube, normalize(2 rand - 1), which are denser towards its corners"
 

@@ -22,7 +22,7 @@ class Measure(Protocol):
 
     @property
     def scatter(self) -> float:
-        """The share by which a figure of samples may differ from that of another set."""
+        """The share by which a sampled figure may differ between sets of samples."""
         ...
 
     def figure(self) -> float | None:
@@ -35,10 +35,10 @@ class Figure:
     """A figure that a source prints.
 
     Attributes:
-        what, place: what the figure is, and its place in the source.
+        what, place: description of the figure, and its place in the source.
         value: the printed value, with `digits` digits after the point, in `unit`.
         ours: how it is measured here.
-        why: why ours differs; or, if it is reproduced, what the source leaves out.
+        why: the reason why ours differs; or, if it is reproduced, a detail that the source leaves out.
         is_maximum: whether it is the largest of samples, and ours the supremum.
         bound: "below" or "above" if the source gives only a bound.
         within: additional difference allowed for ours, in `unit`.

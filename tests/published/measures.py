@@ -105,7 +105,7 @@ class ArticleMse(Exact):
 
 @cache
 def in_a_cube(is_half: bool) -> NormalSet:
-    """Return directions of points spread evenly in a cube, denser towards its corners; half of a sphere if asked."""
+    """Return directions of points spread evenly in a cube, denser towards its corners; a hemisphere if `is_half`."""
     points = np.random.default_rng(0).random((COUNT, 3)) * 2 - 1
     n = points / np.linalg.norm(points, axis=1, keepdims=True)
     n[:, 2] = np.abs(n[:, 2]) if is_half else n[:, 2]

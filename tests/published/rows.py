@@ -51,7 +51,7 @@ def unexplained(measured: Sequence[Row]) -> list[str]:
 
 
 def text(measured: Sequence[Row], width: int) -> str:
-    """Return a table in Markdown for each source, and below it why figures differ."""
+    """Return a table in Markdown for each source, and below it the reasons why figures differ."""
     return "\n".join(_of_source(name, measured, width) for name in dict.fromkeys(row["source"] for row in measured))
 
 

@@ -19,7 +19,7 @@ def play():
 
 @contextmanager
 def _launched(play, path, arguments):
-    """Launch Chromium, or Firefox with --firefox: an installed browser, by its own protocol, on a screen."""
+    """Launch Chromium, or an installed Firefox with --firefox, through its own protocol and on a screen."""
     with ExitStack() as stack:
         if path.endswith("chromium"):
             opened = play.chromium.launch(executable_path=path, args=arguments)
@@ -39,7 +39,7 @@ def browser(play, browser_path):
 
 @pytest.fixture(scope="session")
 def gl_browser(play, browser_path):
-    """A browser with WebGL2, by software."""
+    """A browser with WebGL 2, rendered in software."""
     with _launched(play, browser_path, GL_ARGUMENTS) as opened:
         yield opened
 
@@ -64,7 +64,7 @@ def chart_page(browser, tmp_path_factory):
 
 @pytest.fixture
 def agree(chart_page):
-    """A function that returns the panels of a chart that a file and the page show alike."""
+    """A function that checks that a file and the page show a chart alike, and returns its panels."""
     return chart_page.agree
 
 

@@ -21,7 +21,7 @@ LINES = """Array.from(document.querySelectorAll("[data-compare] [data-group] tbo
 
 
 def compared(opened: Opened, a: str, b: str) -> dict[tuple[str, str], dict]:
-    """Return all lines of the comparison, by figure and table; of several conditions the one that differs most."""
+    """Return all lines of the comparison, by figure and table; of several conditions, the line that differs most."""
     opened.page.evaluate("([a, b]) => change({ view: 'compare', at: '', a, b })", [a, b])
     opened.page.wait_for_selector("[data-compare] [data-group]")
     lines = opened.page.evaluate(LINES)
@@ -94,6 +94,6 @@ def test_image_zooms_to_its_pixel_values_and_blinks(opened):
     assert opened.said == []
 
 
-def test_without_b_the_comparison_asks_for_it(opened):
+def test_comparison_without_b_asks_for_b(opened):
     opened.page.evaluate("(a) => change({ view: 'compare', at: '', a, b: '' })", A)
     opened.says("[data-compare]", "Choose A and B above")

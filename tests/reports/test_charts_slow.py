@@ -25,8 +25,8 @@ from normalbench.reports.charts.chart import (
 )
 
 
-def test_a_matplotlibrc_changes_no_chart(tmp_path, monkeypatch):
-    """The file in the current folder may be a stranger's: LaTeX is a program, and reads other files."""
+def test_a_matplotlibrc_does_not_change_charts(tmp_path, monkeypatch):
+    """The file in the current folder may come from a stranger, and LaTeX, which it can turn on, reads other files."""
     draw.write([a_chart()], (tmp_path / "before.png", "png"))
     monkeypatch.setitem(pyplot.rcParams, "text.usetex", True)
     monkeypatch.setitem(pyplot.rcParams, "figure.facecolor", "red")
@@ -45,14 +45,14 @@ def test_file_contains_finding_units_and_names_and_is_reproducible(tmp_path):
         assert f">{text}</text>" in texts[0], text
 
 
-def test_several_charts_are_one_file(tmp_path):
+def test_several_charts_are_written_to_one_file(tmp_path):
     for count in (1, 2):
         draw.write([a_chart()] * count, (tmp_path / f"{count}.png", "png"))
     with Image.open(tmp_path / "1.png") as single, Image.open(tmp_path / "2.png") as two:
         assert single.width == two.width and two.height == pytest.approx(2 * single.height, abs=2)
 
 
-def test_names_at_ends_keep_apart_and_in_order():
+def test_names_at_line_ends_stay_apart_and_in_order():
     axis = Axis(title="", domain=(0.0, 1.0))
     values = [0.5, 0.51, 0.49, 0.9]
     shares = lines_apart(axis, values, 100.0, 10.0)
@@ -68,13 +68,13 @@ def test_names_at_ends_keep_apart_and_in_order():
     assert min(b - a for a, b in itertools.pairwise(tops)) >= 0.9 * 9.5 * figure.dpi / 72
 
 
-def test_lines_and_the_names_at_their_ends_are_the_same_both_ways(agree):
+def test_lines_and_their_end_labels_match_in_file_and_page(agree):
     (shown,) = agree(a_chart())
     assert shown.marks == {Kind.LINES: 2} and shown.texts == [HOSTILE, "xy rg8"]
     assert shown.extents["y"] == pytest.approx((16 - 0.04 * 2384, 2400 + 0.04 * 2384))
 
 
-def test_every_kind_of_mark_is_the_same_both_ways(agree):
+def test_every_kind_of_mark_matches_in_file_and_page(agree):
     rows = tuple({"codec": f"c{n}", "x": float(n), "z": n + 2.0, "name": f"c{n}", "rest": n == 1} for n in range(4))
     names = Axis(title="", scale=Scale.NAMES, names=distinct(rows, "name"))
     marks = [Mark(kind=kind, y="name") for kind in (Kind.POINTS,)]
@@ -97,7 +97,7 @@ def test_every_kind_of_mark_is_the_same_both_ways(agree):
 
 
 @pytest.mark.parametrize("name", [name for name in ROWS if TABLES[name].work.has_charts])
-def test_every_chart_of_a_run_is_the_same_both_ways(agree, name):
+def test_every_chart_of_a_run_matches_in_file_and_page(agree, name):
     charts = list(TABLES[name].work.charts(ROWS[name]))
     assert charts and len({chart.name for chart in charts}) == len(charts)
     for chart in charts:

@@ -1,4 +1,4 @@
-"""The page's answer for a reader's constraints, which is that of `pick` to the letter."""
+"""The page's answer for a reader's constraints, which matches the answer of `pick` to the letter."""
 
 import json
 
@@ -28,8 +28,8 @@ ASK = """([questions, constants]) => questions.map(([question, asked]) => {
 
 
 def made_up_rows(rng: np.random.Generator, needs: str | None, aim: str = "angle") -> list[dict]:
-    """Return rows of a question as a run keeps them: costs and errors of a few sizes, so that many are equal, and
-    encodings of every kind that is left out."""
+    """Return rows of a question as a run keeps them: costs and errors with few different values, so that many are
+    equal, and encodings of every kind that is left out."""
     usual = {
         "asked": "rgb10a2",
         "needs": needs,
@@ -90,7 +90,8 @@ def made_up_rows(rng: np.random.Generator, needs: str | None, aim: str = "angle"
 
 
 def images_at_random(rng: np.random.Generator) -> dict:
-    """Return errors of two images over some yaws, around levels of 3 dB, so that many tie; every fourth time none."""
+    """Return errors of two images at some yaws, around levels of 3 dB, so that many tie; about a quarter of the rows
+    have none."""
     if rng.random() < 0.25:
         return {"image_db_studio": None, "image_db_room": None}
     level, spread, count = 10 ** (-0.3 * rng.integers(6, 26)), rng.choice([0.02, 0.5]), rng.choice([4, 6])
@@ -181,7 +182,7 @@ def answered_page(tmp_path_factory):
 
 
 def test_constraints_change_the_answer_the_count_and_the_address(browser, answered_page):
-    """The keyboard changes the constraints. The run's own are not in the address, and a button restores them."""
+    """The keyboard changes the constraints. The run's constraints are not in the address; a button restores them."""
     page = Opened(browser, answered_page)
     page.says("[data-left]", "encodings are left")
     left, codes = page.page.locator("[data-left]"), page.page.locator("[data-codes] tbody tr")
@@ -222,8 +223,8 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, answer
     page.context.close()
 
 
-def test_a_follows_the_answer_until_a_reader_chooses_it(browser, answered_page):
-    """The card and its code to copy are therefore those of the answer. A reader's choice is kept in the address."""
+def test_a_follows_the_answer_until_a_reader_chooses_a_codec(browser, answered_page):
+    """The card and its code to copy are therefore for the answer. A reader's choice is kept in the address."""
     page = Opened(browser, answered_page)
     page.says("[data-left]", "encodings are left")
     most, sides = page.page.locator("[data-limit=most]"), "[state.a, state.b]"
@@ -246,8 +247,8 @@ def test_a_follows_the_answer_until_a_reader_chooses_it(browser, answered_page):
 
 
 def test_hemisphere_is_a_separate_question(browser, run, tmp_path):
-    """The storage stays, and so do A and B if they are codecs of it; if the storage lacks this question, the page
-    chooses a storage that has it."""
+    """The storage stays, and so do A and B if they use it. If the run does not answer this question for the storage,
+    the page chooses another storage."""
     half = {"needs": "hemisphere", "normals": "hemisphere"}
     rows = [pick_row("octahedral", 0.2, 90), pick_row("spheremap", 0.3, 10)]
     rows += [row | {"asked": "rgb10a2", "storage": "rgb10a2"} for row in rows]

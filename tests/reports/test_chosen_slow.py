@@ -105,7 +105,7 @@ def images(chosen) -> list[np.ndarray]:
     return [np.array(data).reshape(height, width, 4)[..., :3] for width, height, data in canvases]
 
 
-def test_focus_makes_the_stills_live_and_keys_and_dragging_turn_both(chosen):
+def test_focus_makes_stills_live_and_keys_and_dragging_turn_both_images(chosen):
     page = chosen.page
     chosen.says(".proof [role=status]", "Live: drag")
     first, second, *differences = images(chosen)
@@ -139,7 +139,7 @@ def test_focus_makes_the_stills_live_and_keys_and_dragging_turn_both(chosen):
     page.evaluate(f"{LIVE}.aim({{ ...{LIVE}.scene.camera }})")
 
 
-def test_a_and_b_of_the_state_are_drawn(chosen):
+def test_swapping_a_and_b_swaps_their_images(chosen):
     first, second, *_ = images(chosen)
     chosen.page.evaluate("change({ a: state.b, b: state.a })")
     chosen.page.wait_for_selector(".proof canvas[data-live]")
@@ -194,7 +194,7 @@ def test_the_live_scene_mirrors_the_studio_of_the_run(chosen):
     assert 0.9 < coarse.sum() / wanted.sum() < 1.1
 
 
-def test_without_webgl2_the_stills_stay_and_a_line_says_so(gl_browser, page_path):
+def test_without_webgl2_the_stills_stay_and_a_message_says_why(gl_browser, page_path):
     before = ("delete window.WebGL2RenderingContext", REFUSED)
     reasons = "this browser does not support WebGL 2", "this browser provides no WebGL 2 context"
     for script, why in zip(before, reasons, strict=True):

@@ -86,7 +86,7 @@ CARDS = [("octahedral rgba8", 0), ("spheremap rgb10a2", 6)]
 
 @pytest.mark.parametrize(("name", "at"), CARDS)
 def test_card_has_the_figures_and_ranks_of_the_run(shown, name, at):
-    """The figures are those of the first backend, ranked among codecs of as many bits, including the user's own."""
+    """The figures are from the first backend, ranked among codecs of equal bit count, including the user's own."""
     card, row = card_of(shown, name), QUALITY[at]
     alike = [other for other in QUALITY if other["bits"] == row["bits"] and other["backend"] == "jax"]
     alike = [other for other in alike if domain_of(other["encoding"]) == domain_of(name.split()[0])]
@@ -126,7 +126,8 @@ def test_card_shows_figures_of_identical_values_with_a_note(shown):
 
 
 def test_copied_code_matches_the_output_of_the_code_command(shown, run):
-    """The answer's code was run; for other codecs the header says that it was not, and the functions are the same."""
+    """The answer's code was run. For other codecs the header says that the code was not run, and the functions are
+    the same."""
     shown.context.grant_permissions(["clipboard-read", "clipboard-write"])
     card = card_of(shown, "octahedral rg8")
     assert card.locator("[data-language] option").all_text_contents() == [language.title for language in SHORT.values()]
@@ -239,7 +240,7 @@ def test_one_action_leads_from_the_answer_to_the_card(browser, codecs_page):
 
 @no_paper
 def test_a_folded_section_is_opened_and_scrolled_to(browser, codecs_page):
-    """Opening works before the card is shown and after."""
+    """The section opens both before and after the card is shown."""
     context = browser.new_context(viewport={"width": 1280, "height": 900}, offline=True, reduced_motion="reduce")
     page = context.new_page()
     place = "id => document.getElementById(id).getBoundingClientRect().top - navigation.getBoundingClientRect().bottom"

@@ -45,7 +45,7 @@ def least(colours, sight: str) -> tuple[float, str, str]:
 
 
 def papers() -> dict[str, str]:
-    """Return the page's paper in either theme."""
+    """Return the colour of the page's paper in each theme."""
     match = re.search(r"--paper: light-dark\((#\w+), (#\w+)\)", (WEB / "page.css").read_text())
     assert match
     return {"white": match[1], "dark": match[2]}
@@ -57,7 +57,7 @@ def contrasts(colours, paper: str) -> np.ndarray:
     return np.maximum(light[:-1], light[-1]) / np.minimum(light[:-1], light[-1])
 
 
-def test_white_is_one_and_black_is_zero():
+def test_white_has_lightness_one_and_black_has_lightness_zero():
     """The matrices have no typing errors: rows of cones and of sights sum to one, so that grey stays grey."""
     for sight in SIGHTS:
         assert seen(["#FFFFFF", "#000000"], sight) == pytest.approx(np.array([[1, 0, 0], [0, 0, 0]]), abs=2e-3)

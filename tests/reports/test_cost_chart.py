@@ -57,7 +57,7 @@ def test_only_a_chart_of_several_gpus_has_a_switch():
 
 
 def costs_of(codecs, family: str, at: int = 0) -> list[dict]:
-    """Return rows of cost of a GPU family, and of the storage of two numbers."""
+    """Return cost rows for encodings on a GPU family, and for packing two numbers."""
     about = TABLES["cost"].empty() | {"measure": "isa", "stage": "fragment", "family": family, "driver": "Mesa"}
     rows = []
     for side, (operation, packed) in enumerate((("encode", "pack"), ("decode", "unpack"))):
@@ -79,8 +79,8 @@ def charted(folder, quality: list[dict], codecs) -> tuple[list[dict], list[str]]
     return list(encode.rows), [remark for remark in contents.remarks if "charts of cost" in remark]
 
 
-def test_users_encoding_without_a_twin_is_placed_by_glsl(tmp_path):
-    """The user's encoding can beat those of the catalogue; an encoding with both backends is placed by JAX."""
+def test_users_encoding_without_a_twin_is_plotted_with_glsl_figures(tmp_path):
+    """The user's encoding can beat the catalogue's; an encoding with both backends is plotted with JAX figures."""
     counts = {"xy": ((0, 4),), "octahedral": ((15, 17),), "mine": ((7, 11),), "mine:arithmetic=half": ((9, 11),)}
     rows = [without_figures("mine", "no twin"), quality_row("mine", backend="glsl", psnr_db=52.0)]
     rows += [quality_row("octahedral", backend="glsl", psnr_db=53.0), quality_row("octahedral", psnr_db=51.0)]

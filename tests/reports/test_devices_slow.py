@@ -1,4 +1,4 @@
-"""Devices in Chromium: the section of a run's page, and the site; by pointer, keyboard, phone and dark theme."""
+"""Devices in Chromium: the section of a run's page, and the site; with pointer, keyboard, phone and dark theme."""
 
 import devices as made
 import pytest
@@ -131,7 +131,7 @@ def test_the_index_is_searched_by_device_codec_and_storage(index):
     assert len(shown(index, "Devices")) == 10 and index.said == []
 
 
-def test_the_index_is_used_by_keyboard(index):
+def test_the_index_can_be_used_by_keyboard(index):
     """The keys lead from the search to a device's section."""
     for _ in range(20):
         index.page.keyboard.press("Tab")
@@ -149,7 +149,7 @@ def test_the_index_is_used_by_keyboard(index):
     assert index.said == []
 
 
-def test_a_table_of_the_index_is_sorted(index):
+def test_clicking_a_heading_sorts_a_table_of_the_index(index):
     head = index.page.locator("[data-searched='Devices'] thead button", has_text="least same percent")
     head.click()
     assert shown(index, "Devices")[0] == "PowerVR Rogue GE8320, Chromium 156", "the worst first"

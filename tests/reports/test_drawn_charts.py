@@ -32,7 +32,7 @@ def test_the_script_is_small():
     assert len((WEB / "charts.js").read_bytes()) <= MOST_BYTES
 
 
-def test_rows_of_several_marks_are_stored_once():
+def test_rows_shared_by_several_marks_are_stored_once():
     (part,) = wire.spec(a_front())["panels"]
     tables = {mark["kind"]: mark["table"] for mark in part["marks"]}
     assert tables[Kind.POINTS] == tables[Kind.LABELS] != tables[Kind.LINES] and len(part["tables"]) == 2

@@ -109,7 +109,7 @@ def test_a_chart_is_an_image_with_a_label(drawn):
     assert drawn.locator(".plot").get_attribute("tabindex") == "0"
 
 
-def test_the_wheel_zooms_a_focused_chart_and_a_button_shows_all(drawn):
+def test_the_wheel_zooms_a_focused_chart_and_a_button_resets_it(drawn):
     plot, scale = drawn.locator(".plot"), "Array.from(charts.views.values())[0].zoom.k"
     box = plot.bounding_box()
     drawn.mouse.move(box["x"] + 300, box["y"] + 200)
@@ -174,7 +174,7 @@ def test_charts_that_were_never_scrolled_to_are_printed(browser, report):
     page.close()
 
 
-def test_a_panel_follows_its_width(drawn):
+def test_a_panel_adapts_to_the_page_width(drawn):
     drawn.evaluate("document.querySelector('main').style.width = '420px'")
     width = drawn.locator(".plot").evaluate("plot => plot.clientWidth")
     drawn.locator(f".plot svg[viewBox^='0 0 {width} ']").wait_for(state="attached")

@@ -29,7 +29,7 @@ def large(browser, folder):
     page.context.close()
 
 
-def test_a_site_has_long_tables_as_text(folder, run, tmp_path):
+def test_a_site_contains_its_long_tables_as_html(folder, run, tmp_path):
     """A page without scripts cannot build tables."""
     assert run("site", str(folder), "-o", str(tmp_path / "site"))[0] == 0
     read = Read((tmp_path / "site/layouts.html").read_text(encoding="utf-8"))
@@ -50,7 +50,7 @@ VISIT = """async (view) => {
 }"""
 
 
-def test_a_page_of_everything_has_few_elements(large):
+def test_a_page_with_every_codec_has_few_elements(large):
     views = large.page.eval_on_selector_all(".view", "all => all.map((one) => one.dataset.view)")
     counts = {view: large.page.evaluate(VISIT, view) for view in views}
     assert max(counts.values()) <= MOST_ELEMENTS, counts

@@ -102,8 +102,10 @@ def test_normals_that_differ_from_the_run_are_not_measured(laboratory):
 
 
 @pytest.mark.parametrize(("storage", "rounding"), [("rg16_snorm", "nearest"), ("rgb8_12_12", "nearest")])
-def test_more_codes_of_a_gpu_with_inexact_arithmetic_are_found_by_ties(laboratory, storage, rounding):
-    test_live_measure_slow.test_codes_of_a_gpu_with_inexact_arithmetic_are_found_by_ties(laboratory, storage, rounding)
+def test_more_codes_of_a_gpu_with_inexact_arithmetic_are_recovered_near_ties(laboratory, storage, rounding):
+    test_live_measure_slow.test_codes_of_a_gpu_with_inexact_arithmetic_are_recovered_near_ties(
+        laboratory, storage, rounding
+    )
 
 
 def test_measurements_are_accessible_in_the_light_theme(gl_browser, report):

@@ -83,8 +83,8 @@ def laboratory(open_laboratory, report):
 
 
 @no_files
-def test_codes_of_a_run_match_those_of_this_device_and_are_saved(laboratory, tmp_path):
-    """For every codec of the small run at least 99.9% of the codes are equal, and the angles are the run's."""
+def test_codes_measured_on_this_device_match_the_run_and_are_saved(laboratory, tmp_path):
+    """For every codec of the small run at least 99.9% of the codes are equal, and the angles match the run's."""
     laboratory.start()
     rows = laboratory.finish()
     assert len(rows) == laboratory.ask("live.data.codecs.length") >= 8, laboratory.status
@@ -142,13 +142,13 @@ def test_facts_describe_the_behaviour_of_a_device(laboratory):
     assert facts["rounds R11F_G11F_B10F"] == "truncate"
     assert facts["renders RGB565"] == facts["renders RGBA32F"] == "yes"
     assert facts["filters RGBA8"].startswith("yes") and facts["filters RGBA32F"] == "no"
-    assert facts["resolves RGBA8"] == "the mean of the codes, at most 0.5 steps from it"
+    assert facts["resolves RGBA8"] == "the mean of the codes, to within 0.5 steps"
     assert facts["highp mantissa bits"] == 23 and facts["mediump mantissa bits"] >= 10
     assert "RGBA16F stores NaN" in facts["NaN"] and facts["subnormal halves"] == "kept"
 
 
-def test_an_altered_constant_is_found_and_named(laboratory):
-    """Twice 0.5 in the fold of one codec: its row names the numbers and a normal, and no other codec differs."""
+def test_an_altered_constant_is_found_and_reported(laboratory):
+    """With 1.015625 for 1 in the fold, the codec's row gives the numbers and a normal. No other codec differs."""
     laboratory.only("octahedral", "stereographic", "xyz")
     altered = laboratory.ask(
         """() => {
@@ -274,7 +274,7 @@ FINE = [("rg16", "nearest"), ("rg16_snorm", "truncate"), ("rg16f", "nearest")]
 
 
 @pytest.mark.parametrize(("storage", "rounding"), FINE)
-def test_codes_of_a_gpu_with_inexact_arithmetic_are_found_by_ties(laboratory, storage, rounding):
+def test_codes_of_a_gpu_with_inexact_arithmetic_are_recovered_near_ties(laboratory, storage, rounding):
     """Numbers off by up to 3 units in the last place are rounded the other way near ties, several of them in a group.
 
     A group is skipped if many of its normals are next to one tie: neighbours of diagonals and, with truncation, also

@@ -19,7 +19,7 @@ def test_the_turntable_turns_until_it_is_stopped(laboratory):
     assert (laboratory.picture() == still).all()
 
 
-def test_two_windows_sizes_and_screens_are_drawn(gl_browser, report, laboratory):
+def test_narrow_windows_and_dense_screens_are_drawn(gl_browser, report, laboratory):
     wide = laboratory.picture().shape
     laboratory.page.set_viewport_size({"width": 500, "height": 700})
     laboratory.page.wait_for_timeout(200)

@@ -200,7 +200,7 @@ def test_a_filter_keeps_rows_that_contain_every_word_and_counts_them(opened):
     assert status.text_content() == "9 of 9 rows"
 
 
-def test_the_best_of_each_column_is_marked_among_equal_bit_counts(opened):
+def test_the_best_figure_of_each_column_is_marked_per_bit_count(opened):
     rows = opened.page.locator(f"{TABLE} >> tbody tr")
     names = [text.strip() for text in opened.texts(f"{TABLE} >> thead th")]
     best = {row.locator("th").text_content(): row.locator(".best").count() for row in rows.all()}
@@ -294,7 +294,7 @@ def test_nothing_moves_while_a_view_fills(browser, report, size, views):
         assert moved < 0.05, f"{view} at {size}: {moved:.3f}"
 
 
-def test_the_theme_is_the_systems_until_the_button_changes_it(opened):
+def test_the_theme_follows_the_system_until_the_button_changes_it(opened):
     def paper() -> float:
         colour = opened.page.evaluate("getComputedStyle(document.body).backgroundColor")
         return luminance([int(n) for n in re.findall(r"\d+", colour)[:3]])
@@ -326,7 +326,7 @@ def test_heading_levels_are_not_skipped(opened):
     assert all(after <= before + 1 for before, after in pairwise(levels)), levels
 
 
-def test_the_sphere_shows_the_mean_or_the_largest(opened):
+def test_the_sphere_shows_the_mean_or_the_largest_error(opened):
     shown = "img[data-which]:not([hidden])"
     means = opened.page.eval_on_selector_all(shown, "all => all.map((i) => i.dataset.which)")
     assert set(means) == {"mean"}
@@ -335,7 +335,7 @@ def test_the_sphere_shows_the_mean_or_the_largest(opened):
 
 
 def test_images_and_charts_are_painted(seen):
-    """Not black, not clipped: images vary, charts have ink on paper, discs are round and in colour."""
+    """Nothing is black or clipped: images vary, charts have ink on paper, and discs are round and in colour."""
     for selector in (".stage", ".thumbs canvas >> nth=0", ".globes img >> nth=2", ".scale img >> nth=0"):
         seen.come_to(selector)
         seen.page.wait_for_timeout(200)

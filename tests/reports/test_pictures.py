@@ -1,4 +1,4 @@
-"""The images of a page: those of the run, pixel by pixel, as many as fit, the best first."""
+"""The images of a page: they match the run pixel by pixel; as many as fit are shown, the best first."""
 
 import base64
 import io
@@ -50,7 +50,7 @@ def test_an_angle_as_a_byte_is_within_the_stated_error():
 
 
 def rendered_run(folder: Path) -> Path:
-    """Write a run with rendered images: two codecs in rgba8, one a step of red off and one exact."""
+    """Write a run with rendered images: two codecs in rgba8, one with red off by a step and one exact."""
     about = {"pipeline": "hybrid", "scene": "gloss", "power": 47.0, "shadow": True, "layout": "fp32"}
     about |= {"storage": "rgba8", "rounding": "nearest", "light_buffer": "rgba32f", "light_targets": 2}
     rows = [
@@ -83,7 +83,7 @@ def test_flip_is_offered_if_the_run_has_it(run, tmp_path):
     assert '"100%25%23-pictures/0.js"' in (tmp_path / "100%#.html").read_text(), "an address"
 
 
-def test_rendered_images_are_stored_as_differences_from_the_exact_one(tmp_path):
+def test_rendered_images_are_stored_as_differences_from_the_exact_image(tmp_path):
     folder = rendered_run(tmp_path / "run")
     (subject,) = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects).subjects
     assert subject["title"] == "the image of gloss at power 47"

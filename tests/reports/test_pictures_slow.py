@@ -1,4 +1,4 @@
-"""The images of a page: those of the run, pixel by pixel, as many as fit, the best first."""
+"""The images of a page: they match the run pixel by pixel; as many as fit are shown, the best first."""
 
 import json
 import shutil
@@ -33,7 +33,7 @@ def answered_run(folder: Path) -> Path:
     return a_run(folder, {"pick": rows}, request={"tables": ["pick"]})
 
 
-def test_images_of_an_answer_show_its_own_scene_the_best_first(tmp_path):
+def test_images_of_an_answer_show_its_scenes_with_the_best_codec_first(tmp_path):
     folder = answered_run(tmp_path / "run")
     first, second = embedded.gallery(report_command.gathered(folder, read_run(folder)).subjects).subjects
     assert [first["title"], second["title"]] == ["the answer on gloss at power 47", "the answer on room at power 47"]
@@ -59,7 +59,7 @@ def test_images_in_the_page_match_the_run_pixel_by_pixel(results):
             assert (pixels(record["decoded"]) == np.asarray(png)[::2, ::2]).all(), name
 
 
-def test_images_that_do_not_fit_are_named_and_the_best_come_first(results):
+def test_images_that_do_not_fit_are_listed_and_the_best_come_first(results):
     (subject,) = report_command.gathered(results[0], read_run(results[0])).subjects
     gallery = embedded.gallery([subject], budget=300_000)
     (shown,) = gallery.subjects
@@ -73,7 +73,7 @@ def test_images_that_do_not_fit_are_named_and_the_best_come_first(results):
     assert {c["label"] for c in shown["codecs"]} == set(ranked[: len(shown["codecs"])]), "no worse one in its place"
 
 
-def test_damaged_images_are_named(results, tmp_path):
+def test_damaged_images_are_reported(results, tmp_path):
     folder = tmp_path / "run"
     shutil.copytree(results[0], folder)
     (folder / "images/playground-octahedral-rgba8.npz").write_bytes(b"PK no")

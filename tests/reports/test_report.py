@@ -130,8 +130,8 @@ def lines_without_room(text: str) -> list[str]:
     return [line for before, line in pairwise(lines) if before and line]
 
 
-def test_rows_without_figures_make_no_table_of_their_own(run, tmp_path):
-    """Such rows have no count of normals; the page gives the reason in the table of every row."""
+def test_rows_without_figures_do_not_get_a_separate_table(run, tmp_path):
+    """Such rows have no count of normals; the page gives the reason in the table of all rows."""
     lost = {"psnr_db": None, "psnr_article_db": None, "angle_mean_deg": None, "count": None, "skipped": "no twin"}
     rows = [quality_row("mine", **lost), quality_row("mine", backend="glsl", count=4096)]
     rows += [quality_row("xy", count=4096), quality_row("mine", storage="rg8", **lost)]
@@ -178,7 +178,7 @@ def test_encoding_without_a_twin_appears_in_charts_and_tables(run, tmp_path):
     assert 'data-codec="mine rgba8"' in text and text.count(">mine rgba8</option>") == 2
 
 
-def test_a_run_of_another_version_shows_how_to_measure_it_again(run, tmp_path):
+def test_page_of_a_run_from_another_version_shows_how_to_measure_it_again(run, tmp_path):
     """The command is the same, without the folder of the run."""
     command = ["run", "--tables", "quality", "-o", "old run", "--normals", "my set.npy"]
     folder = a_run(tmp_path / "run", {"quality": [quality_row("xy")]}, sources="other", command=command)
@@ -195,7 +195,7 @@ def test_a_row_without_an_encoding_has_no_empty_heading(run, tmp_path):
     assert "<th scope=row></th>" not in text and "Every row of cost" in text
 
 
-def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
+def test_rows_from_another_version_are_shown_as_they_are(run, tmp_path):
     tables = {
         "quality": [
             {"encoding": "octahedral", "psnr": 50.0},
@@ -218,7 +218,7 @@ def test_rows_of_another_version_are_shown_as_they_are(run, tmp_path):
 
 
 def test_rows_of_a_removed_table_are_left_out_with_a_note(run, tmp_path):
-    """The note appears for the page and for the text."""
+    """The note is printed both for the page and for Markdown."""
     tables = {"throughput": [{"encoding": "xy", "rate": 1.0}], "growth": [], "quality": [quality_row("xy")]}
     folder = a_run(tmp_path / "run", tables)
     for words in ((), ("--markdown",)):
@@ -268,7 +268,7 @@ def test_the_page_shows_the_glsl_next_to_each_kernel(run, tmp_path):
 
 
 def test_charts_of_odd_rows_keep_lines_apart_and_are_valid_json():
-    """The rows have roundings, layouts and names of users' files; a browser cannot read infinity."""
+    """The rows have roundings, layouts and names from users' files; a browser cannot parse infinity."""
     rows = [quality_row("xy"), quality_row("xy", rounding="truncate"), quality_row('$a\\b"')]
     chart = histogram_chart(0, rows)
     specs = [wire.spec(chart)]

@@ -46,7 +46,7 @@ def test_a_hostile_run_injects_nothing(run, tmp_path):
     assert charts and not any("<script" in chart.read_text() for chart in charts)
 
 
-def test_page_of_one_table_does_not_mention_the_others(run, tmp_path):
+def test_page_of_one_table_does_not_mention_other_tables(run, tmp_path):
     row = {"depth": "linear", "storage": "r32f", "rebuilt": "eye_ray", "backend": "jax", "near": 0.1, "far": 10.0}
     rows = [TABLES["depth"].empty() | row | {"fov": 60.0, "distance": d, "error_max": d / 1e6} for d in (1.0, 10.0)]
     request = {"tables": ["depth"], "count": 4096, "seed": 0}
@@ -107,7 +107,7 @@ def test_report_leaves_the_run_unchanged_and_matches_the_page_of_run(run, result
     assert {"angles-0.png", "angles-0.svg", "sphere-16-bits.png", "sphere-16-bits.svg"} <= names
 
 
-def test_the_page_is_small_fetches_nothing_and_answers_first(results):
+def test_the_page_is_small_fetches_nothing_and_begins_with_the_answer(results):
     text = (results[0] / "report.html").read_text()
     read = Read(text)
     assert len(text) < 4e6

@@ -20,9 +20,9 @@ def test_wobble_runs_once_with_reduced_motion(laboratory):
 
 
 @pytest.mark.parametrize(("packing", "kind"), [("ZIPS", np.float16), ("ZIP", np.float16)])
-def test_an_exr_of_normals_in_halves_is_read_to_its_last_bit(laboratory, packing, kind):
+def test_an_exr_of_half_float_normals_is_read_to_its_last_bit(laboratory, packing, kind):
     test_see_slow.test_an_exr_of_normals_is_read_to_its_last_bit(laboratory, packing, kind)
 
 
-def test_surroundings_without_runs_are_mirrored(laboratory):
-    test_see_slow.test_surroundings_are_mirrored(laboratory, "plain hdr")
+def test_surroundings_from_an_uncompressed_hdr_file_are_reflected(laboratory):
+    test_see_slow.test_surroundings_from_a_file_are_reflected(laboratory, "plain hdr")

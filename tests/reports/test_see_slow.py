@@ -57,7 +57,7 @@ def opened_file(laboratory, name: str, data: bytes, said_of: str = "") -> str:
 
 
 def shown_normals(laboratory) -> np.ndarray:
-    """Return the dropped normals as on the GPU, top row first."""
+    """Return the dropped normals as stored on the GPU, top row first."""
     reply = laboratory.page.evaluate(
         "live.see.scene.normals().then((n) => [live.see.scene.width, live.see.scene.height, Array.from(n)])"
     )
@@ -90,7 +90,7 @@ def test_a_preset_sets_scene_shading_and_camera(laboratory):
     assert len({tuple(camera) for _, camera, _ in views.values()}) == 3
 
 
-def test_lower_roughness_is_sharper(laboratory):
+def test_lower_roughness_gives_sharper_reflections(laboratory):
     """A soft box's edge is steepest in a mirror."""
     steep = []
     laboratory.page.locator("[data-preset=floor]").click()
@@ -163,8 +163,8 @@ def test_a_normal_map_is_shown_through_the_codecs(laboratory):
     assert laboratory.page.locator("[data-see=subject] option[value=dropped]").count() == 0
 
 
-def test_a_png_of_16_bits_is_read_to_its_last_bit(laboratory):
-    """Rows use every filter, in two parts; Pillow's 8-bit reading of the file is off by 65 times as much."""
+def test_a_16_bit_png_is_read_to_its_last_bit(laboratory):
+    """Rows use every filter, and the data have two parts; Pillow's 8-bit reading has 65 times as large an error."""
     n = bumps()
     data = pixel_files.png16(np.rint((n * 0.5 + 0.5) * 65535).astype(np.uint16))
     with Image.open(io.BytesIO(data)) as image:
@@ -184,7 +184,7 @@ def test_an_exr_of_normals_is_read_to_its_last_bit(laboratory, packing, kind):
 
 
 @pytest.mark.parametrize("make", ["hdr", "exr"])
-def test_surroundings_are_mirrored(laboratory, make):
+def test_surroundings_from_a_file_are_reflected(laboratory, make):
     radiance = sky()
     data = pixel_files.exr(radiance) if make == "exr" else pixel_files.hdr(radiance, runs=make == "hdr")
     before = laboratory.picture()
@@ -338,7 +338,7 @@ def test_typed_text_survives_a_reload(laboratory):
     laboratory.asked[:] = laboratory.asked[:1]
 
 
-def test_a_mistake_is_marked_at_its_line_and_leaves_no_old_map(laboratory):
+def test_a_mistake_is_marked_on_its_line_and_the_old_map_is_removed(laboratory):
     page = laboratory.page
     assert page.locator("[data-own=globe]").is_visible()
     figures = [row.split("°")[0] for row in laboratory.texts("[data-own=figures] tr")]

@@ -89,7 +89,7 @@ def test_every_link_leads_to_an_existing_page_and_place(site, pages):
     assert checked > 50, checked
 
 
-def test_every_page_leads_to_the_others(site, pages):
+def test_every_page_links_to_the_main_pages(site, pages):
     for name, read in pages.items():
         files = [anchor["href"].partition("#")[0] for anchor in read.all("a")]
         linked = {str(((site / name).parent / file).resolve().relative_to(site.resolve())) for file in files if file}
@@ -149,7 +149,7 @@ def test_two_runs_are_a_one_line_error(run, run_folder, tmp_path):
     assert not Path(tmp_path / "site").exists()
 
 
-def test_an_encoding_is_read_without_scripts(browser, site, run_folder):
+def test_the_page_of_an_encoding_can_be_read_without_scripts(browser, site, run_folder):
     """The page shows the formula, source, figures and code that the run keeps."""
     context = browser.new_context(java_script_enabled=False, offline=True)
     page = context.new_page()

@@ -12,7 +12,7 @@ STATES = 200
 
 
 def random_states(opened) -> list[dict]:
-    """Return states of the page's own views, codecs and places, and of keys that another version may have written."""
+    """Return states with the page's views, codecs and places, and with keys that another version may have written."""
     rng = np.random.default_rng(7)
     views = opened.page.eval_on_selector_all(".view", "all => all.map((one) => one.dataset.view)")
     codecs = ["", *opened.page.evaluate("known.codecs")]
@@ -38,7 +38,7 @@ BOTH_WAYS = """(states) => states.map((state) => {
 
 
 def test_an_address_restores_its_state(opened):
-    """Keys of another version are kept, and default values are left out."""
+    """Keys from another version are kept, and default values are left out."""
     states = random_states(opened)
     for state, (address, given, unknown, again) in zip(states, opened.page.evaluate(BOTH_WAYS, states), strict=True):
         assert given == state and unknown == [], address
@@ -46,7 +46,7 @@ def test_an_address_restores_its_state(opened):
     assert opened.page.evaluate("hashOf({ ...DEFAULTS, others: [] })") == "#v1/codecs"
 
 
-def test_names_in_the_address_that_the_page_lacks_are_reported(opened):
+def test_unknown_names_in_the_address_are_reported(opened):
     opened.page.evaluate("location.hash = '#v1/nowhere?a=nothing%20rg8&b=xy%20rgba8&zoom=3'")
     opened.says(
         "#unknown", "The address names the view nowhere and the codec nothing rg8, which this page does not have."
@@ -82,7 +82,7 @@ def test_back_undoes_one_step_and_one_view_is_shown(opened):
 
 
 def test_a_place_in_another_view_is_scrolled_to(opened):
-    """This works with the anchors of headings, and with links to every row, which are opened."""
+    """This works for the anchors of headings, and for tables of all rows, which are opened."""
     for key in opened.page.eval_on_selector_all("section[id], details[id]", "all => all.map((one) => one.id)"):
         opened.page.evaluate("key => location.hash = key", key)
         opened.page.locator(f"#{key}").wait_for(state="visible")
@@ -122,7 +122,7 @@ def test_every_row_matches_the_csv_file_byte_for_byte(opened, results):
         assert details.locator("*").count() == 1, "what is closed takes no elements"
 
 
-def test_the_conditions_of_a_table_are_those_of_its_rows(opened, results):
+def test_the_conditions_of_a_table_match_its_rows(opened, results):
     """The conditions are built when the section is opened, and removed when it is closed."""
     rows = json.loads((results[0] / "quality.json").read_text(encoding="utf-8"))
     opened.come_to("#quality .method")

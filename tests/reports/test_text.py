@@ -23,7 +23,7 @@ def test_no_cell_of_csv_is_a_formula(text):
 
 
 @pytest.mark.parametrize("text", ["-1", "-0.52032965", "17", "+0.0362", "-1.2e-05", "-inf", "+20.1 %"])
-def test_a_number_as_it_is_printed_stays_a_number_in_csv(text):
+def test_printed_numbers_stay_numbers_in_csv(text):
     assert tables.to_csv([{"printed": text}]).splitlines()[1] == text
 
 
@@ -92,8 +92,8 @@ def test_figures_of_a_page_sort_by_all_their_digits():
 
 
 def test_names_in_the_scripts_of_the_page_are_unique():
-    """The scripts share one scope, also with the laboratory's, which are added when it is opened: a second `const` of
-    a name stops them."""
+    """The scripts share one scope with the laboratory's scripts, which are added when the laboratory is opened: a
+    second `const` with the same name stops them all."""
     paths = [page.WEB / name for name in page.SCRIPTS] + [live.FOLDER / name for name in live.SCRIPTS]
     texts = [path.read_text(encoding="utf-8") for path in paths]
     declared = re.compile(r"^(const|let|class|function|async function)\s+(\w+)([^\n]*)", re.MULTILINE)

@@ -1,4 +1,4 @@
-"""The page's statement about the backends."""
+"""The page's statement about the agreement of the backends."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The images in a browser: what each view draws, divider, lens, gain and highlight, by pointer and by keyboard."""
+"""The images in a browser: views, divider, lens, gain and highlight, by pointer and by keyboard."""
 
 import numpy as np
 from browsing import VIEWED, Opened
@@ -123,7 +123,7 @@ WITHOUT = """(name) => {
 
 
 def test_a_codec_without_an_image_is_not_drawn(opened):
-    """No other codec takes its place, and a line names the command to run."""
+    """No other codec takes its place, and a line gives the command to run."""
     viewed(opened)
     opened.page.evaluate(WITHOUT, "spheremap rgba8")
     opened.page.evaluate("change({ a: 'octahedral rgba8', b: 'spheremap rgba8' })")
@@ -169,7 +169,7 @@ def test_a_codec_chosen_anywhere_is_chosen_everywhere(opened):
 
 
 def choose_spheremap(opened: Opened, by: str) -> None:
-    """Choose a codec by this part of the page."""
+    """Choose spheremap in rgba8 through this part of the page."""
     if by == "the list":
         opened.page.locator("#side-a").select_option("spheremap rgba8")
     elif by == "a picture":
@@ -200,7 +200,7 @@ def test_rendered_images_and_images_next_to_the_page_are_shown(browser, run, tmp
     page.context.close()
 
 
-def test_images_of_an_answer_open_the_viewer_at_its_own_scene(browser, run, tmp_path):
+def test_images_of_an_answer_open_the_viewer_in_the_answers_scene(browser, run, tmp_path):
     assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
     page = Opened(browser, tmp_path / "run/report.html")
     page.page.wait_for_selector(".proof:not([hidden]) button:nth-child(4)")

@@ -1,4 +1,4 @@
-"""The row in C (`row.c`), compiled for this machine if it has a C compiler."""
+"""The row of the quality table in C (`row.c`), compiled for this machine if it has a C compiler."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ def work(name: str, function: str, n: np.ndarray, view: np.ndarray) -> Callable[
 
     Args:
         name: one of ENCODINGS.
-        function: "row": the sum of the angles, that of their squares, and the largest angle, in degrees; "reading":
-            the sum of all components.
+        function: "row": the sum of the angles, the sum of their squares, and the largest angle, in degrees;
+            "reading": the sum of all components.
         n, view: float32 of shape (count, 3).
 
     Raises:

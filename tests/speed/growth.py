@@ -36,7 +36,7 @@ class Kind:
     """A kind of work that is made larger.
 
     Attributes:
-        timed: what is timed, in words.
+        timed: description of the work that is timed.
         seconds: seconds for a size.
         usual: default sizes, each about ten times the one before.
         least, most: smallest and largest size allowed.
@@ -69,7 +69,7 @@ def measure(over: str, size: int) -> Row:
 
 
 def rounded(over: str, size: int) -> int:
-    """Return the nearest possible size: two numbers of equal bits have a power of 4 codes."""
+    """Return the nearest possible size: the number of codes of two numbers with equal bits is a power of 4."""
     return 4 ** _bits(size) if over == "codes" else size
 
 
@@ -87,7 +87,7 @@ def _normals(size: int) -> float:
 
 
 def _codecs(size: int) -> float:
-    """Return the seconds of codecs spread evenly over all, because their costs differ; some may repeat."""
+    """Return the seconds for codecs spread evenly over all codecs, because their costs differ; some may repeat."""
     every = [codec for codec in codecs_named(("all",), ("all",), ("nearest",)) if codec.fits]
     return _quality([every[index * len(every) // size] for index in range(size)], NORMALS)
 

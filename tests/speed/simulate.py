@@ -33,7 +33,7 @@ class Costs:
     """Costs other than measuring, in seconds.
 
     Attributes:
-        start: from a worker's start to its first task.
+        start: time from a worker's start to its first task.
         task: time of the command to send a task and take its answer.
         row: time of the command to save a step's rows to disk.
         byte: time of the command to send or take a byte.
@@ -50,9 +50,9 @@ class Load:
     """Steps of a table.
 
     Attributes:
-        seconds: recorded times of steps, from which those of the load are drawn.
+        seconds: recorded times of steps, from which the load's times are drawn.
         steps: number of steps.
-        prepare: seconds in which a worker makes the steps.
+        prepare: seconds that a worker takes to make the steps.
         sent, taken: bytes to each worker, and back for each step.
         is_timed: whether a clock is read: then the command measures the steps itself.
     """
@@ -96,7 +96,8 @@ def simulated(load: Load, workers: int, costs: Costs, seed: int = 0) -> Simulate
 def rows(name: str, loads: Sequence[Load], costs: Costs) -> list[Row]:
     """Return a row for each number of workers; the loads are measured one after the other.
 
-    From the row before, the time grows as workers^exponent: -1 if twice as many take half the time.
+    The exponent compares a row with the row before: the time grows as workers^exponent, which is -1 if twice as many
+    workers take half the time.
     """
     alone = sum(simulated(load, 1, costs).seconds for load in loads)
     figures: list[Row] = []

@@ -17,8 +17,8 @@ Task = Callable[[], object]
 
 
 def least_times(works: Sequence[Task]) -> list[float]:
-    """Return the lowest time of each task in seconds. The tasks take turns, one to warm up and then at least three,
-    for LONG_ENOUGH_S per task."""
+    """Return the lowest time of each task in seconds. The tasks take turns: one turn to warm up and then at least
+    three, for LONG_ENOUGH_S per task."""
     for work in works:
         work()
     times: list[list[float]] = [[] for _ in works]

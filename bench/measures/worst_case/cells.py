@@ -176,8 +176,8 @@ def _across_band(directions: np.ndarray, band: tuple[float, float]) -> np.ndarra
 
 
 def _hull(directions: np.ndarray) -> np.ndarray:
-    """Return the triangles of a hull of directions, shape (4, count): their normals, and minus the cosine of the
-    angle from each normal to its corners."""
+    """Return the triangles of the convex hull of directions of shape (3, count), as (4, triangles): their normals, and
+    minus the cosine of the angle from each normal to its corners."""
     from scipy.spatial import ConvexHull
 
     return ConvexHull(directions.T).equations.T

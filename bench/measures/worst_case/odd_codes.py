@@ -136,7 +136,8 @@ def _comes_back(exact: ExactCodec, numbers: _Numbers, index: np.ndarray) -> np.n
 
 
 def _distinct_count(exact: ExactCodec, numbers: _Numbers) -> int:
-    """Count the distinct directions to which the codes decode."""
+    """Count the directions to which the codes decode; directions closer than SAME count once (the lowest count over
+    several shifted grids)."""
     keys = np.empty((len(OFFSETS), exact.codec.codes), np.uint64)
 
     def boxes(index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -58,7 +58,7 @@ def _read_table(path: Path, encoding: Encoding) -> np.ndarray:
         # With room for a header.
         table = read_npy(path, published.nbytes + 4096)
     except DamagedError as error:
-        raise UsageError(f"{path}: not a NumPy file of numbers, as `normalbench tune --table` writes it") from error
+        raise UsageError(f"{path}: not a NumPy file of numbers; use a file from `normalbench tune --table`") from error
     except (OSError, ValueError) as error:
         raise UsageError(f"{path}: {error}") from error
     if table.shape != published.shape or table.dtype != published.dtype:

@@ -101,8 +101,8 @@ def read_depths(path: Path, channel: str | None) -> Pixels:
 
 
 def depth_image(path: Path, pixels: Pixels, reading: DepthReading) -> DepthImage:
-    """Return the pixels of a file as depths, interpreted according to `reading`. Raises UsageError if they do not
-    match `reading`."""
+    """Return a DepthImage of a file's pixels, scaled to [0, 1] unless they are view depths, and not yet converted to
+    depths. Raises UsageError if they do not match `reading`."""
     code = reading.depths_are
     numbers = pixels.planes[0].astype(np.float64)
     if code != VIEW:

@@ -19,7 +19,8 @@ MAX_SIDE = 1_000_000
 
 
 def sides(data: bytes) -> tuple[int, int]:
-    """Return the width and height in the header; (0, 0) for a file without a header."""
+    """Return the width and height in the header; (0, 0) for a file too short for a header. The signature is not
+    checked."""
     return struct.unpack(">II", data[16:24]) if len(data) >= 24 else (0, 0)
 
 

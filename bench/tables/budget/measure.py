@@ -117,7 +117,7 @@ class Judged:
 
     @property
     def classes(self) -> list[str]:
-        """The classes whose worst error counts: the judging surface classes in each scene, not the whole frame."""
+        """The names, as "SCENE CLASS", of the errors that count: those of the judging surface classes in each scene."""
         names = dict.fromkeys(name for errors in self._errors.values() for name in errors)
         return [name for name in names if name.rpartition(" ")[2] in self._question.judging]
 
@@ -232,7 +232,8 @@ class Judged:
         return len(self._together) > before
 
     def fewest(self) -> Iterator[Row]:
-        """Yield the row for the fewest bytes that keep to the FLIP threshold, or else a row without figures."""
+        """Search by bisection for the fewest bytes whose layout keeps to the FLIP threshold, and yield its proposals,
+        or else a row without figures whose `skipped` says why."""
         q, (low, high) = self._question, self._question.search
         first, last = q.rules[0], high
         while low < high:

@@ -183,7 +183,7 @@ COLUMNS = (
         "The smallest of 1, 2 and 4 more bytes that gains at least half a decibel in the worst class.",
         unit="bytes",
     ),
-    Column("next_db", "The gain of these bytes in the worst class.", unit="dB"),
+    Column("next_db", "Gain in the worst class from the bytes in `next_bytes`.", unit="dB"),
     Column("blends", "Attributes in targets that hardware can blend decals into, as --blend requires.", HOW),
     Column("codes", "The encoding of each attribute.", HOW, drops=9),
     Column("by_contract", "Attributes that no scene shows: their bits are given, not measured.", HOW, drops=9),

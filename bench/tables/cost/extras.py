@@ -169,7 +169,7 @@ def _encoding(row: Row, storage: Storage) -> Encoding | None:
 
 
 def _kernels(folder: Path, family: str) -> Mapping[str, Path]:
-    """Return the files of a GPU family's subfolder by name; empty if there is no such subfolder."""
+    """Return the paths of the files in a GPU family's subfolder, by file name; empty if there is no such subfolder."""
     known = {path.name: path for path in folder.iterdir()} if folder.is_dir() else {}
     return files_of(known[family]) if family in known else {}
 

@@ -102,7 +102,8 @@ COLUMNS = (
     ),
     _count_column(
         "quarter_rate",
-        "Radeon: products of 32-bit integers, and on Polaris fused multiply-adds, at a quarter of the rate.",
+        "Radeon: instructions at a quarter of the full rate: 32-bit integer multiplications and, on Polaris, fused "
+        "multiply-adds.",
         11,
     ),
     _count_column(

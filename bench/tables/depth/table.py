@@ -100,8 +100,8 @@ COLUMNS = (
         KEY,
     ),
     Column("count", "How many points were measured.", HOW),
-    Column("background", "Pixels of the image outside near and far; these are not counted.", HOW, drops=8),
-    Column("not_finite", "Pixels of the image that are NaN; these are not counted.", HOW, drops=8),
+    Column("background", "Pixels of the image nearer than near or beyond far; excluded from the errors.", HOW, drops=8),
+    Column("not_finite", "Pixels of the image that are NaN; excluded from the errors.", HOW, drops=8),
     Column(
         "relative_mean",
         "Mean error of the depth along the view axis, as a fraction of the depth.",

@@ -105,9 +105,11 @@ COLUMNS = (
         unit="dB",
         better="more",
     ),
-    Column("effect_rms", "Root mean square difference of the two images, in the effect's own unit.", better="less"),
-    Column("effect_mean", "Mean absolute difference of the two images.", better="less", drops=6),
-    Column("effect_max", "Largest difference of the two images in any channel.", better="less"),
+    Column(
+        "effect_rms", "Root mean square difference between the two images, in the effect's own unit.", better="less"
+    ),
+    Column("effect_mean", "Mean absolute difference between the two images.", better="less", drops=6),
+    Column("effect_max", "Largest difference between the two images in any channel.", better="less"),
     Column(
         "moved_percent",
         "Of the pixels whose ray meets something with an exact G-buffer: the share whose ray now meets nothing, or "

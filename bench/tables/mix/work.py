@@ -33,7 +33,7 @@ SUMMARY_DROPS = ("why", "storage", "alone_max_deg")
 
 
 def cases(options: MixOptions) -> list[MixCase]:
-    """Return one case for each codec, set, angle and backend.
+    """Return one case for each codec, set of patches (by normals, and by angle between neighbours or edge) and backend.
 
     Raises:
         UsageError: unknown names, numbers out of range, a file that cannot be read, or no codec that fits.

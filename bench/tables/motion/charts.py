@@ -53,7 +53,8 @@ def _line_name(row: Row, rows: Sequence[Row]) -> str:
 
 
 def _conditions_text(row: Row, rows: Sequence[Row]) -> str:
-    """Return the conditions that distinguish the lines of one codec; empty if all rows have the same conditions."""
+    """Return a row's values of the conditions in which the rows differ, with spaces between them; empty if they do not
+    differ."""
     return " ".join(str(row.get(name)) for name in CONDITIONS if len({other.get(name) for other in rows}) > 1)
 
 

@@ -46,7 +46,8 @@ ASKED = (
 
 
 def extras(_folder: Path, tables: Mapping[str, Sequence[Row]], _remarks: list[str]) -> Mapping[str, Any]:
-    """Return the questions of a run for the page, as `choices`; an empty dict if the run answers no question."""
+    """Return {"choices": {constants, questions, found}} for the page, without questions about cost alone; an empty dict
+    if no question is left."""
     asked = enumerate(groups(tables[TABLE.name]).values())
     questions = [
         _question(group) | {"chart": chart_name(index), "spread": spread_name(index)}

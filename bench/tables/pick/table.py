@@ -172,7 +172,8 @@ COLUMNS = (
     ),
     Column(
         "angle_axes_deg",
-        "Largest angle of axis-aligned normals, as of floors and walls. Only for encodings with a place.",
+        "Largest error of axis-aligned normals, such as those of floors and walls. Only for encodings with a place in "
+        "the answer.",
         unit="degrees",
         better="less",
         drops=5,

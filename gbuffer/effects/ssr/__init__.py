@@ -18,7 +18,7 @@ SETTINGS = {
     "steps": Number(64, 1, 4096, "Maximum number of steps per ray; a step is at least one pixel long."),
     "rays": Number(2, 1, 1024, "Number of rays per pixel, spread by its roughness; a mirror needs one."),
     "thickness": Number(0.1, 0.001, 100.0, "Distance in metres behind a surface within which a ray hits it."),
-    "misses": Choice(AROUND, "Light of a ray that hits nothing on the screen."),
+    "misses": Choice(AROUND, "Light for rays that hit nothing on screen."),
     "seed": SEED,
 }
 

@@ -71,7 +71,7 @@ class Compare {
   lead({ a, b }, where) {
     const { questions, constants } = this.choices ?? { questions: [] }, both = questions.filter(({ codes }) => [a, b].every((name) => codes.some(({ codec }) => codec === name)));
     const question = both.find((one) => one.where === where) ?? both[0];
-    return question ? [pairTable(question, question.asked, constants, { a, b }), element("p", { class: "note" }, `Figures of the question ${question.where}.`)] : [];
+    return question ? [pairTable(question, question.asked, constants, { a, b }), element("p", { class: "note" }, `Figures for ${question.where}.`)] : [];
   }
 
   group({ about, figures }, isOpen) {

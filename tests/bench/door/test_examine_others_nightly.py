@@ -1,4 +1,4 @@
-"""Codes of other quantities than normals: every kind, and every error."""
+"""Encodings of quantities other than normals: every kind, and every error."""
 
 import pytest
 import test_examine_others_slow

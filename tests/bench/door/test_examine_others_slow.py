@@ -1,4 +1,4 @@
-"""`doctor` on users' codes of quantities other than normals: the quantity, errors, and the measuring command."""
+"""`doctor` on encodings of quantities other than normals: the quantity, errors, and the measuring command."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What `doctor` reports about rounded codes: results that are not numbers, unused signs and mismatched steps."""
+"""`doctor` on rounded codes: results that are not numbers, unused signs and mismatched steps."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""`doctor FOLDER`: a made-up engine is read once, in one table, and its patch is measured again."""
+"""`doctor FOLDER`: a made-up engine is read once and reported in one table; its patch is measured again."""
 
 import json
 import subprocess
@@ -145,7 +145,7 @@ def told(engine, tmp_path_factory):
     return {row["file"]: row for row in reversed(rows)}, patch, rows
 
 
-def test_each_pair_of_a_folder_has_a_row(told):
+def test_each_pair_in_a_folder_has_a_row(told):
     """Code that a pair does not use is ignored; a decoder next to a function for something else is not a pair."""
     rows, _, _ = told
     octahedral = {name for name, row in rows.items() if row["mean_deg"] == pytest.approx(0.337, abs=0.001)}
@@ -162,13 +162,13 @@ def test_each_pair_of_a_folder_has_a_row(told):
     assert not rows["split/read.hlsl"]["findings"]
 
 
-def test_a_broken_pair_next_to_a_right_one_has_its_row(told):
+def test_a_broken_pair_next_to_a_correct_pair_has_its_own_row(told):
     _, _, rows = told
     (row,) = [row for row in rows if row["functions"] == "EncodeB:DecodeB"]
     assert row["findings"] == 1 and "every direction comes back with y reversed" in row["says"]
 
 
-def test_all_codes_of_a_file_have_a_line(told):
+def test_all_codes_in_a_file_have_a_line(told):
     """Lines cover measured normals, the effects of rounding, functions that the user must name, and depth."""
     _, _, rows = told
     lines = {row["functions"]: row["says"] for row in rows if row["file"] == "post/packing.glsl"}
@@ -179,7 +179,7 @@ def test_all_codes_of_a_file_have_a_line(told):
     assert "`normalbench depth --depth" in depth
 
 
-def test_a_pair_that_does_not_compile_names_the_missing_include(told):
+def test_a_compile_error_of_a_pair_names_the_missing_include(told):
     rows, _, _ = told
     message = rows["lost/unity.hlsl"]["says"]
     assert "PackOct" in message and "Packages/core/Packing.hlsl is not next to unity.hlsl" in message

@@ -1,4 +1,4 @@
-"""Storages by rule: names of the catalogue if they match, ranges, and impossible storages."""
+"""Storages defined by their bits: catalogue names if they match, ranges, and impossible storages."""
 
 import pytest
 from typed import roundings_named, storages_named
@@ -57,7 +57,7 @@ def test_bits_name_a_storage(said, names):
 
 @pytest.mark.parametrize("storage", [*STORAGES.values(), *MOTION_STORAGES.values()], ids=lambda s: s.name)
 def test_every_storage_has_a_name_by_its_bits(storage):
-    """The rule names the storage or one with the same numbers: `rg16f` has two of the four of `rgba16f`."""
+    """The rule names the storage, or a storage with the same numbers: `rg16f` has two of the four of `rgba16f`."""
     if storage.name != "r11g11b10f":
         parsed = storage_of(rule_of(storage))
         assert (parsed.kind, parsed.is_centred, parsed.is_full) == (storage.kind, storage.is_centred, storage.is_full)
@@ -118,7 +118,7 @@ def test_floats_have_as_many_components_as_an_encoding_of_any_kind():
     assert LightCodec(LIGHT_ENCODINGS["plain"], storage).storage == STORAGES["rgba16f"]
 
 
-def test_refused_dithering_names_the_tables_that_support_it():
+def test_the_error_about_dithering_names_the_tables_that_support_it():
     for table in ("quality", "render"):
         assert DITHERED in fields_of(TABLES[table].options)["rounding"].option.help
     assert roundings_named("nearest,dithered", ROUNDINGS_AND_DITHERED) == ["nearest", DITHERED]

@@ -1,4 +1,4 @@
-"""Storages by rule: names of the catalogue if they match, ranges, and impossible storages."""
+"""Storages defined by their bits: catalogue names if they match, ranges, and impossible storages."""
 
 import json
 

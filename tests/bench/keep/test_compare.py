@@ -1,4 +1,4 @@
-"""`normalbench compare`: no differences for the same work, exact differences otherwise, times only beyond chance."""
+"""`normalbench compare`: no differences for the same work, exact figures, and time changes only beyond noise."""
 
 import json
 import math
@@ -33,7 +33,7 @@ def test_figures_are_compared_exactly_and_nan_equals_nan():
     assert change["verdict"] == "worse"
 
 
-def test_rows_measured_under_other_conditions_are_reported():
+def test_rows_measured_under_different_conditions_are_reported():
     """Figures with another rounding or another number of normals are not compared without a message."""
     row = {"encoding": "xyz", "storage": "rg8", "count": 2**20, "rounded_by": "device", "psnr_db": 50.0}
     others = [row | {"count": 2**26, "rounded_by": "shader"}, row | {"storage": "rg16", "count": 2**26}]
@@ -49,14 +49,14 @@ def test_rows_measured_under_other_conditions_are_reported():
 
 
 def test_rows_of_a_table_that_no_longer_exists_are_not_compared():
-    """Both runs have the table, or one has it; a sentence names the table."""
+    """One run or both runs have the table; a sentence names the table."""
     run, other = (Done(MACHINE, [{"table": "growth", "key": {}, "rows": [{"seconds": time}]}]) for time in (1.0, 2.0))
     assert compared(run, other) == compared(run, run_of()) == [] and not run.tables
     assert run.left_out == "Rows of growth are left out, because this version has no such table"
     assert run_of({"pipeline": "a"}).left_out == ""
 
 
-def test_rows_missing_from_one_run_are_named():
+def test_rows_missing_from_one_run_are_reported():
     a, b = {"pipeline": "a", "triangles": 1}, {"pipeline": "b", "triangles": 1}
     (change,) = compared(run_of(a, b), run_of(b))
     assert (change["row"], change["before"], change["after"], change["change"]) == ("a", True, False, "only before")
@@ -118,7 +118,7 @@ def test_the_total_counts_rows_and_figures():
 
 
 def broken_fold() -> tuple[Done, Done]:
-    """Return two runs of an encoding in four storages: `rg16f` loses few decibels, `rgba8` almost none."""
+    """Return two runs of an encoding in four storages: `rg16f` loses 1.7 dB, `rgba8` almost nothing."""
     names = ("rg16f", "rg16", "rg8", "rgba8")
     before = [(79.9, math.inf, 0.005), (101.1, math.inf, 0.001), (48.6, 50.0, 0.1), (49.9, 50.0, 0.1)]
     after = [(78.24, 83.0, 0.006), (56.7, 55.4, 0.036), (10.9, 11.0, 22.0), (49.8983, 50.0, 0.1001)]
@@ -173,7 +173,7 @@ def test_missing_rows_are_counted_among_all_earlier_rows():
     assert lines[0].startswith("xy: gone in all 2 rows"), lines
 
 
-def test_changed_encodings_are_five_sentences_and_a_count():
+def test_changed_encodings_are_reported_in_five_sentences_and_a_count():
     names = [f"code{number}" for number in range(7)]
     before, after = (quality_of(**{name: db - index for index, name in enumerate(names)}) for db in (60.0, 50.0))
     lines = what_matters(before, after, compared(before, after))
@@ -207,7 +207,7 @@ def test_columns_that_all_lines_share_are_not_repeated_below_the_table(run, monk
     assert status == 0 and out.splitlines()[0] == "table,row,column,before,after,change,verdict"
 
 
-def test_environment_settings_are_facts_of_a_run_and_named_if_they_differ(run, monkeypatch):
+def test_environment_settings_are_recorded_and_reported_if_they_differ(run, monkeypatch):
     """XLA's flags and Mesa's variables affect figures; the location of a cache does not."""
     flags = "--xla_cpu_enable_fast_math=true"
     monkeypatch.setenv("XLA_FLAGS", flags)
@@ -230,7 +230,7 @@ def test_environment_settings_are_shown_in_a_row(run, monkeypatch):
 
 
 def test_a_broken_encoder_comes_before_counts_that_changed_from_0_to_2():
-    """The line shows decibels, and rows that changed together are one line."""
+    """The first line shows decibels, and rows that changed together share one line."""
     costs = [
         {"encoding": "mine", "operation": name, "stage": "fragment", "family": f, "conversion": 0, "instructions": 20}
         for name in ("encode", "decode")
@@ -255,7 +255,7 @@ def step_of(*rows: dict) -> Done:
 
 
 def test_rows_of_one_step_are_paired_by_identity():
-    """A missing row is named and shifts no other row; rows with the same name are paired in order."""
+    """A missing row is reported and shifts no other row; rows with the same name are paired in order."""
     names = [("xyz", "encode"), ("xyz", "decode"), ("octahedral", "encode"), ("octahedral", "encode")]
     about = [
         {"encoding": e, "operation": o, "stage": "fragment", "family": "navi31", "instructions": x}
@@ -274,7 +274,7 @@ def test_a_small_difference_does_not_count_even_if_significant():
         assert bool(compared(run_of(timed("a", base)), run_of(timed("a", base * factor)))) == changed
 
 
-def test_times_differ_only_beyond_chance_above_a_minimum_and_on_one_machine():
+def test_time_changes_must_exceed_noise_and_a_minimum_on_the_same_machine():
     rng = np.random.default_rng(0)
     base = 10 + rng.uniform(-0.5, 0.5, 9)
     slow, slightly, noisy = base * 1.2, base * 1.02, 10 + rng.uniform(-3, 3, 9) + 0.6

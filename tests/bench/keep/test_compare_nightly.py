@@ -1,4 +1,4 @@
-"""`normalbench compare`: no differences for the same work, exact differences otherwise, times only beyond chance."""
+"""`normalbench compare`: no differences for the same work, exact figures, and time changes only beyond noise."""
 
 import json
 import subprocess

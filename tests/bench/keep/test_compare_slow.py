@@ -1,4 +1,4 @@
-"""`normalbench compare`: no differences for the same work, exact differences otherwise, times only beyond chance."""
+"""`normalbench compare`: no differences for the same work, exact figures, and time changes only beyond noise."""
 
 import itertools
 
@@ -9,7 +9,7 @@ from normalbench.bench.keep.comparison import mann_whitney
 
 
 def test_the_rank_test_is_exact():
-    """It matches all ways to deal nine ranks, and the smallest possible value for nine against nine, 2 / 48620."""
+    """The test matches an enumeration of nine ranks; for nine against nine its lowest value is 2 / 48620."""
     sample, other = [1.0, 4.0, 2.5, 8.0], [3.0, 9.0, 7.0, 6.0, 5.0]
     u = sum(a > b for a in sample for b in other)
     dealt = [

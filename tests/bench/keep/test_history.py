@@ -1,4 +1,4 @@
-"""`normalbench history`: the commit, the row and the figure of each change, without noise of times."""
+"""`normalbench history`: the commit, the row and the figure of each change, without the noise in times."""
 
 import json
 import os
@@ -31,7 +31,7 @@ def rows_of(run, *words):
 
 
 def test_thirty_commits_have_two_regressions_one_of_them_mended(run, thirty):
-    """The regressions are in two tables; times of four pipelines are noise and are not named."""
+    """The regressions are in two tables; times of four pipelines are noise and are not reported."""
     rows = rows_of(run, thirty)
     changes = {(row["commit"], row["table"], row["row"], row["column"], row["verdict"], row["mended"]) for row in rows}
     mine, longer = (name_of(FOLD), "quality", "mine rg8 sphere jax"), (name_of(LONGER), "cost")
@@ -77,8 +77,8 @@ def test_figures_by_commit_have_a_line_for_each_change(run, thirty):
     assert [row["value"] for row in rows] == [48.25] * FOLD + [45.125] * (30 - FOLD)
 
 
-def test_rows_with_other_counts_are_not_compared_and_this_is_reported(run, tmp_path):
-    """With far fewer normals, the largest sampled error is smaller although the code has not changed."""
+def test_rows_with_different_counts_are_not_compared_and_this_is_reported(run, tmp_path):
+    """With far fewer normals, the largest sampled error is smaller although the encoding has not changed."""
     for number, count in enumerate((2**20, 2**14)):
         steps = histories.steps(0, np.random.default_rng(1))
         for row in (row for step in steps for row in step["rows"] if "count" in row):
@@ -97,11 +97,11 @@ def test_a_name_without_a_row_lists_the_known_names(run, thirty, tmp_path):
     assert status == 2 and "contains no run" in err and err.count("\n") == 1
 
 
-def test_a_table_with_one_time_counts_as_timed():
+def test_a_table_with_a_single_time_counts_as_timed():
     assert Series(TABLES["maps"], "a").is_timed and not Series(TABLES["quality"], "a").is_timed
 
 
-def test_only_a_lasting_change_of_times_is_named(run, tmp_path):
+def test_only_a_lasting_change_in_timings_is_reported(run, tmp_path):
     """From one commit on, a pipeline is 30% slower; the other times are noise."""
     noise = np.random.default_rng(1)
     for number in range(30):
@@ -114,7 +114,7 @@ def test_only_a_lasting_change_of_times_is_named(run, tmp_path):
     assert 25 < float(row["change"].removesuffix("%")) < 35
 
 
-def test_times_of_two_machines_are_not_one_series(run, tmp_path):
+def test_times_from_two_machines_are_separate_series(run, tmp_path):
     noise = np.random.default_rng(1)
     for number in range(30):
         steps = histories.steps(0, noise)
@@ -126,7 +126,7 @@ def test_times_of_two_machines_are_not_one_series(run, tmp_path):
 
 
 @pytest.mark.parametrize(("count", "begin", "end"), [(30, 15, 30), (40, 14, 28), (100, 92, 100), (300, 100, 120)])
-def test_a_step_of_times_is_found_at_its_commit(count, begin, end):
+def test_a_step_in_timings_is_found_at_its_commit(count, begin, end):
     rng = np.random.default_rng(3)
     times = 10 * np.exp(0.01 * rng.normal(0, 1, count))
     times[begin:end] *= 1.1
@@ -160,7 +160,7 @@ def test_a_figure_that_some_runs_lack_is_compared_with_its_last_value(run, tmp_p
     assert history_of(run, tmp_path, *several) == [(2, "angle_max_deg", "worse", None)]
 
 
-def test_a_row_that_cannot_be_measured_any_more_is_worse_until_it_can(run, tmp_path):
+def test_a_row_that_can_no_longer_be_measured_is_worse_until_it_recovers(run, tmp_path):
     lost = quality(None, skipped="it does not compile")
     assert history_of(run, tmp_path, quality(50.0), lost, lost, quality(50.0)) == [(1, "psnr_db", "worse", 3)]
 
@@ -176,7 +176,7 @@ def test_a_row_is_gone_if_the_same_request_no_longer_yields_it(run, tmp_path):
     assert rows_of(run, folder) == []
 
 
-def test_rows_with_other_numbers_of_normals_are_not_compared(run, tmp_path):
+def test_rows_with_different_numbers_of_normals_are_not_compared(run, tmp_path):
     """A nightly run with more normals alternates with the runs of each commit."""
     for number, (psnr, count) in enumerate(((50.0, 4096), (49.9, 2**20)) * 3):
         histories.write_run(tmp_path / str(number), number, quality(psnr, count=count), request={"count": count})
@@ -217,7 +217,7 @@ def test_a_run_knows_its_commit(repository):
 
 
 @pytest.mark.parametrize("setting", ["core.fsmonitor", "core.hooksPath", "filter.odd.clean", "filter.odd.process"])
-def test_no_program_that_a_repository_names_is_run(repository, setting):
+def test_programs_named_by_a_repository_are_not_run(repository, setting):
     """The folder may be untrusted: file monitors, hooks and filters must not run."""
     started, hooks = repository / "started", repository / "hooks"
     hooks.mkdir()
@@ -234,7 +234,7 @@ def test_no_program_that_a_repository_names_is_run(repository, setting):
     assert started.exists()
 
 
-def test_no_filter_of_a_submodule_is_run(repository):
+def test_filters_of_a_submodule_are_not_run(repository):
     """A submodule has its own settings, which `git status` follows."""
     inner, started = repository / "inner", repository / "started"
     inner.mkdir()

@@ -1,4 +1,4 @@
-"""`normalbench history`: the commit, the row and the figure of each change, without noise of times."""
+"""`normalbench history`: the commit, the row and the figure of each change, without the noise in times."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from normalbench.bench.keep.time_steps import time_steps
 
 @pytest.mark.parametrize(("count", "series"), [(30, 120), (300, 20)])
 def test_noisy_times_have_no_step(count, series):
-    """The noise of consecutive runs is correlated, as on machines that others use."""
+    """The noise of consecutive runs is correlated, as on shared machines."""
     rng, steps = np.random.default_rng(4), 0
     for _ in range(series):
         off = rng.normal(0, 1, count)

@@ -24,7 +24,7 @@ FACTS = {"schema": SCHEMA, "request": {"count": 1}, "sources": "abc", "machine":
 
 
 def kept(run: Run, count: int, measured: list[int]) -> list[list[dict]]:
-    """Return the rows of `count` steps, kept from earlier or measured now."""
+    """Return the rows of `count` steps, which were stored earlier or are measured now."""
 
     def measure(step: Step) -> list[dict]:
         measured.append(step.case)
@@ -95,7 +95,7 @@ def test_a_damaged_folder_is_a_one_line_error_and_not_a_failed_gate(run, tmp_pat
         assert (status, out) == (2, "") and said in err and err.count("\n") == 1, (command, err)
 
 
-def test_two_processes_cannot_write_one_folder(tmp_path):
+def test_two_processes_cannot_write_to_the_same_folder(tmp_path):
     with opened(tmp_path / "run", FACTS), pytest.raises(UsageError, match="another process is writing"):
         opened(tmp_path / "run", FACTS).__enter__()
 
@@ -118,7 +118,7 @@ LONG = "llvmpipe of a very long name that goes on and on, "
         ({"machine": {"GL": LONG}}, "machine: GL (c there, llvmpipe of a very long name that goes o... here)"),
     ],
 )
-def test_a_run_of_other_sources_or_another_machine_is_not_extended(tmp_path, other, said):
+def test_a_run_from_other_sources_or_another_machine_is_not_extended(tmp_path, other, said):
     """The message names the difference with both values."""
     folder, facts = tmp_path / "run", FACTS | {"sources": "a", "machine": {"GL": "c"}}
     with opened(folder, facts) as run:
@@ -299,7 +299,7 @@ def finished(tmp_path_factory):
 
 
 @pytest.mark.parametrize("name", ["rows.jsonl", "run.json", "quality.csv"])
-def test_nothing_is_written_over_a_runs_own_files(run, tmp_path, name):
+def test_a_runs_own_files_are_not_overwritten(run, tmp_path, name):
     folder = tmp_path / "run"
     with opened(folder, FACTS) as open_run:
         kept(open_run, 1, [])

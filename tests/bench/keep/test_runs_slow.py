@@ -23,7 +23,7 @@ finished = test_runs.finished
 
 
 @pytest.mark.usefixtures("gl")
-def test_every_table_of_a_run_has_steps_and_no_two_share_a_key(tmp_path):
+def test_every_table_of_a_run_has_steps_with_unique_keys(tmp_path):
     asks = run_command.asked_of(RunOptions(count=4096), tmp_path)
     compilers = not isa.missing() and spirv.version(spirv.COMPILER)
     usual = {table.name for table in TABLES.values() if table.in_all}

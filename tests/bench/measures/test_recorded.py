@@ -34,7 +34,7 @@ def test_a_recorded_supremum_matches_the_search():
     assert worst.angle_deg == pytest.approx(expected.angle_deg, rel=1e-9) and worst.found_by == expected.found_by
 
 
-def test_a_codec_of_other_sources_is_searched(monkeypatch):
+def test_the_supremum_of_a_changed_codec_is_searched_again(monkeypatch):
     """The codec has changed sources, or the name of a catalogue codec but another decoder."""
     monkeypatch.setattr(suprema, "worst_case", lambda codec, is_half: (codec, is_half))
     mine = replace(OCTAHEDRAL, encoding=replace(OCTAHEDRAL.encoding, decode=ENCODINGS["equal_area_octahedral"].decode))

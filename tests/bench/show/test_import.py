@@ -1,4 +1,4 @@
-"""`normalbench import` and the device tables: each row is added once, all or none, and appears on the page."""
+"""`normalbench import` and the device tables: rows are added once, all or none, and appear on the page."""
 
 import json
 
@@ -9,7 +9,7 @@ from normalbench.bench.tables.devices.agreement import sentences
 from normalbench.bench.tables.registry import TABLES
 
 
-def test_codecs_and_facts_have_their_columns_and_names_that_are_unique(run, tmp_path):
+def test_codecs_and_facts_have_their_columns_and_unique_names(run, tmp_path):
     made.write_ten(tmp_path / "ten")
     for words, count in (((), 350), (("--facts",), 40)):
         status, out, _ = run("devices", *words, "--devices", str(tmp_path / "ten"), "--format", "json")
@@ -18,7 +18,7 @@ def test_codecs_and_facts_have_their_columns_and_names_that_are_unique(run, tmp_
         assert all(tuple(row) == tuple(table.empty()) for row in rows)
 
 
-def test_a_codec_of_the_readers_own_stays_a_row(run, tmp_path):
+def test_a_readers_own_codec_keeps_its_row(run, tmp_path):
     row = made.codec_rows()[0] | {"encoding": "my_own", "storage": "mine"}
     path = made.write(tmp_path / "a.json", codecs=[row])
     (shown,) = json.loads(run("devices", "--devices", str(path), "--format", "json")[1])
@@ -52,7 +52,7 @@ def test_gates_check_facts(run, tmp_path):
         assert {row["row"].split(" 156 ")[1]: row["holds"] for row in rows}["highp mantissa bits"] == "pass", how
 
 
-def test_the_chart_has_a_dot_for_each_time_above_0_the_fastest_first():
+def test_the_chart_has_a_dot_per_positive_time_with_the_fastest_first():
     from normalbench.bench.tables.devices.charts import timed
 
     rows = []
@@ -64,7 +64,7 @@ def test_the_chart_has_a_dot_for_each_time_above_0_the_fastest_first():
     assert dots[0]["codec"] == "xyz rgba8" and dots[-1]["codec"] == "octahedral_precise rg16"
 
 
-def test_the_sentences_name_who_agrees_and_where_the_others_differ():
+def test_the_sentences_list_devices_that_agree_and_how_the_others_differ():
     rows = []
     for name, truncated in (("A", ()), ("B", ()), ("C", ("RGB10_A2",))):
         about = {"device": name, "browser": "Chromium 156", "sources": "x"}

@@ -1,4 +1,4 @@
-"""`normalbench import` and the device tables: each row is added once, all or none, and appears on the page."""
+"""`normalbench import` and the device tables: rows are added once, all or none, and appear on the page."""
 
 import json
 import os
@@ -37,7 +37,7 @@ def content_of(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
-def test_device_measured_with_other_sources_is_named_once(run, tmp_path, folder):
+def test_device_measured_with_other_sources_is_reported_once(run, tmp_path, folder):
     path = made.write(tmp_path / "a.json", sources="another")
     for message in ("SwiftShader, Chromium 156: measured on a page of a different version", ""):
         status, _, err = run("import", str(path), "-o", str(folder))
@@ -98,7 +98,7 @@ def test_a_named_device_makes_its_table_part_of_all(run, tmp_path):
     assert Counter(row["row_of"] for row in read_run(out).tables["devices"]) == {"codec": 35, "fact": 4}
 
 
-def test_a_stopped_run_takes_devices_and_stays_unfinished(run, tmp_path, folder):
+def test_a_stopped_run_accepts_devices_and_stays_unfinished(run, tmp_path, folder):
     facts = json.loads((folder / "run.json").read_text())
     (folder / "run.json").write_text(json.dumps(facts | {"finished": False}))
     assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
@@ -106,7 +106,7 @@ def test_a_stopped_run_takes_devices_and_stays_unfinished(run, tmp_path, folder)
     assert not done.finished and len(done.tables["devices"]) == 39
 
 
-def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, folder):
+def test_a_file_is_added_to_a_run_once_and_a_newer_file_replaces_it(run, tmp_path, folder):
     """The run's own rows stay, the run stays finished, and the same file again changes no byte."""
     sources = json.loads((folder / "run.json").read_text())["sources"]
     first, command = made.write(tmp_path / "a.json", sources=sources), ("import", "-o", str(folder))
@@ -131,7 +131,7 @@ def test_a_file_adds_to_a_run_once_and_a_newer_one_replaces_it(run, tmp_path, fo
     assert content_of(folder) == before
 
 
-def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
+def test_a_run_continues_after_an_import(run, tmp_path, folder):
     """A second set of normals is added; the devices stay and appear on the page."""
     assert run("import", str(made.write(tmp_path / "a.json")), "-o", str(folder))[0] == 0
     words = ("--encoding", "xy", "--storage", "rg8", "--normals", "hemisphere", "--backend", "jax", "--count", "64")
@@ -141,7 +141,7 @@ def test_a_run_goes_on_after_an_import(run, tmp_path, folder):
     assert '<section id="devices"' in (folder / "report.html").read_text()
 
 
-def test_compare_names_the_differences_of_a_device(run, tmp_path, made_once):
+def test_compare_reports_the_differences_for_a_device(run, tmp_path, made_once):
     for name, truncated in (("before", ()), ("after", ("RG16F",))):
         path = made.write(tmp_path / f"{name}.json", truncated=truncated)
         folder = shutil.copytree(made_once, tmp_path / name)

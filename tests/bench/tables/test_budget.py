@@ -1,4 +1,4 @@
-"""`normalbench budget`: comparison with exhaustive search, rules of targets, minimum precision, a rendered layout."""
+"""`normalbench budget`: comparison with exhaustive search, target rules, minimum precision, a rendered layout."""
 
 import itertools
 from collections import Counter
@@ -92,7 +92,7 @@ def test_a_layout_holds_everything_within_its_bytes_and_channels(limit):
             assert component.startswith("other") or kept[component] >= size, one.code
 
 
-def test_decals_have_targets_of_their_own_whose_alpha_is_free():
+def test_decal_attributes_have_their_own_targets_with_alpha_unused():
     blended = frozenset({"normal", "base_color", "roughness"})
     solution = solved(problem(Rules(24, 6, blended=blended)))
     assert solution is not None
@@ -108,7 +108,7 @@ def test_decals_have_targets_of_their_own_whose_alpha_is_free():
             )
 
 
-def test_without_fields_every_number_has_a_channel():
+def test_without_fields_every_number_has_its_own_channel():
     """No target is an integer target either."""
     plain = [replace(home, shares=False) for home in BINS.values() if not home.fields]
     solution = solved(problem(replace(USUAL, bytes=24), bins=plain))
@@ -118,7 +118,7 @@ def test_without_fields_every_number_has_a_channel():
     assert not any(target.storage.is_integer for target in layout.targets)
 
 
-def test_number_next_to_an_unused_colour_is_in_the_fourth_channel():
+def test_number_next_to_unused_colour_channels_is_in_the_fourth_channel():
     code = next(code for code in held.SEEN["ao"].codes if code.bits == (8,))
     normal = next(code for code in held.SEEN["normal"].codes if code.name == "octahedral 16:16")
     placed = (Placed(normal, BINS["rg16"], 0), Placed(code, BINS["srgb8_a8"], 0))
@@ -128,7 +128,7 @@ def test_number_next_to_an_unused_colour_is_in_the_fourth_channel():
 
 
 @pytest.mark.parametrize("limit", [12, 14, 16, 20])
-def test_attributes_read_alone_share_few_bytes_with_nothing_large(limit):
+def test_attributes_that_are_read_alone_share_small_targets(limit):
     """Normal and roughness take at most 8 bytes without a colour; shading model and flags share a target."""
     best = solved(problem(replace(USUAL, bytes=limit)))
     assert best is not None
@@ -172,8 +172,8 @@ def test_attributes_that_no_image_shows_keep_their_bits():
     ],
     ids=lambda one: one.name,
 )
-def test_every_code_of_motion_keeps_the_floor(code, codec):
-    """Rest is exact, and up to the code's speed the error is below 1/16 pixel at 1920 x 1080."""
+def test_every_motion_encoding_keeps_the_minimum_precision(code, codec):
+    """Zero motion is exact, and up to the code's maximum speed the error is below 1/16 pixel at 1920 x 1080."""
     speed = held.UP_TO_PIXELS[code]
     assert codec.encoding.name in code.name and code in held.motion(speed, code is held.ROOT_MOTION).codes
     case = vectors.MotionVectorCase(codec, "jax", 1.0, (0.05, 1.0, 16.0, speed), Paths(2**12, 0, (1920, 1080)))
@@ -189,8 +189,8 @@ def test_motion_too_fast_for_half_floats_is_stored_in_integers():
     assert [code.name for code in held.motion(121.0, True).codes] == ["linear 16:16"]
 
 
-def test_finalists_are_other_codes_that_count_as_equal():
-    """The first is the proposal; no finalist is worse than the smallest error by more than 0.2 dB."""
+def test_finalists_use_different_codes_of_equal_quality():
+    """The first finalist is the proposal; no finalist is worse than the smallest error by more than 0.2 dB."""
     asked = problem(USUAL)
     solutions = finalists(asked, 3)
     codes = [frozenset(placed.key for placed in each.placed) for each in solutions]
@@ -199,7 +199,7 @@ def test_finalists_are_other_codes_that_count_as_equal():
     assert max(worst) <= min(worst) * 10**0.0202, worst
 
 
-def test_limit_uses_no_bytes_without_a_gain():
+def test_bytes_within_the_limit_are_used_only_if_they_gain_something():
     """If errors are visible, the smallest layout within half a decibel of the best is chosen; if an 8-bit display
     shows no error, the smallest of all."""
     scaled = [{key: {n: scale * e for n, e in of.items()} for key, of in falling().items()} for scale in (1e3, 1e-6)]
@@ -218,7 +218,7 @@ def test_limit_uses_no_bytes_without_a_gain():
     assert enough_bytes(problem(replace(USUAL, bytes=8))) is None
 
 
-def test_bits_that_the_worst_class_does_not_need_go_to_the_others():
+def test_bits_that_the_worst_class_does_not_need_go_to_other_classes():
     """A code whose error shows in one class gets all bits that fit, even if that class is not the worst."""
     (metalness,) = (attribute for attribute in DEFAULT if attribute.name == "metallic")
     errors = falling() | {
@@ -230,7 +230,7 @@ def test_bits_that_the_worst_class_does_not_need_go_to_the_others():
     )
 
 
-def test_a_scene_judges_layouts_that_the_others_chose():
+def test_each_scene_judges_the_layouts_chosen_for_other_scenes():
     """Two scenes show different attributes; each is measured with the layout chosen for the other scene."""
     rates = falling()
     errors = {key: {"first mirror": of["class 0"], "second mirror": of["class 1"]} for key, of in rates.items()}
@@ -253,8 +253,8 @@ def test_a_scene_judges_layouts_that_the_others_chose():
     assert judged._held_back_db(asked) is None, "one scene"
 
 
-def test_two_codes_that_are_worse_together_are_not_taken_together():
-    """The prediction includes the additional joint error of two codes, and 20 dB of it replaces one code."""
+def test_two_codes_that_are_worse_together_are_not_combined():
+    """The prediction adds the joint error of two codes; 20 dB of joint error makes the solver replace one code."""
     asked = problem(USUAL)
     solution = solved(asked)
     pair = frozenset(part.key for part in solution.placed if part.code.attribute in ("normal", "roughness"))
@@ -277,7 +277,7 @@ COMPARED = [layout for layout in LAYOUTS.values() if layout.is_whole and layout.
 
 
 @pytest.mark.parametrize("layout", COMPARED, ids=lambda one: one.name)
-def test_a_proposal_holds_what_a_layout_holds_in_targets_of_its_formats(layout):
+def test_a_proposal_holds_a_layouts_attributes_in_the_same_target_formats(layout):
     asked = own(layout, USUAL)
     codes = [code for attribute in asked.attributes for code in attribute.codes if code.trip]
     errors = {code.key: {"class": 4.0 ** -min(code.bits)} for code in codes}
@@ -302,7 +302,7 @@ def bits_of(layout, word) -> int:
     return word.bits or layout.targets[word.target].storage.bits[word.first]
 
 
-def test_codes_share_the_channels_of_ten_bits():
+def test_codes_share_10_bit_channels():
     """A normal and a metallic value use 27 of 30 bits; the two alpha bits hold flags."""
     home = BINS["rgb10a2"]
     codes = {code.key: code for attribute in held.SEEN.values() for code in attribute.codes}
@@ -391,7 +391,7 @@ def test_a_run_measures_a_budget_unless_it_names_scenes():
     assert chosen_tables(("budget",), {"scene": ("studio",)}) == [TABLE]
 
 
-def test_a_change_that_brings_nothing_is_not_named():
+def test_a_change_that_gains_nothing_is_not_suggested():
     """A layout with nearly the proposal's errors gets no suggestion; with a worse normal only the normal is named."""
     best = solved(problem(USUAL))
     assert best is not None

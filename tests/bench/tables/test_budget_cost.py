@@ -41,7 +41,7 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
         ("0", 0, 0, "never in full"),
     ],
 )
-def test_a_reader_fetches_the_targets_that_hold_what_it_reads(readers, unreal, signed, said):
+def test_a_decoding_pass_fetches_only_the_targets_that_it_reads(readers, unreal, signed, said):
     parsed = read_readers(BudgetOptions(readers=readers).readers)
     assert parsed.bytes_of(LAYOUTS["unreal4"]) == unreal
     assert parsed.bytes_of(LAYOUTS["xy_depth_sign"]) == signed
@@ -81,7 +81,7 @@ def test_invalid_request_is_an_error_message(run, asked, said):
 
 
 @pytest.mark.usefixtures("gl")
-def test_without_a_compiler_a_limit_of_slots_says_what_is_missing(run, monkeypatch):
+def test_a_slot_limit_without_a_compiler_names_the_missing_library(run, monkeypatch):
     monkeypatch.setattr(isa, "missing", lambda library: f"no {library}")
     status, _, err = run("budget", "--scene", "ramps", "--size", "64x48", "--most-instructions", "90")
     assert status == 3 and "--most-instructions requires a compiler: no libvulkan_radeon" in err, err
@@ -140,7 +140,7 @@ class Told:
 
 
 def _possible(limit: int):
-    """Yield every way to place the codes of FEW in HOMES within some bytes."""
+    """Yield every way to place the codes of FEW in HOMES within a byte limit."""
     for codes in itertools.product(*(attribute.codes for attribute in FEW)):
         for homes in itertools.product(HOMES, repeat=len(codes)):
             if sum(home.bytes for home in set(homes)) <= limit and fit(codes, homes):

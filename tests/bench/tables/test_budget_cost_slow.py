@@ -13,7 +13,7 @@ from normalbench.bench.tables.budget.sentences import told
 from normalbench.bench.tables.budget.table import BudgetOptions
 
 
-def test_every_code_has_a_kernel_in_every_target_that_holds_it():
+def test_every_code_has_a_kernel_for_every_target_that_holds_it():
     """This covers all that `--hold` can name; a code without a kernel would exceed every limit."""
     words = "shadow:8,custom:32,other:5,tangent,emissive,motion:packed"
     named = f"normal,base_color,roughness,metallic,f0,ao,shading_model:4,flags:4,{words}"
@@ -33,7 +33,7 @@ FEW_KINDS += ["--no-fields", "--formats", "rgba8,srgb8_a8,rgb10a2,rg16f,rg8", "-
 
 
 @pytest.mark.usefixtures("gl", "radv")
-def test_rows_have_the_slots_of_the_emitted_code_and_the_bytes_of_readers(run):
+def test_rows_have_slots_of_the_emitted_code_and_bytes_of_decoding_passes(run):
     """The figures of unreal4 are counted by hand: see test_layout_cost."""
     status, out, err = run(*FEW_KINDS, "--against", "unreal4", "--readers", "1,normal+roughness")
     assert status == 0, err
@@ -47,7 +47,7 @@ def test_rows_have_the_slots_of_the_emitted_code_and_the_bytes_of_readers(run):
 
 
 @pytest.mark.usefixtures("gl", "radv")
-def test_the_answer_for_a_limit_has_a_dozen_lines(run, monkeypatch):
+def test_the_answer_for_a_limit_has_at_most_a_dozen_lines(run, monkeypatch):
     """Lines have 80 columns; `-v` prints more of the same figures."""
     monkeypatch.setenv("COLUMNS", "80")
     (status, short, err), (_, verbose, _) = (run(*FEW_KINDS[:-2], *more) for more in ((), ("-v",)))
@@ -57,7 +57,7 @@ def test_the_answer_for_a_limit_has_a_dozen_lines(run, monkeypatch):
 
 
 @pytest.mark.usefixtures("gl", "radv")
-def test_slot_limit_is_kept_or_the_lowest_possible_limit_is_named(run):
+def test_slot_limit_is_met_or_the_lowest_possible_limit_is_reported(run):
     status, _, err = run(*FEW_KINDS, "--most-instructions", "1")
     pattern = r"1 issue slots are too few: the cheapest .* takes (\d+) slots to pack and unpack"
     (least,) = map(int, re.findall(pattern, err))

@@ -1,4 +1,4 @@
-"""`normalbench budget`: comparison with exhaustive search, rules of targets, minimum precision, a rendered layout."""
+"""`normalbench budget`: comparison with exhaustive search, target rules, minimum precision, a rendered layout."""
 
 import itertools
 import json
@@ -22,7 +22,7 @@ from normalbench.gbuffer.layouts.layout import read_layout
 from normalbench.reports.sheets import Role
 
 
-def test_the_program_finds_what_exhaustive_search_finds():
+def test_solver_agrees_with_exhaustive_search():
     """Three attributes with codes of several sizes are placed in unequal targets, for 50 random limits and errors."""
     attributes = [
         replace(held.SEEN["normal"], codes=tuple(c for c in held.SEEN["normal"].codes if c.bits[0] in (10, 12, 14))),
@@ -74,7 +74,7 @@ def test_answer_does_not_depend_on_the_order_of_sets():
     assert told.strip() == str(sorted((p.code.name, p.bin.name, p.copy) for p in solution.placed))
 
 
-def test_a_layout_is_drawn_and_is_what_was_predicted(gl, run, tmp_path):
+def test_a_rendered_layout_matches_its_prediction(gl, run, tmp_path):
     """The errors agree within half a decibel, and the written file describes the same layout."""
     folder = tmp_path / "layouts"
     asked = ["--scene", "ramps", "--size", "160x120", "--bytes", "14", "--format", "json", "--layouts", str(folder)]
@@ -113,7 +113,7 @@ def test_attributes_that_are_not_stored_are_exact_and_take_no_bytes(run, kept, s
 
 
 @pytest.mark.usefixtures("gl")
-def test_integer_targets_are_taken_where_no_others_are_allowed(run):
+def test_integer_targets_are_used_if_no_other_targets_are_allowed(run):
     """This holds even if no other layout is possible, so that no gain can be measured."""
     asked = ["--scene", "ramps", "--size", "160x120", "--bytes", "20", "--read-alone", "none", "--format", "json"]
     status, out, err = run("budget", *asked, "--formats", "rgba32_uint,rg16f")
@@ -176,7 +176,7 @@ def _refusal(gpu, formats) -> str:
     return ""
 
 
-def test_wgpu_takes_the_targets_that_cost_32_bytes_and_refuses_more():
+def test_wgpu_accepts_targets_up_to_32_bytes_and_refuses_more():
     """Up to 8 random targets are tried; the error of a refusal states the bytes that wgpu counts."""
     gpu, rng = _webgpu_device(), np.random.default_rng(11)
     assert WEBGPU_NAMES.keys() == WEBGPU.keys()

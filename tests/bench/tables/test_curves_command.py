@@ -36,7 +36,7 @@ def test_linear_error_is_a_quarter_step_on_average_and_half_a_step_at_most(bits)
     assert abs(figures["bias"]) < step / 500 + 2.0**-24 and figures["bits"] == bits
 
 
-def test_truncation_has_a_bias_of_half_a_step_and_dithering_has_none():
+def test_truncation_has_a_bias_of_half_a_step_and_dithering_is_unbiased():
     """The mean error of dithering is a third of a step, weighted over all values that a number may become."""
     step = 1 / 31
     cut, dithered = row("linear", "unorm:5", "truncate"), row("linear", "unorm:5", "dithered")
@@ -46,18 +46,18 @@ def test_truncation_has_a_bias_of_half_a_step_and_dithering_has_none():
     assert dithered["zero"] == 0
 
 
-def test_eight_bits_on_the_srgb_curve_are_half_a_step_of_what_a_viewer_sees():
+def test_8_bits_on_the_srgb_curve_are_off_by_at_most_half_a_display_step():
     assert row("srgb", "r8")["display_max"] == pytest.approx(0.5, abs=0.005)
     # 12.92 steps of the curve to one of the line near black.
     assert row("linear", "r8")["display_max"] == pytest.approx(12.92 / 2, rel=0.01)
 
 
-def test_a_curve_on_which_no_colours_are_stored_has_no_display_steps():
+def test_curves_not_used_for_colours_have_no_display_steps():
     names = {name for name in CURVE_ENCODINGS if row(name, "r8")["display_max"] is None}
     assert names == {"squared", "inverted", "ray_bits", "reflectivity"}
 
 
-def test_a_floats_error_is_a_share_of_the_quantity():
+def test_error_of_a_float_is_proportional_to_the_quantity():
     figures = row("linear", "float:5:10")
     assert figures["relative_max"] == pytest.approx(100 * 2.0**-11, rel=0.05)
 
@@ -107,7 +107,7 @@ def test_bad_input_is_a_one_line_error_with_valid_values(run, words, said):
     assert status == 2 and not out and err.count("\n") == 1 and all(word in err for word in said), err
 
 
-def test_without_a_device_glsl_rows_say_why(run, monkeypatch):
+def test_glsl_rows_without_a_device_give_the_reason(run, monkeypatch):
     def none():
         raise NoDeviceError("no device here")
 

@@ -10,8 +10,8 @@ OWN = Path(__file__).parents[2] / "inputs/own_codes/roughness.hlsl"
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_users_own_curve_has_the_catalogues_rows(run):
-    """roughness.hlsl is `squared`: the same figures by GLSL."""
+def test_a_users_copy_of_a_curve_has_the_catalogues_rows(run):
+    """roughness.hlsl is a copy of `squared` and gives the same figures in GLSL."""
     words = ("--encoding", f"{OWN},squared", "--storage", "r8,unorm:6", "--backend", "glsl", "--count", "4096")
     status, out, _ = run("curves", *words, "--format", "json")
     rows = json.loads(out)
@@ -21,7 +21,7 @@ def test_a_users_own_curve_has_the_catalogues_rows(run):
         assert all(new[name] == other[name] for name in ("storage", "error_mean", "error_max", "relative_max", "least"))
 
 
-def test_rows_are_by_bits_with_the_best_first(run):
+def test_rows_are_sorted_by_bits_and_then_by_error(run):
     status, out, err = run(*QUICK, "--encoding", "linear,srgb", "--storage", "unorm:4..6")
     rows = json.loads(out)
     assert status == 0 and not err and [row["bits"] for row in rows] == [4, 4, 5, 5, 6, 6]

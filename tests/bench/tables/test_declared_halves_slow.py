@@ -29,8 +29,8 @@ def halves():
 
 
 @pytest.mark.usefixtures("gl", "halves", "slang")
-def test_quality_has_a_row_of_either_arithmetic(run, tmp_path):
-    """In half arithmetic xy cannot use all of 16-bit UNORM: its mean is 0.0708 degrees instead of 0.0030."""
+def test_quality_has_a_row_for_each_arithmetic(run, tmp_path):
+    """In half arithmetic xy cannot use all of 16-bit UNORM: its mean error is 0.0708 degrees instead of 0.0030."""
     (tmp_path / "dir.glsl").write_text(GLSL)
     files = f"{FORMS / 'half_literal.hlsl'},{tmp_path / 'dir.glsl'},xy"
     asked = ("--storage", "rg16", "--normals", "hemisphere", "--backend", "glsl", "--count", "65536")
@@ -58,7 +58,7 @@ def test_the_answer_quotes_half_arithmetic(run):
 
 
 @pytest.mark.usefixtures("gl", "slang")
-def test_without_a_device_for_halves_the_answer_is_of_32_bits(run, monkeypatch):
+def test_the_answer_uses_32_bits_without_a_device_for_half_arithmetic(run, monkeypatch):
     def missing():
         raise MissingError("half arithmetic with --backend glsl needs wgpu; pip install wgpu")
 
@@ -74,7 +74,7 @@ def test_without_a_device_for_halves_the_answer_is_of_32_bits(run, monkeypatch):
 
 
 @pytest.mark.usefixtures("gl", "slang")
-def test_an_integer_of_halves_is_computed_in_32_bits(run, tmp_path):
+def test_an_encoding_with_an_integer_code_is_computed_in_32_bits(run, tmp_path):
     text = (FORMS / "uint_only.hlsl").read_text()
     (tmp_path / "mine.hlsl").write_text(text.replace("float3 c", "half3 c"))
     asked = ("--normals", "sphere", "--storage", "rg8", "--backend", "glsl", "--count", "4096", "--format", "json")

@@ -33,17 +33,17 @@ def doctor(run, tmp_path, text: str) -> list[str]:
 
 
 @pytest.mark.parametrize("text", [RIGHT, THREE])
-def test_nothing_is_wrong_with_powers_of_255(run, tmp_path, text):
+def test_powers_of_255_have_no_findings(run, tmp_path, text):
     assert not doctor(run, tmp_path, text)
 
 
-def test_component_that_is_not_a_whole_byte_is_named(run, tmp_path):
+def test_component_that_is_not_a_whole_byte_is_reported(run, tmp_path):
     """A first digit in 256 steps is off by half of 1/255 in a byte with 255 steps: 32897 steps of 2^-24."""
     (finding,) = doctor(run, tmp_path, OF_256)
     assert "component 1 of the code alone by 32897, because it is not a multiple of 1/255" in finding
 
 
-def test_a_digit_that_is_missing_is_named(run, tmp_path):
+def test_a_missing_digit_is_reported(run, tmp_path):
     findings = doctor(run, tmp_path, LOST)
     message = "depths that differ by 1/256 share a code: the code's most significant byte is missing"
     assert any(message in finding for finding in findings)
@@ -51,7 +51,7 @@ def test_a_digit_that_is_missing_is_named(run, tmp_path):
 
 def test_packed_bytes_are_measured_on_linear_window_and_reversed_depth(run, tmp_path):
     """Linear depth is off by half a step of the last digit, which is below the float32 step; the other depths match a
-    depth buffer of as many bits."""
+    depth buffer with the same number of bits."""
     path = tmp_path / "depth.glsl"
     path.write_text(THREE)
     words = ("--depth", f"{path},window", "--storage", "depth24", "--count", "4096", "--backend", "glsl")

@@ -8,7 +8,7 @@ QUICK = ["depth", "--depth", "linear,window", "--near", "1", "--far", "100", "--
 
 
 @pytest.mark.usefixtures("gl", "rows_are_shared")
-def test_the_table_has_a_line_for_each_code_and_its_distances_side_by_side(run):
+def test_table_has_a_line_for_each_code_with_its_distances_side_by_side(run):
     status, out, _ = run(*QUICK[:-2], "--distance", "5,50")
     rows = json.loads(run(*QUICK[:-2], "--distance", "5,50", "--format", "json")[1])
     assert status == 0
@@ -30,7 +30,7 @@ def test_overflowing_errors_are_null_in_json(run):
 
 
 @pytest.mark.usefixtures("rows_are_shared")
-def test_every_way_is_measured_where_there_is_one(run):
+def test_every_available_reconstruction_is_measured(run):
     status, out, err = run(*QUICK, "--rebuild", "all", "--storage", "depth24", "--format", "json")
     assert status == 0 and err == ""
     ways = {(row["depth"], row["rebuilt"]) for row in json.loads(out)}
@@ -39,7 +39,7 @@ def test_every_way_is_measured_where_there_is_one(run):
 
 
 @pytest.mark.usefixtures("rows_are_shared")
-def test_both_ways_that_engines_take_are_rows(run):
+def test_rows_cover_both_reconstructions_used_by_engines(run):
     """At 100, 24-bit z/w is off by 0.019 with the matrix and 0.0212 with the two terms; half a step is 0.0052."""
     words = ["depth", "--depth", "window,linear", "--storage", "depth24,packed16", "--near", "0.1", "--distance", "100"]
     rows = json.loads(run(*words, "--backend", "jax", "--format", "json")[1])

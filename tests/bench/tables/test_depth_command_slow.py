@@ -68,7 +68,7 @@ WAYS = {"truncate": 2.0, "truncate_half": 4 / 3, "dithered": 4 / 3}
 @pytest.mark.parametrize(
     "code", [("linear", "packed16"), ("linear_sign", "unorm:13"), ("logarithmic", "packed16"), ("linear", "r16f")]
 )
-def test_numbers_are_rounded_as_is_asked_in_both_languages(run, code):
+def test_numbers_are_rounded_as_requested_in_both_languages(run, code):
     words = ["--depth", code[0], "--storage", code[1], "--near", "1", "--rounding", "all", "--format", "json"]
     status, out, _ = run("depth", *words, "--count", "4096")
     by_key = {(row["rounding"], row["backend"], row["distance"]): row for row in json.loads(out)}
@@ -87,7 +87,7 @@ def test_numbers_are_rounded_as_is_asked_in_both_languages(run, code):
             assert ratio == pytest.approx(WAYS[rounding], rel=0.05), rounding
 
 
-def test_noise_leaves_a_depths_sign_and_the_mean_of_its_codes():
+def test_noise_preserves_a_depths_sign_and_the_mean_of_its_codes():
     """This holds even near 0, where the noise is larger than the number and the mean is slightly larger."""
     codec = DepthCodec(DEPTH_ENCODINGS["linear_sign"], DEPTH_STORAGES["packed16"], "dithered")
     noise = codec.dither.added[..., 0].ravel()
@@ -100,7 +100,7 @@ def test_noise_leaves_a_depths_sign_and_the_mean_of_its_codes():
             assert abs(abs(stored) - exact).max() < 1.001 * codec.step
 
 
-def test_without_a_gl_driver_the_jax_rows_are_there(run, tmp_path, monkeypatch):
+def test_jax_rows_are_measured_without_an_opengl_driver(run, tmp_path, monkeypatch):
     """The GLSL rows say what to install; GLSL alone and pictures end with status 3."""
 
     def no_device():

@@ -18,7 +18,7 @@ def figures(rows: list[dict]) -> dict[tuple[str, ...], tuple[float, ...]]:
 
 
 def test_a_code_is_measured_on_the_depths_of_an_image(run, tmp_path):
-    """The error of 16-bit linear depth equals rounding each depth to a step of far / 65535."""
+    """The error of 16-bit linear depth equals the error of rounding each depth to a step of far / 65535."""
     rows, err = rows_of(run, write_exr(tmp_path / "a.exr", {"Depth.Z": SKY}))
     exact = SLOPE[3:].astype(np.float64)
     again = np.round(exact / FAR * 65535) / 65535 * FAR
@@ -43,8 +43,8 @@ def test_the_device_gives_the_same_figures(run, tmp_path):
         assert figure == pytest.approx(by["jax"][key], rel=0.1), key
 
 
-def test_positions_are_those_of_pixels_where_the_angle_is_known(run, tmp_path):
-    """The relative error of depths stays the same; a position in a corner is farther off by the length of its ray."""
+def test_positions_are_measured_at_the_pixels_if_the_field_of_view_is_known(run, tmp_path):
+    """The relative error of depths stays the same; a corner's position error is scaled by the length of its ray."""
     path = write_exr(tmp_path / "a.exr", {"Z": np.full((24, 32), 40.1, np.float32)})
     (on_axis, *_), _ = rows_of(run, path)
     (seen, *_), err = rows_of(run, path, "--fov", "90")
@@ -54,7 +54,7 @@ def test_positions_are_those_of_pixels_where_the_angle_is_known(run, tmp_path):
     assert (seen["fov"], on_axis["fov"]) == (90, None)
 
 
-def test_whole_numbers_are_in_their_unit_or_shares_of_one(run, tmp_path):
+def test_integers_are_read_in_their_unit_or_as_fractions_of_one(run, tmp_path):
     """Depth cameras give millimetres; 16-bit z/w has steps that make depth16 look exact."""
     millimetres = np.round(SLOPE * 1000).astype(np.uint16)
     (tmp_path / "a.png").write_bytes(png_bytes(millimetres[..., None]))
@@ -81,7 +81,7 @@ def test_suspicious_images_and_images_that_favour_a_code_are_noted(run, tmp_path
     assert {(row["count"], row["background"], row["not_finite"]) for row in rows} == {(24 * 32 - 5, 0, 5)}
 
 
-def test_the_table_names_each_way_and_gates_and_python_take_images(run, tmp_path, monkeypatch):
+def test_table_names_each_reconstruction_and_gates_and_python_accept_images(run, tmp_path, monkeypatch):
     import normalbench
 
     np.save(tmp_path / "a.npy", SLOPE)
@@ -102,7 +102,7 @@ def test_the_table_names_each_way_and_gates_and_python_take_images(run, tmp_path
         normalbench.depth(depths={"mine": SLOPE.astype(int)})
 
 
-def test_pictures_are_of_the_frame(run, tmp_path, gl):  # noqa: ARG001 # its driver is asked for by the table
+def test_pictures_show_the_frame(run, tmp_path, gl):  # noqa: ARG001 # its driver is asked for by the table
     np.save(tmp_path / "a.npy", SKY)
     words = ("--images", str(tmp_path / "pictures"), "--fov", "60")
     rows_of(run, tmp_path / "a.npy", *words)

@@ -37,7 +37,7 @@ def test_a_renderer_has_a_short_name(renderer, name):
     assert device_name(renderer) == name
 
 
-def test_renderers_that_share_a_short_name_stay_apart_in_any_order():
+def test_renderers_with_the_same_short_name_are_distinguished_in_any_order():
     """Renderers are told apart by their API, or by four digits of a hash if the API is the same too."""
     other = "ANGLE (NVIDIA Corporation, NVIDIA GeForce RTX 4090/PCIe/SSE2, OpenGL 4.5.0)"
     assert told_apart([made.GEFORCE, other]) == {
@@ -164,7 +164,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_bad_file_is_a_one_line_error_with_its_name_and_the_place(run, tmp_path, what):
+def test_bad_file_is_a_one_line_error_with_its_name_and_location(run, tmp_path, what):
     data, message = BAD[what]
     path = tmp_path / "bad.json"
     path.write_bytes(data)

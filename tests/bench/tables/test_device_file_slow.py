@@ -9,7 +9,7 @@ from normalbench.bench.ground.output.errors import UsageError
 from normalbench.bench.tables.devices.device_file import read_device_file
 
 
-def test_damaged_file_is_read_or_refused_in_one_line(tmp_path):
+def test_damaged_file_is_read_or_refused_with_a_one_line_error(tmp_path):
     """Bytes are flipped, cut out and doubled at random."""
     random.seed(7)
     path, refused = tmp_path / "a.json", 0

@@ -1,4 +1,4 @@
-"""`normalbench site`: its page for ten devices, all-or-nothing writing, and files of others left alone."""
+"""`normalbench site`: its page for ten devices, all-or-nothing writing, and users' files that stay unchanged."""
 
 import json
 import os
@@ -49,7 +49,7 @@ def files_of(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_the_page_says_which_devices_agree_and_what_to_use_on_each(site):
+def test_page_lists_the_devices_that_agree_and_the_encoding_for_each(site):
     text = Read(site / "index.html").text
     assert "5 devices agree with the run in every code of 35 codecs." in text
     assert "Mali-G78, Chromium 156 differs in 8 of 35 codecs, most in xyz rgb10a2: 87.6% of its codes" in text
@@ -99,7 +99,7 @@ def test_a_users_own_encoding_is_left_out_of_the_answer(tmp_path):
     assert answered(tmp_path, codecs=rows[1:]) == {rows[0]["storage"]: None}
 
 
-def test_damaged_files_are_named_and_left_out(run, tmp_path):
+def test_damaged_files_are_reported_and_left_out(run, tmp_path):
     files = tmp_path / "files"
     made.write(files / "good.json")
     (files / "bad.json").write_text("{")
@@ -125,7 +125,7 @@ def test_missing_folder_is_a_one_line_error(run, tmp_path, name, said):
     assert (status, out, err.count("\n")) == (2, "", 1) and said in err
 
 
-def test_a_second_site_replaces_its_own_files_and_no_others(run, tmp_path):
+def test_a_second_site_replaces_only_its_own_files(run, tmp_path):
     files, site = tmp_path / "files", tmp_path / "site"
     made.write(files / "a.json")
     gone = made.write(files / "b.json", renderer=made.MALI)
@@ -141,7 +141,7 @@ def test_a_second_site_replaces_its_own_files_and_no_others(run, tmp_path):
     assert "Mali" not in (site / "index.html").read_text()
 
 
-def test_a_page_that_no_longer_belongs_to_the_site_is_taken_away(tmp_path):
+def test_a_page_that_no_longer_belongs_to_the_site_is_deleted(tmp_path):
     write_site(tmp_path / "site", {"index.html": "first", "codecs/xy.html": "xy", "codecs/xyz.html": "xyz"})
     write_site(tmp_path / "site", {"index.html": "second", "codecs/xyz.html": "xyz"})
     assert set(files_of(tmp_path / "site")) == {"index.html", "codecs/xyz.html", MARKER}
@@ -158,7 +158,7 @@ def test_a_page_that_no_longer_belongs_to_the_site_is_taken_away(tmp_path):
         (MARKER, "[]", "delete it"),
     ],
 )
-def test_nobody_elses_file_is_touched(run, tmp_path, name, text, said):
+def test_users_files_in_the_site_folder_are_not_changed(run, tmp_path, name, text, said):
     made.write(tmp_path / "files/a.json")
     (tmp_path / "outside.html").write_text("outside")
     path = tmp_path / "site" / name
@@ -179,7 +179,7 @@ def test_a_link_in_the_site_is_not_followed(tmp_path):
     assert not list((tmp_path / "other").iterdir())
 
 
-def test_a_full_disk_leaves_the_earlier_site(run, tmp_path, monkeypatch):
+def test_a_full_disk_leaves_the_earlier_site_unchanged(run, tmp_path, monkeypatch):
     files, site = tmp_path / "files", tmp_path / "site"
     made.write(files / "a.json")
     assert run("site", str(files), "-o", str(site))[0] == 0
@@ -223,7 +223,7 @@ def test_markup_in_a_device_file_stays_text(run, tmp_path):
         assert "default-src 'none'" in text and "http" not in text.replace("http-equiv", "")
 
 
-def test_devices_whose_names_give_one_address_have_sections_of_their_own(run, tmp_path):
+def test_devices_whose_names_give_the_same_address_have_separate_sections(run, tmp_path):
     for number, renderer in enumerate(("GPU+", "GPU-", "\u7a7a", "\u7a7a\u7a7a")):
         made.write(tmp_path / f"files/{number}.json", renderer=renderer, browser="\u7a7a")
     assert run("site", str(tmp_path / "files"), "-o", str(tmp_path / "site"))[0] == 0

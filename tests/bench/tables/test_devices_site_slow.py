@@ -1,4 +1,4 @@
-"""`normalbench site`: its page for ten devices, all-or-nothing writing, and files of others left alone."""
+"""`normalbench site`: its page for ten devices, all-or-nothing writing, and users' files that stay unchanged."""
 
 import time
 
@@ -11,7 +11,7 @@ from normalbench.bench.show.site_files import MARKER
 site = test_devices_site.site
 
 
-def test_there_is_a_section_for_each_device_and_every_link_leads_to_one(site):
+def test_each_device_has_a_section_and_every_link_leads_to_a_section(site):
     page = Read(site / "index.html")
     sections = {attributes["id"] for tag, attributes in page.tags if tag == "section"}
     devices = {section for section in sections if section.startswith("device-")}

@@ -84,14 +84,14 @@ def test_bad_input_is_a_one_line_error_and_nothing_is_written(run, tmp_path, mon
     assert not list(tmp_path.iterdir())
 
 
-def test_an_effects_alpha_says_where_it_is_drawn():
+def test_an_effects_alpha_marks_where_the_effect_is_drawn():
     own, surfaces = np.zeros((1, 3, 4), np.float32), np.array([[True, True, False]])
     assert not drawn_at(own, surfaces).any() and np.array_equal(drawn_at(own[..., :1], surfaces), surfaces)
     own[0, 1:, 3] = 1
     assert np.array_equal(drawn_at(own, surfaces), [[False, True, True]])
 
 
-def test_two_effects_of_one_kind_are_refused(run):
+def test_two_effects_of_the_same_kind_are_refused(run):
     status, out, err = run("render", "--effects", "gtao,lpv,sao", "--encoding", "xy")
     assert (status, out) == (2, "") and "gtao and sao both produce visibility; name only one" in err, err
     assert err.count("\n") == 1

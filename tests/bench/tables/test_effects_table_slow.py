@@ -51,7 +51,7 @@ def rows(pictures):
 
 
 def drawn(gl, layout):
-    """Return the effect's own image, the normals and where there is a surface, drawn by the renderer alone."""
+    """Return the effect's own image, the normals and the mask of surfaces, drawn by the renderer alone."""
     effect = effects_named(EFFECT)[0]
     pipeline = PIPELINES["hybrid"].with_effect(effect.passes())
     plan = Plan(SIZE, 1, layout, LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
@@ -61,7 +61,7 @@ def drawn(gl, layout):
         return renderer.read(effect.effect.result)[0][..., :3], direction[..., :3], position[..., 2] != 0
 
 
-def test_figures_are_those_of_the_two_images(gl, rows):
+def test_figures_match_the_two_images(gl, rows):
     """PSNR, RMS, mean, maximum, slope and angles are recomputed from the renderer's buffers."""
     row = next(row for row in rows if row["storage"] == "rg8")
     own, normals, _ = drawn(gl, LAYOUTS["fp32"].with_codec(codecs_named("octahedral", "rg8", "nearest")[0]))
@@ -93,7 +93,7 @@ def test_an_exact_layout_loses_nothing_and_more_bits_lose_less(rows):
     assert (depth["encoding"], depth["storage"], depth["normal_bits"]) == (None, None, None)
 
 
-def test_reflections_say_how_many_hits_moved(run):
+def test_reflections_report_how_many_hits_moved(run):
     """With two more bits per number, fewer than half as many hits move."""
     words = ("effects", "--effect", "ssr:rays=1,gtao", "--size", "96x72", "--lights", "2", "--rays", "0")
     status, out, _ = run(*words, "--encoding", "octahedral", "--storage", "rg8,rgb10a2", "--depth", "none", *JSON)
@@ -120,7 +120,7 @@ def test_a_scene_is_made_once_for_all_its_rows(gl):
     assert [row["storage"] for row in rows] == ["rg8", "rgb10a2"] and settings == [Setting(lights=2)]
 
 
-def test_times_are_those_of_the_effects_passes(rows):
+def test_an_effects_time_is_the_sum_of_its_passes(rows):
     names = [stage.name for stage in effects_named(EFFECT)[0].passes()]
     for row in rows:
         assert row["ms_effect"] == pytest.approx(sum(row[f"ms_{name}"] for name in names))

@@ -36,14 +36,14 @@ def turned(angle: float, axis: int, count: int = 3) -> Frames:
 
 @pytest.mark.parametrize("angle", [1e-5, 0.1, 60.0, 180.0])
 @pytest.mark.parametrize("axis", [0, 1, 2])
-def test_angles_are_those_of_a_known_turn(angle, axis):
-    """About the tangent only the normal moves, about the normal only the tangent. The rotation is the turn."""
+def test_angles_match_a_known_rotation(angle, axis):
+    """A turn about the tangent moves only the normal, and vice versa; the rotation error is the angle of the turn."""
     angles = frames.frame_angles(turned(0, axis), turned(angle, axis))[:, 0]
     expected = [0.0 if axis == 2 else angle, 0.0 if axis == 0 else angle, angle]
     assert angles == pytest.approx(expected, rel=1e-6, abs=1e-12)
 
 
-def test_lost_hands_and_decodes_that_are_not_numbers_are_counted():
+def test_lost_handedness_and_invalid_decodes_are_counted():
     total = frames.FrameTotal()
     given, decoded = turned(0, 0, 4), turned(1, 0, 4)
     decoded.normals[0, 3] = -1
@@ -54,9 +54,9 @@ def test_lost_hands_and_decodes_that_are_not_numbers_are_counted():
     assert total.largest[2] == 180 and total.sums[2] == pytest.approx(3 + 180)
 
 
-def test_the_limit_of_few_codes_is_known():
-    """One rotation: every angle, up to 180 degrees. The 24 rotations of a cube: at most 62.80 degrees and 40.74 in
-    the mean between two cubes (Mackenzie 1958), slightly above the bound."""
+def test_the_bound_for_a_few_codes_is_known():
+    """With one rotation the error reaches 180 degrees. With the 24 rotations of a cube it is at most 62.80 degrees
+    and 40.74 on average (Mackenzie 1958), slightly above the bound."""
     all_of_them = frame_limit(2)
     assert all_of_them.max_deg == pytest.approx(180)
     assert all_of_them.mean_deg == pytest.approx(np.degrees(np.pi / 2 + 2 / np.pi))
@@ -99,7 +99,7 @@ ELSEWHERE = {
 
 
 @pytest.mark.parametrize("name, storage", ELSEWHERE)
-def test_rotation_encodings_have_the_errors_measured_elsewhere(name, storage):
+def test_errors_of_rotation_encodings_match_independent_measurements(name, storage):
     mean, largest = ELSEWHERE[name, storage]
     codec = FrameCodec(FRAME_ENCODINGS[name], storages_named(storage)[0])
     row = frames.measure(frames.FrameCase(codec, rotations(2**16, 3), "jax"))
@@ -107,7 +107,7 @@ def test_rotation_encodings_have_the_errors_measured_elsewhere(name, storage):
     assert row["rotation_max_deg"] == pytest.approx(largest, rel=0.05), row
 
 
-def test_noise_is_added_to_all_numbers_of_a_frame_except_few_valued_ones():
+def test_noise_is_added_only_to_numbers_of_a_frame_that_have_many_values():
     """The mean over a whole tile is the number, and numbers stored before settling do not get noise twice."""
     codec = FrameCodec(FRAME_ENCODINGS["smallest_three"], FRAME_STORAGES["rgb10a2"], "dithered")
     added = codec.dither.added.reshape(-1, 4)
@@ -140,7 +140,7 @@ def test_an_angle_about_the_true_normal_would_be_lost_at_the_seam():
     assert rows[0]["rotation_max_deg"] < 0.3 and rows[1]["rotation_max_deg"] > 90
 
 
-def test_tangents_that_lean_or_vanish_still_make_frames():
+def test_tilted_or_zero_tangents_still_give_frames():
     normals = np.float64([[0, 0, 1], [0, 0, 1], [1, 0, 0]])
     built = frames_from(normals, np.float64([[1, 0, 1, -1], [0, 0, 1, 1], [0, 0, 0, 1]]))
     n, t = built.normals[:, :3], built.tangents[:, :3]
@@ -163,7 +163,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_bad_input_is_a_one_line_error_that_says_what_would_be_right(run, what, tmp_path, monkeypatch):
+def test_bad_input_is_a_one_line_error_with_valid_values(run, what, tmp_path, monkeypatch):
     arguments, parts = BAD[what]
     monkeypatch.chdir(tmp_path)
     status, out, err = run("frames", *arguments)
@@ -173,7 +173,7 @@ def test_bad_input_is_a_one_line_error_that_says_what_would_be_right(run, what, 
     assert not list(tmp_path.iterdir()), "something was left behind"
 
 
-def test_a_row_below_its_limit_is_named_and_the_status_is_1(run, monkeypatch):
+def test_a_row_below_its_bound_is_reported_with_status_1(run, monkeypatch):
     monkeypatch.setattr(frames, "frames_broken", lambda *_: "RMS 0.1 degrees is below the bound of 0.2 degrees")
     status, _, err = run(*QUICK, "--storage", "rgb10a2")
     assert status == 1 and err.count("\n") == 2 and "octahedral_angle/rgb10a2: RMS 0.1 degrees" in err
@@ -194,7 +194,7 @@ def test_jax_rows_are_measured_without_an_opengl_driver(run, monkeypatch):
     assert status == 3 and err.count("\n") == 1 and "install an OpenGL driver" in err
 
 
-def test_lost_hands_of_either_sign_are_counted():
+def test_lost_handedness_of_either_sign_is_counted():
     given = rotations(8, 0).chunk(0)
     assert set(given.normals[:, 3]) == {-1.0, 1.0}
     for lost in (given.normals[:, 3] > 0, given.normals[:, 3] < 0):

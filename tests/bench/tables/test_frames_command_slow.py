@@ -18,8 +18,8 @@ from normalbench.gbuffer.scenes.mesh import sphere
 
 
 def test_random_rotations_are_spread_evenly():
-    """By the Haar measure the mean angle to a fixed rotation is pi/2 + 2/pi, 126.5 degrees. Both hands are equally
-    common."""
+    """By the Haar measure the mean angle to a fixed rotation is pi/2 + 2/pi, 126.5 degrees. Both signs of handedness
+    are equally common."""
     count = 2 * CHUNK + 100
     turns = rotations(count, 0)
     chunks = list(turns.chunks())
@@ -39,9 +39,9 @@ def test_random_rotations_are_spread_evenly():
     "name, storage",
     [("octahedral_angle", "unorm:12:12:12:1"), ("qtangent", "rgba8_snorm"), ("rotation_vector", "rgb10a2")],
 )
-def test_noise_costs_a_bit_and_a_half_and_no_hand(name, storage):
+def test_noise_costs_one_and_a_half_bits_and_keeps_handedness(name, storage):
     """The squared error is a sixth of a squared step instead of a twelfth: half a bit for each of three numbers.
-    Numbers that are settled after the first are rounded have noise as well, and both languages add the same noise."""
+    Numbers that are settled after the first are rounded also get noise, and both languages add the same noise."""
 
     def row(rounding: str, backend: str) -> dict:
         codec = FrameCodec(FRAME_ENCODINGS[name], storages_named(storage)[0], rounding)
@@ -58,7 +58,7 @@ def test_noise_costs_a_bit_and_a_half_and_no_hand(name, storage):
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("storage", ["rgba8", "rgba16f", "unorm:12:12:7:1"])
 def test_numbers_are_truncated_alike_in_both_languages(storage):
-    """The error is about twice that of nearest, the hand is kept, and stored numbers are not truncated again."""
+    """The error is about twice that of nearest, handedness is kept, and stored numbers are not truncated again."""
     (chosen,) = storages_named(storage)
 
     def row(rounding: str, backend: str) -> dict:
@@ -73,7 +73,7 @@ def test_numbers_are_truncated_alike_in_both_languages(storage):
 
 
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
-def test_every_encoding_keeps_the_hand_and_stays_above_the_bound(request, backend):
+def test_every_encoding_keeps_handedness_and_stays_above_the_bound(request, backend):
     if backend == "glsl":
         request.getfixturevalue("gl")
     for encoding in FRAME_ENCODINGS.values():
@@ -97,14 +97,14 @@ def test_json_has_flat_rows_best_first(run):
 
 
 @pytest.mark.usefixtures("gl", "rows_are_shared")
-def test_the_table_shows_both_backends_of_an_encoding_one_after_the_other(run):
+def test_the_table_shows_both_backends_of_an_encoding_in_consecutive_lines(run):
     status, out, _ = run("frames", "--count", "4096", "--encoding", "qtangent")
     lines = [line.split() for line in out.splitlines() if line.startswith("rgba") and "bits" not in line]
     assert status == 0 and len(lines) == 8
     assert all(a[0] == b[0] and {a[1], b[1]} == {"jax", "glsl"} for a, b in zip(lines[::2], lines[1::2], strict=True))
 
 
-def test_the_frames_of_a_mesh_are_those_of_its_vertices(run, tmp_path):
+def test_the_frames_of_a_mesh_are_its_vertex_frames(run, tmp_path):
     """The mesh has authored tangents and signs under a mirrored node. Its frames have no bound, because they are not
     spread evenly."""
     as_document([sphere(1.0, 16, 8)]).write(tmp_path / "scene.glb")

@@ -1,4 +1,4 @@
-"""Accumulated light: the model, the OpenGL device, and the findings of the articles."""
+"""Accumulated light: the model, the OpenGL device and published findings."""
 
 import json
 
@@ -40,7 +40,7 @@ TABLE = [
 
 
 @pytest.mark.parametrize("name, channels, total, count, value", TABLE)
-def test_the_model_gives_the_accumulation_table(name, channels, total, count, value):
+def test_the_model_reproduces_the_accumulation_table(name, channels, total, count, value):
     by_channel = {}
     for row in equal_lights(by_model(name), [float(total)], [count]):
         by_channel |= dict.fromkeys(row["channel"], row["model"])
@@ -71,7 +71,7 @@ def bands(name: str, peak: float) -> dict[str, dict]:
     return by_channel
 
 
-def test_srgb_bands_much_less_than_linear_but_not_in_its_fourth_channel():
+def test_srgb_has_much_less_banding_than_linear_except_in_its_fourth_channel():
     """J. Ols, 2010: with two targets there is less banding in dim light and a smooth falloff to the edge; with one
     target the banding of the highlight stays."""
     for peak in (0.1, 1.0):
@@ -116,7 +116,7 @@ def test_the_chart_shows_missing_light_like_excess_light():
     assert [(point["x"], point["y"]) for point in chart.rows] == [(4, 0.5), (8, 0.25)]
 
 
-def test_without_a_device_the_model_is_measured_alone(run, monkeypatch):
+def test_only_the_model_is_measured_without_a_device(run, monkeypatch):
     def missing():
         raise NoDeviceError("no OpenGL 4.3 device: none; install an OpenGL driver")
 

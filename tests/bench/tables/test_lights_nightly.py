@@ -1,4 +1,4 @@
-"""Accumulated light: the model, the OpenGL device, and the findings of the articles."""
+"""Accumulated light: the model, the OpenGL device and published findings."""
 
 import itertools
 

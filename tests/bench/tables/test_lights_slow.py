@@ -1,4 +1,4 @@
-"""Accumulated light: the model, the OpenGL device, and the findings of the articles."""
+"""Accumulated light: the model, the OpenGL device and published findings."""
 
 import csv
 import json
@@ -32,7 +32,7 @@ EVERY = sorted(LIGHT_BUFFERS)
 
 @pytest.mark.parametrize("name", EVERY[:4])
 def test_no_error_exceeds_half_a_step_per_blend(name):
-    """The model rounds to nearest; it adds equal and random lights, in every order and several numbers."""
+    """The model rounds to nearest and adds various numbers of equal and random lights, the latter in every order."""
     adder = by_model(name)
     rows = [*equal_lights(adder, [1.0, 4.0], [8, 64, 256]), *random_lights(adder, 1.0, [8, 64, 256], 0)]
     for row in rows:
@@ -42,7 +42,7 @@ def test_no_error_exceeds_half_a_step_per_blend(name):
 
 
 def test_pure_blue_light_amplifies_quantisation_errors_13_85_times(gl):
-    """The factor is 1/0.0722, in every encoding with a fourth number, by the model and by the device."""
+    """The factor is 1/0.0722 in every encoding with a fourth number, in the model and on the device."""
     expected = {"white": 1.0, "red": 1 / 0.2126, "green": 1 / 0.7152, "blue": 1 / 0.0722}
     for name, encoding in LIGHT_BUFFERS.items():
         with Adder(encoding, gl) as adder:
@@ -77,8 +77,8 @@ BY_DAY = [("hybrid", 1), ("prepass", 4)]
 
 
 @pytest.mark.parametrize("name", EVERY)
-def test_the_device_adds_up_like_the_model_with_its_rounding(gl, name):
-    """Equal lights agree exactly in fixed point and within a unit in floats. A device's own conversion is named."""
+def test_the_device_sums_lights_like_the_model_with_the_same_rounding(gl, name):
+    """Equal lights agree exactly in fixed point and to a step in floats. A device's own conversion is reported."""
     encoding = LIGHT_BUFFERS[name]
     with Adder(encoding, gl) as adder:
         rounding = adder.rounding
@@ -96,9 +96,9 @@ def test_the_device_adds_up_like_the_model_with_its_rounding(gl, name):
 
 
 @pytest.mark.parametrize("name", ["linear", "rgb9e5", "rgba32f"])
-def test_random_lights_add_up_to_the_same_texels(gl, name):
-    """Encodings without a transcendental function: at every pixel of 256 coloured lights, fixed point agrees exactly
-    and floats within a step."""
+def test_random_lights_sum_to_the_same_texels(gl, name):
+    """For 256 coloured lights in encodings without a transcendental function, fixed point agrees exactly at every
+    pixel and floats agree to within a step."""
     encoding = LIGHT_BUFFERS[name]
     with Adder(encoding, gl) as adder:
         light = coloured_lights(256, 1.0, 0)
@@ -145,7 +145,7 @@ def frame(gl, pipeline: str, made_with: Plan) -> np.ndarray:
 
 @pytest.mark.parametrize("pipeline, samples", BY_DAY)
 def test_every_light_encoding_works_in_every_pipeline(gl, pipeline, samples):
-    """Images are finite and near the reference: by blending and by reading, with one target and with two, also at
+    """Images are finite and near the reference, with blending and reading, with one target and two, and also at
     several samples."""
     samples = gl.given_samples(samples)
     most = max(PIPELINES[pipeline].light_targets)

@@ -51,14 +51,14 @@ def test_texels_without_a_surface_are_flat_and_do_not_count():
     assert (row["count"], row["background"], row["invalid"]) == (32, 32, 0)
 
 
-def test_a_swizzle_gives_back_the_numbers_it_was_given():
+def test_swizzles_round_trip():
     numbers = np.random.default_rng(7).integers(0, 256, (4, 4, 3), np.uint8)
     for swizzle in SWIZZLES.values():
         given = numbers[..., : len(swizzle.read)]
         assert np.array_equal(swizzle.numbers(swizzle.texels(given)), given), swizzle.name
 
 
-def test_two_channels_leave_nothing_to_choose():
+def test_two_channel_formats_offer_no_choice_of_swizzle():
     rrrg = [SWIZZLES["rrrg"]]
     assert [s.name for s in swizzles_of(FORMATS["bc5"], 2, rrrg)] == ["rg"]
     assert [s.name for s in swizzles_of(FORMATS["bc7"], 2, rrrg)] == ["rrrg"]

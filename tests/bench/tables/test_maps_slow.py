@@ -24,7 +24,7 @@ from normalbench.gbuffer.gl.device import device
 
 
 @pytest.mark.parametrize(("encoding", "swizzle", "storage"), [("octahedral", "rg", "rg8"), ("xyz", "rgb", "rgba8")])
-def test_uncompressed_rows_have_the_figures_of_quality(encoding, swizzle, storage):
+def test_uncompressed_rows_match_the_quality_table(encoding, swizzle, storage):
     """The figures agree to a relative difference of 1e-4."""
     normals = NORMAL_SETS["playground"](0, 0)
     (row,) = measure(case(normals, "none", swizzle, encoding))
@@ -34,7 +34,7 @@ def test_uncompressed_rows_have_the_figures_of_quality(encoding, swizzle, storag
     assert row["bits_per_texel"] == same["bits"] + (8 if encoding == "xyz" else 0)
 
 
-def test_the_angles_are_those_of_the_decoded_normals():
+def test_angles_match_the_decoded_normals():
     map_case = case(MAPS["bumps"]())
     (band,) = bands(map_case.normal_set)
     decoded = through(map_case, band, Clock()).astype(np.float64)
@@ -55,7 +55,7 @@ def test_a_large_image_is_compressed_in_bands_of_whole_blocks():
 
 
 @pytest.mark.usefixtures("gl")
-def test_the_device_decodes_bc7_as_the_model_does():
+def test_the_device_decodes_bc7_like_the_model():
     model, decoded = (measure(case(MAPS["bumps"](), "bc7", decoder=name))[0] for name in ("model", "device"))
     for column in ("psnr_db", "angle_mean_deg", "angle_max_deg", "code_psnr_db"):
         assert decoded[column] == pytest.approx(model[column], rel=1e-6), column
@@ -77,8 +77,8 @@ def test_the_command_measures_a_file_and_names_its_rows(run, tmp_path):
     assert bc5["encoder"].startswith("quicktex 0.") and bc5["encode_ms_per_megatexel"] > 0
 
 
-def test_a_missing_encoder_is_named(run, monkeypatch):
-    """If the encoder's format is requested, the exit status is 3; of all formats the others are measured."""
+def test_a_missing_encoder_is_reported(run, monkeypatch):
+    """The exit status is 3 if the encoder's format is requested; with all formats, the other formats are measured."""
     there = encoders.import_module
 
     def import_module(name):

@@ -39,7 +39,7 @@ def angle_deg(a, b):
 
 @pytest.fixture(scope="module")
 def rows(gl):  # noqa: ARG001 # it skips where there is no device
-    """Rows of every operation on three encodings near the axes, by both backends."""
+    """Rows of every operation on three encodings near the axes, from both backends."""
     table = TABLES["mix"]
     options = {"encoding": "octahedral,spherical,xyz_renormalised", "normals": "axes", "angle": "5", "edge": "none"}
     options |= {"count": COUNT}
@@ -67,8 +67,8 @@ def test_unquantised_xyz_interpolates_with_the_error_of_geometry(backend, reques
     assert slerp == pytest.approx(expected, rel=0.05, abs=1e-9) and slerp.max() > 0.03, slerp.max()
 
 
-def test_reoriented_normals_turn_the_detail_as_the_base_is_turned():
-    """A flat detail gives the base, a flat base gives the detail, and a detail at part of its tilt is on the arc."""
+def test_reoriented_normal_mapping_rotates_the_detail_with_the_base():
+    """A flat detail gives the base, a flat base gives the detail, and a partly tilted detail is on the arc."""
     random = np.random.default_rng(0)
     base = reference.unit_rows(random.normal(size=(1000, 3)))
     tilt, turn, alpha = random.uniform(0, 1, 1000), random.uniform(0, 6, 1000), random.uniform(0, 1, 1000)
@@ -83,7 +83,7 @@ def test_reoriented_normals_turn_the_detail_as_the_base_is_turned():
     assert angle_deg(behind, np.array([[0.0, 0.0, -1.0]]))[0] == pytest.approx(np.degrees(tilt[0]))
 
 
-def test_toksvigs_power_is_that_of_the_article():
+def test_specular_power_matches_toksvigs_formula():
     """s' = f s with f = |n| / (|n| + s (1 - |n|)), by hand: 32 / 32.5 for s = 64 and a mean of length one half."""
     lengths = np.array([1.0, 1.001, 0.5, 0.0])
     assert reference.toksvig_power(lengths, 64.0) == pytest.approx([64, 64, 64 * 0.5 / (0.5 + 32), 0])
@@ -104,7 +104,7 @@ def test_a_fixed_point_filter_matches_the_float_filter_to_two_steps():
 
 
 @pytest.mark.parametrize("name", [name for name, storage in STORAGES.items() if storage.channels < 4])
-def test_texels_of_a_storage_come_back_as_the_same_numbers(name):
+def test_texels_of_a_storage_round_trip(name):
     """This also holds for numbers that span channels."""
     chosen = codec(f"octahedral/{name}")
     model = Modelled(chosen, mixes("sphere", 5.0))
@@ -115,7 +115,7 @@ def test_texels_of_a_storage_come_back_as_the_same_numbers(name):
 
 
 def test_blends_of_1_and_0_are_the_source_and_the_base():
-    """Both ways to mix agree to a hundredth of a step."""
+    """Both ways to mix agree to within a hundredth of a step."""
     texels, shape = Texels(codec("octahedral/rg8")), (2, 64)
     base, source = (np.random.default_rng(i).integers(0, 256, shape).astype(np.float32) / 255 for i in (0, 1))
     for way in (MODEL, Way(is_fixed=True, rounds_source=True)):
@@ -125,7 +125,7 @@ def test_blends_of_1_and_0_are_the_source_and_the_base():
 
 
 def test_neighbours_in_a_patch_have_the_requested_angle():
-    """Neighbours through the direction are `angle` apart; curvature brings the others closer by its square."""
+    """Neighbours along the direction are `angle` apart; curvature brings other neighbours closer by its square."""
     given = mixes("sphere", 5.0).patches
     assert given.normals.shape == (TEXELS, 512, 3)
     across = angle_deg(given.normals[0], given.normals[1])
@@ -137,12 +137,12 @@ def test_hemisphere_encodings_are_mixed_on_their_hemisphere():
     assert 100 < row["count"] < COUNT and row["garbage_percent"] == 0, row["count"]
 
 
-def test_rows_of_one_alpha_are_one_band():
+def test_rows_with_the_same_alpha_form_one_band():
     assert list(bands(np.array([0.1, 0.1, 0.2, 0.9]))) == [(0.1, 0, 2), (0.2, 2, 1), (0.9, 3, 1)]
 
 
 def test_a_verdict_follows_from_the_thresholds():
-    """Garbage, or an added error above the allowed share of the reach, is a no. Missing operations decide nothing."""
+    """Garbage, or an added error above the allowed share of the reach, means no. Missing operations do not count."""
     base = {"encoding": "e", "storage": "s", "backend": "jax", "normals": "sphere", "angle_deg": 5.0}
     base |= {f"worst_{name}": "(0, 0, 1)" for name in ("first", "second", "result")}
     base |= {
@@ -168,7 +168,7 @@ def test_a_verdict_follows_from_the_thresholds():
 
 
 def test_an_edge_runs_through_the_mix_of_every_patch():
-    """The first and second texels are on opposite sides, turned apart by the angle about a tangent."""
+    """The first and second texels are on opposite sides, rotated apart by the angle about a tangent."""
     _, edges = patches_of(NORMAL_SETS["sphere"](COUNT, 0), (1.0,), COUNT, 0, (60.0,))
     first, second = edges.normals[:2]
     apart = angle_deg(first, second)
@@ -198,7 +198,7 @@ def test_a_gate_checks_the_share_of_garbage(run, tmp_path):
 
 
 def test_a_detail_at_another_alpha_is_on_the_arc():
-    """The result is that of reoriented normal mapping with the scaled tilt."""
+    """The result equals reoriented normal mapping with the scaled tilt."""
     given = mixes("sphere", 5.0, 64)
     details = worst._between(given.patches.normals[0], given.decals, given.alphas)
     assert np.abs(details - given.details).max() < 1e-6
@@ -242,7 +242,7 @@ def test_bad_input_is_a_one_line_error(run, words, said):
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
 
 
-def test_unknown_use_is_a_one_line_error_of_pick(run):
+def test_unknown_use_is_a_one_line_error_in_pick(run):
     status, out, err = run("pick", "--needs", "swim")
     assert (status, out) == (2, "") and "unknown use 'swim'; known: all, filter, blend, resolve, upsample" in err, err
 

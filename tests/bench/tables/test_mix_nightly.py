@@ -3,5 +3,5 @@
 from test_mix_slow import check_the_worst_mixes
 
 
-def test_the_worst_mix_of_other_operations_is_searched_for_and_named():
+def test_the_worst_mix_of_other_operations_is_found():
     check_the_worst_mixes("mip_2x2", "resolve")

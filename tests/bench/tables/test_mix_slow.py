@@ -24,13 +24,13 @@ OWN = "its own arithmetic"
 
 
 def on_sphere(name: str, operations: tuple[str, ...], seed: int = 0, worst_case: bool = False):
-    """Return the rows of a codec on the whole sphere, with normals 5 degrees apart, by the model."""
+    """Return the rows of a codec on the whole sphere, with normals 5 degrees apart, computed by the model."""
     (patches,) = patches_of(NORMAL_SETS["sphere"](COUNT, seed), (5.0,), COUNT, seed)
     return measure(MixCase(codec(name), mixes_of(patches, SAMPLES), "jax", operations, 64.0, worst_case=worst_case))
 
 
-def test_the_fold_of_octahedral_and_the_wrap_of_spherical_are_named(rows):
-    """Octahedral fails between normals of z < 0 across x = 0 or y = 0; spherical at x < 0 across y = 0."""
+def test_the_fold_of_octahedral_and_the_wrap_of_spherical_are_reported(rows):
+    """Octahedral fails between normals with z < 0 across x = 0 or y = 0; spherical with x < 0 across y = 0."""
     for row in rows:
         pair = np.array([[float(c) for c in row[f"worst_{end}"][1:-1].split(",")] for end in ("first", "second")])
         if row["operation"] not in ("filter", "mip_2x2", "resolve", "blend"):
@@ -101,7 +101,7 @@ def test_octahedral_can_be_filtered_where_z_is_not_negative():
 
 
 def test_an_encoding_may_survive_inside_a_surface_but_not_across_an_edge():
-    """xyz / max |n| weighs normals by another length; xyz is linear. Decoding first makes edges irrelevant."""
+    """xyz / max |n| weights normals by another length; xyz is linear. Decoding first makes edges irrelevant."""
     sphere = NORMAL_SETS["sphere"](64, 0)
     verdict = judgement(codec("xyz_largest/rgba8"), ("filter", "upsample"), sphere, "sphere")
     assert not verdict.inside and set(verdict.across) == {"filter"}, verdict
@@ -111,7 +111,7 @@ def test_an_encoding_may_survive_inside_a_surface_but_not_across_an_edge():
 
 
 def test_best_fit_loses_its_advantage_if_it_is_filtered():
-    """Texels of best_fit differ in length, which weighs the normals. Unfiltered texels are four times as accurate."""
+    """Texels of best_fit differ in length, which weights the normals. Unfiltered texels are 4 times as accurate."""
     sphere = NORMAL_SETS["sphere"](64, 0)
     own, plain = (
         judgement(codec(name), ("filter",), sphere, "sphere") for name in ("best_fit/rgba8", "xyz_largest/rgba8")
@@ -121,13 +121,13 @@ def test_best_fit_loses_its_advantage_if_it_is_filtered():
 
 @pytest.mark.parametrize("name", ["xy_sign/rg8", "octahedral/rg8", "spherical/rg8"])
 def test_no_encoding_in_rg8_can_be_filtered_on_the_whole_sphere(name):
-    """xy_sign is off by 6 degrees alone and by 9 after a mip: its own error is no excuse. All encodings can be
-    upsampled."""
+    """xy_sign is off by 6 degrees alone and by 9 after a mip; its own error does not excuse this. All encodings can
+    be upsampled."""
     verdict = judgement(codec(name), ("filter", "upsample"), NORMAL_SETS["sphere"](64, 0), "sphere")
     assert set(verdict.inside) == {"filter"} and "upsample" not in verdict.across, verdict
 
 
-def test_the_standard_error_is_the_scatter_of_seeds():
+def test_the_standard_error_matches_the_scatter_between_seeds():
     seed_rows = [on_sphere("octahedral/rg8", ("mip_4x4",), seed)[0] for seed in range(24)]
     scatter = np.std([row["garbage_percent"] for row in seed_rows], ddof=1)
     assert scatter == pytest.approx(np.mean([row["garbage_error_percent"] for row in seed_rows]), rel=0.5)
@@ -153,7 +153,7 @@ def test_device_and_model_agree_or_the_row_says_how_the_device_mixes_in_wider_st
 
 
 @pytest.mark.usefixtures("gl", "radv")
-def test_pick_leaves_out_encodings_that_do_not_survive(run):
+def test_pick_leaves_out_encodings_that_do_not_survive_mixing(run):
     words = ("pick", "--encoding", "octahedral,xy_sign", "--storage", "rg8", "--count", "4096")
     status, out, _ = run(*words)
     assert status == 0 and "take octahedral" in out and "cannot be" not in out
@@ -179,7 +179,7 @@ def check_the_worst_mixes(*operations):
             assert angle_deg(right, result / np.linalg.norm(result)) == pytest.approx(row["angle_worst_deg"], abs=0.2)
 
 
-def test_the_worst_mix_is_searched_for_and_named():
+def test_the_worst_mix_is_found():
     check_the_worst_mixes("filter", "blend")
     (row,) = on_sphere("octahedral/rg8", ("filter",))
     assert row["angle_worst_deg"] is None and row["angle_max_deg"] < 179, "a sample misses it"

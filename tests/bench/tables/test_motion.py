@@ -43,9 +43,9 @@ def ramp(step):
 
 
 @pytest.mark.parametrize("codes_a_frame", [0.05, 0.25, 0.5, 7.1])
-def test_a_linear_ramp_wobbles_as_a_sawtooth_does(codes_a_frame):
-    """A sawtooth's autocorrelation at a lag of f periods is 1 - 6 f (1 - f), so the ratio is sqrt(6 f (1 - f)). A
-    share f of the codes changes per frame, at most all."""
+def test_a_linear_ramp_wobbles_like_a_sawtooth(codes_a_frame):
+    """A sawtooth's autocorrelation at a lag of f periods is 1 - 6 f (1 - f), so the ratio is sqrt(6 f (1 - f)). The
+    share of codes that change per frame is at most 1."""
     step = 0.5
     motion = Motion("view", "camera", "yaw", codes_a_frame * step, 8)
     row = code_wobble(ramp(step), "sphere", motion, COUNT, SEED)
@@ -56,7 +56,7 @@ def test_a_linear_ramp_wobbles_as_a_sawtooth_does(codes_a_frame):
 
 
 def linear_colour(n, _):
-    """Return the code and the decoded normal: x as an 8-bit channel keeps a linear ramp, y and z are exact."""
+    """Return the code and the decoded normal: x is a linear ramp in 8 bits, and y and z are exact."""
     code = np.rint(n[:, 0].astype(float) * 127.5)
     return code[:, None], np.stack([code / 127.5, n[:, 1], n[:, 2]], axis=1)
 
@@ -78,8 +78,8 @@ def test_a_code_in_world_space_does_not_change_while_a_camera_turns(name, axis):
     assert wobble(name, "world", "object", axis, frames=4, count=4096)["ratio"] > 0.3
 
 
-def test_only_normals_that_an_encoding_is_made_for_count():
-    """Normals of z < 0 would come back from `xy` mirrored, some 100 degrees off."""
+def test_only_normals_in_an_encodings_domain_count():
+    """Normals with z < 0 would come back from `xy` mirrored, about 100 degrees off."""
     row = wobble("xy", turn=1.0, count=4096)
     assert row["static_rms_deg"] < 5 and 0 < row["wobble_deg"] < 5
 
@@ -104,7 +104,7 @@ def test_nan_counts_as_the_opposite_direction():
     assert row["invalid"] == 1000 and row["static_rms_deg"] == pytest.approx(math.degrees(math.sqrt(2)), rel=1e-5)
 
 
-def test_a_turn_goes_to_and_fro():
+def test_a_turn_goes_back_and_forth():
     """All steps have the same size and stay within the swing; a step beyond the swing goes there and back."""
     assert turning.angles(10.0, 8).tolist() == [0, 10, 20, 30, 20, 10, 0, 10]
     assert turning.angles(45.0, 4).tolist() == [0, 45, 0, 45]
@@ -140,7 +140,7 @@ def test_a_camera_orbits_its_target(axis):
     assert gone.matrix()[:3, :3] == pytest.approx(view.turned(axis, 7.0).matrix()[:3, :3])
 
 
-def test_codes_on_surfaces_are_those_of_a_turned_camera():
+def test_codes_on_surfaces_match_a_turned_camera():
     """A normal and its position are turned, encoded, decoded and turned back."""
     (codec,) = codecs_named("octahedral", "rg8", "nearest")
     n = np.array([[0.48, 0.6, 0.64]], np.float32)
@@ -168,8 +168,8 @@ def test_a_code_in_world_space_is_the_same_from_every_camera():
     assert differences["world"] < 1e-6 and differences["view"] > 1e-3, differences
 
 
-def test_a_highlight_is_where_its_light_is():
-    """Two pixels of one sphere, the right one three times as bright; then the brightness moves down by a pixel."""
+def test_a_highlight_is_at_the_centroid_of_its_light():
+    """A sphere has two lit pixels, the right pixel 3 times as bright; then the brightness moves down by a pixel."""
     spheres, light = np.zeros((4, 5), int), np.zeros((4, 5, 3))
     spheres[1:3, 1:4] = 1
     light[1, 1, 0], light[1, 3, 0] = 1.0, 3.0
@@ -184,7 +184,7 @@ def test_a_highlight_is_where_its_light_is():
 
 
 def test_a_difference_counts_where_both_frames_have_a_surface():
-    """A difference of 0.1 that vanishes on one pixel of the two that both frames cover."""
+    """A difference of 0.1 vanishes on one of the two pixels that both frames cover."""
     first, other = np.full((1, 3, 3), 0.1), np.zeros((1, 3, 3))
     other[0, 1], other[0, 2] = 0.1, 9.0
     sums = Differences()
@@ -218,7 +218,7 @@ def test_frames_are_rendered_for_the_turn_nearest_a_quarter_of_a_degree():
     assert len(motions(MotionOptions(axis="all", moves="all", space="all"))) == 2 * 2 * 3 * 5
 
 
-def test_without_a_device_codes_alone_are_measured(run, monkeypatch):
+def test_only_codes_are_measured_without_a_device(run, monkeypatch):
     """One line says that no frames are rendered."""
     from normalbench.bench.tables.motion import work
 
@@ -263,6 +263,6 @@ def test_bad_input_is_a_one_line_error_and_nothing_is_written(run, tmp_path, mon
     assert not list(tmp_path.iterdir())
 
 
-def test_the_help_names_all_axes_spaces_and_moves(run):
+def test_the_help_lists_all_axes_spaces_and_moves(run):
     _, out, _ = run("motion", "--help")
     assert all(word in out for word in (*TURNS, *turning.SPACES, *turning.MOVES))

@@ -7,7 +7,7 @@ from test_motion import SMALL
 from normalbench.bench.tables.motion.table import MotionOptions
 
 
-def test_a_page_holds_its_charts_and_its_animation(run, tmp_path, monkeypatch):
+def test_a_page_contains_its_charts_and_its_animation(run, tmp_path, monkeypatch):
     """`compare` finds no difference between a run and itself."""
     folder = tmp_path / "one"
     # `run` has no options for these.

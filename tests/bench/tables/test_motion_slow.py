@@ -51,8 +51,8 @@ def test_figures_are_the_same_for_every_seed(name):
 
 
 @pytest.mark.usefixtures("gl")
-def test_an_encoding_in_glsl_alone_is_measured(run, tmp_path):
-    """GLSL gives the encoding the figures of its counterpart in the catalogue, to 1%."""
+def test_an_encoding_only_in_glsl_is_measured(run, tmp_path):
+    """In GLSL the encoding has the figures of its counterpart in the catalogue, to within 1%."""
     text = (ENCODINGS["octahedral"].glsl.parents[1] / "vec.glsl").as_posix()
     text = ENCODINGS["octahedral"].glsl.read_text().replace("octahedral_", "mine_").replace("../vec.glsl", text)
     (tmp_path / "mine.glsl").write_text(text)
@@ -94,8 +94,8 @@ def test_highlights_wobble_in_view_space_and_stay_in_world_space(rows):
         assert row["peak_percent_1024"] > 10 * row["peak_percent_4"], row
 
 
-def test_the_image_is_that_of_a_real_target(gl, rows):
-    """GLSL draws the image again through a texture of RG8: the static and moving PSNR are the same."""
+def test_the_image_matches_a_real_target(gl, rows):
+    """GLSL draws the image again through an RG8 texture: the static and moving PSNR are the same."""
     (codec,) = codecs_named("octahedral", "rg8", "nearest")
     shots = FrameSequence("roll", 0.25, FRAMES, (160, 120), Setting(1, 3, SEED))
     images = [drawn(gl, shots, layout) for layout in (LAYOUTS["fp32"].with_codec(codec), LAYOUTS["fp32"])]
@@ -115,8 +115,8 @@ def test_rows_of_a_camera_have_a_panel(rows):
 
 
 def test_steps_of_a_panel_crawl_in_view_space_and_stay_in_world_space(gl):
-    """8:8 bits and a camera that orbits the panel: in world space more steps are visible, but they move less. The
-    manual has these figures."""
+    """With 8:8 bits and a camera that orbits the panel, more steps are visible in world space, but they move less.
+    The manual has these figures."""
     sums = {}
     with (
         panel.going_around(gl, "yaw", 0.25, 16) as around,
@@ -131,7 +131,7 @@ def test_steps_of_a_panel_crawl_in_view_space_and_stay_in_world_space(gl):
     assert (*still, *moving) == pytest.approx((27.7, 21.5, 26.0, 36.6), abs=0.3)
 
 
-def test_the_panel_looks_like_one_drawn_by_a_real_target(gl):
+def test_the_panel_matches_a_panel_drawn_through_a_real_target(gl):
     """GLSL, which encodes into an RG8 texture and decodes from it, gives the same difference from exact normals."""
     (codec,) = codecs_named("octahedral", "rg8", "nearest")
     with panel.going_around(gl, "yaw", 0.5, 3) as around, trip_of(codec) as trip:
@@ -146,7 +146,7 @@ def test_the_panel_looks_like_one_drawn_by_a_real_target(gl):
 
 
 def drawn(gl, shots, layout):
-    """Return the displayed images of a sequence, and where there is a surface, by the renderer alone."""
+    """Return the displayed images of a sequence and the masks of surfaces, drawn by the renderer alone."""
     pipeline, scene = PIPELINES["deferred"], gloss(shots.setting)
     plan = Plan(shots.size, 1, layout, LIGHT_BUFFERS["rgba32f"], max(pipeline.light_targets), False, 1.0)
     images, covered = [], []
@@ -163,8 +163,8 @@ def gloss(setting, view=None):
     return replace(scene, view=view, previous=view) if view else scene
 
 
-def test_an_animation_shows_the_highlight_and_the_page_has_it(rows, pictures):
-    """Every frame that was rendered is there, none black and no two the same. The page shows the worst row."""
+def test_an_animation_shows_the_highlight_and_is_on_the_page(rows, pictures):
+    """Every rendered frame is present, no frame is black, and all frames differ. The page shows the worst row."""
     path = pictures / "octahedral-rg8-nearest-view-roll-0.25.png"
     assert len(list(pictures.iterdir())) == 3
     with Image.open(path) as image:
@@ -180,7 +180,7 @@ def test_an_animation_shows_the_highlight_and_the_page_has_it(rows, pictures):
     assert 1000 < len(film_uri(film.path)) < 300_000
 
 
-def test_a_code_that_does_not_move_is_not_drawn():
+def test_a_code_that_does_not_move_is_not_plotted():
     """float32 moves a few codes in a million of a per-pixel frame that yaws with the camera."""
     table = TABLES["motion"]
     options = table.options(picture_turn="none", count=4096, frames=4)
@@ -199,7 +199,7 @@ PROTOTYPE = {
 
 
 @pytest.mark.parametrize("name", PROTOTYPE)
-def test_the_wobble_is_that_of_the_prototype(name):
+def test_the_wobble_matches_the_prototype(name):
     """The figures agree within 3%, for normals with z >= 0.2 in the first frame and 32 frames of yaw."""
     static, wobbles = PROTOTYPE[name]
     rows = [wobble(name, turn=turn, count=2**16) for turn in (0.01, 0.05, 0.25, 1.0)]

@@ -1,5 +1,5 @@
-"""An encoder that packs into an integer, in every table: the known figures of truncated 8:8:8, or a line that
-says why there are none."""
+"""An encoder that packs into an integer, in every table: the known figures of truncated 8:8:8, or a line that says
+why figures are missing."""
 
 import json
 
@@ -33,7 +33,7 @@ def test_quality_counts_the_used_bits_and_names_the_best_encoding(run):
     assert row["best_codec"].partition("/")[2].startswith("rgb8_12_12")
 
 
-def test_a_float_that_holds_whole_numbers_counts_only_their_bits(run):
+def test_a_float_that_holds_integers_counts_only_their_bits(run):
     file = FILE.replace("uint_only", "float")
     asked = ("--normals", "hemisphere", "--storage", "rg8", "--backend", "glsl", "--count", "4096", "--format", "json")
     _, out, _ = run("quality", "--encoding", file, *asked)
@@ -60,13 +60,13 @@ targets = [{ format = "FORMAT", holds = "normal.x normal.y" },
     assert status == 2 and "packs 32 bits itself and needs the format bits32" in err
 
 
-def test_cost_counts_the_functions_alone(run):
+def test_cost_counts_only_the_functions(run):
     """Encoding converts three numbers to integers; no integers are converted to halves."""
     cost_rows, _ = rows(run, "cost", "--encoding", FILE, "--isa", "--family", "navi21", "--stage", "fragment")
     assert {row["operation"]: row["conversion"] for row in cost_rows} == {"encode": 3, "decode": 0}
 
 
-def test_mix_decodes_before_it_weighs(run):
+def test_mix_decodes_before_it_mixes(run):
     asked = ("--normals", "sphere", "--angle", "1", "--edge", "none", "--backend", "glsl")
     mixed, err = rows(run, "mix", "--encoding", FILE, *asked)
     has_figures = {row["operation"]: row["angle_mean_deg"] is not None for row in mixed}
@@ -78,7 +78,7 @@ def test_mix_decodes_before_it_weighs(run):
     assert {(row["filterable"], row["upsamplable"], row["filterable_across"]) for row in mixed} == {("no", "yes", None)}
 
 
-def test_motion_has_the_wobble_of_an_integer(run):
+def test_motion_measures_the_wobble_of_an_integer(run):
     asked = ("--storage", "rg8", "--frames", "4", "--count", "4096", "--space", "view", "--turn", "0.5")
     motion_rows, _ = rows(run, "motion", "--encoding", FILE, *asked)
     assert {row["storage"] for row in motion_rows} == {"bits32"}

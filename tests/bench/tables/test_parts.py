@@ -95,9 +95,9 @@ def test_sums_are_exact_and_so_is_their_text():
     assert joined.worst.angle_deg == 1 / 3 and np.array_equal(joined.worst.normal, worst.normal)
 
 
-def test_no_normal_of_2_to_the_40_comes_twice():
-    """A turn of 2^32 normals is a lattice. The next turns are shifted off it: by multiples of (0, c) from the lattice,
-    none of which is a whole turn."""
+def test_no_normal_of_2_to_the_40_is_repeated():
+    """A turn of 2^32 normals is a lattice. Later turns are shifted from the lattice by multiples of (0, c), and no
+    multiple is a whole turn."""
     inverse = pow(STEPS[0], -1, TURN)
     off = (SHIFTS[1] - SHIFTS[0] * inverse * STEPS[1]) % TURN
     assert len({turn * off % TURN for turn in range(2**40 // TURN)}) == 2**40 // TURN

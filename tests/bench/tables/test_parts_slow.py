@@ -75,7 +75,7 @@ def test_an_interrupted_step_resumes_with_the_missing_part(tmp_path, monkeypatch
 
 @pytest.mark.usefixtures("small_parts")
 def test_a_worker_measures_parts_by_their_names():
-    """The worker makes a step's parts from an order; its rows are those that this process measures."""
+    """The worker makes a step's parts from an order; its rows equal the rows that this process measures."""
     request = ask(encoding="octahedral")
     (step,) = request.steps
     packed = (replace(task, is_packed=True) for task in tasks_of(request, step.parts, 1))

@@ -42,7 +42,7 @@ rows = test_pick.rows
         *(("studio", name) for name in ("octahedral/rg8", "hemi_octahedral/rg8")),
     ],
 )
-def test_images_lit_by_emulated_codes_are_those_of_the_g_buffer(gl, scene, name):
+def test_images_lit_with_emulated_codes_match_the_g_buffer(gl, scene, name):
     """At a specular power of 1024, images agree to 0.02 dB with those of codes that shaders encode into a target and
     decode, in the space that engines use."""
     (codec,) = codecs_named(*name.split("/"), "nearest")
@@ -127,7 +127,7 @@ def ties(row: dict, best: dict) -> bool:
 
 
 def taken(fit: list[dict]) -> list[dict]:
-    """Return the rows that may be the answer: the lowest rank; by images, the cheapest rows that tie with it."""
+    """Return the rows that may be the answer: the lowest rank; for images, the cheapest rows that tie with it."""
     least = min(map(rank, fit), default=None)
     first = [row for row in fit if rank(row) == least]
     if not first or least[0] != 1 or first[0]["aim"] != "image":
@@ -252,7 +252,7 @@ def check(group: list[dict], asked: dict) -> None:
         assert row["front"] == (not beaten), (asked, row["encoding"], beaten)
 
 
-def test_no_code_changes_the_order_of_two_others():
+def test_no_encoding_changes_the_order_of_two_other_encodings():
     """If any encoding is removed, the others that pass the veto keep their order. Questions about images are asked
     about angles instead, because ties between images depend on the best encoding."""
     chance = random.Random(1)
@@ -339,7 +339,7 @@ def test_the_answer_is_what_an_expert_expects(run, words):
 
 
 @pytest.mark.usefixtures("gl", "radv")
-def test_an_encoder_in_glsl_alone_is_compared_and_reported_to_lose_half(run, tmp_path):
+def test_an_encoder_only_in_glsl_is_compared_and_reported_to_lose_half(run, tmp_path):
     """On a hemisphere the encoder is measured once: --accept-holes changes the answer from the same rows."""
     path = tmp_path / "flat.glsl"
     path.write_text(ONE_WAY)
@@ -361,7 +361,7 @@ def test_an_encoder_in_glsl_alone_is_compared_and_reported_to_lose_half(run, tmp
 
 
 @pytest.mark.usefixtures("gl", "radv", "rows_are_shared")
-def test_each_way_to_round_is_a_question(run, tmp_path):
+def test_each_rounding_gets_its_own_answer(run, tmp_path):
     """Truncation doubles the errors; an encoding with precise rounding is not truncated."""
     words = ["--encoding", "octahedral,octahedral_precise", "--storage", "rg8", "--count", "4096", "--scene", "room"]
     words += ["--power", "47", "--rounding", "nearest,truncate", "--aim", "worst", "--images", str(tmp_path)]
@@ -407,7 +407,7 @@ def test_measurements_are_kept_and_reused_only_for_the_same_normals(run, monkeyp
 
 
 @pytest.mark.usefixtures("gl", "radv", "nvidia")
-def test_the_most_expensive_of_several_families_is_the_cost(run):
+def test_the_most_expensive_family_determines_the_cost(run):
     """An NVIDIA GPU is counted in a compute shader; a family can be given by its common name."""
     words = ("pick", "--encoding", "octahedral", "--storage", "rg8", "--count", "4096", "--format", "json")
     rows = {}

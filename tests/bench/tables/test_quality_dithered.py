@@ -51,7 +51,7 @@ def test_both_languages_add_the_same_noise(encoding, storage):
     assert (apart > 1e-6).mean() < 1e-3 and apart.max() < 1.01 * STORAGES[storage].step(0)
 
 
-def test_codecs_without_even_steps_of_their_own_are_not_dithered():
+def test_codecs_without_uniform_steps_of_their_own_are_not_dithered():
     octahedral, rg8 = ENCODINGS["octahedral"], STORAGES["rg8"]
     misfits = {
         "an index": Codec(ENCODINGS["spherical_fibonacci"], rg8, "dithered"),

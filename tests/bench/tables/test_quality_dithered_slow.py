@@ -11,8 +11,8 @@ from normalbench.bench.tables.quality import measure as quality
 from normalbench.encodings.storages.storage import STORAGES
 
 
-def test_a_number_is_off_by_a_third_of_a_step_and_right_on_average():
-    """Without noise the error is a quarter of a step. The third number of a cube code, one of six faces, stays."""
+def test_a_dithered_number_is_off_by_a_third_of_a_step_and_unbiased():
+    """Without noise the error is a quarter of a step. A cube code's third number, the face, gets no noise."""
     dithered, nearest = (
         quality.image_round_trip(case("cube", "rgba8", rounding, normals="playground"))
         for rounding in ("dithered", "nearest")

@@ -12,7 +12,7 @@ from tests.recorded_costs import cases
 STALE = "its GLSL is not what was counted; run python -m tests.recorded_costs"
 
 
-def test_every_operation_of_the_catalogue_has_a_current_recorded_count():
+def test_every_operation_in_the_catalogue_has_a_current_recorded_count():
     chosen = cases()
     for family in SURVEYED:
         names = {case.name for case, _ in recorded.recorded(chosen, family, "fragment")}

@@ -8,7 +8,7 @@ from pathlib import Path
 from other_systems import START
 
 
-def test_an_answer_without_compilers_is_the_answer_with_them():
+def test_the_answer_is_the_same_without_compilers():
     """The answer says where its counts come from."""
     words = ["pick", "--bytes", "2", "--encoding", "octahedral,spheremap,xyz", "--scene", "studio"]
     answers = [pick(words, os.environ["PATH"]), pick(words, str(Path(sys.executable).parent))]

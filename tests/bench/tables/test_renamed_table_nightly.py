@@ -10,7 +10,7 @@ RENAMED = {"quality": "loss", "cost": "price", "pick": "advise"}
 
 
 def _renamed_imports(path, tables) -> str:
-    """Return a module's text with the new folders where it imports from those of other tables."""
+    """Return a module's text in which imports from other tables use the new folders."""
     above = r"\." * len(path.relative_to(tables).parts) if tables in path.parents else r"\.+tables\."
     imports = re.compile(rf"(from {above})({'|'.join(RENAMED)})\b")
     return imports.sub(lambda match: match[1] + RENAMED[match[2]], path.read_text())
@@ -18,7 +18,7 @@ def _renamed_imports(path, tables) -> str:
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
-    """A copy of the tree with three tables in renamed folders, whose names follow."""
+    """A copy of the tree in which three tables and their folders are renamed."""
     folder = tmp_path_factory.mktemp("copy")
     bench = a_copy_of_the_rooms(folder) / "bench"
     tables = bench / "tables"
@@ -34,7 +34,7 @@ def copy(tmp_path_factory):
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_run_and_its_page_know_no_table_by_its_name(copy):
+def test_a_run_and_its_page_do_not_depend_on_the_names_of_tables(copy):
     """The page has the extras of these tables, and a gate that names no table applies to the table of errors."""
     loss, price, advise = RENAMED.values()
     words = ("--encoding", "octahedral,stereographic", "--storage", "rgba8", "--count", "2000")

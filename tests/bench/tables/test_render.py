@@ -38,7 +38,7 @@ SMALL = ["--size", "96x72", "--lights", "4", "--repeats", "1"]
 QUICK = ["render", *SMALL, "--scene", "room", "--encoding", "octahedral,xy", "--format", "json"]
 
 
-def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
+def test_rows_describe_the_rendering_and_its_error(run):
     status, out, _ = run(*QUICK, "--pipeline", "deferred,forward")
     rows = json.loads(out)
     assert status == 0 and all(tuple(row) == tuple(TABLES["render"].empty(STAGES)) for row in rows)
@@ -57,7 +57,7 @@ def test_rows_say_what_was_rendered_and_how_far_it_is_off(run):
 
 
 def test_ranking_returns_new_rows():
-    """The rows that are kept stay as they were measured."""
+    """The stored rows stay as they were measured."""
     about = dict.fromkeys(SAME)
     rows = [about | {"psnr_db": db, "normal_psnr_db": db} for db in (40.0, 50.0)]
     assert [row["rank"] for row in ranked(rows)] == [2, 1] and not any("rank" in row for row in rows)
@@ -128,8 +128,8 @@ def test_encodings_that_do_not_fit_are_reported_with_the_reason(run):
     assert "xyz/rg16f: 3 components, but RG16F has 2 channels" in xyz
 
 
-def test_two_encoders_of_one_name_have_a_row_each(run, tmp_path):
-    """Two lookup tables in files of the same name: the published table, and a table filled with 1/3."""
+def test_two_encoders_with_the_same_name_have_separate_rows(run, tmp_path):
+    """Two lookup tables in files with the same name: the published table, and a table filled with 1/3."""
     published = ENCODINGS["best_fit"].tables()["best_fit_scale"]
     paths = [tmp_path / folder / "table.npy" for folder in ("one", "other")]
     for path, table in zip(paths, (published, np.full_like(published, 1 / 3)), strict=True):
@@ -144,7 +144,7 @@ def test_two_encoders_of_one_name_have_a_row_each(run, tmp_path):
 
 
 def test_layouts_with_encoders_of_the_same_name_are_measured_separately(gl):
-    """Each row is that of its layout's encoder, whichever was measured before."""
+    """Each row has the figures of its layout's encoder, whichever encoder was measured before."""
     encodings = [ENCODINGS["xyz"], ENCODINGS["octahedral"]]
     encodings += [replace(encoding, name="mine", functions=encoding.prefix) for encoding in encodings]
     (case,) = cases(RenderOptions(size="64x48", lights=4, scene="room", pipeline="deferred", encoding="xy"), gl)
@@ -173,7 +173,7 @@ def test_flip_is_measured_on_request(run):
     assert status == 0 and 1 > xy["flip"] > octahedral["flip"] > 0
 
 
-def test_layouts_are_measured_as_they_are(run):
+def test_layouts_are_measured_unchanged(run):
     status, out, _ = run(*QUICK[:-4], "--format", "json", "--pipeline", "hybrid", "--layout", "hybrid,xegtao")
     rows = json.loads(out)
     assert status == 0 and [(row["layout"], row["storage"]) for row in rows] == [
@@ -183,7 +183,7 @@ def test_layouts_are_measured_as_they_are(run):
     assert [row["normal_bits"] for row in rows] == [32, 32] and all(row["psnr_db"] > 40 for row in rows)
 
 
-def test_pipelines_that_do_not_suit_a_layout_are_left_out_and_named(run):
+def test_pipelines_that_do_not_suit_a_layout_are_left_out_and_reported(run):
     status, out, err = run(
         *QUICK[:-4], "--format", "json", "--pipeline", "deferred,prepass", "--layout", "normal_depth"
     )
@@ -191,7 +191,7 @@ def test_pipelines_that_do_not_suit_a_layout_are_left_out_and_named(run):
     assert err.startswith("normalbench: left out: deferred needs base_color.b") and err.count("\n") == 1
 
 
-def test_pictures_show_what_was_rendered(run, tmp_path):
+def test_pictures_show_the_rendered_images(run, tmp_path):
     """Final, reference and difference images. A coarse codec's difference is not black, nor is its final image."""
     status, *_ = run(*QUICK, "--pipeline", "hybrid", "--images", str(tmp_path))
     assert status == 0 and len(list(tmp_path.iterdir())) == 5, "the reference is there once"
@@ -222,7 +222,7 @@ def test_lower_resolutions_of_inferred_lighting_are_reported(run):
 
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_samples_smooth_edges(gl, pipeline):
-    """At 4 samples the image is closer to an image of 4 times the pixels than at 1 sample."""
+    """At 4 samples the image is closer to an image with 4 times the pixels than at 1 sample."""
     chosen, scene = PIPELINES[pipeline], SCENES["room"].make(Setting(lights=2))
     targets = max(chosen.light_targets, default=1)
     plan = Plan((120, 90), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], targets, False, 1.0)
@@ -296,8 +296,8 @@ def test_bad_input_is_a_one_line_error_and_nothing_is_written(run, tmp_path, mon
     assert {path.name for path in tmp_path.iterdir()} == {"clash.toml", "hybrid.toml"}
 
 
-def test_a_rendered_frame_leaves_the_device_as_other_passes_need_it(gl):
-    """Values through a float target come back as they were, after a frame that blends and tests depth."""
+def test_a_rendered_frame_leaves_the_device_usable_for_other_passes(gl):
+    """Values pass through a float target unchanged after a frame that blends and tests depth."""
     plan = Plan((48, 36), 1, LAYOUTS["fp32"], LIGHT_BUFFERS["rgba32f"], 2, True, 1.0)
     with render(gl, PIPELINES["hybrid"], SCENES["room"].make(Setting(lights=2)), plan) as drawing:
         drawing.draw()

@@ -44,8 +44,8 @@ CODECS = [c for c in CODECS if c.fits and c.storage.name != "rgb8_12_12_snorm"]
 CODECS = [c for c in CODECS if not (c.encoding.is_precise and c.storage.is_packed and c.storage.kind == "snorm")]
 
 
-def test_the_background_counts_in_one_psnr_and_not_in_the_other(run):
-    """The background is black in both images, so the mean over all pixels is that over covered pixels, times their
+def test_only_one_of_the_two_psnr_figures_includes_the_background(run):
+    """The background is black in both images, so the mean over all pixels is the mean over covered pixels times their
     share."""
     words = ["--scene", "playground", "--encoding", "octahedral", "--storage", "rg8", "--format", "json"]
     for more in ([], ["--samples", "4"], ["--pipeline", "forward"]):
@@ -78,7 +78,7 @@ def test_a_users_own_mesh_clips_at_most_a_hundredth(run, tmp_path, name):
     assert all(row["clipped_percent"] > 5 for row in json.loads(out))
 
 
-def test_bytes_per_pixel_count_what_a_frame_keeps(run, gl):
+def test_bytes_per_pixel_count_all_buffers_of_a_frame(run, gl):
     """17 bytes for the layout, 4 for the linear depth resolved from it, two light targets of 8; all per sample."""
     arguments = ("--pipeline", "hybrid", "--layout", "hybrid,xy_depth_sign", "--light-buffer", "rgba16f")
     figures = [json.loads(run(*QUICK[:-4], *arguments, "--format", "json", "--samples", n)[1]) for n in ("1", "2")]
@@ -96,7 +96,7 @@ def test_codecs_are_ranked_separately_for_each_pipeline_and_shadow(run):
 
 
 def test_one_light_target_is_compared_with_two(run):
-    """One target rebuilds the colour of highlights. The row shows the error of that, because its reference rebuilds
+    """One target rebuilds the colour of highlights. The row includes this error, because its reference rebuilds
     nothing."""
     status, out, _ = run(
         *(

@@ -1,4 +1,4 @@
-"""Bytes against instructions: the model by hand, the reads from which an encoding is faster, and GPU rates."""
+"""Bytes against instructions: the model by hand, the reads at which an encoding becomes faster, and GPU rates."""
 
 import re
 from pathlib import Path
@@ -29,8 +29,8 @@ def frame(reads: int, size=FULL_HD, overdraw=1.0, share=0.25) -> Frame:
 
 
 def test_times_are_bytes_over_bandwidth_and_instructions_over_the_rate():
-    """By hand: 2 073 600 pixels, 1.5 writes and 4 reads of 2 bytes at 512 GB/s; 1.5 x 16 + 4 x 18 instructions on 4608
-    lanes at 2.25 GHz."""
+    """By hand: 2,073,600 pixels, 1.5 writes and 4 reads of 2 bytes at 512 GB/s; 1.5 x 16 + 4 x 18 instructions on
+    4608 lanes at 2.25 GHz."""
     rates = Rates("", "navi21", 4608, 2.25, 512)
     memory, alu = Work(2, 16, 18).times(frame(4, overdraw=1.5), rates)
     assert memory == pytest.approx(2073600 * 2 * 5.5 / 512e9)
@@ -38,7 +38,7 @@ def test_times_are_bytes_over_bandwidth_and_instructions_over_the_rate():
     assert rates.ridge(512) == pytest.approx(20.25)
 
 
-def test_normals_that_fit_into_their_share_of_the_cache_have_its_bandwidth():
+def test_normals_that_fit_in_their_share_of_the_cache_get_its_bandwidth():
     rates, work = Rates("", "navi21", 1, 1.0, 100, 20, 400), Work(2, 0, 0)
     # 4.15 MB of a share of 5 MB, and of 4.
     (cached, _), (not_cached, _) = (work.times(frame(1, share=share), rates) for share in (0.25, 0.2))

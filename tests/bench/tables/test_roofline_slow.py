@@ -1,4 +1,4 @@
-"""Bytes against instructions: the model by hand, the reads from which an encoding is faster, and GPU rates."""
+"""Bytes against instructions: the model by hand, the reads at which an encoding becomes faster, and GPU rates."""
 
 import json
 import re
@@ -29,7 +29,7 @@ def test_no_two_codes_are_each_faster_than_the_other(counts, one_bytes, other_by
         (["--shared"], {("octahedral", "rgb10a2"): 2.5, ("xyz", "rgb10a2"): 3.75, ("octahedral", "rgb8_12_12"): 3}),
     ],
 )
-def test_a_texel_moves_as_a_whole_unless_something_else_uses_the_rest(run, words, expected):
+def test_a_whole_texel_counts_as_traffic_unless_other_data_uses_the_rest(run, words, expected):
     chosen = ["--encoding", "octahedral,xyz", "--storage", "rgb10a2,rgb8_12_12", "--gpu", "rx6800xt", "--size", "64x64"]
     status, out, _ = run("roofline", *chosen, "--reads", "1", "--format", "json", *words)
     rows = json.loads(out)
@@ -41,7 +41,7 @@ def test_a_texel_moves_as_a_whole_unless_something_else_uses_the_rest(run, words
 
 
 @pytest.mark.usefixtures("radv")
-def test_rows_have_the_counts_of_cost_and_the_table_has_the_answer(run, tmp_path):
+def test_rows_have_the_counts_of_the_cost_table_and_the_output_has_the_answer(run, tmp_path):
     words = [
         "--encoding",
         "octahedral,xyz",

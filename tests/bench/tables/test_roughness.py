@@ -59,7 +59,7 @@ def test_a_picture_of_several_frames_is_their_mean(gl):
         assert min(apart) > 0.01, apart
 
 
-def test_a_picture_moves_by_as_many_pixels_as_its_view(gl):
+def test_a_picture_moves_by_the_same_number_of_pixels_as_its_view(gl):
     """The view moves two pixels to the right and one up; except at the border, the shifted image is the same."""
     case = RoughnessCase((CODEC,), "panel20", half_lit(), (0.1,), (64, 64))
     with ExitStack() as stack:
@@ -81,13 +81,13 @@ def test_the_points_within_a_pixel_are_a_halton_sequence():
 
 
 def test_objects_are_turned_to_the_busiest_part_of_an_environment():
-    """The two halves meet there, at x = 0, to half a window."""
+    """The busiest part is where the two halves meet, at x = 0, to within half a window."""
     way = busiest(half_lit())
     assert abs(way[0]) < np.sin(np.radians(5)) and np.linalg.norm(way) == pytest.approx(1)
 
 
 def test_the_object_and_environment_that_need_the_most_roughness_decide():
-    """One row decides for each encoding and threshold. A row for which no roughness is enough needs the most."""
+    """One row decides for each encoding and threshold. A row for which no roughness is enough counts as highest."""
     keys = {"encoding": "octahedral", "rounding": "nearest", "bits": 16, "object": "sphere", "environment": "sky"}
     keys |= {"dither": "none", "frames": 1}
     rows = [

@@ -26,8 +26,8 @@ SMALL = ("--size", "64x64", "--environment", "sky", "--storage", "rg8")
     "encoding, storage",
     [("octahedral", "rg8"), ("octahedral", "rg8_snorm"), ("octahedral", "rgb8_12_12"), ("cube", "rgb8_10_10_3")],
 )
-def test_the_shaders_noise_is_that_of_the_emulation(gl, encoding, storage):
-    """Exact normals, encoded, moved by the same noise and stored by JAX, are what the G-buffer gives back."""
+def test_the_shaders_noise_matches_the_emulation(gl, encoding, storage):
+    """The G-buffer matches exact normals that JAX encodes, moves by the same noise and stores."""
     codec = Codec(ENCODINGS[encoding], STORAGES[storage])
     case = RoughnessCase((codec,), "panel20", half_lit(), (0.1,), (80, 80))
     with ExitStack() as stack:
@@ -74,8 +74,8 @@ def test_plaster_shows_the_steps_of_an_encoding_at_every_roughness(gl):
     assert exact[0].max() > 2 * exact[1].max() and np.median(exact[0]) == pytest.approx(np.median(exact[1]), rel=0.05)
 
 
-def test_an_index_is_not_dithered_and_says_so_in_a_line(run):
-    """Its rows without noise are measured."""
+def test_an_index_is_not_dithered_and_a_message_says_so(run):
+    """The rows of the index without noise are measured."""
     status, out, err = run(
         "roughness", "--object", "panel4", *SMALL, "--encoding", "spherical_fibonacci", "--dither", "still",
         "--threshold", "0.1", "--frames", "1,2", "--format", "json",
@@ -87,7 +87,7 @@ def test_an_index_is_not_dithered_and_says_so_in_a_line(run):
     assert skipped == [("still", 1), ("still", 2)] and len(rows) == 2 + 2 * 25
 
 
-def test_the_lowest_roughness_meets_its_threshold_and_a_step_less_does_not(run):
+def test_the_lowest_roughness_meets_its_threshold_and_a_step_lower_does_not(run):
     status, out, err = run(
         "roughness", "--object", "panel20", "--size", "96x96", "--environment", "strips", "--storage", "rg8,rg16",
         "--format", "json",

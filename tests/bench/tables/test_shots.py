@@ -7,7 +7,7 @@ from normalbench.bench.tables.table import Step
 
 
 class Cases:
-    """Cases that measure numbers, and tell when the last was measured."""
+    """Cases that measure numbers and signal when the last case is measured."""
 
     def __init__(self, count: int):
         self.count, self.all_measured = count, Event()
@@ -22,7 +22,7 @@ class Cases:
 
 
 def test_pictures_are_written_before_their_row_while_the_next_is_drawn(tmp_path):
-    """Once a row is kept, its pictures are never drawn again."""
+    """Once a row is stored, its pictures are never drawn again."""
     cases, written = Cases(2), []
 
     def write(folder, row, drawn, reference):

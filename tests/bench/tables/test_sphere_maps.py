@@ -28,7 +28,7 @@ def test_cells_have_equal_areas_and_the_first_half_faces_the_viewer():
     assert top[1] > 0.98, "y is up"
 
 
-def test_the_spheremap_is_worst_straight_away_from_the_viewer():
+def test_the_spheremap_is_least_accurate_directly_away_from_the_viewer():
     means = sphere_maps.sphere_map(codec("spheremap")).mean_deg
     middle = slice(sphere_maps.CELLS // 2 - 4, sphere_maps.CELLS // 2 + 4)
     towards, away = (half[middle, middle].mean() for half in means)
@@ -67,7 +67,7 @@ def test_no_two_codecs_share_a_file():
 
 
 @pytest.mark.parametrize("backend", ["jax", "glsl"])
-def test_a_rows_histogram_holds_every_normal_between_its_angles(backend):
+def test_a_rows_histogram_counts_every_normal_and_agrees_with_its_angles(backend):
     measured = quality.measure(quality.QualityCase(codec("octahedral"), playground(), backend))
     bins = [tuple(map(float, word.split(":"))) for word in measured["angle_counts"].split()]
     edges, counts = np.array(bins).T

@@ -12,8 +12,8 @@ from normalbench.encodings.codecs.codec import Codec
 from normalbench.encodings.storages.storage import STORAGES
 
 
-def test_a_codec_without_a_twin_in_jax_is_mapped_by_glsl(gl, monkeypatch):  # noqa: ARG001
-    """The angles are those of JAX, within the error of float32."""
+def test_a_codec_without_a_jax_twin_is_mapped_by_glsl(gl, monkeypatch):  # noqa: ARG001
+    """The angles agree with JAX to within the error of float32."""
     codec = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
     by_jax = sphere_maps.sphere_map(codec)
     monkeypatch.setattr(sphere_maps, "has_twin", lambda _: False)

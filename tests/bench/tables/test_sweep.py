@@ -105,7 +105,7 @@ def test_bad_sweep_is_a_one_line_error_and_nothing_is_written(run, tmp_path, mon
 
 
 def test_a_delayed_interruption_does_not_end_the_program_twice(monkeypatch):
-    """An interruption during an import waits. If another one ends the program first, the delayed one is dropped."""
+    """An interruption during an import is delayed, and is dropped if another interruption ends the program first."""
     monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
     monkeypatch.setattr(cli, "ending", [])
     before = signal.getsignal(signal.SIGALRM)

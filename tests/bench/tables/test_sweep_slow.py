@@ -19,8 +19,8 @@ from normalbench.gbuffer.scenes.setting import Setting
 pytestmark = pytest.mark.usefixtures("gl")
 
 
-def test_a_sweep_counts_what_each_pass_draws(run):
-    """Light pre-pass draws all surfaces twice, the hybrid pipeline draws general surfaces once."""
+def test_a_sweep_counts_the_draws_of_each_pass(run):
+    """The light pre-pass draws all surfaces twice; the hybrid pipeline draws general surfaces once."""
     status, out, _ = run(*SWEEP, "--format", "json")
     rows = json.loads(out)
     assert status == 0 and all(tuple(row) == tuple(TABLES["sweep"].empty(STAGES)) for row in rows)
@@ -52,7 +52,7 @@ def test_a_sweep_can_write_to_a_pipe(run, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
 
 
-def test_a_stopped_sweep_resumes_where_it_was(run, tmp_path, monkeypatch):
+def test_a_stopped_sweep_resumes_where_it_stopped(run, tmp_path, monkeypatch):
     """Rows that were measured before are kept to the last digit, and a truncated line is measured again."""
     output = tmp_path / "rows.json"
     measure, measured = sweep.measure, []

@@ -18,7 +18,7 @@ def all_of(chosen: NormalSet) -> Normals:
     return Normals(n[covered], view[covered])
 
 
-def test_halves_make_up_the_set_and_share_nothing():
+def test_the_two_halves_make_up_the_set_and_do_not_overlap():
     for by_tiles in (True, False):
         chosen = halves_of(playground(), 0, by_tiles)
         whole = np.count_nonzero(np.concatenate([np.asarray(load().covered) for load in playground().loads()]))
@@ -108,8 +108,8 @@ def test_bad_name_is_a_one_line_error(run, name, said, tmp_path, monkeypatch):
     assert (status, out) == (2, "") and said in err and err.count("\n") == 1, err
 
 
-def test_axes_are_enough_to_fit_to():
-    """The axes have 384 normals, the smallest set."""
+def test_axes_are_enough_for_a_fit():
+    """The axes are the smallest set, with 384 normals."""
     assert len(halves_of(axes(), 0, by_tiles=False).fitting) >= 128
     n = np.float32([[0, 0, 1], [1, 0, 0]] * 200)
     assert halves_of(from_arrays("two", "two", n, n, np.ones(400, bool)), 0, by_tiles=False).held_out.count == 200

@@ -60,7 +60,7 @@ def anything_in_the_view(fov_deg: float, count: int) -> Normals:
     # Whatever else is in such a view may turn 90 degrees from a ray that is 30 degrees off the axis itself.
     [(ball_that_fills_the_view, 90 - 30), pytest.param(anything_in_the_view, 90 + 30, marks=pytest.mark.drawn(3))],
 )
-def test_the_stereographic_scale_is_that_of_theory(view, farthest_deg):
+def test_the_stereographic_scale_matches_theory(view, farthest_deg):
     """tan(t / 2) for normals up to t from the axis: 0.577 for a ball in a view of 60 degrees, 1.732 for anything.
 
     The tuned scale is lower by at most as much as clipping costs less than wider steps: at the disk's edge a step is
@@ -86,7 +86,7 @@ def test_mean_errors_never_need_a_larger_scale_than_theory():
         assert 0.6 * edge < scale < 1.005 * edge, (goal, scale, edge)
 
 
-def test_the_scale_of_2010_is_nearly_the_best():
+def test_the_scale_published_in_2010_is_nearly_the_best():
     """On the scene of 2010, with arms that were added here, the tuned scale is no worse than 1.7777 and less than one
     decibel better."""
     chosen = halves_of(playground(), 0, by_tiles=False)
@@ -128,7 +128,7 @@ def test_zero_gain_is_reported(run):
     assert "no gain on the held-out half" in err
 
 
-def test_tuning_twice_finds_the_same(run):
+def test_tuning_twice_gives_the_same_result(run):
     arguments = ("stereographic", "--normals", "hemisphere", "--count", "65536", "--storage", "rg8")
     assert rows_of(run, *arguments) == rows_of(run, *arguments)
 
@@ -158,8 +158,8 @@ def test_a_lookup_table_has_the_best_scale_for_its_normals(storage):
 
 
 def test_a_lookup_table_is_fitted_to_other_storages(run, tmp_path):
-    """The published table is for UNORM8; for SNORM8 another gains more than 5 dB. It is written, read and measured
-    again."""
+    """The published table is for UNORM8; for SNORM8 a fitted table gains more than 5 dB. The fitted table is written,
+    read and measured again."""
     path = tmp_path / "scales.npy"
     rows, err = rows_of(run, "best_fit", "--storage", "rgba8_snorm", "--table", str(path))
     assert rows["psnr_db"]["gain"] > 5, rows["psnr_db"]

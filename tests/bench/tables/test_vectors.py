@@ -63,7 +63,7 @@ def test_the_mean_of_dithered_codes_is_the_number(storage):
     assert abs(stored - numbers).max() < step * 1.001
 
 
-def test_noise_moves_from_frame_to_frame_so_that_errors_do_not_add_up():
+def test_noise_changes_between_frames_so_that_errors_do_not_accumulate():
     """In steps, the errors e of a component have the density 1 - |e|, independently in each frame."""
     x, y = (side / (65535 / 2) for side in SIZE)
     u, v = np.meshgrid(*[np.linspace(-1, 1, 402)[1:-1]] * 2)
@@ -75,8 +75,8 @@ def test_noise_moves_from_frame_to_frame_so_that_errors_do_not_add_up():
 
 
 def test_slow_dithered_motion_does_not_drift_to_one_side():
-    """UNORM has codes half a step above and below rest, which dithered motions take in turn. The figures of single
-    motions have no noise."""
+    """UNORM has codes half a step above and below zero motion, between which dithered motions alternate. The figures
+    of single motions have no noise."""
     dithered, nearest = (row("linear/rg8", 0.05, rounding=rounding) for rounding in ("dithered", "nearest"))
     half = math.hypot(*(side / 255 for side in SIZE))
     assert dithered["drift_px"] == pytest.approx(math.sqrt(FRAMES) * half, rel=0.03)
@@ -84,7 +84,7 @@ def test_slow_dithered_motion_does_not_drift_to_one_side():
     assert [dithered[name] for name in ("still_px", "least_px")] == [nearest[name] for name in ("still_px", "least_px")]
 
 
-def test_few_points_have_the_noise_of_their_frames():
+def test_a_few_points_get_the_noise_of_their_frames():
     """Each point gets the same noise as among more points, because a frame's motions use the noise of that frame."""
     codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rg8"], "dithered")
     case = vectors.MotionVectorCase(codec, "jax", 1.0, (1.0,), Paths(POINTS, 0, SIZE))
@@ -113,8 +113,8 @@ def test_fixed_point_is_off_by_half_a_step_evenly(codec, steps):
         assert figures["drift_px"] == pytest.approx(math.sqrt(FRAMES * (x * x + y * y) / 12), rel=0.02)
 
 
-def test_the_mean_in_a_square_is_the_known_one():
-    """(sqrt 2 + ln(1 + sqrt 2)) / 6 of the side."""
+def test_the_mean_distance_in_a_square_matches_the_known_formula():
+    """The mean distance from the centre is (sqrt 2 + ln(1 + sqrt 2)) / 6 of the side."""
     assert mean_in_a_rectangle(0.5, 0.5) == pytest.approx((math.sqrt(2) + math.log(1 + math.sqrt(2))) / 6)
 
 
@@ -124,7 +124,7 @@ def test_steps_grow_with_the_range():
 
 
 @pytest.mark.parametrize("speed", [1.0, 4.0, 64.0])
-def test_half_floats_are_off_by_a_share_of_the_motion(speed):
+def test_errors_of_half_floats_are_proportional_to_the_motion(speed):
     """Errors are at most 2^-11 of the fastest component, and on average more than a quarter of 2^-11 of the speed."""
     figures = row("linear/rg16f", speed)
     fastest = speed * 1.1 * 1.1
@@ -138,7 +138,7 @@ def test_the_square_roots_step_grows_with_the_root_of_the_motion():
     assert fast / slow == pytest.approx(2, rel=0.02)
 
 
-def test_the_logarithms_error_is_a_share_of_fast_motion():
+def test_the_logarithms_error_is_proportional_to_fast_motion():
     """A step is (|v| + range / k) ln(2048) / 32767, where range / k is 1 / 2047 of the screen."""
     figures, step = row("log/rg16_snorm", 64.0), math.log(2048) / 32767
     angles = np.linspace(0, 2 * np.pi, 1001)
@@ -157,8 +157,8 @@ def test_linear_8_8_loses_all_slow_motion(storage):
 
 
 def test_unorm_moves_still_points_by_half_a_step():
-    """No code is 0: rest is a tie, and rounds up. Only a quarter of the slow motions decode as rest does; the others
-    decode to the other middle codes, which are equally far off."""
+    """No code is 0: zero motion is a tie and rounds up. Only a quarter of the slow motions decode like zero motion;
+    the others decode to the other middle codes, which are equally far off."""
     for storage, steps in (("rg8", 255), ("rg16", 65535)):
         speed = 0.01 if steps > 255 else 0.05
         figures, angles = row(f"linear/{storage}", speed), np.linspace(0, np.pi / 2, 1001)
@@ -183,7 +183,7 @@ LEAST = {
 
 
 @pytest.mark.parametrize("codec", LEAST)
-def test_the_slowest_motion_that_differs_from_rest_is_half_a_step_from_it(codec):
+def test_the_slowest_motion_that_differs_from_rest_is_half_a_step_away(codec):
     assert row(codec, 1.0)["least_px"] == pytest.approx(LEAST[codec], rel=2e-3)
 
 
@@ -219,7 +219,7 @@ def test_motion_beyond_the_range_is_counted():
 
 
 def test_paths_turn_slowly_in_every_direction():
-    """Directions are even, speeds within two factors of 1.1 of the requested speed, and turns within 2 degrees."""
+    """Directions are spread evenly, speeds within two factors of 1.1 of the request, and turns within 2 degrees."""
     (motions,) = PATHS.chunks(4.0)
     pixels = motions.astype(np.float64) * SIZE
     length, angle = np.hypot(*np.moveaxis(pixels, -1, 0)), np.arctan2(pixels[..., 1], pixels[..., 0])
@@ -267,7 +267,7 @@ def test_json_has_flat_rows_by_encoding_and_speed(run):
 
 
 @pytest.mark.usefixtures("rows_are_shared")
-def test_the_sheets_have_a_line_for_each_code_and_speeds_side_by_side(run):
+def test_the_sheets_have_a_line_for_each_code_with_speeds_side_by_side(run):
     status, out, _ = run(*QUICK[:-2], "--encoding", "linear,log", "--storage", "rg8,rg8_snorm", "--speed", "0.05,16")
     lines = [line.split()[:2] for line in out.splitlines()]
     assert status == 0 and lines.count(["linear", "rg8_snorm"]) == 3, out
@@ -301,7 +301,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_bad_input_is_a_one_line_error_that_says_what_would_be_right(run, what, tmp_path, monkeypatch):
+def test_bad_input_is_a_one_line_error_with_valid_values(run, what, tmp_path, monkeypatch):
     arguments, parts = BAD[what]
     monkeypatch.chdir(tmp_path)
     status, out, err = run("vectors", *arguments)

@@ -11,9 +11,9 @@ from normalbench.encodings.storages.storage import MOTION_STORAGES
 from normalbench.encodings.vec import Vec2
 
 
-def test_truncated_half_floats_are_short_by_up_to_a_unit():
-    """Toward zero: no motion comes back longer, and points lag. The mean error is twice that of nearest, because a
-    rectangle's points are on average twice as far from its corner as from its middle."""
+def test_truncated_half_float_motion_is_up_to_one_unit_too_short():
+    """Truncation never lengthens a motion, so points lag. The mean error is twice that of rounding to nearest,
+    because a rectangle's points are on average twice as far from its corner as from its middle."""
     motions = np.random.default_rng(5).uniform(-0.1, 0.1, (2, 2**14)).astype(np.float32)
     codec = MotionCodec(MOTION_ENCODINGS["linear"], MOTION_STORAGES["rg16f"], "truncate")
     decoded = np.array(codec.round_trip(Vec2(*map(jnp.asarray, motions)), np.float32(1)))

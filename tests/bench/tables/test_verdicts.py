@@ -1,4 +1,4 @@
-"""Verdicts of tables: ties, bit counts that gain nothing, names, and one verdict for every table of a run."""
+"""Table verdicts: ties, bit counts that gain nothing, names, and a verdict for every table of a run."""
 
 import pytest
 
@@ -21,12 +21,12 @@ ROWS = [
 ]
 
 
-def test_half_a_decibel_ties_and_useless_extra_bits_are_left_out():
+def test_results_within_half_a_decibel_tie_and_useless_extra_bits_are_omitted():
     names = [[tied["encoding"] for tied in group] for group in best_by_bits(ROWS, "error")]
     assert names == [["octahedral_precise", "octahedral"], ["octahedral"]]
 
 
-def test_a_sentence_names_each_bit_count_once():
+def test_a_sentence_lists_each_bit_count_once():
     text = by_bits(ROWS, "error", lambda row: f"{row['error']:.2g}°")
     assert text == "16 bits: octahedral_precise or octahedral in rg8 (0.3°); 20 bits: octahedral in rgb10a2 (0.1°)"
 
@@ -35,11 +35,11 @@ def test_a_sentence_names_each_bit_count_once():
     ("names", "said"),
     [(["a"], "a"), (["a", "b", "a"], "a or b"), (["a", "b", "c"], "a, b or c"), ([*"abcd"], "a or 3 others that tie")],
 )
-def test_a_tie_lists_its_names(names, said):
+def test_tied_names_are_listed(names, said):
     assert alternatives(names) == said
 
 
-def test_codecs_of_several_storages_each_name_their_storage():
+def test_codecs_in_several_storages_are_listed_with_their_storages():
     rows = [row("xyz", "rgba8", 24, 0.1), row("octahedral", "rg16", 32, 0.1) | {"rounding": "truncate"}]
     assert codecs(rows, listed) == "xyz in rgba8 and octahedral in rg16 (truncate)"
 

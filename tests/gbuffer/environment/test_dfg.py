@@ -1,4 +1,4 @@
-"""The split-sum table against known figures, and against sums over directions by the formulas of glTF 2.0."""
+"""The split-sum table, compared with known figures and with sums over directions from the formulas of glTF 2.0."""
 
 import numpy as np
 import pytest
@@ -87,7 +87,7 @@ def test_lookup_between_nodes_matches_the_integral():
     assert error[worst] < 1e-3, f"{error[worst]} at n.v = {n_v[worst]}, roughness {roughness[worst]}"
 
 
-def test_the_table_is_made_once():
+def test_the_table_is_computed_once():
     assert dfg_table(16) is dfg_table(16)
     with pytest.raises(ValueError, match="read-only"):
         dfg_table(16)[0, 0] = 0

@@ -1,4 +1,4 @@
-"""The sum over directions that checks the split-sum table, against known figures for separable Smith."""
+"""The sum over directions that checks the split-sum table, compared with known figures for separable Smith."""
 
 import numpy as np
 import pytest

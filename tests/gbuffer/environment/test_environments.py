@@ -1,4 +1,4 @@
-"""Environments by formula, and the directions of texels."""
+"""Environments from formulas, and the directions of texels."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def test_the_studio_has_no_sun_and_a_contrast_of_hundreds():
     assert studio.radiance.max() / studio.radiance.min() > 500
 
 
-def test_the_studios_grid_is_fine_lines_with_soft_edges():
+def test_the_studios_grid_has_fine_lines_with_soft_edges():
     """Along a row of the wall towards +z, radiance rises and falls with each line, through many values."""
     studio = ENVIRONMENTS["studio"].make().radiance[..., 1]
     row = np.roll(studio, 256, axis=1)[124, 226:286]

@@ -1,4 +1,4 @@
-"""Levels of roughness against the integral of radiance, D and n.l, by independent sums."""
+"""Levels of roughness, compared with independent sums for the integral of radiance, D and n.l."""
 
 import numpy as np
 import pytest
@@ -95,7 +95,7 @@ def test_a_wide_lobe_is_summed_to_float32_precision(levels, roughness):
 
 
 @pytest.mark.parametrize("roughness", [0.4, 0.5])
-def test_coarse_levels_of_a_small_picture_are_integrated_over_its_texels(roughness):
+def test_coarse_levels_of_a_small_image_are_integrated_over_its_texels(roughness):
     radiance, alpha = picture(16), roughness**2
     level = seen_through_lobe(radiance, alpha, STEP)
     for row, column in ((0, 3), (1, 2), (3, 7)):
@@ -113,12 +113,12 @@ def test_a_constant_environment_stays_constant(height):
         assert np.abs(level - 1).max() < 1e-6
 
 
-def test_a_mirror_sees_the_radiance_itself(levels):
+def test_a_mirror_reflects_the_radiance_unchanged(levels):
     assert levels.fine_roughness[0] == 0
     assert np.array_equal(levels.fine[0], picture())
 
 
-def test_the_two_grids_agree(levels):
+def test_the_fine_and_coarse_grids_agree(levels):
     """A direction of the coarse level is the corner of four fine texels, and their mean is close to its value."""
     assert levels.fine_roughness[-1] == levels.coarse_roughness[0]
     fine = seen_through_lobe(picture(64), FINE[-1] ** 2)

@@ -1,4 +1,4 @@
-"""Levels of roughness against the integral of radiance, D and n.l, by independent sums."""
+"""Levels of roughness, compared with independent sums for the integral of radiance, D and n.l."""
 
 import numpy as np
 import pytest
@@ -36,7 +36,7 @@ def test_levels_near_the_poles_match_sampled_directions(roughness):
         assert np.abs(level[row, column] / expected - 1).max() < 2e-3
 
 
-def test_the_two_sums_agree_where_one_takes_over():
+def test_the_two_sums_agree_where_one_replaces_the_other():
     """Both sums agree to 1% on an image with contrasts of a hundred between areas of 4 x 4 texels."""
     radiance = np.minimum(picture(16), 30).repeat(4, axis=0).repeat(4, axis=1)
     for roughness in (0.27, 0.275):
@@ -45,7 +45,7 @@ def test_the_two_sums_agree_where_one_takes_over():
         assert np.abs(level[20, 9] / expected - 1).max() < 1e-2
 
 
-def test_a_gradient_along_y_has_two_thirds_of_its_slope_in_the_irradiance():
+def test_irradiance_keeps_two_thirds_of_the_slope_of_a_gradient_along_y():
     """The integral of (1 + a l.y) max(n.l, 0) is pi (1 + 2/3 a n.y)."""
     height = 64
     y = np.cos((np.arange(height) + 0.5) * np.pi / height)

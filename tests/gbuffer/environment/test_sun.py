@@ -1,4 +1,4 @@
-"""The sun of an environment as a light of equal irradiance, and lamps that are not a sun."""
+"""The sun of an environment, replaced by a light of equal irradiance, and lamps that are not suns."""
 
 import numpy as np
 import pytest
@@ -62,7 +62,7 @@ def test_skies_without_a_sun_are_unchanged(texels):
     assert without_sun(whole) is whole
 
 
-def test_a_sun_is_taken_out_once():
+def test_a_sun_is_removed_only_once():
     """After the first call, the sun's light is already a light of the environment."""
     once = without_sun(sky_with(SUN))
     assert without_sun(once).sun == once.sun and "sun" in once.changes[-1]

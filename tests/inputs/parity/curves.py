@@ -39,14 +39,14 @@ def quantities(encoding: CurveEncoding) -> np.ndarray:
 
 @cache
 def expected(encoding: CurveEncoding) -> tuple[np.ndarray, np.ndarray]:
-    """Return the numbers of quantities and the quantities of numbers by JAX."""
+    """Return JAX's results: the numbers encoded from quantities, and the quantities decoded from numbers."""
     largest = np.float32(range_of(encoding))
     by_jax = jax.jit(encoding.encode)(quantities(encoding), largest), jax.jit(encoding.decode)(shares(), largest)
     return np.asarray(by_jax[0]), np.asarray(by_jax[1])
 
 
 def compared(gl, encoding: CurveEncoding) -> list[Comparison]:
-    """Compare numbers in 2^-23, and quantities in 2^-23 of the range."""
+    """Compare numbers in units of 2^-23, and quantities in units of 2^-23 of the range."""
     largest, x = range_of(encoding), quantities(encoding)
     numbers, back = expected(encoding)
     by_gl = exact_curves(gl, encoding, largest, np.stack([x, x, shares(), shares()], axis=1))
@@ -60,7 +60,7 @@ def compared(gl, encoding: CurveEncoding) -> list[Comparison]:
 
 
 def stored(gl, codec: CurveCodec, _: bool) -> list[Comparison]:
-    """Compare round trips: 99.5% give the same as JAX, and the largest error agrees to 1%."""
+    """Compare round trips: 99.5% give the same result as JAX, and the largest error agrees to 1%."""
     given = quantities(codec.encoding)[:8448]
     by_jax = np.asarray(jax.jit(codec.round_trip)(given))
     with CurvePasses(gl, codec) as passes:

@@ -1,4 +1,4 @@
-"""Depth encodings: both planes and values near and beyond them, compared with each other and with the exact maps."""
+"""Depth encodings at both planes and near and beyond them, compared in both languages and with the exact maps."""
 
 from functools import cache
 from typing import NamedTuple
@@ -47,7 +47,7 @@ def hard_depths(camera: Camera, is_signed: bool, count: int = 2**14) -> np.ndarr
 
 
 def hard_numbers(is_signed: bool, count: int) -> np.ndarray:
-    """Return 0, 1, a half, a quarter, the smallest steps of each storage from both ends, random numbers; float32."""
+    """Return 0, 1/4, 1/2, 1, the smallest steps of each storage from both ends, and random numbers; float32."""
     steps = np.array([1 / storage.scale for storage in DEPTH_STORAGES.values()] + [2.0**-24])
     chosen = np.concatenate([[0, 0.25, 0.5, 1], steps, 1 - steps, np.random.default_rng(1).uniform(0, 1, count)])
     return alternating(np.resize(chosen, count).astype(np.float32), is_signed)
@@ -98,7 +98,7 @@ def compared(gl, case: Case) -> list[Comparison]:
 
 
 def one_side(case: Case, side: int, given, by_jax, by_gl, exact, units) -> Comparison:
-    """Compare in units the distance of either language from the exact map, and from each other."""
+    """Compare each language with the exact map, and the two languages with each other, in units."""
     with np.errstate(invalid="ignore"):
         off = [abs(by_gl - exact), abs(by_jax - exact), abs(by_gl.astype(np.float64) - by_jax)]
         apart = np.max(off, axis=0) / np.maximum(units, 2.0**-126)
@@ -140,9 +140,9 @@ def positions_compared(case: Case, points: np.ndarray, by_gl) -> list[Comparison
 
 
 def hard_codes(storage) -> np.ndarray:
-    """Return numbers in [0, 1] with their neighbours. For 16 bits: every code and every tie; for 24: those around
-    each carry and random ones; for floats: random numbers of every exponent, and each half float with the tie after
-    it."""
+    """Return numbers in [0, 1] with their neighbours. For 16 bits: every code and every tie; for 24 bits: codes
+    around each carry, and random codes; for floats: random numbers of every exponent, and each half float with the
+    tie after it."""
     random = np.random.default_rng(3)
     if storage.format.kind == "float":
         halves = np.arange(2**16, dtype=np.uint16).view(np.float16).astype(np.float32)
@@ -180,7 +180,7 @@ def same_bits(what: str, given, by_jax, by_gl) -> Comparison:
 
 def handed_on(gl, codec: DepthCodec, given, by_jax, by_gl) -> Comparison:
     """Compare numbers that a storage keeps unchanged: bit for bit in software. A GPU stores the nearest whole number,
-    either one in a tie, and returns it to two units in the last place."""
+    either of the two in a tie, and returns it to within two units in the last place."""
     if gl.is_software or codec.storage.format.kind == "float":
         return same_bits(codec.name, given, by_jax, by_gl)
     step, exact = step_of(codec, by_jax), np.clip(abs(given.astype(np.float64)), 0, 1)
@@ -204,7 +204,7 @@ def stored(gl, codec: DepthCodec, is_slow: bool) -> list[Comparison]:
 
 
 def both(gl):
-    """Return the functions that give the numbers of a codec, a camera and depths, by JAX and by GLSL."""
+    """Return the functions, in JAX and in GLSL, that give the numbers of a codec, a camera and depths."""
     return numbers_by_jax, lambda *asked: numbers_by_gl(gl, *asked)
 
 

@@ -38,7 +38,7 @@ def as_rows(frame: Frame) -> np.ndarray:
 
 
 def of_quaternions(q: np.ndarray) -> np.ndarray:
-    """Return the frames of quaternions of any length, each with either hand; float32 of shape (2 count, 8)."""
+    """Return frames of quaternions of any length, each with both signs of the hand; float32 (2 count, 8)."""
     q = q / np.linalg.norm(q, axis=1, keepdims=True)
     frame = rotated_frame(Vec4(*q.T), np.ones(len(q)))
     right = as_rows(frame).astype(np.float32)
@@ -124,14 +124,14 @@ def expected(encoding: FrameEncoding):
 
 
 def by_gl(gl, encoding: FrameEncoding, frames: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the codes of frames, and the frames of codes."""
+    """Return GLSL's codes of frames, and its frames of codes."""
     codes, *parts = exact_frames(gl, encoding, LEAST, frames[:, :4], frames[:, 4:], given)
     return codes, np.concatenate(parts, axis=1)
 
 
 def compared(gl, encoding: FrameEncoding) -> list[Comparison]:
-    """Compare codes, which agree if they are near or stand for frames equally near to the given frame: of two equal
-    components either may be the largest, and a w of 0 may be kept on either side of 0."""
+    """Compare codes, which agree if they are close or decode to frames equally close to the given frame: either of
+    two equal components may be the largest, and a w of 0 may be kept on either side of 0."""
     frames, codes, given, back = expected(encoding)
     gl_codes, gl_made = by_gl(gl, encoding, frames, given)
     far = [np.linalg.norm(frames.astype(np.float64) - decoded(encoding, code), axis=1) for code in (codes, gl_codes)]
@@ -155,7 +155,7 @@ def guarded(gl, encoding: FrameEncoding) -> list[Comparison]:
 
 @cache
 def round_trip(codec: FrameCodec):
-    """Return a function from rows to rows; it is compiled once, because all callers have as many rows."""
+    """Return a function from rows to rows; it is compiled once, because all callers pass the same number of rows."""
     through = jax.jit(codec.round_trip)
     return lambda frames: as_rows(through(as_frame(frames)))
 
@@ -176,7 +176,7 @@ def gl_trip(gl, codec: FrameCodec) -> np.ndarray:
 
 
 def stored(gl, codec: FrameCodec, _: bool) -> list[Comparison]:
-    """Compare random frames: 99.5% give the same as JAX, to the units that encoder and decoder state."""
+    """Compare random frames: 99.5% give the same result as JAX, within the units that encoder and decoder state."""
     chosen = slice(*RANDOM)
     frames, by_jax, by_glsl = (rows[chosen] for rows in (hard_frames(), trip(codec), gl_trip(gl, codec)))
     apart = in_ulps(by_jax, by_glsl)

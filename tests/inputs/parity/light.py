@@ -1,4 +1,4 @@
-"""Light encodings: values from below the range of floats to beyond halves, and steps of exponents and multipliers."""
+"""Light encodings: values from below the range of floats to above halves, and steps of exponents and multipliers."""
 
 import itertools
 from functools import cache
@@ -63,7 +63,7 @@ def decoded(codec: LightCodec, texels: np.ndarray) -> np.ndarray:
 
 @cache
 def expected(codec: LightCodec):
-    """Return light, its texels, texels to decode, and the light of both, by JAX."""
+    """Return light, its texels, texels to decode, and the light decoded from both sets of texels, by JAX."""
     light = lights()
     texels = rows(jax.jit(lambda light: codec.encode(light_or_none(light)))(planes(light)))
     given = given_texels(codec, texels)
@@ -71,8 +71,8 @@ def expected(codec: LightCodec):
 
 
 def apart(one: np.ndarray, other: np.ndarray, least: float = 2.0**-100) -> np.ndarray:
-    """Return how far light is apart, in units in the last place of the brightest channel. Differences below 2^-126
-    count as 0, because either language may flush them."""
+    """Return the distance between lights, in units in the last place of the brightest channel. Differences below
+    2^-126 count as 0, because either language may flush them."""
     difference = np.abs(one.astype(np.float64) - other).max(axis=1)
     ulps = np.where(difference < 2.0**-126, 0, difference) / np.maximum(np.abs(one).max(axis=1), least) / ULP
     return np.where(np.all(np.isfinite(other), axis=1), ulps, np.inf)

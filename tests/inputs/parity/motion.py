@@ -22,8 +22,8 @@ MOVING, STILL, BEYOND = slice(0, 16384), slice(16384, 16640), slice(16640, 16896
 
 @cache
 def motions() -> np.ndarray:
-    """Return motions up to the range: both zeros, both ends, every magnitude down to 2^-40 of the range, random
-    ones."""
+    """Return motions up to the range: both zeros, both ends, every magnitude down to 2^-40 of the range, and random
+    motions."""
     rng = np.random.default_rng(0)
     powers = RANGE * 2.0 ** -np.arange(0, 41)
     line = np.concatenate([[0.0, -0.0], powers, -powers])
@@ -43,7 +43,7 @@ def expected(encoding: MotionEncoding) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def compared(gl, encoding: MotionEncoding) -> list[Comparison]:
-    """Compare codes in 2^-23, and motions in 2^-23 of the range."""
+    """Compare codes in units of 2^-23, and motions in units of 2^-23 of the range."""
     codes, given, decoded = expected(encoding)
     by_gl = exact_motions(gl, encoding, RANGE, np.concatenate([motions(), given], axis=1))
     name, ulps, reason = encoding.name, encoding.ulps, encoding.ulps_reason
@@ -73,7 +73,7 @@ def through_gl(gl, codec: MotionCodec) -> np.ndarray:
 
 
 def stored(gl, codec: MotionCodec, _: bool) -> list[Comparison]:
-    """Compare round trips: 99.5% give the same as JAX, and each component's largest error agrees to 1%."""
+    """Compare round trips: 99.5% give the same result as JAX, and each component's largest error agrees to 1%."""
     given, by_jax, by_gl = (vectors[MOVING] for vectors in (pixels(), through_jax(codec), through_gl(gl, codec)))
     apart = np.abs(by_jax.astype(np.float64) - by_gl).max(axis=1)
     same = apart <= ULP * RANGE * codec.encoding.ulps[1] * 2

@@ -1,4 +1,4 @@
-"""Normal encodings: hard directions and random ones, compared in units scaled by the condition of the map."""
+"""Normal encodings: hard and random directions, compared in units scaled by the condition of the map."""
 
 import itertools
 from functools import cache
@@ -38,7 +38,7 @@ def codes_by_jax(encoding: Encoding, n: np.ndarray, view: np.ndarray) -> np.ndar
 
 
 def given_codes(encoding: Encoding, codes: np.ndarray) -> np.ndarray:
-    """Return the directions' codes, the first of them replaced by corners, edges and centre of the code space."""
+    """Return the directions' codes, the first codes replaced by corners, edges and the centre of the code space."""
     corners = np.array(list(itertools.product((-1.0, 0.0, 0.5, 1.0), repeat=codes.shape[1])), np.float32)
     if encoding.sign_bits:
         corners[:, -1] = np.where(corners[:, -1] > 0, 1, -1)
@@ -70,7 +70,7 @@ def condition(function, inputs: np.ndarray) -> np.ndarray:
 
 @cache
 def expected(encoding: Encoding):
-    """Return inputs, their results by JAX and the conditions there, the same for every mutant of the GLSL."""
+    """Return inputs, JAX's results and the conditions there, which are the same for every mutant of the GLSL."""
     n = np.concatenate([hard_directions(), random_directions(2**16)])
     view = view_positions(len(n))
     codes = codes_by_jax(encoding, n, view)

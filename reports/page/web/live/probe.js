@@ -142,7 +142,7 @@ class Probe {
     if (gl.getError()) return "no";
     const found = this.first(single), apart = low.map((value, at) => Math.abs(found[at] - (value + high[at]) / 2) / step);
     const most = Math.max(...apart), isMean = most <= 0.5 + 1e-3;
-    return `${isMean ? "the mean of the codes" : "not the mean of the codes"}, at most ${Number(most.toFixed(2))} steps from it`;
+    return isMean ? `the mean of the codes, to within ${Number(most.toFixed(2))} steps` : `up to ${Number(most.toFixed(2))} steps from the mean of the codes`;
   }
 
   multisampled(format, width) {

@@ -1,4 +1,4 @@
-"""All bad input that has an answer, the tests that try it, and tests that fit no other file."""
+"""The list of bad inputs, each with the tests that try it, and tests that fit no other file."""
 
 import ast
 import json
@@ -24,11 +24,11 @@ TESTS = Path(__file__).parents[3]
 # Input, answer, and by file the tests that hold it.
 ANSWERS = {
     "NaN or infinite normal in a file: masked and counted, over a share refused": {
-        "test_captures": ["test_nan_is_refused_or_masked_and_counted_as_is_asked_for"],
+        "test_captures": ["test_nan_is_refused_or_masked_and_counted_as_requested"],
         "test_bad_scene_files": ["test_bad_gltf_is_a_one_line_error", "test_bad_text_is_a_one_line_error"],
     },
     "zero-length normal: background, counted, never NaN": {
-        "test_captures": ["test_normals_of_no_length_are_background"],
+        "test_captures": ["test_zero_length_normals_are_background"],
     },
     "not unit, or packed as [0, 1]: refused with the option that would read it": {
         "test_captures": [
@@ -41,7 +41,7 @@ ANSWERS = {
         "test_bad_captures": [
             "test_truncated_exr_is_a_one_line_error",
         ],
-        "test_attack": ["test_damaged_input_is_measured_or_refused_in_a_line"],
+        "test_attack": ["test_damaged_input_is_measured_or_refused_in_one_line"],
         "test_bad_scene_files": [
             "test_truncated_glb_is_a_one_line_error",
             "test_bad_text_is_a_one_line_error",
@@ -67,11 +67,11 @@ ANSWERS = {
         "test_render": ["test_bad_input_is_a_one_line_error_and_nothing_is_written"],
     },
     "a user's shader that does not compile: its file and line, other cases go on": {
-        "test_user_encodings": ["test_invalid_file_does_not_affect_the_others"],
-        "test_cli": ["test_a_users_broken_shader_loses_its_own_rows_and_is_an_error_alone"],
+        "test_user_encodings": ["test_invalid_file_does_not_affect_other_encodings"],
+        "test_cli": ["test_a_users_broken_shader_loses_its_rows_and_is_an_error_if_measured_alone"],
     },
     "a user's shader that does not end: a process of its own, a time limit, loops counted": {
-        "test_user_encodings": ["test_a_shader_that_does_not_end_or_kills_the_process_is_named"],
+        "test_user_encodings": ["test_a_shader_that_does_not_end_or_kills_the_process_is_reported"],
         "test_bad_inputs": ["test_an_endless_loop_does_not_affect_other_encodings"],
     },
     "identical images: inf in tables, null and exact in JSON": {
@@ -82,23 +82,26 @@ ANSWERS = {
             "test_jax_measures_without_an_opengl_driver",
             "test_glsl_without_an_opengl_driver_exits_with_3_and_says_what_to_install",
         ],
-        "test_plugin": ["test_without_an_opengl_driver_jax_rows_are_checked_and_others_skipped"],
+        "test_plugin": ["test_jax_rows_are_checked_and_others_skipped_without_an_opengl_driver"],
     },
     "damaged, hostile or enormous device file: its place in one line, nothing is added, markup stays text": {
         "test_device_file": [
-            "test_bad_file_is_a_one_line_error_with_its_name_and_the_place",
+            "test_bad_file_is_a_one_line_error_with_its_name_and_location",
             "test_an_enormous_file_is_refused_before_it_is_read",
-            "test_damaged_file_is_read_or_refused_in_one_line",
+            "test_damaged_file_is_read_or_refused_with_a_one_line_error",
         ],
         "test_import": ["test_one_bad_file_of_several_leaves_the_run_as_it_was"],
-        "test_devices_site": ["test_damaged_files_are_named_and_left_out", "test_markup_in_a_device_file_stays_text"],
+        "test_devices_site": [
+            "test_damaged_files_are_reported_and_left_out",
+            "test_markup_in_a_device_file_stays_text",
+        ],
     },
     "interrupted run, full disk: finished rows are kept, running again resumes": {
         "test_killed_writers": ["test_a_writer_killed_before_any_of_its_changes_leaves_whole_files"],
         "test_cli": ["test_a_run_that_fails_at_the_end_keeps_its_rows_and_no_partial_table"],
     },
     "fuzzed TOML and gate expressions: one line, soon, nothing else opened": {
-        "test_attack": ["test_damaged_input_is_measured_or_refused_in_a_line"],
+        "test_attack": ["test_damaged_input_is_measured_or_refused_in_one_line"],
         "test_bad_inputs": ["test_thresholds_are_read_or_refused"],
         "test_check": ["test_no_gate_causes_a_traceback"],
     },
@@ -172,7 +175,7 @@ def test_a_loop_that_the_device_stops_is_reported(gl, tmp_path, what):
 
 @pytest.mark.usefixtures("gl")
 def test_loops_that_end_are_measured(tmp_path):
-    """The loops make 62,500 turns in total and have several forms."""
+    """Two nested loops have 62,500 iterations in total."""
     path = tmp_path / "mine.glsl"
     path.write_text(
         LOOPS % "for (int i = 0; i < 250; i++) { int j = 0; while (true) { s += 1e-9; if (++j >= 250) break; } }"
@@ -198,7 +201,7 @@ def test_identical_frames_have_infinite_psnr(run):
     "command", [("depth", "--near"), ("depth", "--distance"), ("lights", "--sum"), ("lights", "--counts")]
 )
 @pytest.mark.parametrize("text", ["", ",", "1,x", "nan", "-1", "0", "1e99", "9" * 5000])
-def test_bad_lists_of_numbers_have_the_same_error_form(run, command, text):
+def test_errors_about_lists_of_numbers_have_the_same_form(run, command, text):
     status, out, err = run(*command, text)
     assert (status, out) == (2, "") and err.count("\n") == 1
     shown = text.strip(",") if len(text) < 10 else f"{text[:6]}... ({len(text)} digits)"
@@ -224,7 +227,7 @@ TEXTS = st.one_of(
 @settings(max_examples=500, deadline=None, derandomize=True)
 @given(TEXTS)
 def test_thresholds_are_read_or_refused(text):
-    """A threshold is read exactly or refused in one line; any other text is None."""
+    """A threshold is read exactly or refused in one line; for any other text the result is None."""
     try:
         bound = limit("psnr_db", text)
     except UsageError as error:

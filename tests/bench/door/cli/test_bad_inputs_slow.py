@@ -1,4 +1,4 @@
-"""All bad input that has an answer, the tests that try it, and tests that fit no other file."""
+"""The list of bad inputs, each with the tests that try it, and tests that fit no other file."""
 
 import json
 

@@ -159,7 +159,7 @@ def test_a_users_broken_encoding_is_a_one_line_error_that_names_its_file(run, mo
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_users_broken_shader_loses_its_own_rows_and_is_an_error_alone(run, monkeypatch, tmp_path):
+def test_a_users_broken_shader_loses_its_rows_and_is_an_error_if_measured_alone(run, monkeypatch, tmp_path):
     broken = tmp_path / "xy.glsl"
     broken.write_text(ENCODINGS["xy"].glsl.read_text().replace("n.xy", "n.xq"))
     measured_instead(monkeypatch, replace(ENCODINGS["xy"], glsl=broken))
@@ -186,7 +186,7 @@ def test_decoded_values_that_are_not_numbers_are_counted_and_reported(run, monke
     assert err == "normalbench: xy rgba8 nearest axes jax: 64 results are NaN or infinite\n"
 
 
-def test_an_encoding_that_does_not_fit_is_named_and_the_rest_is_measured(run):
+def test_an_encoding_that_does_not_fit_is_reported_and_the_rest_is_measured(run):
     status, out, err = run(
         "quality", "--encoding", "xyz,xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax"
     )

@@ -141,7 +141,7 @@ def test_glsl_without_an_opengl_driver_exits_with_3_and_says_what_to_install():
     assert done.stderr.count("\n") == 1 and "apt-get install libegl1" in done.stderr
 
 
-def test_doctor_says_what_this_machine_has(run):
+def test_doctor_describes_this_machine(run):
     status, out, _ = run("doctor", "--format", "json")
     facts = {row["name"]: row["value"] for row in json.loads(out)}
     assert status == 0
@@ -194,7 +194,7 @@ def test_run_prints_a_verdict_and_show_adds_the_figures_of_the_article(run, resu
     assert run("show", str(folder))[1].split() == " ".join(out.splitlines()[:-2]).split(), "in another width"
 
 
-def test_show_names_the_tables_that_a_run_has(run, results, tmp_path):
+def test_show_lists_the_tables_of_a_run(run, results, tmp_path):
     status, _, err = run("show", str(results[0]), "depth")
     assert (status, err) == (2, "normalbench: unknown table of the run 'depth'; known: all, quality\n")
     status, _, err = run("show", str(tmp_path))
@@ -228,7 +228,7 @@ def test_run_leaves_a_results_folder(results):
 
 
 def test_a_run_measures_the_usual_codecs():
-    """The storages are rgba8, rg16f, rgb10a2, rg16 and 12:12; each is measured on two sets by both backends."""
+    """The storages are rgba8, rg16f, rgb10a2, rg16 and 12:12; each is measured on two sets with both backends."""
     two = [
         name for name in COMMON if ENCODINGS[name].components == 2 and Codec(ENCODINGS[name], STORAGES["rg16f"]).fits
     ]

@@ -28,7 +28,7 @@ def test_a_closed_output_is_refused_if_something_would_be_printed(closed):
     assert (done.returncode, done.stdout, done.stderr) == (2, "", message)
 
 
-def test_children_have_the_three_streams(tmp_path):
+def test_child_processes_have_all_three_standard_streams(tmp_path):
     """Otherwise a compiler's messages would go into the first file that it opens."""
     program = (
         "import os, subprocess, sys\n"

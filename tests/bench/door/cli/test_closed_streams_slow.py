@@ -27,7 +27,7 @@ def test_rows_in_a_file_are_complete_with_any_streams_closed(run, tmp_path, clos
 
 
 @pytest.mark.parametrize("closed", CLOSED)
-def test_a_wrong_word_has_its_exit_status_with_any_streams_closed(closed):
+def test_a_wrong_word_exits_with_status_2_with_any_streams_closed(closed):
     done = started(closed, "list", "nothing")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == (2 not in closed), done.stderr

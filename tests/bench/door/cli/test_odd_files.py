@@ -1,4 +1,4 @@
-"""Files of odd kinds and names, and folders that disappear: one line each, soon, and nothing is lost."""
+"""Odd kinds and names of files, and folders that disappear: errors are short and quick, and nothing is lost."""
 
 import os
 import subprocess
@@ -71,14 +71,14 @@ def test_far_too_many_channels_are_refused_at_once(run, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name, option", [("page.html", "--report"), ("chart.PNG", "--plot")])
-def test_rows_are_not_written_to_the_name_of_a_page_or_a_chart(run, tmp_path, name, option):
+def test_rows_are_not_written_to_a_file_named_like_a_page_or_a_chart(run, tmp_path, name, option):
     path = tmp_path / name
     status, out, err = run(*QUICK, "-o", str(path))
     assert (status, out, path.exists()) == (2, "", False)
     assert err == f"normalbench: -o writes only rows; for {name} use {option} {path}, if the command has that option\n"
 
 
-def test_a_folder_that_is_deleted_meanwhile_is_noticed_at_the_next_row(tmp_path):
+def test_a_folder_deleted_during_a_run_is_noticed_at_the_next_row(tmp_path):
     path = tmp_path / "run" / "rows.jsonl"
     with journal(path) as kept:
         kept.add({"a": 1})

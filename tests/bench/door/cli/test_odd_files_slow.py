@@ -1,4 +1,4 @@
-"""Files of odd kinds and names, and folders that disappear: one line each, soon, and nothing is lost."""
+"""Odd kinds and names of files, and folders that disappear: errors are short and quick, and nothing is lost."""
 
 import json
 import os
@@ -29,7 +29,7 @@ def test_a_terminal_without_a_degree_sign_gets_the_table(tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (0, "0.9\\xb0\n", "")
 
 
-def test_a_file_name_that_is_not_utf_8_is_measured_and_written(run, tmp_path, monkeypatch):
+def test_a_file_with_a_name_that_is_not_utf_8_can_be_measured(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     name = os.fsdecode(b"n\xff.npy")
     with Path(name).open("wb") as file:

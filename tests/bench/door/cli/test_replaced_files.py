@@ -155,7 +155,7 @@ BY_DAY = (
 
 
 @pytest.mark.parametrize("case, ending", BY_DAY)
-def test_rows_replace_those_of_the_same_command(run, case, ending):
+def test_rows_replace_earlier_rows_of_the_same_command(run, case, ending):
     for _ in range(2):
         status, _, err = run(*AGAIN[case], f"rows.{ending}")
         assert (status, err) == (0, ""), err
@@ -164,7 +164,7 @@ def test_rows_replace_those_of_the_same_command(run, case, ending):
 DEPTHS = ("depth", "--storage", "depth16", "--depth", "linear", "--backend", "jax", "--count", "100")
 
 
-def test_a_picture_replaces_that_of_another_command(run):
+def test_a_picture_replaces_a_picture_of_another_command(run):
     doctor = ("doctor", "mine.glsl")
     assert [run(*words, "--plot", "p.png")[0] for words in (DEPTHS, doctor, DEPTHS)] == [0, 0, 0]
 
@@ -185,7 +185,7 @@ def test_an_empty_file_is_replaced(run, folder):
 
 
 @pytest.mark.parametrize("table", TABLES.values(), ids=lambda table: table.name)
-def test_every_table_knows_its_own_header(tmp_path, table):
+def test_every_table_recognises_its_own_header(tmp_path, table):
     names = list(table.empty(("a",)))
     for number, text in enumerate((",".join(names), json.dumps([dict.fromkeys(names)]), "  ".join(names))):
         (tmp_path / f"{number}").write_text(f"{text}\n")

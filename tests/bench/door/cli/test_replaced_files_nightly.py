@@ -10,5 +10,5 @@ folder = test_replaced_files.folder
 
 
 @pytest.mark.parametrize("case, ending", [pair for pair in itertools.product(AGAIN, ENDINGS) if pair not in BY_DAY])
-def test_rows_replace_those_of_the_same_command_in_other_formats(run, case, ending):
-    test_replaced_files.test_rows_replace_those_of_the_same_command(run, case, ending)
+def test_rows_replace_earlier_rows_of_the_same_command_in_other_formats(run, case, ending):
+    test_replaced_files.test_rows_replace_earlier_rows_of_the_same_command(run, case, ending)

@@ -242,7 +242,7 @@ def test_measured_files_are_not_overwritten(run, tmp_path, option, name):
 
 
 def test_an_empty_plot_states_the_reason():
-    """The reason is that of the row, or that there are too few figures."""
+    """The reason comes from the row. If the row has no reason, there are too few figures."""
     table = TABLES["budget"]
     few = f"too few figures for a chart in 1 row; for example, run: {table.example}"
     assert _why_nothing(table, [{"layout": "mine", "skipped": None}]) == few
@@ -253,7 +253,7 @@ def test_at_least_forty_slips_are_covered():
     assert len(SLIPS) >= 40
 
 
-def test_a_count_for_files_only_has_a_warning(run, tmp_path):
+def test_count_causes_a_warning_if_only_files_are_measured(run, tmp_path):
     path = str(tmp_path / "f.npy")
     np.save(path, np.eye(3, dtype=np.float32))
     told = f"normalbench: --count has no effect on files: every normal of {path} is measured\n"
@@ -328,7 +328,7 @@ def test_csv_has_no_histogram_and_json_has_one_as_a_list(run):
     assert edges == sorted(edges) and edges[-1] <= row["angle_max_deg"]
 
 
-def test_version_and_short_help(run):
+def test_version_and_short_help_are_printed(run):
     assert run("--version")[:2] == (0, f"{version('normalbench')}\n")
     status, out, _ = run("-h")
     assert status == 0 and "quality" in out
@@ -356,7 +356,7 @@ def test_help_fits_80_columns_and_groups_its_options(run, monkeypatch, name):
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("name", TABLES)
 def test_the_example_of_a_table_command_is_valid(name):
-    """Its options are valid, and so are their names, except names of files."""
+    """The options are valid, and so are the names in them, which are not checked in examples with captured files."""
     table, program = TABLES[name], command_line()
     words = _words(TABLES[name].example.split()[1:], program)
     command = program.commands[name]
@@ -393,7 +393,7 @@ def test_a_list_fits_the_terminal_with_a_table_for_each_kind(run, monkeypatch, w
     ],
 )
 def test_an_interruption_waits_for_imports_and_for_moderngl(file, is_delicate):
-    """An exception that passes through their C++ code ends the process without a message, with exit status -11."""
+    """An exception that passes through C++ code ends the process without a message, with exit status -11."""
     answers = []
     namespace = {"look": lambda: answers.append(_is_delicate(sys._getframe()))}
     exec(compile("look()", file, "exec"), namespace)

@@ -16,7 +16,7 @@ def test_a_repeated_option_without_conflict_is_accepted(run):
     assert rows_of(run, *ONE, "--count", "1000", "--codes", "--codes")[0]["count"] == 1000
 
 
-def test_encodings_left_out_for_the_same_reason_are_one_line(run):
+def test_encodings_left_out_for_the_same_reason_share_one_line(run):
     status, _, err = run(*ROW, "--encoding", "octahedral,xyz,xyz_largest")
     assert status == 0 and err.count("\n") == 1, err
     assert err.startswith("normalbench: left out: xyz/rg8, xyz_largest/rg8: ")

@@ -80,7 +80,7 @@ def test_a_captured_frame_has_a_base_colour_in_any_spelling(tmp_path, key):
 
 
 @pytest.mark.parametrize("option", ["--hold", "--blend", "--read-alone", "--readers"])
-def test_options_of_attributes_take_base_color(run, option):
+def test_options_for_attributes_accept_base_color(run, option):
     """Names are read before errors are reported."""
     words = {"--hold": "normal,base_color,Base-Color", "--readers": "base_color+tangent"}
     status, _, err = run("budget", option, words.get(option, "base_color,tangent"))

@@ -30,7 +30,7 @@ def test_a_gate_passes_if_its_threshold_holds_and_fails_otherwise(run, tmp_path)
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_shader_without_a_twin_is_measured_by_glsl(run, tmp_path):
+def test_a_shader_without_a_twin_is_measured_in_glsl(run, tmp_path):
     (tmp_path / "mine.glsl").write_text(
         "vec2 mine_encode(vec3 n, vec3 view) { return n.xy; }\n"
         "vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0.0))); }\n"
@@ -44,7 +44,7 @@ def test_a_shader_without_a_twin_is_measured_by_glsl(run, tmp_path):
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_gate_does_not_ignore_a_few_nan(run, tmp_path):
+def test_a_gate_does_not_ignore_a_few_nan_results(run, tmp_path):
     (tmp_path / "hole.glsl").write_text(
         "vec2 hole_encode(vec3 n, vec3 view) { return n.xy; }\n"
         "vec3 hole_decode(vec2 e, vec3 view) {\n"
@@ -79,7 +79,7 @@ def rendered(encoding: str, db: float) -> dict:
     return TABLES["render"].empty() | about | {"psnr_db": db, "normal_psnr_db": db, "mse": 1 / db}
 
 
-def test_a_rank_of_a_run_is_its_place_among_all_rows_of_the_run(run, tmp_path):
+def test_a_rank_is_the_place_of_a_row_among_all_rows_of_the_run(run, tmp_path):
     """The rank is the same as in the run's exported files, whichever rows a gate names."""
     folder, path = tmp_path / "run", tmp_path / "gates.toml"
     with opened(folder, {}) as open_run:
@@ -89,7 +89,7 @@ def test_a_rank_of_a_run_is_its_place_among_all_rows_of_the_run(run, tmp_path):
     assert status == 1 and [row["figure"] for row in json.loads(out)] == [2]
 
 
-def test_rows_of_another_version_are_not_blamed_on_the_gate(run, tmp_path):
+def test_rows_from_another_version_are_not_blamed_on_the_gate(run, tmp_path):
     folder, path = tmp_path / "run", tmp_path / "gates.toml"
     with opened(folder, {}) as open_run:
         open_run.keep("quality", Step({}, None, ""), [{"encoding": "xy", "psnr": 40.0}])
@@ -98,7 +98,7 @@ def test_rows_of_another_version_are_not_blamed_on_the_gate(run, tmp_path):
     assert status == 2 and "do not match this version; measure them again: " in err, err
 
 
-def test_an_identity_that_no_row_of_a_run_has_is_a_one_line_error(run, tmp_path):
+def test_an_identity_that_matches_no_row_of_a_run_is_a_one_line_error(run, tmp_path):
     folder, path = tmp_path / "run", tmp_path / "gates.toml"
     with opened(folder, {}) as open_run:
         rows = [{"depth": "linear", "far": 1.0, "error_max": 1.0}, {"depth": "log", "far": 10.0, "error_max": 1.0}]
@@ -115,7 +115,7 @@ def test_an_identity_that_no_row_of_a_run_has_is_a_one_line_error(run, tmp_path)
         assert (status, out, err.count("\n")) == (2, "", 1) and message.format(folder) in err, err
 
 
-def test_thresholds_include_their_value_and_reject_what_is_not_a_number():
+def test_thresholds_include_their_value_and_reject_values_that_are_not_numbers():
     least, most = Limit("x", "at least", 2.0), Limit("x", "at most", 2.0)
     assert least.holds(2) and most.holds(2.0) and least.holds(float("inf")) and not most.holds(float("inf"))
     assert not any(limit.holds(figure) for limit in (least, most) for figure in (None, float("nan"), "2"))

@@ -12,7 +12,7 @@ from normalbench.bench.door.gates.gates import checked, read_gates
 from normalbench.bench.ground.output.errors import MissingError, UsageError
 
 
-def test_a_figure_that_a_run_did_not_measure_is_named_with_its_option(run, tmp_path):
+def test_the_error_about_an_unmeasured_figure_names_its_option(run, tmp_path):
     path, folder = tmp_path / "gates.toml", str(tmp_path / "results")
     words = ("--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax")
     assert run("run", "--tables", "quality", *words, "-o", folder)[0] == 0
@@ -57,7 +57,7 @@ def test_no_gate_causes_a_traceback(tmp_path_factory, content):
         assert "\n" not in str(error) or "gates" in str(error)
 
 
-def test_paths_in_a_gate_are_relative_to_the_file_of_gates(run, tmp_path, monkeypatch):
+def test_paths_in_a_gate_are_relative_to_the_gate_file(run, tmp_path, monkeypatch):
     """The shell's folder does not matter; a file that exists only there is a one-line error."""
     folder, shell = tmp_path / "gates", tmp_path / "shell"
     folder.mkdir()
@@ -105,7 +105,7 @@ def test_a_gate_fails_if_a_requested_row_is_missing(run, tmp_path, encoding, sai
 
 
 @pytest.mark.usefixtures("gl")
-def test_an_image_may_be_a_gate(run, tmp_path):
+def test_a_gate_may_judge_an_image(run, tmp_path):
     path = tmp_path / "gates.toml"
     path.write_text('[[gate]]\ntable = "render"\nsize = "64x48"\nlights = 4\npsnr_db = "at least 20"\n')
     status, out, _ = run("check", str(path), "--format", "json")
@@ -131,7 +131,7 @@ TABLES_GATED = {
 
 @pytest.mark.usefixtures("gl", "radv")
 @pytest.mark.parametrize("table", TABLES_GATED)
-def test_every_table_may_be_a_gate(run, tmp_path, table):
+def test_a_gate_may_judge_any_table(run, tmp_path, table):
     path = tmp_path / "gates.toml"
     for most, status, holds in ((1e6, 0, "pass"), (1e-9, 1, "FAIL")):
         path.write_text(f'[[gate]]\ntable = "{table}"\n{TABLES_GATED[table].format(most)}\n')
@@ -181,7 +181,7 @@ def test_a_cost_increase_is_shown_with_the_added_instructions(run, tmp_path):
 
 
 @pytest.mark.usefixtures("radv")
-def test_costs_by_another_compiler_are_not_compared_and_both_are_kept(run, tmp_path):
+def test_costs_from_different_compilers_are_kept_separately_and_not_compared(run, tmp_path):
     gates, kept = golden_gate(tmp_path, PLAIN), tmp_path / "kept" / "costs.json"
     status, _, err = run("check", gates)
     assert status == 1 and err.count("\n") == 3, err

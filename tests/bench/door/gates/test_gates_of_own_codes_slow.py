@@ -1,4 +1,4 @@
-"""Gates, tests and Python accept users' codes of every kind, in the form that commands use."""
+"""Gates, tests and Python accept users' encodings of every kind, in the same form as commands."""
 
 import csv
 import io

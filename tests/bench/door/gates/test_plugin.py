@@ -1,4 +1,4 @@
-"""The pytest plugin, by pytest inside pytest: gates that pass or fail, no OpenGL driver, xdist, baselines, misuse."""
+"""The pytest plugin, tested inside pytest: gates that pass or fail, no OpenGL driver, xdist, baselines, misuse."""
 
 import pytest
 

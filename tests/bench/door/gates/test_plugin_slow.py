@@ -1,4 +1,4 @@
-"""The pytest plugin, by pytest inside pytest: gates that pass or fail, no OpenGL driver, xdist, baselines, misuse."""
+"""The pytest plugin, tested inside pytest: gates that pass or fail, no OpenGL driver, xdist, baselines, misuse."""
 
 import json
 import re
@@ -33,7 +33,7 @@ PASSES = f"""
 
 @pytest.fixture(scope="session")
 def loaded():
-    """Modules imported before first use, because pytest inside pytest forgets what it imports itself."""
+    """Modules that are imported in advance, because the inner pytest forgets its own imports."""
     assert baseline
     for measurement in measured.measured(TABLES["quality"], {"encoding": "xy", "normals": "sphere", "count": 4096}):
         assert measurement.worst
@@ -56,7 +56,7 @@ def test_a_gate_that_holds_passes(inside):
 
 
 def test_a_failure_shows_value_threshold_and_worst_normal(inside):
-    """In `xy` on the sphere, a normal that faces away comes back with z reversed. Figures are those of the row."""
+    """In `xy` on the sphere, a normal that faces away comes back with z reversed. The figures match the row."""
     (measurement,) = measured.measured(TABLES["quality"], {"encoding": "xy", "normals": "sphere", "count": 4096})
     result = inside(
         test_a=f"""
@@ -80,7 +80,7 @@ def test_a_failure_shows_value_threshold_and_worst_normal(inside):
     assert "session.py" not in result.stdout.str(), "the traceback is the test's own"
 
 
-def test_a_marker_is_checked_before_the_test(inside):
+def test_a_marker_is_checked_before_its_test_runs(inside):
     result = inside(
         test_a=f"""
         import pytest
@@ -364,7 +364,7 @@ HLSL = Path(__file__).parents[3] / "inputs/hlsl/octahedral.hlsl"
 
 @pytest.mark.usefixtures("gl", "hlsl")
 def test_a_users_hlsl_file_is_found_next_to_the_test(inside, pytester):
-    """The functions may be named or not."""
+    """The functions in the file may be named or left out."""
     (pytester.path / "mine.hlsl").write_text(HLSL.read_text())
     result = inside(
         test_a="""
@@ -377,7 +377,7 @@ def test_a_users_hlsl_file_is_found_next_to_the_test(inside, pytester):
     result.assert_outcomes(passed=1)
 
 
-def test_a_test_checks_devices(inside, pytester):
+def test_a_test_may_check_devices(inside, pytester):
     """A marker names a file next to the test."""
     devices.write(pytester.path / "a.json")
     limits = 'further="at most 0", same_percent="at least 99.9"'
@@ -385,7 +385,7 @@ def test_a_test_checks_devices(inside, pytester):
     inside(test_it=f"import pytest\n{marked}").assert_outcomes(passed=1)
 
 
-def test_without_an_opengl_driver_jax_rows_are_checked_and_others_skipped(pytester, monkeypatch):
+def test_jax_rows_are_checked_and_others_skipped_without_an_opengl_driver(pytester, monkeypatch):
     for name, value in NO_GL.items():
         monkeypatch.setenv(name, value)
     pytester.makepyfile(BOTH)

@@ -23,7 +23,7 @@ def test_the_script_is_written_unchanged(run, tmp_path):
     assert status == 2 and len(err.splitlines()) == 1
 
 
-def test_the_script_is_python_3_6_and_needs_only_renderdoc():
+def test_the_script_is_valid_python_3_6_and_needs_only_renderdoc():
     tree = ast.parse(TEXT, feature_version=(3, 6))
     names = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
     names |= {str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
@@ -89,7 +89,7 @@ def test_depths_are_read_without_their_stencil():
     assert script.covered([1.0, 1.0, 0.5, 0.0]) == [0, 0, 1, 1] and script.covered([0.0, 0.0, 1.0]) == [0, 0, 1]
 
 
-def test_a_file_has_the_exact_numbers(tmp_path):
+def test_a_file_stores_the_exact_numbers(tmp_path):
     numbers = {name: RNG.normal(size=(5, 7)).astype(np.float32) for name in ("R", "G", "covered")}
     script.write_exr(tmp_path / "a.exr", 7, 5, {name: list(map(float, n.ravel())) for name, n in numbers.items()})
     image = oiio.ImageBuf(str(tmp_path / "a.exr"))
@@ -102,7 +102,7 @@ def test_a_file_has_the_exact_numbers(tmp_path):
 @pytest.mark.parametrize("lowest", [-1.0, 0.0])
 @pytest.mark.parametrize("towards", [-1.0, 1.0])
 @pytest.mark.parametrize(("near", "far"), [(0.1, 100.0), (100.0, 0.1), (0.5, math.inf), (math.inf, 0.5)])
-def test_near_and_far_are_found_from_the_projection(lowest, towards, near, far):
+def test_near_and_far_planes_are_found_from_the_projection(lowest, towards, near, far):
     """Projections are right- or left-handed, with depth in [-1, 1] or [0, 1], reversed, or without a far plane."""
     # (slope * d + offset) / d is `lowest` at the near plane and 1 at the far one.
     a, b = (0.0 if math.isinf(d) else 1 / d for d in (near, far))

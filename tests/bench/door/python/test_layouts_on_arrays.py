@@ -44,7 +44,7 @@ def fields_of(contents, rows) -> dict:
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("name", ["granite", "nrd", "planes"])
-def test_arrays_are_packed_and_unpacked_as_the_renderer_does(name, tmp_path):
+def test_arrays_are_packed_and_unpacked_as_in_the_renderer(name, tmp_path):
     """Layouts have floats, integers, bits across bytes, a sign stored with roughness, and depth between planes."""
     (tmp_path / "planes.toml").write_text(PLANES)
     layout = LAYOUTS[name] if name in LAYOUTS else layouts_named(str(tmp_path / "planes.toml"))[0]

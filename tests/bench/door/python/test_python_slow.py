@@ -47,7 +47,7 @@ def test_integers_match_the_format():
 
 
 @pytest.mark.usefixtures("gl", "slang")
-def test_a_shader_file_without_a_twin_is_run_by_opengl():
+def test_a_shader_file_without_a_twin_runs_in_opengl():
     """The path contains slashes; codes and normals match the same encoding of the catalogue."""
     n = directions(60).reshape(20, 3, 3)
     mine = str(ROOT / "tests" / "inputs" / "encoders" / "mine.ush")

@@ -22,6 +22,6 @@ def test_charts_that_cannot_be_written_are_a_one_line_error(run, tmp_path, cores
     assert status == 2 and len(lines) == 2 and "resuming" in lines[0] and "charts" in lines[1], err
 
 
-def test_programs_are_not_kept_if_jax_is_told_not_to(tmp_path):
+def test_compiled_programs_are_not_kept_if_jax_caching_is_disabled(tmp_path):
     measured(tmp_path, JAX_ENABLE_COMPILATION_CACHE="0")
     assert not programs(tmp_path)

@@ -26,7 +26,7 @@ SMALL = ("run", "--tables", "mix,effects,quality", "--effect", "water", *CODE)
 
 
 @pytest.mark.usefixtures("gl")
-def test_two_processes_give_the_results_of_one(run, tmp_path, cores):
+def test_two_processes_give_the_same_results_as_one_process(run, tmp_path, cores):
     """Rows and files match a run in one process, and tables are printed in order."""
     printed = {}
     for count in (1, 2):
@@ -43,7 +43,7 @@ def test_two_processes_give_the_results_of_one(run, tmp_path, cores):
 
 
 @pytest.mark.usefixtures("gl")
-def test_the_first_process_measures_what_a_dead_process_did_not(run, tmp_path, cores, monkeypatch):
+def test_the_first_process_measures_the_rows_of_a_dead_process(run, tmp_path, cores, monkeypatch):
     """A dead second process costs time but no rows; its last message is shown."""
     cores(2)
     monkeypatch.setattr(piped, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
@@ -54,7 +54,7 @@ def test_the_first_process_measures_what_a_dead_process_did_not(run, tmp_path, c
 
 
 @pytest.mark.usefixtures("gl")
-def test_an_error_of_the_second_process_is_an_error_of_the_run(run, tmp_path, cores):
+def test_an_error_in_the_second_process_is_an_error_of_the_run(run, tmp_path, cores):
     """The error is one line with the same status, and measured rows are kept; here a folder has a file's name."""
     cores(2)
     folder = tmp_path / "run"
@@ -82,7 +82,7 @@ def is_there(process: int) -> bool:
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("ended", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_process_outlives_a_run(tmp_path, ended):
-    """The second process ends with the first, however that ends; the same command resumes with the rows of both."""
+    """The second process ends with the first process; the same command resumes with the rows of both processes."""
     signalled = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGKILL: -signal.SIGKILL}
     words = ("run", "--tables", "effects,depth", "-o", "ended")
     command = [sys.executable, "-m", "normalbench", *words]

@@ -86,7 +86,7 @@ def test_slangs_compiler_knows_the_words_that_are_refused():
     assert not slang.knows("__OctWrap") and not slang.knows("__unused")
 
 
-def test_words_of_generics_are_read():
+def test_compiler_words_in_generics_are_accepted():
     assert judged("T f<T : __BuiltinFloatingPointType>(T x) { return x; }", "slang")
 
 
@@ -106,7 +106,7 @@ def test_words_of_generics_are_read():
     ],
 )
 @pytest.mark.parametrize("language", ["c", "cuda"])
-def test_native_code_may_not_have_strings_or_words_of_its_compiler(text, language):
+def test_native_code_may_not_contain_strings_or_compiler_extensions(text, language):
     with pytest.raises(RefusedError):
         judged(text, language)
 
@@ -133,7 +133,7 @@ def test_wgsl_has_no_directives():
         judged("#define A 1", "wgsl")
 
 
-def test_only_files_of_this_program_are_its_own(tmp_path):
+def test_only_files_of_normalbench_count_as_its_own(tmp_path):
     (tmp_path / "mine.c").write_text("int x;")
     with pytest.raises(ValueError, match=r"mine\.c is not a file of normalbench"):
         own(tmp_path / "mine.c")
@@ -155,7 +155,7 @@ def test_judging_takes_linear_time(text):
     assert time.process_time() - began < 4, f"{time.process_time() - began:.1f} s"
 
 
-def test_a_string_hides_no_comment():
+def test_a_string_does_not_hide_a_comment():
     """Comment marks in a string are removed as well."""
     assert bare('string a = "http://x /* y */"; // z') == 'string a = "http:  x    y   ";     '
     assert judged(bare('#define Q "\n//" x\n'), "slang").content == '#define Q "\n' + " " * 5 + "\n"

@@ -74,7 +74,7 @@ def test_children_of_a_fork_end_with_it(ended):
 
 
 @pytest.mark.parametrize("who", ["made", "os.getppid()", "os.getpid()"])
-def test_the_next_fork_runs_whatever_process_the_last_one_killed(ended, who):
+def test_the_next_fork_runs_whatever_process_the_last_fork_killed(ended, who):
     """The killed process is the forking one, the waiting one, or the fork itself."""
     ended("pass")
     done = ended(f"print(1, flush=True); os.kill({who}, signal.SIGKILL); time.sleep(0 if made == {who} else 0.2)")
@@ -82,8 +82,8 @@ def test_the_next_fork_runs_whatever_process_the_last_one_killed(ended, who):
     assert ended("print(2)").stdout == "2\n"
 
 
-def test_another_threads_wait_for_a_fork_can_be_stopped(ended):
-    """As after Ctrl-C, the fork is ended and its time limit is not waited for."""
+def test_a_thread_that_waits_for_a_fork_can_be_stopped(ended):
+    """As after Ctrl-C, the fork is killed before its time limit."""
 
     def interrupted():
         yield "time.sleep(60)"

@@ -41,7 +41,7 @@ def test_shaders_run_as_wgsl_if_the_opengl_version_is_too_old(tmp_path):
     ), by_wgsl
 
 
-def test_several_pairs_of_a_file_are_listed_if_no_device_can_try_them(tmp_path):
+def test_several_pairs_in_a_file_are_listed_if_no_device_can_try_them(tmp_path):
     (tmp_path / "two.glsl").write_text(ENCODER.replace("mine_", "first_") + ENCODER.replace("mine_", "second_"))
     done = on("darwin", tmp_path, ("doctor", "two.glsl:language=glsl"))
     assert done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr

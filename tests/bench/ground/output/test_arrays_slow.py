@@ -10,7 +10,7 @@ from test_arrays import npy
 from normalbench.bench.ground.output.arrays import MOST_BYTES, DamagedError, array_of, read_npz
 
 
-def test_files_that_unpack_to_too_much_are_not_unpacked(tmp_path):
+def test_files_that_would_unpack_beyond_the_limit_are_not_unpacked(tmp_path):
     """One file packs 2 GB of zeros into 2 MB; the header of an array claims 8 TB."""
     path = tmp_path / "bomb.npz"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("mean.npy", "w") as file:

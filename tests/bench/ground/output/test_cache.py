@@ -181,8 +181,8 @@ def test_a_pipe_or_a_device_in_place_of_a_file_is_not_read(folder, put):
 
 @pytest.mark.parametrize("nowhere", ["normalbench", "tmp"])
 @pytest.mark.usefixtures("folder")
-def test_a_library_is_loaded_if_one_folder_forbids_execution(monkeypatch, tmp_path, nowhere):
-    """The folder is the cache or the one for temporary files; the library is loaded the second time as well."""
+def test_a_library_is_loaded_even_if_one_folder_forbids_execution(monkeypatch, tmp_path, nowhere):
+    """The folder is the cache or the temporary folder; the library is loaded the second time as well."""
     if not native.compiler():
         pytest.skip("no C compiler")
     (tmp_path / "tmp").mkdir()
@@ -210,7 +210,7 @@ def test_a_device_is_built_elsewhere_if_the_cache_forbids_execution(folder, monk
     assert null_device.library().is_relative_to(folder)
 
 
-def test_folders_are_for_their_user_alone(folder):
+def test_folders_are_private_to_their_user(folder):
     old = os.umask(0)
     try:
         cache.write(KEY, {})

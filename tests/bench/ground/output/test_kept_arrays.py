@@ -51,7 +51,7 @@ def another_kind(data):
 
 
 @pytest.mark.parametrize("damage", [emptied, cut_off, changed, another_kind])
-def test_a_damaged_file_is_computed_again(made, damage):
+def test_arrays_in_a_damaged_file_are_computed_again(made, damage):
     times, ask, path = made
     ask()
     whole = path.read_bytes()

@@ -36,7 +36,7 @@ def bars(monkeypatch):
     return told
 
 
-def test_bars_of_tables_are_part_of_the_bar_of_their_run(bars):
+def test_bars_of_tables_are_part_of_the_bar_of_the_run(bars):
     """Steps are weighted by duration, and finished steps do not count; work other than tables has a separate bar."""
     with progress_of_all({"quality": (1, 5.0), "render": (9, 0.5), PAGE: (1, 12.0)}):
         with progress(1, "quality") as tick:

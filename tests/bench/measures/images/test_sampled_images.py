@@ -32,7 +32,7 @@ def image_of(monkeypatch, gl):
 
 
 @pytest.mark.parametrize("scene, power", [("playground", 200.0), ("ramps", None)])
-def test_the_error_of_samples_matches_the_frame(image_of, scene, power):
+def test_the_error_of_the_samples_matches_the_error_of_the_frame(image_of, scene, power):
     """The frame's error is within three standard errors, each below a tenth of it; classes are within 35%."""
     codec = Codec(ENCODINGS["octahedral"], STORAGES["rg8"])
     trip, turns = (lambda n, p: round_trip(codec, n, p)), [POLES["y"] @ yaws(0, 1, 0)[0]]
@@ -44,7 +44,7 @@ def test_the_error_of_samples_matches_the_frame(image_of, scene, power):
     assert all(samples[name][0] == pytest.approx(frame[name][0], rel=0.35) for name in samples), (samples, frame)
 
 
-def test_classes_are_by_direction_and_roughness(image_of):
+def test_surfaces_are_classed_by_direction_and_roughness(image_of):
     """Axis-aligned surfaces such as floors are one class for all materials; the shares of all classes add up to 1."""
     image, sampled = image_of("studio", None)
     floors, *others = sampled.classes

@@ -19,7 +19,7 @@ SUMS = {"sphere": [3911770442, 2656752413], "hemisphere": [1654182782, 265675241
 
 
 @pytest.mark.parametrize("domain", SUMS)
-def test_normals_are_the_same_bits_on_every_machine(domain):
+def test_normals_have_the_same_bits_on_every_machine(domain):
     """Pages are read for years, so a new version of a library must not change the checksums."""
     assert checks.sums(domain) == SUMS[domain]
 
@@ -43,7 +43,7 @@ def test_random_normals_are_uniform():
     assert abs(n.var(axis=0) - 1 / 3).max() < 0.005
 
 
-def test_hard_normals_have_both_zeros_and_neighbours():
+def test_hard_normals_include_both_signed_zeros_and_neighbouring_floats():
     n = normals.hard()
     zeros = n[(n == 0).any(axis=1)]
     assert np.signbit(zeros[zeros == 0]).any() and not np.signbit(zeros[zeros == 0]).all()
@@ -51,7 +51,7 @@ def test_hard_normals_have_both_zeros_and_neighbours():
     assert 3 <= ((diagonal > 0) & (diagonal < 1e-7)).sum() < 10
 
 
-def test_a_sign_changes_a_checksum():
+def test_two_sign_changes_change_the_checksum():
     """A plain sum of weighted words would reveal only whether an odd number of signs changed."""
     array = np.ones(64, np.float32)
     other = array.copy()
@@ -59,7 +59,7 @@ def test_a_sign_changes_a_checksum():
     assert checks.checksum(array) != checks.checksum(other)
 
 
-def test_a_step_changes_its_group_by_its_weight():
+def test_a_step_changes_the_sum_of_its_group_by_its_weight():
     codes = np.arange(2 * checks.GROUP * 3, dtype=np.int32).reshape(-1, 3)
     stepped = codes.copy()
     stepped[checks.GROUP + 7, 1] -= 1
@@ -75,7 +75,7 @@ def test_codes_are_numbered_in_the_order_of_their_values():
     assert checks.ordered(codec, reference).tolist() == [[1, -1], [0, 0]]
 
 
-def test_checks_of_a_file_are_whole_or_left_out(tmp_path):
+def test_checks_in_a_file_are_complete_or_left_out(tmp_path):
     """A run's folder may be edited, and its normals may come from another version."""
     kept.write_live([OCTAHEDRAL], tmp_path)
     (path,) = tmp_path.iterdir()

@@ -1,4 +1,4 @@
-"""The data of a run for a page's laboratory: programs of codecs, their files, scenes, and damaged files."""
+"""The data that a run stores for a page's laboratory: codec programs, their files, scenes and damaged files."""
 
 import json
 
@@ -33,7 +33,7 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize("damage", DAMAGED)
-def test_a_damaged_file_is_left_out_by_name(tmp_path, damage):
+def test_a_damaged_file_is_left_out_and_reported_by_name(tmp_path, damage):
     text = DAMAGED[damage]
     (tmp_path / "a.json").write_bytes(text if isinstance(text, bytes) else text.encode())
     assert kept.read_live(tmp_path) == ([], {"a.json": "its file is damaged"})
@@ -47,7 +47,7 @@ def test_an_invalid_field_is_refused(tmp_path, field, value):
 
 
 def unpacked(pixels: np.ndarray) -> np.ndarray:
-    """Return the normals of pixels, decoded as a page does."""
+    """Return the normals of pixels, decoded in the same way as on a page."""
     first, second, third = (pixels[..., i].astype(np.int64) for i in range(3))
     numbers = (first << 4 | second >> 4, (second & 15) << 8 | third)
     e = Vec2(*(number / scenes.LEVELS * 2.0 - 1.0 for number in numbers))

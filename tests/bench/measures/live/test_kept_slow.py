@@ -1,4 +1,4 @@
-"""The data of a run for a page's laboratory: programs of codecs, their files, scenes, and damaged files."""
+"""The data that a run stores for a page's laboratory: codec programs, their files, scenes and damaged files."""
 
 import re
 
@@ -30,7 +30,7 @@ def test_every_codec_uses_only_functions_that_browsers_support():
         kept.KEPT.validate_python({**record, "checks": None})
 
 
-def test_a_users_encoding_includes_its_text(tmp_path):
+def test_the_record_of_a_users_encoding_includes_its_source(tmp_path):
     (tmp_path / "mine.glsl").write_text(MINE)
     (codec,) = codecs_named(str(tmp_path / "mine.glsl"), "rg16f", "nearest")
     record = programs.program(codec)

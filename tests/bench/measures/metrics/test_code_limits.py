@@ -1,4 +1,4 @@
-"""The bound for N codes: its figures; correct measurements respect it, and a wrong measure is noticed."""
+"""The error bound for N codes: its values, measurements that respect it and wrong measures that are caught."""
 
 import math
 import re
@@ -33,8 +33,8 @@ def test_the_bound_has_the_expected_figures(bits, mean, rms, largest):
     assert [least.mean_deg, least.rms_deg, least.max_deg] == pytest.approx([mean, rms, largest], rel=5e-5)
 
 
-def test_the_covering_bound_is_exact_for_triangular_polyhedra_and_does_not_cancel():
-    """Tetrahedron, octahedron and icosahedron give the circumradii of their faces; 2^62 codes do not cancel."""
+def test_covering_bound_is_exact_for_polyhedra_and_free_of_cancellation():
+    """Tetrahedron, octahedron and icosahedron give the circumradii of their faces; 2^62 codes lose no digits."""
     circumradii = {4: math.acos(1 / 3), 6: math.acos(1 / math.sqrt(3)), 12: math.acos(math.sqrt((5 + 2 * 5**0.5) / 15))}
     for count, radius in circumradii.items():
         assert code_limit(count).max_deg == pytest.approx(math.degrees(radius), rel=1e-12)
@@ -48,8 +48,8 @@ def test_the_bound_for_a_hemisphere_uses_half_the_area():
 
 
 @pytest.mark.parametrize("count", [999_999, 1_000_003, 1_100_000, 1_200_000])
-def test_two_lattices_that_coincide_are_not_a_wrong_measurement(count):
-    """The nearest directions and codes of latitude and longitude are closer than by chance."""
+def test_coinciding_lattices_are_not_reported_as_a_wrong_measurement(count):
+    """For latitude and longitude, directions and their nearest codes are closer than chance predicts."""
     row = row_of(Codec(ENCODINGS["latitude_longitude"], STORAGES["rg8"]), sphere(count))
     assert row["below_limit"] == "", row
 
@@ -71,8 +71,8 @@ def broken(monkeypatch, angle_between) -> None:
 
 
 def test_an_arc_cosine_in_float32_is_caught(monkeypatch):
-    """Its first step is 0.02 degrees, so too many angles are 0 for this number of codes. The mean and the RMS would
-    not show the error, because all other angles are too large."""
+    """The first step of the arc cosine is 0.02 degrees, so too many angles are 0 for this number of codes. The mean
+    and the RMS would not show the error, because all other angles are too large."""
     broken(monkeypatch, lambda a, b: jnp.degrees(jnp.arccos(jnp.minimum(dot(a, b), 1.0))))
     for name in ("rg8", "rgb10a2", "rg16", "rg16f"):
         below = row_of(Codec(ENCODINGS["octahedral"], STORAGES[name]), sphere(COUNT))["below_limit"]

@@ -1,4 +1,4 @@
-"""The bound for N codes: its figures; correct measurements respect it, and a wrong measure is noticed."""
+"""The error bound for N codes: its values, measurements that respect it and wrong measures that are caught."""
 
 import math
 

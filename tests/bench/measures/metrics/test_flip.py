@@ -1,4 +1,4 @@
-"""FLIP: it matches its authors' program, and obeys general facts about differences."""
+"""FLIP, compared with its authors' program and with general facts about image differences."""
 
 import numpy as np
 import pytest
@@ -39,8 +39,8 @@ def test_equal_images_do_not_differ_and_black_and_white_differ_most():
     assert Flip(black).of(white) == pytest.approx(np.full((8, 8), 0.9674), abs=1e-4)
 
 
-def test_two_greys_match_the_manual():
-    """The column's description states that a grey off by 2/255 has a FLIP near 0.05, and by 5 to 6 near 0.1."""
+def test_flip_of_offset_greys_matches_the_columns_description():
+    """A grey that is off by 2/255 has a FLIP near 0.05, and a grey that is off by 5/255 to 6/255 has one near 0.1."""
     grey = np.full((32, 32, 3), 0.5, np.float32)
     means = [float(Flip(grey).of(grey + np.float32(step / 255)).mean()) for step in (2, 5.5)]
     assert means == pytest.approx([0.05, 0.1], abs=0.012)

@@ -48,7 +48,7 @@ def test_small_angles_keep_six_digits_in_float32():
     assert got[worst] == pytest.approx(expected[worst], rel=2e-6), f"at {degrees[worst]} degrees"
 
 
-def test_the_angle_does_not_depend_on_the_decodes_length():
+def test_the_angle_does_not_depend_on_the_decoded_length():
     n = random_directions(4096)
     other = turned(n, np.full(len(n), 7.0)).astype(np.float32)
     assert np.allclose(measured_angles(n, other), measured_angles(n, other * np.float32(0.9)), rtol=1e-5)
@@ -64,7 +64,7 @@ def test_a_decoded_value_that_is_not_a_direction_has_the_largest_error():
 DECODED = Meter(jax.jit(lambda block: block.view))
 
 
-def test_the_background_counts_only_for_the_articles_measure():
+def test_only_the_articles_measure_counts_the_background():
     n = random_directions(1000)
     other = turned(n, np.full(1000, 2.0)).astype(np.float32)
     covered = np.arange(1000) < 500
@@ -75,7 +75,7 @@ def test_the_background_counts_only_for_the_articles_measure():
     assert half.article_mse == pytest.approx(only.article_mse / 2)
 
 
-def test_the_worst_normal_is_the_one_that_was_turned_most():
+def test_the_worst_normal_is_the_normal_that_was_rotated_most():
     """The set has several chunks, a background with larger errors, and decoded values that are not numbers."""
     n, degrees = random_directions(CHUNK + 5000), np.full(CHUNK + 5000, 1.0)
     degrees[[77, CHUNK + 3]] = 2.0, 2.5
@@ -92,7 +92,7 @@ def test_the_worst_normal_is_the_one_that_was_turned_most():
 
 
 @pytest.mark.usefixtures("gl")
-def test_both_backends_name_the_worst_normal():
+def test_both_backends_report_the_worst_normal():
     """In the row's own columns, the angle between the normal and its decoded value is the largest sampled error."""
     for backend in ("jax", "glsl"):
         row = quality.measure(
@@ -145,7 +145,7 @@ def test_a_uniform_sets_rounding_errors_are_independent():
     assert row["psnr_db"] == pytest.approx(73.1, abs=1) and row["angle_max_deg"] > 10
 
 
-def test_a_seed_moves_the_set_but_hardly_changes_the_error():
+def test_another_seed_changes_the_set_but_hardly_the_error():
     a, b, again = (sphere(2**18, seed) for seed in (0, 1, 0))
     x = [np.asarray(s.chunk(0).n.x) for s in (a, b, again)]
     assert np.array_equal(x[0], x[2]) and not np.array_equal(x[0], x[1])
@@ -167,7 +167,7 @@ def test_the_largest_count_can_be_addressed():
 
 
 def test_nothing_is_simplified_across_a_storage_without_rounding():
-    """Encoding and decoding in one program equal two programs, so the row measures the error of float32 itself."""
+    """One program that encodes and decodes agrees with two programs, so the row measures the error of float32."""
     (codec,) = codecs_named("spherical:scale=0.3", "rgba32f", "nearest")
     chunk = hemisphere(CHUNK).chunk(0)
     fused = jax.jit(codec.round_trip)(chunk.n, chunk.view)
@@ -197,7 +197,7 @@ def test_a_chunk_is_made_once_for_all_codecs():
     assert sorted(starts) == [0, CHUNK]
 
 
-def test_uniform_sets_are_float64_rounded_once():
+def test_uniform_sets_are_computed_in_float64_and_rounded_once():
     """NumPy's float64 sines of the same sequence, rounded, differ in about one value per million."""
     n = sphere(CHUNK, 3).chunk(0).n
     offsets = np.random.default_rng(3).integers(0, 2**32, 2, dtype=np.uint32)

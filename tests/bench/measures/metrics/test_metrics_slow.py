@@ -101,7 +101,7 @@ def test_any_count_uses_constant_memory():
     assert most <= 2 * cores() + 4
 
 
-def test_rows_do_not_depend_on_how_the_work_is_cut_up(monkeypatch):
+def test_rows_do_not_depend_on_how_the_work_is_divided(monkeypatch):
     """Threads and block sizes do not change a bit; another number of lanes changes only the last digits of sums."""
     normals = sphere(5 * CHUNK + 99)
     usual = rows_of(normals)
@@ -136,7 +136,7 @@ print(len(used), len(jax.local_devices()))
 """
 
 
-def test_chunks_are_dealt_to_all_devices_and_rows_are_the_same():
+def test_distributing_chunks_over_devices_does_not_change_the_rows():
     """With one or three JAX devices, each measures some of the chunks, and the statistics match to the last digit."""
     by_count = {}
     for count in (1, 3):

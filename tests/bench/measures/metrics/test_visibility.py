@@ -32,7 +32,8 @@ def seen(meshes, lost=anything, rays=RAYS):
 
 @pytest.mark.parametrize("name", CLOSED)
 def test_rays_match_the_closed_form(name):
-    """The standard error is below 0.002, and three are allowed. A circle of 128 sides lacks 0.0004 of its area."""
+    """The standard error is below 0.002, and the difference may be three standard errors. A 128-sided polygon lacks
+    0.0004 of the area of a circle."""
     meshes, expected = CLOSED[name]
     visible = seen(meshes)
     off, error = abs(visible.visibility[0] - expected), visible.error[0]
@@ -62,7 +63,8 @@ def test_occlusion_is_weighted_by_distance():
 
 
 def test_the_bent_normal_points_to_the_open_side():
-    """Next to a ball it points away from the ball; in the open it is 2/3 of the normal, the mean cosine."""
+    """Next to a ball the bent normal points away from the ball; in the open it is 2/3 of the normal, the mean
+    cosine."""
     open_floor, beside = seen(CLOSED["dome"][0][:1]), seen(CLOSED["near dome"][0])
     assert np.abs(open_floor.bent[0] - [0, 2 / 3, 0]).max() < 0.005
     assert beside.bent[0, 0] < -0.05
@@ -76,14 +78,14 @@ def test_directions_are_cosine_distributed():
     assert np.abs(cosine.mean(axis=1) - 2 / 3).max() < 0.005 and np.abs((cosine**2).mean(axis=1) - 1 / 2).max() < 0.005
 
 
-def test_glass_stops_no_ray():
+def test_glass_does_not_block_rays():
     """Rays use all triangles of the room except the 36 of its three panes."""
     room = scene_of("room")
     total = sum(len(part.mesh.triangles) * len(part.models) for part in room.parts)
     assert len(triangles_of(room)) == total - 3 * 12
 
 
-def test_noise_of_the_rays_is_not_the_methods_error():
+def test_noise_in_the_rays_is_not_counted_as_the_methods_error():
     """With noisy rays, an exact method has an RMS near 0 and a method off by 0.1 has 0.1, to four standard errors."""
     rng = np.random.default_rng(0)
     noise = np.full(4000, 0.02)
@@ -93,14 +95,14 @@ def test_noise_of_the_rays_is_not_the_methods_error():
     assert abs(some.rms - 0.1) <= 4 * some.standard_error and abs(some.mean - 0.1) < 0.002
 
 
-def test_without_embree_one_line_says_what_to_install(monkeypatch):
+def test_missing_embree_is_a_one_line_error_that_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "embreex", None)
     monkeypatch.setitem(sys.modules, "embreex.mesh_construction", None)
     with pytest.raises(MissingError, match=r"^rays need embreex \(.+\); pip install embreex$"):
         RayCaster(np.zeros((1, 3, 3)))
 
 
-def test_another_effect_has_no_occlusion_error(gl):
+def test_an_effect_other_than_ambient_occlusion_is_refused(gl):
     other = ChosenEffect(Effect("fog", "fog", "a test", Resource("fog", "r32f"), lambda **_: ()), ())
     with pytest.raises(EffectError, match=r"^effect fog is not an ambient occlusion method$"):
         method_error(gl, other, scene_of("room"), (16, 12))

@@ -136,7 +136,7 @@ def test_integers_match_jax(function):
         (lambda a: a[:, None], "a result of the wrong shape"),
     ],
 )
-def test_operations_that_c_cannot_express_are_named(function, said):
+def test_operations_that_c_cannot_express_are_reported(function, said):
     """The operation mixes elements, is rounded differently in C, or is not implemented."""
     with pytest.raises(NotElementwiseError, match=said):
         c_function("function", function, FLOAT)

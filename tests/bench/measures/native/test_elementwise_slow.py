@@ -8,7 +8,7 @@ from normalbench.encodings.catalogue import ENCODINGS
 
 
 def test_every_operation_but_two_is_used():
-    """An encoding of the catalogue, the errors or a set of normals uses each operation."""
+    """The other operations are used by encodings of the catalogue, by the error metrics or by sets of normals."""
     from normalbench.bench.measures.native import meter
     from normalbench.bench.subjects.normals import normal_sets
 

@@ -1,4 +1,4 @@
-"""Compiled C is kept, is read back complete or compiled again, and is optional."""
+"""Compiled C: libraries are cached, damaged libraries are compiled again and a compiler is optional."""
 
 import ctypes
 
@@ -21,7 +21,7 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.fixture(autouse=True)
 def forgotten(monkeypatch):
-    """A state without compiled libraries or compilers from other tests."""
+    """Caches of libraries and compiler versions, emptied before and after the test."""
     native._made.cache_clear()
     native.tools.version_text.cache_clear()
     monkeypatch.setattr(native, "_hangs", [])
@@ -36,7 +36,7 @@ def made(text: str = SOURCE) -> ctypes.CDLL:
 
 
 @needs_c
-def test_a_compiled_library_is_kept(folder, monkeypatch):
+def test_a_compiled_library_is_cached(folder, monkeypatch):
     assert made().answer() == 42
     (kept,) = folder.iterdir()
     monkeypatch.setattr(native, "_compiled", lambda *_: pytest.fail("compiled again"))
@@ -46,7 +46,7 @@ def test_a_compiled_library_is_kept(folder, monkeypatch):
 @needs_c
 @pytest.mark.parametrize("damage", [lambda d: d[:-100], lambda _: b"", lambda d: d[:300] + b"x" + d[301:]])
 def test_a_damaged_library_is_compiled_again(folder, damage):
-    """A library that is truncated, empty or has another byte is never loaded."""
+    """A library that is truncated or empty or has a changed byte is never loaded."""
     made()
     (kept,) = folder.iterdir()
     whole = kept.read_bytes()
@@ -56,7 +56,7 @@ def test_a_damaged_library_is_compiled_again(folder, damage):
 
 
 @needs_c
-def test_without_the_cache_nothing_is_kept(folder, monkeypatch):
+def test_nothing_is_stored_if_the_cache_is_off(folder, monkeypatch):
     monkeypatch.setenv(cache.OFF, "1")
     assert made().answer() == 42 and not folder.exists()
 
@@ -69,7 +69,7 @@ def test_a_library_is_compiled_without_a_writable_folder(folder):
 
 
 @needs_c
-def test_code_that_does_not_compile_shows_the_error():
+def test_compile_error_includes_the_compilers_message():
     with pytest.raises(native.NoCompilerError, match=r"^cc: .*error"):
         made("int answer(void) { return }")
 
@@ -94,8 +94,8 @@ ODD = {
 
 @needs_c
 @pytest.mark.parametrize("name", ODD)
-def test_an_odd_compiler_counts_as_missing(folder, tmp_path, monkeypatch, name):
-    """Its failure is one line, nothing is kept, and a compiler that hangs is not started again."""
+def test_a_faulty_compiler_counts_as_missing(folder, tmp_path, monkeypatch, name):
+    """The failure has a message, no library is cached, and a compiler that hangs is not started again."""
     script, message = ODD[name]
     real, calls = native.tools.shutil.which("cc"), tmp_path / "calls"
     (tmp_path / "bin").mkdir()

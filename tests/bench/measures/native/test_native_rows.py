@@ -34,7 +34,7 @@ UNIT_DEG = float(np.degrees(2.0**-23))
 
 
 def both(function, normals: NormalSet, given=()):
-    """Return the statistics of a decoder of (n, view), by C and by XLA."""
+    """Return the statistics of a decoder of (n, view), from C and from XLA."""
     native = NativeMeter(decoder(function, given), given)
     usual = Meter(jax.jit(lambda chunk: function(chunk.n, chunk.view, *given)))
     totals = (measure_together([meter], normals.loads(), lambda _: None)[0] for meter in (native, usual))
@@ -64,7 +64,7 @@ def test_encodings_without_c_are_measured_by_xla():
     assert {name for name in ENCODINGS if isinstance(first_meter(name), Meter)} == BY_XLA
 
 
-def test_encodings_without_c_are_named(capsys):
+def test_encodings_without_c_are_reported(capsys):
     codecs = [Codec(ENCODINGS[name], STORAGES["rgba8"]) for name in ("octahedral", "best_fit")]
     with told():
         quality.tell_by_xla(quality.cases(codecs, [sphere(64)], ["jax"]))
@@ -97,7 +97,7 @@ def forget_what_is_compiled():
 
 @contextmanager
 def told():
-    """Print lines again that were printed before."""
+    """Allow lines that were printed before to be printed again."""
     before = {*errors.told}
     errors.told.clear()
     yield
@@ -105,7 +105,7 @@ def told():
 
 
 def test_decoded_values_that_are_not_numbers_count_as_the_opposite_direction():
-    """A tenth each are NaN and infinite; then all are NaN."""
+    """A tenth of the values are NaN and a tenth are infinite; then all are NaN."""
     n = random_directions(5000)
 
     def some(n: Vec3, _: Vec3) -> Vec3:
@@ -138,7 +138,7 @@ def test_the_background_does_not_count():
 
 
 def test_the_worst_normal_matches_xla():
-    """Ties are resolved in float64; unchanged normals are such a tie."""
+    """Ties are resolved in float64; if no normal changes, all of them tie."""
     n = random_directions(3000)
     index = 1234
     turned = np.where(np.arange(len(n))[:, None] == index, n[:, [1, 2, 0]], n).astype(np.float32)
@@ -163,7 +163,8 @@ def test_the_worst_normal_is_found_in_any_chunk(at):
 @pytest.mark.parametrize("make", [sphere, hemisphere])
 @pytest.mark.parametrize("start", [0, 7 * CHUNK, TURN - CHUNK, TURN, 5 * TURN + CHUNK])
 def test_compiled_sets_have_the_same_normals_as_xla(make, start, monkeypatch):
-    """Normals match to the last bit, in the first and later turns of 2^32; those beyond the end do not count."""
+    """Normals match to the last bit, before and after the index wraps at 2^32. Normals beyond the end do not
+    count."""
     count = start + CHUNK - 99
     filled = make(count, seed=3).chunk(start)
     monkeypatch.setattr(normal_sets, "_fill", lambda _: None)
@@ -174,7 +175,7 @@ def test_compiled_sets_have_the_same_normals_as_xla(make, start, monkeypatch):
     assert np.count_nonzero(filled.covered) == CHUNK - 99
 
 
-def test_subnormal_numbers_are_zero():
+def test_subnormal_numbers_are_flushed_to_zero():
     """XLA does the same; the processor's mode does not change."""
     n = random_directions(3000)
     normals = from_arrays("", "", n, n, np.ones(len(n), bool))
@@ -184,7 +185,7 @@ def test_subnormal_numbers_are_zero():
 
 
 @pytest.mark.parametrize("kind", [jnp.float16, jnp.float64, jnp.int32, None])
-def test_decoded_components_become_numbers_of_one_type(kind):
+def test_decoded_components_are_converted_to_one_type(kind):
     """Both compilers measure a component of another type, or one constant for all normals."""
 
     def decode(e, _):

@@ -1,4 +1,4 @@
-"""Every codec measured by compiled C decodes to the same bits by XLA, if XLA compiles exactly what is written."""
+"""Every codec measured by compiled C decodes to the same bits in XLA if XLA compiles exactly what is written."""
 
 import pytest
 from test_native_rows_slow import CODECS
@@ -9,5 +9,5 @@ from normalbench.bench.ground.native import library
 pytestmark = pytest.mark.skipif(not library.compiler(), reason="no C compiler")
 
 
-def test_every_codec_is_the_same_by_c_and_by_xla():
+def test_c_and_xla_agree_on_every_codec():
     assert differences(CODECS) == {}

@@ -1,4 +1,4 @@
-"""Every codec measured by compiled C decodes to the same bits by XLA, if XLA compiles exactly what is written."""
+"""Every codec measured by compiled C decodes to the same bits in XLA if XLA compiles exactly what is written."""
 
 import pytest
 from slowly import drawn_of
@@ -21,5 +21,5 @@ CODECS = [
 ]
 
 
-def test_twelve_codecs_are_the_same_by_c_and_by_xla():
+def test_c_and_xla_agree_on_twelve_codecs():
     assert differences(drawn_of(CODECS, 12)) == {}

@@ -9,7 +9,7 @@ def needs(backend: str) -> frozenset[str]:
     return WORK.needs(Step({"backend": backend}, None, ""))
 
 
-def test_rows_by_jax_need_the_c_compiler():
+def test_rows_measured_by_jax_need_the_c_compiler():
     assert needs("jax") == {C_COMPILER}
     assert needs("glsl") == {GL, VULKAN}
     assert CAN[C_COMPILER]()

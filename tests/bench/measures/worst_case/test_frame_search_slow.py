@@ -32,7 +32,7 @@ def test_smallest_three_is_worst_at_four_equal_components():
     assert worst.moved_deg < 1e-6 * worst.angle_deg
 
 
-def test_the_named_frame_has_the_stated_rotation():
+def test_the_reported_frame_has_the_stated_rotation():
     """The codec's float64 maths is run one operation at a time. The frame is at a corner of a cell, so its last bit
     selects one of two codes with nearly the same error."""
     codec = codec_of("octahedral_angle", "rgb10a2")

@@ -44,7 +44,7 @@ def test_a_pole_takes_a_whole_row_of_codes():
     assert odd and (odd.unused, odd.duplicate) == (0, 2 * 255 + 254)
 
 
-def test_a_lattice_wastes_nothing():
+def test_a_lattice_wastes_no_codes():
     odd = odd_codes(Codec(nearest_of(fibonacci(256), 16), storage("unorm", 4, 4)))
     assert odd and (odd.unused, odd.duplicate, odd.unstable) == (0, 0, 0)
 

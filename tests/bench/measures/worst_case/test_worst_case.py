@@ -22,7 +22,7 @@ def codec_of(encoding: str, where: str, rounding: str = "nearest") -> Codec:
 
 
 @pytest.mark.parametrize("axis", range(3))
-def test_near_an_axis_the_short_components_follow_the_long_one(axis):
+def test_near_an_axis_the_small_components_follow_from_the_largest(axis):
     """a^2 + b^2 = (1 - c)(1 + c), where 1 - c is an integer multiple of 2^-53."""
     turn = np.linspace(0, 2 * np.pi, 100)
     off = np.geomspace(1e-8, 0.3, 100)
@@ -35,7 +35,7 @@ def test_near_an_axis_the_short_components_follow_the_long_one(axis):
     assert np.abs(units - np.roll(n, -axis, axis=0)).max() < 2e-8
 
 
-def test_away_from_the_axes_a_normal_stays_as_it_is():
+def test_away_from_the_axes_a_normal_is_unchanged():
     """Equal components stay equal."""
     n = np.array([[0.6, -0.8, 0.0], [1.0, 1.0, 1.0], [0.5**0.5, 0.0, -(0.5**0.5)]]).T
     with jax.enable_x64(True):
@@ -68,7 +68,7 @@ GIVEN = {"even": fibonacci(2000).T, "uneven": uneven(2000), "rings": three_rings
 
 
 @pytest.mark.parametrize("directions", GIVEN.values(), ids=GIVEN)
-def test_a_hull_in_bands_has_every_face(directions):
+def test_a_hull_computed_in_bands_has_every_face(directions):
     """If directions are far apart, no band contains all corners of a face; then a single hull is used."""
     banded, whole = cells.across_faces(directions), cells._hull(directions)[:3]
     assert banded.shape == whole.shape
@@ -77,14 +77,14 @@ def test_a_hull_in_bands_has_every_face(directions):
 
 
 def test_faces_of_evenly_spread_directions_are_found_in_bands(monkeypatch):
-    """Each band has one hull, and the whole set has none."""
+    """One hull is computed for each band, and none for the whole set."""
     seen, hull = [], cells._hull
     monkeypatch.setattr(cells, "_hull", lambda directions: seen.append(directions.shape[1]) or hull(directions))
     cells.across_faces(fibonacci(20000).T)
     assert len(seen) == cells.BANDS and max(seen) < 20000 / 8
 
 
-def test_a_second_round_climbs_from_each_place_once(monkeypatch):
+def test_a_second_round_climbs_from_each_starting_point_once(monkeypatch):
     """A second block of the same starting points would climb like the first."""
     counts, climb_from = [], climb._climb_from
     monkeypatch.setattr(climb, "_climb_from", lambda *args: counts.append(len(args[1].chords)) or climb_from(*args))

@@ -36,8 +36,8 @@ def test_precise_rounding_of_other_codecs_matches_an_independent_search(encoding
 
 
 def test_two_forms_of_one_map_have_one_supremum():
-    """At the opposite pole one form computes 8 n.z + 8, which is only the rounding error of n.z: the search found an
-    error of 60 degrees 1e-6 from the pole."""
+    """At the opposite pole one form computes 8 n.z + 8, which is only the rounding error of n.z. The search once
+    found an error of 60 degrees at a distance of 1e-6 from the pole."""
     published, classic = (worst_case(codec_of(name, "rg16")) for name in ("spheremap", "spheremap_classic"))
     assert published.angle_deg == pytest.approx(classic.angle_deg, rel=1e-8)
     assert published.normal == pytest.approx(classic.normal, abs=1e-9)

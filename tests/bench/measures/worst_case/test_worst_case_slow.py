@@ -28,7 +28,7 @@ def octahedral_unorm8(n: np.ndarray) -> np.ndarray:
     return v / np.linalg.norm(v)
 
 
-def test_the_named_normal_has_the_stated_error():
+def test_the_reported_normal_has_the_stated_error():
     worst = worst_case(codec_of("octahedral", "rg8"))
     n = np.array(worst.normal)
     other = octahedral_unorm8(n)
@@ -39,8 +39,8 @@ def test_the_named_normal_has_the_stated_error():
 
 
 def sphere_and_grid(scale: int) -> float:
-    """Return the largest error on the sphere of a cubic grid of 1 / scale, rounded to nearest: every point where the
-    sphere crosses an edge of a cell, and each of the four cells at that edge."""
+    """Return the largest error on the sphere for rounding to a cubic grid of spacing 1 / scale. Each point where the
+    sphere crosses an edge of a cell is tried with each of the four cells at that edge."""
     half = (np.arange(-scale, scale) + 0.5) / scale
     a, b = (c.ravel() for c in np.meshgrid(half, half))
     inside = a * a + b * b < 1
@@ -68,7 +68,7 @@ def test_three_numbers_are_worst_at_an_edge_of_a_cell(bits):
 
 @pytest.mark.parametrize("bits", [3])
 def test_the_worst_error_of_a_lattice_is_its_covering_radius(bits):
-    """For tabulated points the radius is the largest empty circle, by SciPy's Voronoi diagram of the sphere."""
+    """For tabulated points the radius is that of the largest empty circle, from SciPy's spherical Voronoi diagram."""
     from scipy.spatial import SphericalVoronoi
 
     points = fibonacci(4**bits)

@@ -116,7 +116,7 @@ def alone(tmp_path_factory):
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("workers", ["local", "scheduler"], indirect=True)
-def test_kills_of_workers_and_of_the_scheduler_change_nothing(tmp_path, alone, workers):
+def test_killing_workers_and_the_scheduler_changes_nothing(tmp_path, alone, workers):
     """Kills come at random moments after the first rows; figures, pictures and file names match exactly."""
     rng, folder = random.Random(20260801), tmp_path / "killed"
     process = started(folder, "--on", workers.on)

@@ -90,7 +90,7 @@ def started():
         process.communicate(timeout=30)
 
 
-def test_local_workers_listen_nowhere(started, tmp_path):
+def test_local_workers_open_no_listening_sockets(started, tmp_path):
     """The sockets are checked four times while a command and its two workers measure."""
     process, seen, until = started([*NORMALBENCH, *LONG, "-o", str(tmp_path / "rows.json")]), 0, time.monotonic() + 120
     while process.poll() is None and time.monotonic() < until and seen < 4:
@@ -103,7 +103,7 @@ def test_local_workers_listen_nowhere(started, tmp_path):
 
 @pytest.mark.drawn(3)
 def test_a_stopped_worker_leaves_no_file(tmp_path, number=signal.SIGTERM):
-    """Files of its tasks and of Dask are removed."""
+    """The files of the worker's tasks and of Dask are removed."""
     temporary = tmp_path / "temporary"
     temporary.mkdir()
     words = ("quality", "--encoding", "xy", "--storage", "rg8", "--normals", "axes", "--backend", "jax", "--on")
@@ -121,7 +121,7 @@ def test_a_stopped_worker_leaves_no_file(tmp_path, number=signal.SIGTERM):
     ("scheme", "encrypts", "says"),
     [("tls", "False", "check your TLS configuration"), ("tcp", "True", "encryption required")],
 )
-def test_a_tls_error_is_one_line_from_dask(command, scheme, encrypts, says):
+def test_a_tls_error_ends_with_a_line_from_dask(command, scheme, encrypts, says):
     """The error comes in seconds: certificates are missing, or the address lacks TLS but encryption is required."""
     variables = os.environ | {"DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION": encrypts}
     words = [*NORMALBENCH, *command, f"{scheme}://127.0.0.1:1"]
@@ -140,7 +140,7 @@ def free_port() -> int:
 
 
 def test_the_manuals_commands_measure_over_tls(run, started, tmp_path):
-    """They run with this machine's address and free ports."""
+    """The commands run with this machine's address and free ports."""
     (certificate,) = block("certificate")
     subprocess.run(shlex.split(certificate), cwd=tmp_path, check=True, capture_output=True)
     secret = dict(line.split("=") for line in block("variables"))

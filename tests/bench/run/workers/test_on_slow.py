@@ -32,7 +32,7 @@ def test_the_start_imports_neither_dask_nor_jax():
 NO_GL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent"}
 
 
-def test_an_address_where_nobody_answers_is_refused_in_seconds(run):
+def test_an_address_without_a_scheduler_is_refused_in_seconds(run):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
@@ -55,7 +55,7 @@ def test_local_workers_need_no_dask_or_certificates_and_leave_no_files(tmp_path)
 
 
 def test_steps_that_no_worker_can_measure_are_measured_locally(gl, run, monkeypatch, tmp_path):  # noqa: ARG001
-    """The workers have no OpenGL. Rows by GLSL are still written, and a message says which process measured them."""
+    """The workers have no OpenGL. GLSL rows are still written, and a message says which process measured them."""
     assert run(*SMALL, "-o", str(tmp_path / "one.json"))[0] == 0
     own = os.environ | NO_GL
     monkeypatch.setattr(piped, "environment", lambda: own)
@@ -97,7 +97,7 @@ def begun(folder: Path, *words: str) -> subprocess.Popen[str]:
 
 
 def kept_in(folder: Path) -> int:
-    """Return the number of lines in a command's journal: one for each step kept so far, and a header."""
+    """Return the number of lines in a command's journal: a header and a line for each step stored so far."""
     journal = folder / ".rows.json.rows"
     return len(journal.read_text().splitlines()) if journal.exists() else 0
 
@@ -162,7 +162,7 @@ def test_interruption_and_killed_workers_lose_no_rows_and_leave_no_process(tmp_p
 
 
 @pytest.mark.drawn(3)
-def test_a_killed_scheduler_and_its_killed_worker_cost_no_row(tmp_path, rows_alone):
+def test_killing_the_scheduler_and_a_worker_loses_no_rows(tmp_path, rows_alone):
     """The command and the workers wait for another scheduler at the same address."""
     with scheduled({}, {}) as there:
         process = begun(tmp_path, "--on", there.address)
@@ -178,7 +178,7 @@ def test_a_killed_scheduler_and_its_killed_worker_cost_no_row(tmp_path, rows_alo
     assert (tmp_path / "rows.json").read_bytes() == rows_alone
 
 
-def test_workers_that_keep_ending_end_the_command(run, monkeypatch):
+def test_workers_that_keep_exiting_end_the_command(run, monkeypatch):
     """The error ends with the last message from a worker."""
     monkeypatch.setattr(piped, "python", lambda _: [sys.executable, "-c", "raise SystemExit('broken')"])
     status, out, err = run(*SMALL, "--on", "local:2")

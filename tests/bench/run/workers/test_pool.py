@@ -1,4 +1,4 @@
-"""Steps and workers that come and go, without any process: every step has its rows once, or a reason."""
+"""Steps and workers that come and go, without any processes: every step has its rows once, or a reason."""
 
 import pickle
 import random
@@ -90,7 +90,7 @@ def test_every_step_has_its_rows_once(workers):
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_workers_that_are_lost_at_random_lose_nothing(seed, workers, monkeypatch):
+def test_randomly_lost_workers_lose_no_rows(seed, workers, monkeypatch):
     """A tenth of all tasks kill their worker, and another tenth reach a worker that does not know the order."""
     rng = random.Random(seed)
     monkeypatch.setattr(local, "MOST_LOST", 1000)
@@ -105,7 +105,7 @@ def test_workers_that_are_lost_at_random_lose_nothing(seed, workers, monkeypatch
 
 
 @pytest.mark.parametrize("ending", [11, 12])
-def test_workers_that_end_before_they_are_ready_cost_no_step(ending, workers, monkeypatch):
+def test_workers_that_exit_before_they_are_ready_lose_no_steps(ending, workers, monkeypatch):
     """After 12 such workers in a row, three per worker requested, the command ends."""
     monkeypatch.setattr(Process, "ending", ending)
     carrier = workers(measures)
@@ -128,8 +128,9 @@ def test_order_is_sent_to_workers_that_do_not_know_it(workers):
     assert [isinstance(order, str) for order in sent] == [True, True, False, False]
 
 
-def test_a_step_that_ends_worker_after_worker_loses_its_own_rows(workers, capsys):
-    """Other steps sent with the lost step are measured; its row has the reason, and standard error its name."""
+def test_a_step_that_repeatedly_ends_workers_loses_only_its_own_rows(workers, capsys):
+    """Other steps sent with the lost step are measured. The lost step has a row with the reason, which is also
+    printed to standard error with the name of the step."""
     bad = JAX[5]
     name = step_name("quality", bad)
     carrier = workers(lambda order, needs, names: -9 if name in names else rows_of(names))  # noqa: ARG005
@@ -143,7 +144,7 @@ def test_a_step_that_ends_worker_after_worker_loses_its_own_rows(workers, capsys
 
 
 @pytest.mark.parametrize("wrong", [UsageError("no such thing"), TypeError("cannot be unpacked")])
-def test_an_answer_that_is_wrong_ends_the_command(wrong, workers):
+def test_an_error_as_the_answer_ends_the_command(wrong, workers):
     with pytest.raises(type(wrong), match=str(wrong)):
         measured(workers(lambda order, needs, names: wrong), asked("quality", JAX))  # noqa: ARG005
 
@@ -158,7 +159,7 @@ def test_order_changes_with_the_text_of_a_users_file(monkeypatch, tmp_path):
     assert ids[0] == ids[2] != ids[1]
 
 
-def test_steps_before_one_that_raises_are_kept(workers, monkeypatch, tmp_path):
+def test_steps_before_a_failing_step_are_kept(workers, monkeypatch, tmp_path):
     """Both the worker's process and this process keep the rows."""
     ask = asked("quality", JAX[:2])
 
@@ -231,8 +232,8 @@ def test_steps_are_measured_locally_if_no_worker_is_available(monkeypatch, capsy
     )
 
 
-def test_every_table_whose_rows_have_times_says_so_in_its_keys():
-    """Most tables go by the key `repeats`; the rows of `maps` always have a time."""
+def test_every_table_whose_rows_have_times_declares_them_in_its_keys():
+    """Most tables have the key `repeats`; the rows of `maps` always have a time."""
     # Readers' times are in the files that they saved.
     timed = {name for name, table in TABLES.items() if table.of_role(Role.TIME)} - {"devices"}
     assert timed == {"cost", "render", "effects", "sweep", "maps"}

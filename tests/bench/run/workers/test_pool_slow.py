@@ -1,4 +1,4 @@
-"""Steps and workers that come and go, without any process: every step has its rows once, or a reason."""
+"""Steps and workers that come and go, without any processes: every step has its rows once, or a reason."""
 
 from concurrent.futures import CancelledError
 

@@ -1,4 +1,4 @@
-"""Equality of rows by workers and by one process, for more tables."""
+"""Rows from workers, equal to rows from one process, for more tables."""
 
 import pytest
 import test_same_rows_slow
@@ -13,8 +13,8 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("table", COMMANDS)
-def test_the_rows_and_pictures_of_more_tables_are_those_of_one_process(gl, run, tmp_path, table):  # noqa: ARG001
-    """Every figure to the last digit, in the same order; every picture to the last byte."""
+def test_workers_give_the_rows_and_pictures_of_one_process_for_more_tables(gl, run, tmp_path, table):  # noqa: ARG001
+    """Every figure matches to the last digit and in the same order, and every picture to the last byte."""
     test_same_rows_slow.compared(run, tmp_path, table, COMMANDS[table])
 
 

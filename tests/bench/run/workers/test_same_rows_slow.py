@@ -1,4 +1,4 @@
-"""Equality of rows and pictures by workers and by one process, to the last digit."""
+"""Rows and pictures from workers, equal to rows and pictures from one process to the last digit."""
 
 import json
 from pathlib import Path
@@ -51,7 +51,7 @@ PICTURED = ("lights", "render")
 
 @pytest.fixture(scope="module")
 def scheduler():
-    """The address of a scheduler of two workers."""
+    """The address of a scheduler with two workers."""
     with scheduled({}, {}) as there:
         yield there.address
 
@@ -84,8 +84,8 @@ def compared(run, folder: Path, table: str, words: str) -> None:
 
 
 @pytest.mark.parametrize("table", COMMANDS)
-def test_the_rows_and_pictures_are_those_of_one_process(gl, run, tmp_path, table):  # noqa: ARG001
-    """Every figure to the last digit, in the same order; every picture to the last byte."""
+def test_workers_give_the_rows_and_pictures_of_one_process(gl, run, tmp_path, table):  # noqa: ARG001
+    """Every figure matches to the last digit and in the same order, and every picture to the last byte."""
     compared(run, tmp_path, table, COMMANDS[table])
 
 
@@ -121,7 +121,7 @@ def test_workers_receive_users_files(gl, run, scheduler, tmp_path, monkeypatch, 
         assert len(here[0]) >= 2 and here == there, words
 
 
-def test_python_takes_workers_as_well(scheduler):
+def test_the_python_interface_can_use_workers(scheduler):
     """The workers belong to a scheduler."""
     alone, others = (
         nb.quality(encoding=["octahedral", "xyz"], storage=["rgba8"], normals="axes", on=on) for on in (None, scheduler)

@@ -1,4 +1,4 @@
-"""Code of codecs: written in every language, run there, and equal to the catalogue's."""
+"""Code of codecs, written in every language, run there and compared with the catalogue."""
 
 import json
 import re
@@ -36,8 +36,8 @@ def written(folder: Path, code, text=None) -> Path:
 
 
 @pytest.mark.parametrize("name", ["octahedral/rgb10a2", "xyz/rgba8_snorm", "octahedral/rg16f", "octahedral/rgb8_12_12"])
-def test_the_reference_texels_hold_the_integers_that_the_python_interface_gives(name):
-    """`nb.encode` computes the stored integers by itself."""
+def test_reference_texels_match_the_integers_from_the_python_interface(name):
+    """`nb.encode` computes the stored integers independently."""
     codec = codec_of(name)
     expected = reference(codec)
     integers = np.asarray(nb.encode(codec, expected.n).integers)
@@ -56,7 +56,7 @@ def test_reference_normals_are_unit_vectors_in_the_domain():
     assert (np.sum(n * view, axis=1) <= 0).all()
 
 
-def test_the_texel_of_a_known_normal_is_what_the_formula_gives():
+def test_the_texel_of_a_known_normal_matches_the_formula():
     """(1, 0, 0) maps to (1, 0) in the octahedral encoding: 1023 and 511.5, which rounds to the even 512."""
     expected = reference(codec_of("octahedral/rgb10a2"))
     index = int(np.argmax((expected.n == (1.0, 0.0, 0.0)).all(axis=1)))
@@ -80,7 +80,7 @@ def test_table_is_a_c_array_in_the_same_order():
 
 
 def test_a_texel_is_counted_once():
-    """A byte has 256 texels, however many normals have them."""
+    """Two 4-bit channels have 256 texels, however many normals share them."""
     codec = codec_of("octahedral/unorm:4:4")
     expected = reference(codec)
     ran = Ran(expected.stored, expected.words, expected.stored, expected.decoded, expected.texels, expected.stored)
@@ -89,7 +89,7 @@ def test_a_texel_is_counted_once():
     assert len(np.unique(expected.words)) == 256
 
 
-def test_a_file_of_glsl_may_do_without_the_view(run, tmp_path):
+def test_decode_in_a_glsl_file_may_omit_the_view(run, tmp_path):
     """The written file can be measured if only encode takes the view."""
     code = code_of(codec_of("octahedral/rg8"), "glsl", "mine")
     path = written(tmp_path, code, code.body.replace("mine_encode(vec3 n)", "mine_encode(vec3 n, vec3 view)"))
@@ -100,7 +100,7 @@ def test_a_file_of_glsl_may_do_without_the_view(run, tmp_path):
     assert (mine["mse"], mine["angle_max_deg"]) == (ours["mse"], ours["angle_max_deg"])
 
 
-def test_a_header_of_c_can_be_included_twice_without_a_warning(tmp_path):
+def test_a_c_header_can_be_included_twice_without_a_warning(tmp_path):
     """Warnings are errors, and the file includes two codecs of the same encoding."""
     require_runner("c")
     for storage in ("rgba8", "rgba16f"):

@@ -1,4 +1,4 @@
-"""Code of motion vectors, depth, light and curves: run in each language, and equal to the catalogue's."""
+"""Code of motion vectors, depth, light and curves, run in each language and compared with the catalogue."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -27,8 +27,8 @@ def test_unused_setting_is_not_a_parameter():
     assert "vec4 p_encode(vec3 light)" in code_of(codec_of("light", "rgbm", "rgba8"), "glsl", "p").body
 
 
-def test_hlsl_unrolls_loops_over_constants_alone():
-    """The polynomials of a logarithm and a power; no loop of another kind."""
+def test_hlsl_unrolls_only_loops_over_constants():
+    """The unrolled loops are the polynomials of a logarithm and of a power; GLSL has no `[unroll]`."""
     codec = codec_of("motion", "cube_root", "rg16_snorm")
     assert code_of(codec, "hlsl", "p").body.count("    [unroll]\n    for (int i = ") == 2
     assert "[unroll]" not in code_of(codec, "glsl", "p").body
@@ -51,20 +51,20 @@ def test_hlsl_unrolls_loops_over_constants_alone():
         (["log:4"], "choose one with --of"),
     ],
 )
-def test_unsupported_request_of_a_kind_is_a_one_line_error(run, arguments, said):
+def test_unsupported_request_for_a_kind_is_a_one_line_error(run, arguments, said):
     status, out, err = run("code", *arguments)
     assert (status, out) == (2, "")
     assert said in err and err.count("\n") == 1, err
 
 
-def test_a_range_is_a_constant_of_the_code():
-    """Another range makes another light encoding; for a curve it is a number, which the file name includes."""
+def test_a_range_is_a_constant_in_the_code():
+    """For light, another range makes another encoding; for a curve the range is a number in the file name."""
     assert "8.0" in code_of(codec_of("light", "rgbm:8", "rgba8"), "glsl", "p").body
     log = codec_of("curve", "log:range=4", "r8")
     assert log.range == 4 and stem_of(log) == "curve_log_4_r8"
 
 
-def test_catalogue_name_does_not_make_a_users_file_the_catalogues():
+def test_a_users_file_with_a_catalogue_name_is_still_treated_as_user_code():
     """Code from users runs in a sandbox, so a user's file with a catalogue name must not pass as the catalogue's."""
     known = ENCODINGS["octahedral"]
     assert is_catalogues(known) and is_catalogues(replace(known, name="octahedral:sign=0"))

@@ -1,4 +1,4 @@
-"""Code of motion vectors, depth, light and curves: run in each language, and equal to the catalogue's."""
+"""Code of motion vectors, depth, light and curves, run in each language and compared with the catalogue."""
 
 import pytest
 import test_code_kinds_slow
@@ -7,5 +7,5 @@ from test_code_kinds_slow import pairs
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("kind, name, storage, language", pairs())
-def test_the_code_of_a_kind_gives_the_catalogues_texels_in_any_language(kind, name, storage, language, tmp_path):
-    test_code_kinds_slow.test_the_code_of_a_kind_gives_the_catalogues_texels(kind, name, storage, language, tmp_path)
+def test_code_for_a_kind_gives_the_catalogues_texels_in_any_language(kind, name, storage, language, tmp_path):
+    test_code_kinds_slow.test_code_for_a_kind_gives_the_catalogues_texels(kind, name, storage, language, tmp_path)

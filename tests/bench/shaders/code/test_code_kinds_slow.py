@@ -1,4 +1,4 @@
-"""Code of motion vectors, depth, light and curves: run in each language, and equal to the catalogue's."""
+"""Code of motion vectors, depth, light and curves, run in each language and compared with the catalogue."""
 
 import re
 from pathlib import Path
@@ -54,7 +54,7 @@ MUTANTS = {
 
 
 @pytest.mark.parametrize("fault", MUTANTS)
-def test_a_wrong_number_in_the_code_of_a_kind_is_noticed(fault, tmp_path):
+def test_a_wrong_number_in_code_for_a_kind_is_noticed(fault, tmp_path):
     """Each fault alone makes the comparison fail."""
     require_runner("c")
     named, old, new = MUTANTS[fault]
@@ -84,7 +84,7 @@ OWN = {"motion": (OWN_MOTION, "rg16"), "curve": (OWN_ROUGHNESS, "r8")}
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("kind", OWN)
-def test_a_users_code_of_a_kind_is_written(kind, tmp_path):
+def test_a_users_hlsl_for_a_kind_is_written_in_c(kind, tmp_path):
     """A user's HLSL, written in C, agrees with the OpenGL result; its function names give the kind."""
     require_runner("c")
     text, storage = OWN[kind]
@@ -97,7 +97,7 @@ def test_a_users_code_of_a_kind_is_written(kind, tmp_path):
 
 
 @pytest.mark.usefixtures("gl")
-def test_users_light_encoder_is_recognised_and_stays_the_users(tmp_path, monkeypatch, run):
+def test_a_users_light_encoder_is_recognised_and_remains_user_code(tmp_path, monkeypatch, run):
     """A light encoder may preserve unit vectors. It remains the user's code if its functions are named."""
     monkeypatch.chdir(tmp_path)
     text = "float4 EncodeLight(float3 light) { return float4(light * 0.25, 1.0); }\n"
@@ -119,15 +119,15 @@ def test_command_infers_and_reports_the_kind(run):
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_kind_is_checked_as_normals_are(run):
+def test_another_kind_is_checked_in_the_same_way_as_normals(run):
     """The table has a row for each codec."""
     status, out, _ = run("code", "--check", "srgb,gamma_2_2", "--of", "curve", "--storage", "r8", "--to", "c")
     assert status == 0 and {"srgb", "gamma_2_2", "equal"} <= set(out.split()), out
 
 
 @pytest.mark.usefixtures("gl")
-def test_names_of_several_kinds_are_written(run, tmp_path, monkeypatch):
-    """Each uses its kind's default storage; an unsupported storage is reported and does not affect the others."""
+def test_codecs_of_several_kinds_are_written_by_one_command(run, tmp_path, monkeypatch):
+    """Each codec uses its kind's default storage; an unsupported storage is reported and affects no other codec."""
     # Errors take a search for the worst case; test_code.py has a file that says them.
     monkeypatch.setattr(code_command, "figures", lambda _: [])
     status, _, err = run("code", "octahedral,cube_root,rgbm:range=8,Octahedral-Angle", "--to", "c", "-o", str(tmp_path))
@@ -145,7 +145,7 @@ def test_names_of_several_kinds_are_written(run, tmp_path, monkeypatch):
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("kind, name", [("light", "rgbm:8"), ("curve", "log:4")])
-def test_the_code_over_another_range_gives_the_catalogues_texels(kind, name, tmp_path):
+def test_code_for_another_range_gives_the_catalogues_texels(kind, name, tmp_path):
     require_runner("c")
     verdict = agreement_of(codec_of(kind, name, ""), "c", tmp_path)
     assert verdict.holds, verdict.says
@@ -182,15 +182,15 @@ def pairs() -> list:
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("kind, name, storage, language", a_tenth(pairs()))
-def test_the_code_of_a_kind_gives_the_catalogues_texels(kind, name, storage, language, tmp_path):
-    """2^16 values: texels, numbers that come back, and render targets."""
+def test_code_for_a_kind_gives_the_catalogues_texels(kind, name, storage, language, tmp_path):
+    """Texels, decoded numbers and render targets are compared for 2^16 values."""
     require_runner(language)
     verdict = agreement_of(codec_of(kind, name, storage), language, tmp_path)
     assert verdict.holds, verdict.says
 
 
 @pytest.mark.parametrize("kind", ["motion", "curve", "light", "depth"])
-def test_the_code_of_every_encoding_of_a_kind_is_written(kind, tmp_path):
+def test_code_for_every_encoding_of_a_kind_is_written(kind, tmp_path):
     """Each encoding is written in C, in its default storage."""
     require_runner("c")
     for name in BY_KIND[NAMED[kind]]:

@@ -1,4 +1,4 @@
-"""Code of codecs: written in every language, run there, and equal to the catalogue's."""
+"""Code of codecs, written in every language, run there and compared with the catalogue."""
 
 from itertools import product
 

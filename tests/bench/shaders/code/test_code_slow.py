@@ -1,4 +1,4 @@
-"""Code of codecs: written in every language, run there, and equal to the catalogue's."""
+"""Code of codecs, written in every language, run there and compared with the catalogue."""
 
 import re
 from itertools import product
@@ -63,7 +63,8 @@ vec3 many_decode(vec2 e, vec3 view) {
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("language", ["hlsl", "essl", "wgsl", "c"])
 def test_a_users_glsl_is_written_in_every_language(language, tmp_path):
-    """Functions that the catalogue does not use mean the same: mod of negatives, mix, step, sign, length, atan."""
+    """Functions that the catalogue does not use have the same meaning: mod of negatives, mix, step, sign, length and
+    atan."""
     require_runner(language)
     (tmp_path / "many.glsl").write_text(MANY_WORDS)
     (codec,) = codecs_named(str(tmp_path / "many.glsl"), "rgb10a2", "nearest")
@@ -94,7 +95,7 @@ def test_check_reports_how_many_texels_differ_in_each_language(run):
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize(("languages", "wrong_in"), [("msl", "c"), ("glsl,msl", "glsl")])
-def test_wrong_translation_prevents_every_file(run, tmp_path, monkeypatch, languages, wrong_in):
+def test_a_wrong_translation_prevents_all_output_files(run, tmp_path, monkeypatch, languages, wrong_in):
     """All languages come from one syntax tree; Metal on its own is verified through C."""
     seen, own = [], code_command.verified
 
@@ -141,7 +142,7 @@ CODECS = (
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("name, language", a_tenth(product(CODECS, RUN)))
 def test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_path):
-    """2^16 hard and random normals: texels, numbers that come back, and render targets, in each language."""
+    """Texels, decoded numbers and render targets are compared for 2^16 hard and random normals in each language."""
     require_runner(language)
     codec = codec_of(name)
     code = code_of(codec, language, "p")
@@ -154,8 +155,8 @@ INSTRUCTIONS = ("spheremap", "octahedral", "octahedral_precise", "best_fit_searc
 
 @pytest.mark.usefixtures("radv")
 @pytest.mark.parametrize("language", ["glsl", "hlsl"])
-def test_written_code_costs_as_much_as_the_catalogues(language, tmp_path):
-    """Read back as a user's encoder, encode and decode take as many instructions on RADV (8-bit storage)."""
+def test_written_code_costs_as_much_as_the_catalogues_code(language, tmp_path):
+    """Read back as a user's encoder, the written code takes as many instructions on RADV as the catalogue's code."""
     require_runner("hlsl")
     codecs = [codec_of(f"{name}/{'rgba8' if name == 'best_fit_searched' else 'rg8'}") for name in INSTRUCTIONS]
     files = [written(tmp_path, code_of(codec, language, f"my_{codec.encoding.name}")) for codec in codecs]
@@ -169,8 +170,8 @@ def test_written_code_costs_as_much_as_the_catalogues(language, tmp_path):
 
 
 @pytest.mark.usefixtures("gl")
-def test_code_prints_one_file_that_says_what_it_is(run):
-    """Codec, figures, how it was verified, the command that made it, licence; then the functions."""
+def test_code_prints_one_file_with_a_descriptive_header(run):
+    """The header has the codec, its figures, the verification, the command and the licence; the functions follow."""
     status, out, err = run("code", "spheremap", "--storage", "rg8", "--to", "glsl", "--prefix", "sm")
     assert (status, err) == (0, "")
     head = " ".join(line.removeprefix("//").strip() for line in out.partition("\n\n")[0].splitlines())
@@ -186,7 +187,7 @@ def test_code_prints_one_file_that_says_what_it_is(run):
 
 
 @pytest.mark.usefixtures("gl")
-def test_code_writes_a_file_of_each_language_and_its_tables(run, tmp_path):
+def test_code_writes_a_file_per_language_and_the_tables(run, tmp_path):
     """The C header and the shader textures are in the same folder."""
     status, _, err = run("code", "spherical_lut", "--storage", "rg8", "--to", "hlsl,c", "-o", str(tmp_path / "made"))
     assert status == 0, err
@@ -202,7 +203,7 @@ def _unwrapped(folder: Path) -> str:
 
 @pytest.mark.usefixtures("gl")
 def test_a_codec_is_measured_once_for_all_languages(run, tmp_path, monkeypatch):
-    """Every file's head has its figures."""
+    """The header of every file has the codec's figures."""
     seen, own = [], code_command.figures
     monkeypatch.setattr(code_command, "figures", lambda codec: seen.append(codec.name) or own(codec))
     words = ("octahedral,xy", "--storage", "rg8", "--to", "glsl,c,msl")

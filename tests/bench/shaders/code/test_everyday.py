@@ -26,7 +26,7 @@ NESTED = ["nested modulus", "nested choices of components"]
 
 @pytest.mark.parametrize("name", NESTED)
 @pytest.mark.parametrize("language", ["msl", "glsl"])
-def test_text_grows_with_the_source_and_no_faster(language, name, tmp_path):
+def test_generated_text_grows_no_faster_than_the_source(language, name, tmp_path):
     """This covers a language that cannot run here and the source language; `agrees` checks the other languages."""
     (tmp_path / "mine.glsl").write_text(GLSL[name])
     size = len(code_of(codec_of(tmp_path / "mine.glsl"), language, "p").body)

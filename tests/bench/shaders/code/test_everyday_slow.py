@@ -42,7 +42,7 @@ def test_everyday_glsl_is_read_and_means_the_same(language, name, tmp_path):
 
 @pytest.mark.drawn(3)
 @pytest.mark.parametrize("name", WGSL)
-def test_everyday_wgsl_means_what_naga_makes_of_it(name, tmp_path):
+def test_everyday_wgsl_gives_the_same_texels_as_naga(name, tmp_path):
     """The original text, compiled by naga and run by Vulkan, gives the texels of its translation in OpenGL."""
     require_runner("wgsl")
     (tmp_path / "mine.wgsl").write_text(WGSL[name])

@@ -42,7 +42,7 @@ def given(kind: str) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.drawn(3)
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("kind, name, storage, language", [(*codec, "c") for codec in CODECS])
-def test_code_gives_the_catalogues_texels_of_odd_values(kind, name, storage, language, tmp_path):
+def test_code_gives_the_catalogues_texels_for_odd_values(kind, name, storage, language, tmp_path):
     """Values next to a tie may differ by one step; the bits of NaN are not specified."""
     require_runner(language)
     codec = codec_of(kind, name, storage)
@@ -59,7 +59,7 @@ def test_code_gives_the_catalogues_texels_of_odd_values(kind, name, storage, lan
 
 
 def differing(expected: Reference, ran) -> np.ndarray:
-    """Return a mask of the values that decode to something else."""
+    """Return a mask of the values that decode differently."""
     with np.errstate(invalid="ignore"):
         apart = np.abs(ran.decoded.astype(np.float64) - expected.decoded)
         near = apart <= 0.01 * np.abs(expected.decoded) + 1e-6
@@ -80,5 +80,5 @@ FEW = [
 @pytest.mark.parametrize(
     "kind, name, storage, language", [(*codec, language) for codec in FEW for language in RUN if language != "c"]
 )
-def test_code_gives_the_catalogues_texels_of_odd_values_in_other_languages(kind, name, storage, language, tmp_path):
-    test_code_gives_the_catalogues_texels_of_odd_values(kind, name, storage, language, tmp_path)
+def test_code_gives_the_catalogues_texels_for_odd_values_in_other_languages(kind, name, storage, language, tmp_path):
+    test_code_gives_the_catalogues_texels_for_odd_values(kind, name, storage, language, tmp_path)

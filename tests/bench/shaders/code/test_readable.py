@@ -46,12 +46,12 @@ EVERY = [(kind, name) for kind in KINDS for name in BY_KIND[kind]]
 
 @pytest.mark.parametrize("kind, name", EVERY, ids=[f"{kind.word}-{name}" for kind, name in EVERY])
 def test_the_code_of_an_encoding_has_short_names_and_lines(kind, name):
-    """Names of 24 letters, lines of 99 with the comments at the top."""
+    """Names have at most 24 letters. Lines have at most 99 characters, including the comments at the top."""
     check(codecs_of(kind, name, "rgba8" if kind is NORMAL else "")[:1], QUICK)
 
 
-def test_a_loop_that_nothing_unrolls_is_found():
-    """The loop is that of a polynomial, without its `[unroll]`."""
+def test_a_loop_without_an_unroll_attribute_is_found():
+    """The loop evaluates a polynomial; its `[unroll]` is removed."""
     body = code_of(codecs_of(NORMAL, "spherical", "rg8")[0], "hlsl").body
     assert "[unroll]" in body and not loops_without_unrolling(body)
     assert loops_without_unrolling(re.sub(r" *\[unroll\]\n", "", body))
@@ -65,7 +65,7 @@ def test_a_loop_that_nothing_unrolls_is_found():
         ("spherical", ("atan2_pi",), ()),
     ],
 )
-def test_an_arc_tangent_has_the_octants_that_it_needs(name, has, has_not):
+def test_an_arc_tangent_handles_only_the_octants_that_it_needs(name, has, has_not):
     """A ratio in [-1, 1] needs only its own octants, and two unsigned numbers only the first quadrant."""
     names = names_in(code_of(codecs_of(NORMAL, name, "rgba8")[0], "c").body)
     assert {f"normal_{word}" for word in has} <= names and not {f"normal_{word}" for word in has_not} & names
@@ -82,7 +82,7 @@ DECLARED = {
 
 
 @pytest.mark.parametrize("language", DECLARED)
-def test_a_texture_is_declared_with_its_binding_and_what_it_holds(language):
+def test_a_texture_is_declared_with_its_binding_and_its_contents(language):
     """The code comes with the file that the declaration names."""
     (codec,) = codecs_of(NORMAL, "best_fit", "rgba8")
     code = code_of(codec, language)
@@ -97,7 +97,7 @@ def test_two_tables_are_bound_in_the_order_of_their_names():
     assert re.findall(r"> (\w+) : register\((t\d)\);", body) == [("normal_angle", "t0"), ("normal_xy", "t1")]
 
 
-def test_two_files_with_the_same_names_are_both_read():
+def test_files_with_the_same_function_names_have_different_include_guards():
     """A compiler therefore reports the clash; with the same guard it would silently skip one file."""
     (codec,), (other,) = (codecs_of(NORMAL, name, "rg8") for name in ("octahedral", "spheremap"))
     assert "#ifndef OCTAHEDRAL_RG8_INCLUDED" in code_of(codec, "c").text([])

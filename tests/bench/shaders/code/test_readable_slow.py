@@ -29,7 +29,7 @@ def test_best_fit_table_takes_one_byte_per_texel():
     assert texels_of(angles).format == "R32_FLOAT"
 
 
-def test_codes_of_one_kind_have_names_of_their_own(run, tmp_path, monkeypatch):
+def test_codecs_of_one_kind_have_distinct_names(run, tmp_path, monkeypatch):
     """The files share a folder and can be used together; each gives the command that writes it alone."""
     # Errors take a search for the worst case; test_code.py has a file that says them.
     monkeypatch.setattr(code_command, "figures", lambda _: [])

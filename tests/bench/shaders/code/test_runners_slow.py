@@ -70,7 +70,7 @@ def ran(language: str, what: Interface, arrays) -> Ran:
 
 
 @pytest.mark.parametrize("language", RUN)
-def test_a_plain_code_gives_what_numpy_gives(language):
+def test_a_plain_codec_matches_numpy(language):
     """Spheremap in RG8: the same words, and numbers within 4 units in the last place of 1."""
     arrays = given(4096)
     expected, output = by_numpy(SPHEREMAP, *arrays), ran(language, SPHEREMAP, arrays)
@@ -84,7 +84,7 @@ def test_a_plain_code_gives_what_numpy_gives(language):
 
 @pytest.mark.parametrize("language", RUN)
 def test_views_tables_signs_and_words_reach_the_functions(language):
-    """A code that takes a view, a table, a sign and two words gives the same words and signs, in every language."""
+    """A codec that takes a view, a table, a sign and two words gives the same words and signs in every language."""
     arrays = given(1000)
     expected, output = by_numpy(SCALED, *arrays), ran(language, SCALED, arrays)
     for name, a, b in zip(Ran._fields, expected, output, strict=True):
@@ -189,7 +189,7 @@ def test_user_code_finds_its_tables_in_the_sandbox():
 
 
 def test_user_code_does_not_run_without_a_sandbox(monkeypatch):
-    """The catalogue's code does."""
+    """The catalogue's own code runs without a sandbox."""
     monkeypatch.setattr(landlock, "abi", lambda: 0)
     ran("c", SPHEREMAP, given(8))
     with pytest.raises(MissingError, match="Landlock: none; C generated from your files is not run here"):
@@ -222,7 +222,7 @@ def test_compiler_wrapper_script_is_not_run_in_the_sandbox(monkeypatch, tmp_path
 
 
 def test_naga_crash_is_a_one_line_error(tmp_path):
-    """A choice between vectors by a constant: naga ends its process, and no other."""
+    """Naga crashes on a `select` between vectors by a constant; only naga's own process ends."""
     ran("wgsl", SPHEREMAP, given(8))
     foreign = replace(SPHEREMAP, is_ours=False)
     assert len(runner("wgsl").run(file_of(SPHEREMAP, "wgsl"), foreign, *given(8)).words) == 8
@@ -243,7 +243,7 @@ def test_runner_reports_the_version_of_its_tool(language):
 
 
 @pytest.mark.parametrize(("language", "tool"), [("c", "gcc"), ("hlsl", "glslang-tools"), ("slang", "slangtorch")])
-def test_a_missing_tool_is_named_with_its_package(language, tool, monkeypatch):
+def test_a_missing_tool_is_reported_with_the_package_to_install(language, tool, monkeypatch):
     """Without compilers on the path a runner says what to install."""
     from normalbench.bench.shaders.isa import spirv
 
@@ -256,7 +256,7 @@ def test_a_missing_tool_is_named_with_its_package(language, tool, monkeypatch):
         own_runner.run(file_of(SPHEREMAP, language), SPHEREMAP, *given(8))
 
 
-def test_glsl_es_is_not_run_where_opengl_does_not_take_it(monkeypatch):
+def test_glsl_es_is_not_run_if_opengl_does_not_support_it(monkeypatch):
     ran("essl", SPHEREMAP, given(8))
     monkeypatch.setattr(essl, "COMPATIBLE", "ARB_no_such_thing")
     with pytest.raises(MissingError, match=r"does not support GLSL ES 3\.1: it lacks ARB_no_such_thing"):

@@ -66,7 +66,7 @@ def codec_of(name):
 
 
 @pytest.mark.parametrize("name", FEW)
-def test_c_is_defined_for_every_float(name, tmp_path):
+def test_c_code_is_well_defined_for_any_input(name, tmp_path):
     """3000 arbitrary vectors, views and texels pass the sanitizers and give the same results at -O0 and -O2."""
     require_runner("c")
     wrong = ran(codec_of(name), tmp_path)
@@ -75,7 +75,7 @@ def test_c_is_defined_for_every_float(name, tmp_path):
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("name", ["guard before a table", "conversions", "vector by a number", "hexadecimal numbers"])
-def test_c_of_a_users_shader_is_defined_for_every_float(name, tmp_path):
+def test_c_code_of_a_users_shader_is_well_defined_for_any_input(name, tmp_path):
     """C defines the results that GLSL leaves undefined."""
     require_runner("c")
     (tmp_path / "mine.glsl").write_text(GLSL[name])

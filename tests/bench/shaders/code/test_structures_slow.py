@@ -48,8 +48,9 @@ def agreement_of(codec, language, folder: Path, old="", new=""):
 
 
 @pytest.mark.parametrize("name, storage, rounding, language", in_languages(FRAMES, FAST))
-def test_the_code_of_tangent_frames_gives_the_catalogues_texels(name, storage, rounding, language, tmp_path):
-    """2^16 frames, half of them mirrored: texels, numbers that come back, normals, tangents and hands."""
+def test_code_for_tangent_frames_gives_the_catalogues_texels(name, storage, rounding, language, tmp_path):
+    """Texels, decoded numbers, normals, tangents and handedness are compared for 2^16 frames, half of them
+    mirrored."""
     verdict = agreement_of(frame_codec(name, storage, rounding), language, tmp_path)
     assert verdict.holds, verdict.says
 
@@ -74,8 +75,8 @@ def test_a_wrong_tangent_frame_is_noticed(fault, tmp_path):
 
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("ending, language", in_languages(ENDINGS, FAST))
-def test_a_users_code_of_tangent_frames_is_written(ending, language, tmp_path):
-    """Bitangents, out parameters, a structure, and a quaternion alone."""
+def test_a_users_tangent_frame_code_is_written(ending, language, tmp_path):
+    """The files use bitangents, out parameters, a structure or only a quaternion."""
     path = str(OWN / f"frame.{ending}")
     assert [kind.word for kind in kinds_named(path, "")] == ["frame"]
     verdict = agreement_of(frame_codec(path, "unorm:12:12:7:1"), language, tmp_path)
@@ -121,7 +122,7 @@ vec3 mine_decode(vec2 e, vec3 view) {
 
 
 @pytest.mark.parametrize("language", FAST)
-def test_structures_of_users_are_written(language, tmp_path):
+def test_structures_in_users_shaders_are_written(language, tmp_path):
     (tmp_path / "mine.glsl").write_text(STRUCTURES)
     (codec,) = codecs_named(str(tmp_path / "mine.glsl"), "rg16", "nearest")
     verdict = agreement_of(codec, language, tmp_path)
@@ -146,13 +147,13 @@ OWN_FIRST, OWN_REST = (
 
 
 @pytest.mark.parametrize("name, storage, rounding, language", [*in_languages(FIRST, OTHERS), *a_tenth(REST)])
-def test_the_code_of_tangent_frames_gives_the_catalogues_texels_in_any_language(
+def test_code_for_tangent_frames_gives_the_catalogues_texels_in_any_language(
     name, storage, rounding, language, tmp_path
 ):
-    test_the_code_of_tangent_frames_gives_the_catalogues_texels(name, storage, rounding, language, tmp_path)
+    test_code_for_tangent_frames_gives_the_catalogues_texels(name, storage, rounding, language, tmp_path)
 
 
-def test_every_code_of_tangent_frames_is_written(tmp_path):
+def test_code_for_every_tangent_frame_encoding_is_written(tmp_path):
     """Each encoding is written in C, in its default storage."""
     for name in FRAME_ENCODINGS:
         verdict = agreement_of(frame_codec(name, ""), "c", tmp_path)
@@ -161,10 +162,10 @@ def test_every_code_of_tangent_frames_is_written(tmp_path):
 
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("ending, language", [*OWN_FIRST, *a_tenth(OWN_REST)])
-def test_a_users_code_of_tangent_frames_is_written_in_any_language(ending, language, tmp_path):
-    test_a_users_code_of_tangent_frames_is_written(ending, language, tmp_path)
+def test_a_users_tangent_frame_code_is_written_in_any_language(ending, language, tmp_path):
+    test_a_users_tangent_frame_code_is_written(ending, language, tmp_path)
 
 
 @pytest.mark.parametrize("language", OTHERS)
-def test_structures_of_users_are_written_in_any_language(language, tmp_path):
-    test_structures_of_users_are_written(language, tmp_path)
+def test_structures_in_users_shaders_are_written_in_any_language(language, tmp_path):
+    test_structures_in_users_shaders_are_written(language, tmp_path)

@@ -1,4 +1,4 @@
-"""The quality table by WGSL on Vulkan."""
+"""The quality table, measured by WGSL on Vulkan."""
 
 import pytest
 from typed import codecs_named
@@ -24,7 +24,7 @@ def row_of(codec, backend: str, normals=None) -> dict:
 
 
 @pytest.mark.usefixtures("vulkan")
-def test_half_arithmetic_is_refused_in_a_line():
+def test_half_precision_arithmetic_is_refused_with_a_reason():
     """The row says why it has no figures."""
     (codec,) = codecs_named("spheremap", "rg8", "nearest")
     halved = type(codec)(in_half(ENCODINGS["spheremap"]), codec.storage)

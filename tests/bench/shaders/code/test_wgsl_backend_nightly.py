@@ -1,4 +1,4 @@
-"""The quality table by WGSL on Vulkan."""
+"""The quality table, measured by WGSL on Vulkan."""
 
 import itertools
 

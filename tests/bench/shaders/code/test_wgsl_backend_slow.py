@@ -1,4 +1,4 @@
-"""The quality table by WGSL on Vulkan."""
+"""The quality table, measured by WGSL on Vulkan."""
 
 import pytest
 import test_wgsl_backend
@@ -10,7 +10,7 @@ vulkan = test_wgsl_backend.vulkan
 
 @pytest.mark.usefixtures("vulkan")
 @pytest.mark.parametrize("name", ["spheremap/rg8", "octahedral_precise/rgb10a2", "spherical_lut/rg8", "xy_sign/rg16f"])
-def test_a_row_by_wgsl_has_the_figures_of_jax(name):
+def test_rows_measured_by_wgsl_and_by_jax_agree(name):
     """Errors agree to 1e-5, with the shader's rounding on the Vulkan device."""
     (codec,) = codecs_named(*name.split("/"), "nearest")
     row, expected = row_of(codec, "wgsl"), row_of(codec, "jax")
@@ -20,7 +20,7 @@ def test_a_row_by_wgsl_has_the_figures_of_jax(name):
     assert row["count"] == expected["count"] and not row["invalid"]
 
 
-def test_a_table_without_wgsl_measures_by_the_others_and_says_so(run):
+def test_a_table_without_wgsl_uses_the_other_backends_and_says_so(run):
     """`run --backend jax,wgsl` must not fail for tables without WGSL; `wgsl` alone is an error."""
     arguments = ("depth", "--depth", "linear", "--storage", "r16f", "--count", "1024", "--backend")
     status, out, err = run(*arguments, "jax,wgsl")

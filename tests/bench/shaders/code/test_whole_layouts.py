@@ -181,7 +181,7 @@ def check_short(several, language) -> None:
         assert language != "hlsl" or not loops_without_unrolling(body)
 
 
-def test_words_that_cross_channels_come_back():
+def test_words_that_cross_channels_round_trip():
     """Integers across 8-bit and 16-bit channels are unpacked unchanged, and no other bits are affected."""
     words = [Word("a", 0, 0, 11), Word("b", 0, 11, 10), Word("c", 0, 21, 11)]
     given = {"a": 0b10110011101, "b": 0b1100101011, "c": 0b01110001101}

@@ -17,7 +17,7 @@ layouts = test_whole_layouts.layouts
 
 
 @pytest.mark.parametrize("name, language", [*product(TIES, FAST)])
-def test_a_million_surfaces_are_packed_as_the_renderer_packs_them(name, language, layouts):
+def test_code_packs_a_million_surfaces_like_the_renderer(name, language, layouts):
     require_runner(language)
     many_agree(layouts[name], language, TIES[name], MANY)
 

@@ -126,7 +126,7 @@ def test_other_fields_keep_their_names_in_the_code(tmp_path):
 
 
 def test_the_command_writes_files_and_checks_them(run, tmp_path, monkeypatch):
-    """The file has the layout's name and says what wrote it and how it compares; `--check` prints a table."""
+    """A file has the layout's name, its command and the result of its check; `--check` prints a table."""
     require_runner("c")
     (tmp_path / "mine.toml").write_text(WORDS)
     monkeypatch.chdir(tmp_path)
@@ -180,7 +180,7 @@ def test_code_packs_and_unpacks_like_the_renderer_in_any_language(name, language
 
 
 @pytest.mark.parametrize("name, language", a_tenth(product(TIES, FAST)))
-def test_many_surfaces_are_packed_as_the_renderer_packs_them(name, language, layouts):
+def test_code_packs_many_surfaces_like_the_renderer(name, language, layouts):
     """No surface differs if no curve has a power; otherwise a few next to a tie differ by one step."""
     require_runner(language)
     many_agree(layouts[name], language, TIES[name], MANY // 5)

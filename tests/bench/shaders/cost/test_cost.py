@@ -63,7 +63,7 @@ def test_article_figures_are_complete():
         ("s_endpgm", "waiting"),
     ],
 )
-def test_kinds_of_instructions(name, expected):
+def test_instructions_have_the_expected_kind(name, expected):
     assert kind(name) == expected
 
 
@@ -79,7 +79,7 @@ def test_repeated_instructions_are_counted_each_time():
     assert counts and (counts["full_rate"], counts["transcendental"], counts["waiting"]) == (3, 1, 1)
 
 
-def test_fused_multiply_adds_are_slow_on_polaris_alone():
+def test_fused_multiply_adds_are_slow_only_on_polaris():
     assert [kind("v_fma_f32", family) for family in CHOICES["radeon"]] == ["quarter_rate", *["full_rate"] * 4]
 
 
@@ -114,7 +114,7 @@ def test_spills_include_both_kinds_of_register():
     assert (figures["spills"], figures["vgprs"], figures["sgprs"], figures["kernel_vgprs"]) == (8, 4, 0, 12)
 
 
-def test_no_runner_knows_an_encoding():
+def test_the_runners_do_not_list_encodings_by_name():
     """The whole catalogue is measured: no encoding is listed by hand."""
     for module in (cost, work, isa, kernels):
         text = Path(module.__file__).read_text()

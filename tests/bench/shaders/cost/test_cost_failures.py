@@ -1,4 +1,4 @@
-"""The cost table with a cold, warm or damaged cache, and if something is missing, fails or never ends."""
+"""The cost table with a cold, warm or damaged cache, and with parts that are missing, fail or hang."""
 
 import contextlib
 import io
@@ -70,7 +70,7 @@ def test_unwritable_cache_is_not_an_error(monkeypatch, tmp_path):
     assert cache.read("00") is None
 
 
-def test_the_help_of_run_names_cost():
+def test_the_help_of_run_lists_cost():
     assert "cost" in fields_of(RunOptions)["tables"].option.help
 
 

@@ -1,4 +1,4 @@
-"""The cost table with a cold, warm or damaged cache, and if something is missing, fails or never ends."""
+"""The cost table with a cold, warm or damaged cache, and with parts that are missing, fail or hang."""
 
 import itertools
 import json
@@ -63,7 +63,7 @@ def test_cached_instructions_need_no_import_of_jax_or_pandas(first):
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_two_runs_give_identical_rows_from_the_cache_or_without(run, own_cache):
+def test_two_runs_give_identical_rows_with_or_without_the_cache(run, own_cache):
     first = run(*SMALL)
     again = run(*SMALL)
     shutil.rmtree(own_cache)
@@ -78,7 +78,7 @@ def test_the_second_run_compiles_nothing(run, first, monkeypatch):
     assert run(*SMALL) == first
 
 
-def test_a_damaged_cache_is_computed_again(run, first, own_cache):
+def test_damaged_cache_entries_are_computed_again(run, first, own_cache):
     damages = (b"", b"{", b"[1]", b'{"key": "", "value": {}}', b"\xff\x00")
     # Commands of other tests keep answers, which are not read here.
     files = [path for path in own_cache.rglob("*.json") if "said" not in json.loads(path.read_text())["value"]]
@@ -142,7 +142,7 @@ def test_cache_entries_changed_after_writing_are_computed_again(run, first, own_
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_another_driver_compiles_again(run, monkeypatch):
+def test_another_driver_causes_recompilation(run, monkeypatch):
     """Two builds of Mesa may give different results under the same file name and date."""
     monkeypatch.setattr(isa, "_loaded", lambda _: "one build")
     first = run(*SMALL)
@@ -168,7 +168,7 @@ def test_rows_of_a_driver_named_without_its_folder_are_cached(run, monkeypatch, 
 
 @pytest.mark.usefixtures("radv", "own_cache")
 @pytest.mark.parametrize("tool", [spirv.COMPILER, spirv.OPTIMISER])
-def test_another_version_of_a_tool_compiles_again(run, monkeypatch, tool):
+def test_another_version_of_a_tool_causes_recompilation(run, monkeypatch, tool):
     first, own, ran = run(*SMALL), spirv.version, []
     piped = compilers._piped
     monkeypatch.setattr(compilers, "_piped", lambda *given: ran.append(Path(given[0][0]).name) or piped(*given))
@@ -215,7 +215,7 @@ sys.exit(isa_child.main())
         ("time.sleep(60)", "did not respond within"),
     ],
 )
-def test_a_driver_that_fails_on_a_shader_costs_that_row(run, monkeypatch, tmp_path, what, reason):
+def test_a_driver_failure_on_a_shader_loses_only_that_row(run, monkeypatch, tmp_path, what, reason):
     """The child recognises the job by its size, which is unique to encoding `octahedral`."""
     script = tmp_path / "child.py"
     script.write_text(CHILD.format(what=what))
@@ -234,7 +234,7 @@ def test_a_driver_that_fails_on_a_shader_costs_that_row(run, monkeypatch, tmp_pa
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_a_driver_that_always_fails_is_given_up(run, monkeypatch):
+def test_a_driver_that_always_fails_is_no_longer_used(run, monkeypatch):
     monkeypatch.setattr(isa_process, "CHILD", [sys.executable, "-c", "import os; os.abort()"])
     status, out, _ = run(*SMALL)
     (row, *others) = json.loads(out)
@@ -307,7 +307,7 @@ def test_missing_tool_is_a_one_line_error_and_other_columns_are_filled(
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_broken_user_shader_loses_only_its_rows_and_names_file_and_line(tmp_path):
+def test_broken_user_shader_loses_only_its_rows_and_reports_file_and_line(tmp_path):
     bad = glsl(tmp_path, "bad", "n.xy * nonsense", "vec3(e, 0.0)", 2)
     chosen = cost.cases([bad, ENCODINGS["xy"]], (), cost.OPERATIONS)
     rows = [row for row, _ in cost.isa_rows(chosen, ["fragment"], ["navi21"], [], lambda _: None)]
@@ -330,7 +330,9 @@ def test_compiler_crash_is_a_one_line_error(run, monkeypatch):
     "take, package",
     [(without_driver, "mesa-vulkan-drivers"), (without_loader, "libvulkan1"), (without_compiler, "glslang-tools")],
 )
-def test_run_without_compilers_skips_cost_and_fails_for_cost_alone(run, monkeypatch, tmp_path, capsys, take, package):
+def test_run_without_compilers_skips_cost_and_fails_if_only_cost_is_requested(
+    run, monkeypatch, tmp_path, capsys, take, package
+):
     take(monkeypatch, tmp_path)
     isa._loaded.cache_clear()
     try:

@@ -40,7 +40,7 @@ def cost_of(name: str, rows=ROWS, storage: str = "rgba8") -> float:
 
 
 @pytest.mark.parametrize("name, total", [("xy", 21), ("xyz", 32), ("octahedral", 34), ("xy_sign", 4 + 20 + 500 - 200)])
-def test_a_codec_costs_its_encoding_its_storage_and_its_sign(name, total):
+def test_cost_of_a_codec_is_the_sum_of_encoding_storage_and_sign(name, total):
     assert cost_of(name) == total
 
 
@@ -62,7 +62,7 @@ def test_unknown_part_of_a_cost_does_not_count_as_zero(name, storage, lost, reas
         assert str(raised.value) == reason
 
 
-def test_a_loop_has_no_sum_and_a_branch_is_marked():
+def test_a_loop_has_no_total_cost_and_a_branch_is_marked():
     with pytest.raises(LeftOutError, match="xy encode contains a loop, which is counted only once"):
         cost_of("xy", [*ROWS, row("xy", "encode", 1, loops=1, branches=1)])
     codec = Codec(ENCODINGS["xy"], STORAGES["rgba8"])
@@ -70,7 +70,7 @@ def test_a_loop_has_no_sum_and_a_branch_is_marked():
     assert marked.branches and marked.cost == 21
 
 
-def test_pareto_front_has_the_points_that_no_other_beats():
+def test_pareto_front_has_the_points_that_no_other_point_beats():
     points = [
         Point(*values)
         for values in (
@@ -134,7 +134,7 @@ def test_labels_do_not_overlap_points_lines_or_other_labels(drawn):
         assert not [1 for box, step in itertools.product(boxes, steps) if box.overlaps(step)]
 
 
-def test_one_point_is_a_plot_without_a_warning(drawn):
+def test_a_single_point_is_plotted_without_a_warning(drawn):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         (axis,) = drawn(Panel("encode", [Point("alone", 3, 48.5, 16)])).axes

@@ -18,8 +18,8 @@ ASKED = [
     test_cost_slow.test_the_kinds_add_up_to_the_drivers_own_count,
     test_cost_slow.test_no_kernel_computes_addresses,
     test_cost_slow.test_slots_match_the_drivers_model_for_pure_arithmetic,
-    test_cost_slow.test_stages_have_one_count_of_spirv,
-    test_cost_slow.test_spheremap_costs_the_articles_four_and_three_for_its_pole,
+    test_cost_slow.test_both_stages_have_the_same_spirv_count,
+    test_cost_slow.test_spheremap_costs_the_articles_four_instructions_plus_three_for_its_pole,
     test_cost_slow.test_storages_cost_as_much_as_their_conversion,
     test_cost_slow.test_far_plane_is_not_computed_per_lane,
 ]

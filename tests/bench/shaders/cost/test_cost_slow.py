@@ -22,12 +22,12 @@ FAMILIES = ("polaris10", "navi21")
 
 @pytest.fixture(scope="session")
 def whole_table(radv, tmp_path_factory):  # noqa: ARG001 (asks for the compilers)
-    """Every row of the default table of two families, and its disassembly, from an empty cache."""
+    """Every row of the default table for two families, and its disassembly, from an empty cache."""
     return table_of(FAMILIES, tmp_path_factory.mktemp("cache"))
 
 
 def table_of(families, cache) -> list:
-    """Return every row of the default table of some families, with its disassembly."""
+    """Return every row of the default table for some families, with its disassembly."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(cache))
         packings = [
@@ -82,7 +82,7 @@ def test_two_multiply_adds_cost_two_slots_everywhere(tmp_path):
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_a_loop_of_a_known_length_costs_what_it_does_written_out(tmp_path):
+def test_a_loop_of_known_length_costs_the_same_as_its_unrolled_form(tmp_path):
     turns = "vec2 turned(vec2 e, vec3 n) { for (int i = 0; i < 4; ++i) e = e * n.yz + n.zx; return e; }\n"
     once = "vec2 once(vec2 e, vec3 n) { return e * n.yz + n.zx; }\n"
     looped = costs_of("turned(n.xy, n)", turns, tmp_path)
@@ -108,7 +108,7 @@ def test_remaining_loops_and_branches_are_reported(tmp_path):
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_names_of_the_kernels_are_free_for_users(tmp_path):
+def test_users_may_reuse_the_names_in_the_kernels(tmp_path):
     taken = "const float made = 0.5, lane = 2.0;\nfloat given(float operation) { return operation * made; }\n"
     taken += "float beside(float sum) { return given(sum) * lane; }\n"
     rows = costs_of("n.xy * beside(1.0)", taken, tmp_path, ("navi21",))
@@ -166,7 +166,7 @@ def test_slots_match_the_drivers_model_for_pure_arithmetic(whole_table):
             assert cycles == 2 * slots > 0, (family, name)
 
 
-def test_stages_have_one_count_of_spirv(whole_table):
+def test_both_stages_have_the_same_spirv_count(whole_table):
     by_code = {}
     for row, _ in whole_table:
         if row["encoding"]:
@@ -196,7 +196,7 @@ def test_known_orders_hold_in_every_family(whole_table, stage):
         assert count["octahedral"] < count["spherical"] < count["per_pixel_view"], (family, count)
 
 
-def test_spheremap_costs_the_articles_four_and_three_for_its_pole(whole_table):
+def test_spheremap_costs_the_articles_four_instructions_plus_three_for_its_pole(whole_table):
     """ps_3_0: mad, rsq, mad, mov. Here mad, rsq, two mul, and cmp and two cndmask for n.z = -1; no scale and bias."""
     for row, assembly in whole_table:
         if (row["encoding"], row["operation"], row["stage"]) == ("spheremap", "encode", "fragment"):
@@ -216,7 +216,7 @@ def test_storages_cost_as_much_as_their_conversion(whole_table):
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_precise_rounding_costs_its_search():
+def test_cost_of_precise_rounding_includes_its_search():
     """Each of the four candidate codes is decoded, which the count includes."""
     plain, precise = (ENCODINGS[name] for name in ("octahedral", "octahedral_precise"))
     chosen = cost.cases([plain, precise], (), cost.OPERATIONS)

@@ -1,4 +1,4 @@
-"""Measured time as a cost: arithmetic on simulated clocks, and rows of a device and of JAX."""
+"""Measured time as a cost: arithmetic on simulated clocks, and rows for a device and for JAX."""
 
 import math
 from contextlib import ExitStack
@@ -22,7 +22,7 @@ def clock_of(operation_ns: float, empty_ns: float, start_ms: float = 0.7):
 
 @pytest.mark.parametrize("operation, empty", [(3.0, 0.5), (40.0, 2.0), (0.25, 0.25), (1.0, 1.5)])
 def test_difference_is_the_extra_time_of_the_operation(operation, empty):
-    """A nanosecond per pixel is a million nanoseconds per megapixel, whatever the start of a pass takes."""
+    """A nanosecond per pixel is a million nanoseconds per megapixel, however long the start of a pass takes."""
     assert Pair(clock_of(operation, empty), PIXELS).difference() == pytest.approx((operation - empty) * 1e6)
 
 
@@ -39,7 +39,7 @@ def test_a_pass_that_is_disturbed_does_not_count():
     assert pair.difference() == pytest.approx(2.5e6)
 
 
-def test_turns_make_a_pass_long_enough_and_never_too_many():
+def test_a_pass_has_enough_turns_within_the_limits():
     long, endless = Pair(clock_of(3.0, 0.5), PIXELS), Pair(clock_of(1e-9, 1e-9, 0.0), PIXELS)
     assert clock_of(3.0, 0.5)(0, long.turns) >= cost_clocks.PASS_MS / 2 and long.turns > LEAST_TURNS
     assert endless.turns == MOST_TURNS
@@ -62,7 +62,7 @@ def test_median_interval_has_the_stated_confidence(count, low, high):
     assert count < 6 or chance(low) >= cost_clocks.SURE > chance(low + 1)
 
 
-def test_each_turn_computes_again(gl):
+def test_each_turn_repeats_the_computation(gl):
     """The value added after each turn reaches the next, so that no compiler can compute a turn only once."""
     turns, nothing = 5, 0.25
     for numbers, operation in ((3, kernels.encode(ENCODINGS["xyz"])), (2, kernels.decode(ENCODINGS["xy"]).empty)):

@@ -1,4 +1,4 @@
-"""Measured time as a cost: arithmetic on simulated clocks, and rows of a device and of JAX."""
+"""Measured time as a cost: arithmetic on simulated clocks, and rows for a device and for JAX."""
 
 import json
 
@@ -18,7 +18,7 @@ def test_a_software_rasteriser_draws_one_tile(run):
 
 
 @pytest.mark.usefixtures("gl")
-def test_every_operation_and_packing_has_a_row_that_says_what_it_is(run):
+def test_every_operation_and_packing_has_a_row_with_its_conditions(run):
     words = ["--encoding", "spheremap,per_pixel_view", "--storage", "rgba8,12:12", "--size", "64x64", "--repeats", "3"]
     status, out, err = run("cost", "--time", *words, "--format", "json")
     rows = json.loads(out)

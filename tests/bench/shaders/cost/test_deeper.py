@@ -1,4 +1,4 @@
-"""Facts of listings beyond counts: loops, waves, half arithmetic."""
+"""Facts from listings beyond counts: loops, waves and half-precision arithmetic."""
 
 import pytest
 
@@ -11,7 +11,7 @@ from normalbench.gbuffer.gl.shader import ShaderError
 
 
 def test_code_between_a_label_and_a_jump_back_to_it_is_a_loop():
-    """Both of two nested loops are found; a jump ahead is not a loop."""
+    """Both nested loops are found; a forward jump is not a loop."""
     lines = ["BB0:", "\tv_a", "\ts_cbranch_vccz BB4", "BB1:", "\tv_b", "BB2:", "\tv_c", "\t(then repeated 2 times)"]
     lines += ["\ts_cbranch_scc1 BB2", "\ts_branch BB1", "BB4:", "\ts_endpgm"]
     assert disassembly.loops("\n".join(lines)) == [range(3, 7), range(2, 8)]
@@ -48,6 +48,6 @@ def test_waves_are_unknown_without_a_rule_or_registers():
     assert occupancy.waves("another", 16) is None and occupancy.waves("navi21", None) is None
 
 
-def test_precise_rounding_in_halves_is_refused_in_a_line():
+def test_precise_rounding_in_half_precision_is_refused_with_a_reason():
     with pytest.raises(ShaderError, match=r"octahedral_precise.*: precise rounding is not counted in half arithmetic"):
         half_operation(in_half(ENCODINGS["octahedral_precise"]), "encode")

@@ -1,4 +1,4 @@
-"""Facts of listings beyond counts: loops, waves, half arithmetic."""
+"""Facts from listings beyond counts: loops, waves and half-precision arithmetic."""
 
 import pytest
 
@@ -13,7 +13,7 @@ OCTAHEDRAL = ENCODINGS["octahedral"]
 
 
 @pytest.mark.usefixtures("radv")
-def test_polaris_and_vega_hold_as_many_waves_as_radv_says():
+def test_polaris_and_vega_hold_as_many_waves_as_radv_reports():
     """For RDNA, RADV reports twice as many: the waves of two SIMDs."""
     prepared = cost.prepare(cost.cases([ENCODINGS["octahedral_precise"]], [], ["encode"])[0], "compute")
     for family, outcome in compiled(prepared.job, CHOICES["radeon"]).items():
@@ -46,7 +46,7 @@ def test_half_arithmetic_uses_packed_instructions_and_xyz_costs_nothing():
 
 
 @pytest.mark.usefixtures("radv")
-def test_a_gpu_without_16_bits_says_so_and_the_others_are_measured():
+def test_a_gpu_without_16_bit_arithmetic_is_reported_and_others_are_measured():
     prepared = cost.prepare(cost.cases([in_half(OCTAHEDRAL)], [], ["encode"])[0], "fragment")
     assert uses_halves(prepared.job.code) and not uses_halves(prepared.job.vertex)
     outcomes = compiled(prepared.job, ["polaris10", "vega10"])

@@ -15,14 +15,14 @@ def normals(count: int = 512) -> np.ndarray:
 
 
 def test_the_bisection_of_optimised_rings_takes_eight_turns(gl):
-    """180 rings: log2 of them, rounded up, for most codes."""
+    """For 180 rings, most codes take log2(180) turns, rounded up."""
     n = normals()
     _, decoded = turns_made(gl, ENCODINGS["optimised_rings"], n, np.zeros_like(n))
     bisected = decoded[:, -1]
     assert set(np.unique(bisected)) == {7.0, 8.0} and bisected.mean() == pytest.approx(7.9, abs=0.1)
 
 
-def test_a_loop_takes_its_slots_as_often_as_it_runs():
+def test_slots_in_a_loop_are_counted_once_per_turn():
     """By hand: 1 + 2 slots outside, 2 in an outer loop that runs 4 times, 2 in an inner loop that runs 12 times."""
     kinds, rates = ["a", "b", "a", "c", "a", "b"], {"a": 1, "b": 2}
     loops = [range(1, 5), range(2, 5)]

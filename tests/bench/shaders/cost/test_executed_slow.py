@@ -25,7 +25,7 @@ vec3 looped_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(0.0, 1.0 - dot(e
 """
 
 
-def test_turns_are_counted_loop_by_loop_and_normal_by_normal(gl, tmp_path):
+def test_turns_are_counted_per_loop_and_per_normal(gl, tmp_path):
     (tmp_path / "looped.glsl").write_text(LOOPS)
     (encoding,) = encodings_named(str(tmp_path / "looped.glsl"))
     n = normals()

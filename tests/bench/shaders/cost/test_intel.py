@@ -1,4 +1,4 @@
-"""Instructions by Intel's compilers: listings, comparable kernels and the null device."""
+"""Instructions from Intel's compilers: listings, comparable kernels and the null device."""
 
 from pathlib import Path
 
@@ -36,7 +36,7 @@ COUNTED = {
 
 
 @pytest.mark.parametrize("name", COUNTED)
-def test_the_kinds_of_a_recorded_listing_are_those_counted_by_hand(name):
+def test_kinds_in_a_recorded_listing_match_the_count_by_hand(name):
     counts = dict.fromkeys(intel_disassembly.KINDS, 0) | COUNTED[name]
     assembly = (LISTINGS / f"{name}.asm").read_text()
     assert intel_disassembly.kinds(assembly, sum(counts.values())) == counts
@@ -62,19 +62,19 @@ def test_every_recorded_listing_is_counted():
         ("send(8)         nullUD          g2UD          nullUD 0x0 { align1 1Q };", "memory"),
     ],
 )
-def test_an_instruction_has_its_kind(line, kind):
+def test_an_instruction_has_the_expected_kind(line, kind):
     (instruction,) = intel_disassembly.instructions(line)
     assert intel_disassembly.kind(instruction) == kind
 
 
 def test_a_listing_that_is_not_understood_has_no_kinds():
-    """Examples are an unknown instruction, and a count of instructions that differs from the driver's."""
+    """Examples are an unknown instruction and a count of instructions that differs from the driver's count."""
     text = "add(8) g1<1>F g2<8,8,1>F g3<8,8,1>F { align1 1Q };\n"
     assert intel_disassembly.kinds(text, 1) and not intel_disassembly.kinds(text, 2)
     assert intel_disassembly.kinds(text + text.replace("add", "frobnicate"), 2) is None
 
 
-def test_a_mesa_that_counts_no_waits_is_understood():
+def test_a_mesa_version_that_does_not_count_waits_is_supported():
     text = "add(8) g1<1>F g2<8,8,1>F g3<8,8,1>F { align1 1Q };\nsync nop(1) null<0,1,0>UB { align1 };\nnop ;\n"
     with_waits, without = (intel_disassembly.kinds(text, total) for total in (2, 1))
     assert (with_waits["waiting"], without["waiting"], without["other_alu"]) == (1, 0, 1)
@@ -103,7 +103,7 @@ def test_widest_kernel_without_spills_is_compared_at_its_own_width():
     assert [pair and (pair[0].simd_width, pair[1].simd_width) for pair in pairs] == [(16, 16), (8, 8), (16, 16), None]
 
 
-def test_kernels_of_no_common_width_have_no_counts():
+def test_kernels_without_a_common_width_have_no_counts():
     row = TABLES["cost"].empty() | {"family": "skl"}
     ours, empty = (Compiled("skl", "a device", "1.2.3", (kernel(width),)) for width in (8, 16))
     counts, _ = cost._figures(row, ours, empty)
@@ -123,7 +123,7 @@ def test_figures_use_the_drivers_names_and_radeon_columns_stay_empty():
         assert counts[column] is None, column
 
 
-def test_vendors_stand_for_their_families():
+def test_vendor_names_select_their_families():
     assert chosen_families("intel") == ["hsw", "bdw", "skl", "tgl", "adl", "dg2"]
     assert chosen_families("AMD") == chosen_families("radeon") == list(FAMILIES)[:5]
     assert chosen_families("radeon,intel,skl") == list(FAMILIES)[:11]

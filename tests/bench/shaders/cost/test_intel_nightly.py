@@ -1,4 +1,4 @@
-"""Instructions by Intel's compilers: listings, comparable kernels and the null device."""
+"""Instructions from Intel's compilers: listings, comparable kernels and the null device."""
 
 import test_intel_slow
 from vendors import INTEL
@@ -8,5 +8,5 @@ def test_no_intel_kernel_spills(vendor_rows):
     assert {row["spills"] for row in vendor_rows(INTEL, True)} == {0}
 
 
-def test_known_counts_of_intels_compilers_of_every_encoding(vendor_rows):
-    test_intel_slow.test_known_counts_of_intels_compilers(vendor_rows, is_every=True)
+def test_intels_compilers_give_the_known_counts_for_every_encoding(vendor_rows):
+    test_intel_slow.test_intels_compilers_give_the_known_counts(vendor_rows, is_every=True)

@@ -1,4 +1,4 @@
-"""Instructions by Intel's compilers: listings, comparable kernels and the null device."""
+"""Instructions from Intel's compilers: listings, comparable kernels and the null device."""
 
 import json
 import os
@@ -45,7 +45,7 @@ def tried(**told: str) -> list[int]:
 
 
 @pytest.mark.usefixtures("intel", "own_cache")
-def test_the_null_device_answers_for_itself_alone():
+def test_the_null_device_answers_only_for_itself():
     """DRM requests on other files and the opening of real devices are refused; other requests pass."""
     told = null_device.variables(FAMILIES["skl"].null_device)
     assert tried(**told) == [0, NO_DEVICE, NO_DEVICE, NO_DEVICE, 0]
@@ -53,7 +53,7 @@ def test_the_null_device_answers_for_itself_alone():
 
 
 @pytest.mark.usefixtures("intel")
-def test_the_null_device_is_built_once_and_again_where_it_is_damaged(own_cache, monkeypatch):
+def test_the_null_device_is_built_once_and_rebuilt_if_damaged(own_cache, monkeypatch):
     path = null_device.library()
     built_ns = path.stat().st_mtime_ns
     assert path.parent == own_cache / "normalbench" and null_device.library().stat().st_mtime_ns == built_ns
@@ -84,7 +84,7 @@ def with_a_broken_cc(monkeypatch, folder):
     "take, status, said",
     [(without_cc, 3, "apt-get install gcc"), (with_a_broken_cc, 0, "stdio.h: no such file; libc's headers")],
 )
-def test_a_machine_without_a_c_compiler_loses_intels_rows_alone(run, monkeypatch, tmp_path, take, status, said):
+def test_a_machine_without_a_c_compiler_loses_only_intels_rows(run, monkeypatch, tmp_path, take, status, said):
     take(monkeypatch, tmp_path)
     exit_status, out, err = run(*INSTRUCTIONS, "--stage", "fragment", "--family", "navi21,skl")
     rows = json.loads(out)
@@ -96,7 +96,7 @@ def test_a_machine_without_a_c_compiler_loses_intels_rows_alone(run, monkeypatch
 
 
 @pytest.mark.usefixtures("intel", "own_cache")
-def test_doctor_says_what_intels_counts_lack(monkeypatch):
+def test_missing_c_compiler_for_intels_counts_is_reported(monkeypatch):
     require_intel()
     monkeypatch.setattr(null_device, "COMPILER", "no-such-cc")
     null_device.library().unlink()
@@ -108,7 +108,7 @@ def test_doctor_says_what_intels_counts_lack(monkeypatch):
 OCTAHEDRAL = {"hsw": 11, "bdw": 11, "skl": 11, "tgl": 12, "adl": 12, "dg2": 11}
 
 
-def test_known_counts_of_intels_compilers(vendor_rows, is_every=False):
+def test_intels_compilers_give_the_known_counts(vendor_rows, is_every=False):
     rows = vendor_rows(INTEL, is_every)
     assert {row["transcendental"] for row in rows if row["encoding"] == "octahedral"} == {1}
     if {row["driver"] for row in rows} != {"Mesa 22.3.6"}:

@@ -13,7 +13,7 @@ from normalbench.gbuffer.layouts.presets import LAYOUTS
 from normalbench.gbuffer.layouts.words import targets_of
 
 
-def test_a_layout_whose_code_is_not_written_has_no_kernel():
+def test_a_layout_whose_code_cannot_be_written_has_no_kernel():
     view = replace(
         LAYOUTS["fp32"], targets=targets_of("rgba8: normal.x normal.y"), encoding=ENCODINGS["per_pixel_view"]
     )
@@ -21,7 +21,7 @@ def test_a_layout_whose_code_is_not_written_has_no_kernel():
         pack_operation(view)
 
 
-def test_arrays_can_be_parameters_and_values_of_macros():
+def test_array_types_can_be_parameters_return_values_and_macros():
     program = read_glsl(
         "#version 430\n#define FOUR float[4]\n"
         "FOUR same(float[4] x, float y[4]) { FOUR made; made[0] = x[0] + y[0]; return made; }"

@@ -57,7 +57,7 @@ def slots(layout: Layout, family: str) -> tuple[float, float]:
     ],
     ids=lambda value: getattr(value, "name", None),
 )
-def test_a_layout_costs_what_was_counted_by_hand(layout, packed, unpacked):
+def test_cost_of_a_layout_matches_the_count_by_hand(layout, packed, unpacked):
     assert slots(layout, "navi21") == (packed, unpacked)
 
 

@@ -1,4 +1,4 @@
-"""Instructions by NVIDIA's CUDA compiler: listings, compiled code and missing tools."""
+"""Instructions from NVIDIA's CUDA compiler: listings, compiled code and missing tools."""
 
 import re
 from pathlib import Path
@@ -34,7 +34,7 @@ def line(code: str, place: int = 0, control: int = 0x000FE40000000F00) -> str:
 
 
 @pytest.mark.parametrize("name", COUNTED)
-def test_the_kinds_of_a_recorded_listing_are_those_counted_by_hand(name):
+def test_kinds_in_a_recorded_listing_match_the_count_by_hand(name):
     counts = dict.fromkeys(sass.KINDS, 0) | COUNTED[name]
     assembly = (LISTINGS / f"{name}.asm").read_text()
     assert sass.kinds(assembly, sum(counts.values())) == counts
@@ -61,12 +61,12 @@ def test_every_recorded_listing_is_counted():
         ("BAR.SYNC.DEFER_BLOCKING 0x0", "waiting"),
     ],
 )
-def test_an_instruction_has_its_kind(code, kind):
+def test_an_instruction_has_the_expected_kind(code, kind):
     assert sass.kinds(line(code), 1) == dict.fromkeys(sass.KINDS, 0) | {kind: 1}
 
 
 def test_a_listing_that_is_not_understood_has_no_kinds():
-    """Examples are an unknown instruction, doubles, and a wrong number of instructions."""
+    """Examples are an unknown instruction, doubles and a wrong number of instructions."""
     text = line("FADD R1, R2, R3")
     assert sass.kinds(text, 1) and not sass.kinds(text, 2)
     assert sass.kinds(text + line("FROB R1, R2"), 2) is None and sass.kinds(line("DADD R2, R2, R4"), 1) is None
@@ -78,22 +78,23 @@ def test_padding_after_the_end_is_not_an_instruction():
 
 
 def test_loops_and_branches_are_counted():
-    """The jumps are conditional and unconditional, ahead and back, and the last jumps to itself."""
+    """The jumps are conditional and unconditional, forward and backward, and the last jumps to itself."""
     code = ["@P0 BRA 0x20", "BRA 0x30", "@!P1 BRA 0x10", "BRA P2, 0x40", "BRA 0x40"]
     assert sass.jumps("".join(line(text, 16 * index) for index, text in enumerate(code))) == (2, 1)
 
 
 def test_stalls_are_read_from_the_second_word():
-    """The 4 bits from bit 105 of an instruction's 128 on: 2, 13 and 4 cycles of the words 0x000fe4..., 0x010fda... and
-    0x004fc8..., whose upper halves shifted by 9 are 0x7f2, 0x87ed and 0x27e4."""
+    """The stall is 4 bits, from bit 105 of the 128 bits of an instruction: 2, 13 and 4 cycles for the words
+    0x000fe4..., 0x010fda... and 0x004fc8..., whose upper halves shifted by 9 are 0x7f2, 0x87ed and 0x27e4."""
     words = (0x000FE400078E00FF, 0x010FDA0003F05270, 0x004FC800078E9607)
     assert [sass.stall_cycles(line("MOV R1, R2", 0, word)) for word in words] == [2, 13, 4]
     assert sass.stall_cycles(line("MOV R1, R2", 0, 0)) is None
 
 
 def test_a_sum_waits_for_the_product_it_needs():
-    """In the recorded decoder of sm_86: 4 cycles from FMUL R4 to FFMA, which reads it, the latency that microbenchmarks
-    find on Volta and later (Jia et al., 2018); 13 from a compare to the jump under its predicate."""
+    """In the recorded decoder for sm_86, the stalls from FMUL R4 to FFMA, which reads R4, are 4 cycles: the latency
+    that microbenchmarks find on Volta and later (Jia et al., 2018). A compare stalls 13 cycles before the jump under
+    its predicate."""
     instructions = sass.instructions((LISTINGS / "sm_86-xy-decode.asm").read_text())
     names = [instruction.name for instruction in instructions]
     stalls = [instruction.control >> 41 & 15 for instruction in instructions]
@@ -123,7 +124,7 @@ def test_invalid_elf_file_is_an_error(data):
         cubin.kernel_of(data)
 
 
-def test_figures_are_of_the_code_without_padding():
+def test_figures_do_not_include_padding():
     text = line("MOV R1, R2") + line("EXIT", 16) + line("NOP", 32)
     figures = statistics(Kernel(bytes(48), 16, 0), text)
     assert figures == {
@@ -137,7 +138,7 @@ def test_figures_are_of_the_code_without_padding():
     assert "Spill Count" not in statistics(Kernel(bytes(48), None, 8), text)
 
 
-def test_vendors_stand_for_their_families():
+def test_vendor_names_select_their_families():
     assert chosen_families("nvidia") == ["sm_75", "sm_86", "sm_89", "sm_90", "sm_100", "sm_120"]
     assert chosen_families("Turing,SM 86,Blackwell") == ["sm_75", "sm_86", "sm_120"]
     assert CHOICES["nvidia"] == tuple(name for name in FAMILIES if name.startswith("sm_"))
@@ -167,7 +168,7 @@ def taken(folder: Path) -> list[str]:
     return [path.relative_to(folder).as_posix() for path in (tools.library(), tools.disassembler()) if path]
 
 
-def test_an_installed_cuda_is_found_by_its_variable(monkeypatch, tmp_path):
+def test_an_installed_cuda_is_found_through_its_environment_variable(monkeypatch, tmp_path):
     monkeypatch.setattr(tools, "find_spec", lambda _: None)
     monkeypatch.setenv("CUDA_HOME", str(tmp_path))
     monkeypatch.setenv("PATH", "")
@@ -182,7 +183,7 @@ def test_an_installed_cuda_is_found_by_its_variable(monkeypatch, tmp_path):
     assert taken(tmp_path) == ["lib64/libnvrtc.so.12", "bin/nvdisasm"] and not tools.missing()
 
 
-def test_glsl_that_cannot_be_translated_is_named_with_its_place(tmp_path):
+def test_glsl_that_cannot_be_translated_is_reported_with_file_and_line(tmp_path):
     file = tmp_path / "mine.glsl"
     file.write_text(
         "// Mine.\nMADE kernel_operation(GIVEN given, BESIDE beside) {\n    return given.yx * frob(beside);\n}\n"

@@ -1,4 +1,4 @@
-"""Instructions by NVIDIA's CUDA compiler: listings, compiled code and missing tools."""
+"""Instructions from NVIDIA's CUDA compiler: listings, compiled code and missing tools."""
 
 import json
 import re
@@ -95,7 +95,7 @@ def called(shared):
 
 
 @pytest.mark.parametrize("name", PACKED)
-def test_the_cuda_of_a_packing_brings_numbers_back(called, name):
+def test_cuda_code_of_a_packing_round_trips_numbers(called, name):
     """Numbers return to within a step of the smallest channel, 8 bits."""
     first = 2 * len(PLAIN) + 2 * sum(len(PACKINGS[other]) for other in PACKED[: PACKED.index(name)])
     random = np.random.default_rng(7)
@@ -112,7 +112,7 @@ VERSIONS = "NVRTC 12.9.86 (CUDA's compiler, not the graphics driver's), nvdisasm
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_a_machine_without_the_compiler_loses_nvidias_rows_alone(run, monkeypatch):
+def test_a_machine_without_the_compiler_loses_only_nvidias_rows(run, monkeypatch):
     monkeypatch.setattr(tools, "library", lambda: None)
     status, out, err = run(*INSTRUCTIONS, "--family", "navi21,sm_86")
     (lost,) = [row for row in json.loads(out) if row["skipped"]]
@@ -124,7 +124,7 @@ def test_a_machine_without_the_compiler_loses_nvidias_rows_alone(run, monkeypatc
 
 
 @pytest.mark.usefixtures("radv", "own_cache")
-def test_a_fragment_shader_is_refused_in_a_line(run, monkeypatch):
+def test_a_fragment_shader_is_refused_with_a_reason(run, monkeypatch):
     """CUDA has no fragment shaders; rows of other vendors are still measured."""
     monkeypatch.setattr(tools, "missing", lambda: "")
     status, out, _ = run(*INSTRUCTIONS, "--family", "navi21,sm_86", "--stage", "fragment")
@@ -144,7 +144,7 @@ def normals(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("at", range(len(PLAIN)), ids=[encoding.name for encoding in PLAIN])
-def test_the_cuda_of_an_encoding_computes_its_formula(called, at):
+def test_cuda_code_of_an_encoding_computes_its_formula(called, at):
     """Codes agree with the Python version to 2^-19 except on seams, and decoded normals to 2^-18."""
     encoding, (n, view) = PLAIN[at], normals(2000)
     codes = called(at, n, view)
@@ -174,7 +174,7 @@ def test_unknown_nvrtc_architecture_is_skipped_with_a_reason(run, monkeypatch):
 OCTAHEDRAL = {"sm_75": 15, "sm_86": 15, "sm_89": 15, "sm_90": 15, "sm_100": 14, "sm_120": 14}
 
 
-def test_known_counts_of_nvidias_compiler(vendor_rows, is_every=False):
+def test_nvidias_compiler_gives_the_known_counts(vendor_rows, is_every=False):
     """Cheap encodings have the same order as on a Radeon."""
     rows = vendor_rows(NVIDIA, is_every)
     if {row["driver"] for row in rows} != {VERSIONS}:
@@ -195,7 +195,7 @@ def test_nvidia_instructions_are_16_bytes_and_no_kernel_spills(vendor_rows, is_e
             assert (row["transcendental"], row["branches"], row["memory"]) == (1, 0, 0), row
 
 
-def test_the_compiler_is_told_from_the_graphics_driver(nvidia, monkeypatch):  # noqa: ARG001 (asks for the compiler)
+def test_the_compiler_is_distinguished_from_the_graphics_driver(nvidia, monkeypatch):  # noqa: ARG001 (asks for the compiler)
     """Rows and `doctor` give the compiler's name and version; a library not installed by pip reports its own."""
     assert re.match(
         r"NVRTC [\d.]+ \(CUDA's compiler, not the graphics driver's\), nvdisasm [\d.]+$", tools.title("1.2")

@@ -10,7 +10,7 @@ from normalbench.bench.shaders.isa import process as isa_process
 
 
 def test_late_reader_does_not_find_a_closed_stream(monkeypatch):
-    """On a busy machine the child may be left before its reading thread has begun to read."""
+    """On a busy machine the child may end before its reading thread has begun to read."""
     script = "print('{}', flush=True); input()"
     monkeypatch.setattr(isa_process, "CHILD", [sys.executable, "-c", script])
     read, errors, ended = isa_process._read, [], threading.Event()

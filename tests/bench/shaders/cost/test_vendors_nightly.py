@@ -9,8 +9,8 @@ from test_vendors_slow import (
 
 
 @named
-def test_doing_nothing_costs_nothing_of_every_encoding(vendor_rows, vendor):
-    test_vendors_slow.test_doing_nothing_costs_nothing(vendor_rows, vendor, is_every=True)
+def test_the_identity_costs_nothing_if_every_encoding_is_compiled(vendor_rows, vendor):
+    test_vendors_slow.test_the_identity_costs_nothing(vendor_rows, vendor, is_every=True)
 
 
 @named

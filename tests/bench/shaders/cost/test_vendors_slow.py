@@ -13,7 +13,7 @@ named = pytest.mark.parametrize("vendor", VENDORS, ids=lambda vendor: vendor.nam
 
 
 @named
-def test_doing_nothing_costs_nothing(vendor_rows, vendor, is_every=False):
+def test_the_identity_costs_nothing(vendor_rows, vendor, is_every=False):
     rows = [row for row in vendor_rows(vendor, is_every) if row["encoding"] == "xyz"]
     assert len(rows) == 2 * len(vendor.stages) * len(vendor.families(is_every))
     for row in rows:
@@ -32,7 +32,7 @@ def test_kinds_add_up_to_the_compilers_own_count(vendor_rows, vendor, is_every=F
 
 @pytest.mark.usefixtures("own_cache")
 @named
-def test_cached_rows_are_the_same_and_another_gpu_or_build_recompiles(request, run, monkeypatch, vendor):
+def test_cached_rows_match_and_another_gpu_or_build_causes_recompilation(request, run, monkeypatch, vendor):
     """The article's rows appear next to the compiler's."""
     request.getfixturevalue(vendor.name)
     asked = [*INSTRUCTIONS, "--stage", ",".join(vendor.stages), "--family", vendor.quick[-1], "--article"]
@@ -57,7 +57,7 @@ FAILING = [
 
 @pytest.mark.usefixtures("own_cache")
 @pytest.mark.parametrize("vendor, code, reason", FAILING, ids=[f"{vendor.name}-{code}" for vendor, code, _ in FAILING])
-def test_a_compiler_that_fails_costs_its_own_rows(request, run, monkeypatch, vendor, code, reason):
+def test_a_compiler_failure_loses_only_its_own_rows(request, run, monkeypatch, vendor, code, reason):
     request.getfixturevalue(vendor.name)
     vendor.runs(monkeypatch, code)
     monkeypatch.setattr(isa_process, "SECONDS", 8.0 if "sleep" in code else isa_process.SECONDS)

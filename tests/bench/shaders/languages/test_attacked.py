@@ -35,7 +35,7 @@ PLAIN = ENCODE.replace("CODE", "n.xy") + DECODE
         '#define P(a, b) a##b\nP(imp, ort) "../other.slang";\n',
     ],
 )
-def test_a_file_writes_no_program_and_reads_no_other_file(tmp_path, text, ending):
+def test_a_file_cannot_write_a_program_or_read_another_file(tmp_path, text, ending):
     """Slang keywords can put a string into the C++ that is run, or read a module. However they are written, code that
     needs them is refused, and other code is measured as if they were absent."""
     (tmp_path / "other.slang").write_text("float f(float a) { return 1.0; }\n")
@@ -83,7 +83,7 @@ JOINED = [("hlsl", "file"), ("wgsl", "file")]
 
 
 @pytest.mark.parametrize("ending, by, joins", [(*way, [*JOINS] if way in JOINED else ["plain"]) for way in WAYS])
-def test_no_disguise_of_an_include_reads_a_file_elsewhere(tmp_path, ending, by, joins):
+def test_a_disguised_include_cannot_read_a_file_elsewhere(tmp_path, ending, by, joins):
     """The encoder calls a function of a forbidden file, so it compiles only if that file was read."""
     folders = [tmp_path / name for name in ("elsewhere", "own", "work")]
     for folder in folders:
@@ -100,7 +100,7 @@ def test_no_disguise_of_an_include_reads_a_file_elsewhere(tmp_path, ending, by, 
         assert answer.get("error", "").startswith(str(folders[1])), (attack, answer)
 
 
-def test_a_refusal_names_the_line_whatever_branches_stand_before_it(tmp_path):
+def test_a_refusal_gives_the_line_whatever_branches_precede_it(tmp_path):
     path = tmp_path / "mine.hlsl"
     needs = ENCODE.replace("CODE", "n.xy * f(1.0)") + DECODE
     path.write_text("#ifdef A\n#else\n#endif\n#if B\n#endif\nimport x;\n" + needs)
@@ -132,7 +132,7 @@ def test_harmless_constructs_are_read(tmp_path, text):
 @pytest.mark.parametrize(
     "value", ["\\", "1 \\ ", "//", "/*", '#include "NOTE"', '%:include "NOTE"', "import", "__include"]
 )
-def test_a_macro_of_a_command_line_is_judged_as_a_line_of_the_file(tmp_path, ending, value):
+def test_a_macro_on_the_command_line_is_checked_like_a_line_of_the_file(tmp_path, ending, value):
     """A value in `-D A=VALUE` can neither hide the next line nor read a file."""
     (tmp_path / "note.txt").write_text("float two() { return 2.0; }\n")
     path = tmp_path / f"mine.{ending}"
@@ -145,7 +145,7 @@ def test_a_macro_of_a_command_line_is_judged_as_a_line_of_the_file(tmp_path, end
 @pytest.mark.parametrize(
     "value", ['0.3+\n#include "/etc/hostname"\n', "{0.5}", "0/0", "gone", "n + 1", '"x"', "system(1)", "wired_n_given"]
 )
-def test_a_wiring_has_numbers_and_names_alone(tmp_path, value):
+def test_a_wiring_may_contain_only_numbers_and_names(tmp_path, value):
     path = tmp_path / "mine.hlsl"
     path.write_text(
         "float4 PackDir(float3 n, float r) { return float4(n, r); }\nfloat3 UnpackDir(float4 t) { return t.xyz; }\n"
@@ -173,7 +173,7 @@ def test_error_names_an_input_that_a_side_does_not_have(tmp_path):
     ],
 )
 def test_code_that_a_pair_needs_is_kept(tmp_path, text):
-    """Examples are a macro's definition before a removed function, names made by pasting, and braces in quotes."""
+    """Examples are a macro's definition before a removed function, names made by token pasting and quoted braces."""
     path = tmp_path / "mine.hlsl"
     code = "float2(CALL(Of)(n.x), sign(n.xy).y)" if "CALL" in text else "sign(n.xy)"
     path.write_text(text + ENCODE.replace("CODE", code) + DECODE)
@@ -188,14 +188,14 @@ def test_invalid_global_is_the_reported_error(tmp_path):
         translated(path)
 
 
-def test_a_macro_before_a_function_is_an_item_of_its_own():
+def test_a_macro_before_a_function_is_a_separate_item():
     text = "DEFINED\n[numthreads(1, 1, 1)]\nvoid main(uint3 id) { }\n"
     text += "float3\nf(float3 n) { return n; }\nSIGN(x)\nfloat g() { }\n"
     assert [item.function for item in items(text)] == ["main", "f", "", "g", ""]
     assert heads(text).count(";") == 3
 
 
-def test_the_packer_of_the_file_comes_before_the_helper_that_it_includes(tmp_path):
+def test_a_files_own_packer_takes_precedence_over_an_included_helper(tmp_path):
     """Unity's HDRP is such a case. In a single file, a note names the packer."""
     helper = PLAIN.replace("CODE", "n.xy")
     packer = (

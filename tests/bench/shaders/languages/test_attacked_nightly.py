@@ -8,5 +8,5 @@ pytestmark = pytest.mark.usefixtures("slang")
 
 
 @pytest.mark.parametrize("ending, by", [way for way in WAYS if way not in JOINED])
-def test_no_disguise_of_an_include_with_any_join_reads_a_file_elsewhere(tmp_path, ending, by):
-    test_attacked.test_no_disguise_of_an_include_reads_a_file_elsewhere(tmp_path, ending, by, [*JOINS])
+def test_an_include_disguised_with_any_join_cannot_read_a_file_elsewhere(tmp_path, ending, by):
+    test_attacked.test_a_disguised_include_cannot_read_a_file_elsewhere(tmp_path, ending, by, [*JOINS])

@@ -14,7 +14,7 @@ PAIR = "vec2 f(vec3 n) { return n.xy; }"
     "text",
     [f"const x = 1;\nconst s = /* glsl */ `{PAIR}`;", f"// ours\nexport default `{PAIR}`;\n", f"const s = `{PAIR}`"],
 )
-def test_a_template_of_javascript_is_read_where_it_stood(text):
+def test_a_javascript_template_is_read_at_its_original_position(text):
     shader = shader_text(text, ".js")
     assert shader.strip() == PAIR and len(shader) == len(text) and shader.index(PAIR) == text.index(PAIR)
 

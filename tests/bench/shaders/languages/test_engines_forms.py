@@ -12,7 +12,7 @@ pytestmark = pytest.mark.usefixtures("in_this_process")
 
 
 @pytest.mark.usefixtures("slang")
-def test_error_has_the_place_and_the_missing_include(tmp_path):
+def test_error_gives_the_position_and_the_missing_include(tmp_path):
     """The error has the line and column that the compiler refuses, and the missing include."""
     path = tmp_path / "mine.slang"
     path.write_text(
@@ -27,7 +27,7 @@ def test_error_has_the_place_and_the_missing_include(tmp_path):
 
 
 @pytest.mark.usefixtures("slang")
-def test_another_overload_does_not_take_the_place_of_one_that_is_refused(tmp_path):
+def test_a_refused_overload_is_not_replaced_by_another(tmp_path):
     path = tmp_path / "mine.slang"
     path.write_text(
         "float helped(float x) { return gone(x); }\nfloat helped(int x) { return float(x); }\n"

@@ -17,10 +17,10 @@ OF_XY = ("mediump.glsl", "binding.wgsl", "taken.wgsl", "struct.hlsl", "half_lite
 
 
 @pytest.mark.usefixtures("gl")
-def test_octahedral_has_its_mean_in_more_forms(run, tmp_path):
-    test_engines_forms_slow.test_octahedral_has_its_mean_in_every_form(run, tmp_path, OF_OCTAHEDRAL)
+def test_octahedral_has_the_expected_mean_in_more_forms(run, tmp_path):
+    test_engines_forms_slow.test_octahedral_has_the_expected_mean_in_every_form(run, tmp_path, OF_OCTAHEDRAL)
 
 
 @pytest.mark.usefixtures("gl")
-def test_xy_has_its_mean_in_more_forms(run, tmp_path):
-    test_engines_forms_slow.test_xy_has_its_mean_in_every_form(run, tmp_path, OF_XY)
+def test_xy_has_the_expected_mean_in_more_forms(run, tmp_path):
+    test_engines_forms_slow.test_xy_has_the_expected_mean_in_every_form(run, tmp_path, OF_XY)

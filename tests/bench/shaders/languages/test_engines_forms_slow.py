@@ -36,7 +36,7 @@ def angles(run, tmp_path, files, normals) -> dict[str, float]:
 
 
 @pytest.mark.usefixtures("gl")
-def test_octahedral_has_its_mean_in_every_form(run, tmp_path, files=OF_OCTAHEDRAL):
+def test_octahedral_has_the_expected_mean_in_every_form(run, tmp_path, files=OF_OCTAHEDRAL):
     """The forms cover names, main, uniforms, absent functions, namespaces, defaults, include roots and endings."""
     means = angles(run, tmp_path, files, "sphere")
     assert len(means) == len(files)
@@ -44,7 +44,7 @@ def test_octahedral_has_its_mean_in_every_form(run, tmp_path, files=OF_OCTAHEDRA
 
 
 @pytest.mark.usefixtures("gl")
-def test_xy_has_its_mean_in_every_form(run, tmp_path, files=OF_XY):
+def test_xy_has_the_expected_mean_in_every_form(run, tmp_path, files=OF_XY):
     """The forms cover half literals, overloads, Unity's types, structures and WGSL with engines' preprocessors."""
     means = angles(run, tmp_path, files, "hemisphere")
     _, out, _ = run(
@@ -94,10 +94,10 @@ PACKED = {
 
 @pytest.mark.usefixtures("gl", "slang")
 @pytest.mark.parametrize("name", PACKED)
-def test_an_integer_is_measured_as_it_stands(run, name):
-    """A packed code is stored exactly, in one row whatever storages are named. Mean angles are 0.00261 degrees for
-    octahedral truncated to 16:16, twice the error of rounding; 0.3385 for 8:8:8, truncated and normalised; 0.8607
-    for xy in 8:8."""
+def test_an_integer_code_is_measured_unchanged(run, name):
+    """A packed code is stored exactly and has one row, whatever storages are requested. Mean angles are 0.00261
+    degrees for octahedral truncated to 16:16, twice the error of rounding; 0.3385 for 8:8:8, truncated and
+    normalised; 0.8607 for xy in 8:8."""
     mean, normals, bits = PACKED[name]
     storage = ("--storage", "rg8,rg16", "--backend", "glsl", "--count", "65536", "--format", "json")
     status, out, err = run("quality", "--encoding", str(FORMS / name), "--normals", normals, *storage)

@@ -1,4 +1,4 @@
-"""Encoders of engines, written in HLSL from their definitions and compared with published figures."""
+"""Engines' encoders, written in HLSL from their definitions and compared with published figures."""
 
 import shutil
 from pathlib import Path
@@ -62,7 +62,7 @@ def test_an_engines_encoder_has_its_published_mean(name):
 
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("name", ["wicked", "octahedral", "o3de"])
-def test_slang_has_the_figures_of_the_same_text_in_hlsl(name, tmp_path):
+def test_slang_gives_the_same_figures_as_hlsl_for_the_same_text(name, tmp_path):
     """Slang reads HLSL, and integers and halves keep their meaning."""
     copy = Path(shutil.copy(FILES / f"{name}.hlsl", tmp_path / f"{name}.slang"))
     assert angles(name, 65536, copy)[0] == pytest.approx(angles(name, 65536, FILES / f"{name}.hlsl")[0], rel=1e-5)

@@ -1,4 +1,4 @@
-"""Encoders of engines, written in HLSL from their definitions and compared with published figures."""
+"""Engines' encoders, written in HLSL from their definitions and compared with published figures."""
 
 import pytest
 from test_figures import FILES, PUBLISHED, angles

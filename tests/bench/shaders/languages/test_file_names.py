@@ -8,7 +8,7 @@ from manual import ROOT
 from normalbench.bench.ground.user_files import file_names, files_in, with_files
 
 
-def test_a_comma_in_a_files_name_is_a_part_of_it(tmp_path, monkeypatch):
+def test_a_comma_may_be_part_of_a_file_name(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "my,file.hlsl").touch()
     (tmp_path / "a,b").mkdir()

@@ -41,7 +41,7 @@ def test_a_file_without_blocks_is_a_program(tmp_path):
 
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("blocks", [(COMMON, OTHER, PAIR), (COMMON, PAIR, OTHER)])
-def test_macros_of_a_program_do_not_reach_another(tmp_path, blocks):
+def test_macros_in_one_program_do_not_affect_another(tmp_path, blocks):
     translation = translated(material(tmp_path, *blocks))
     assert [name for name, _ in translation.functions] == ["PackDir", "UnpackDir"]
 

@@ -1,4 +1,4 @@
-"""The encoder and the decoder of a file, by their types and their names."""
+"""The encoder and the decoder in a file, found by their types and their names."""
 
 import tempfile
 from pathlib import Path
@@ -88,7 +88,7 @@ def pair(text: str, asked=None) -> str:
         ),
     ],
 )
-def test_the_pair_of_a_file_is_found(text, named):
+def test_the_pair_in_a_file_is_found(text, named):
     assert pair(text) == named
 
 
@@ -130,7 +130,7 @@ def test_the_pair_of_a_file_is_found(text, named):
         (f"float3 EncodeA(float3 n) {OF} {BACK}", ("EncodeA", "DecodeNormal"), "EncodeA must take a float3"),
     ],
 )
-def test_file_without_a_unique_pair_reports_what_it_has(text, asked, said):
+def test_error_for_a_file_without_a_unique_pair_describes_its_functions(text, asked, said):
     with pytest.raises(NoPairError, match=said.replace("(", r"\(").replace(")", r"\)")):
         pair(text, asked)
 
@@ -148,7 +148,7 @@ def many(count: int, decoder: str) -> list[Function]:
     return [*encoders, *(function(decoder.format(number), 3, 2) for number in range(count))]
 
 
-def test_too_many_functions_whose_names_do_not_go_together_are_refused_early():
+def test_too_many_functions_without_matching_names_are_refused_early():
     with pytest.raises(SeveralPairsError):
         pair_of(many(100, "UnpackOf{}"), None, "mine.hlsl")
     message = "300 functions may encode and 300 may decode, but no two have matching names; name two: "
@@ -167,5 +167,5 @@ def test_name_identifies_a_pair_if_types_cannot():
     assert stem("UnpackNormalOctRectEncode") == stem("PackNormalOctRectEncode") == "normaloctrect"
 
 
-def test_types_are_numbers_of_components():
+def test_types_are_reduced_to_numbers_of_components():
     assert functions(f"min16float2 f(float3 n, uint k) {OF}") == [Function("f", 2, (3, 0))]

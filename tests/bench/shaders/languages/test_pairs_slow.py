@@ -1,4 +1,4 @@
-"""The encoder and the decoder of a file, by their types and their names."""
+"""The encoder and the decoder in a file, found by their types and their names."""
 
 import time
 

@@ -23,8 +23,8 @@ def test_matrix_that_glslang_misreads_is_not_measured_by_glslang_alone(tmp_path)
 
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("name", [name for name in DIVISIONS if name not in FEW])
-def test_all_divisions_of_whole_numbers_are_noted(name, tmp_path):
-    test_second_slow.test_divisions_of_whole_numbers_are_noted(name, tmp_path)
+def test_all_integer_divisions_are_noted(name, tmp_path):
+    test_second_slow.test_integer_divisions_are_noted(name, tmp_path)
 
 
 @pytest.mark.usefixtures("slang")

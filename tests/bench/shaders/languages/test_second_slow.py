@@ -47,7 +47,7 @@ UNDEFINED = "it divides an integer by 0 for some normals, which its language doe
 
 
 @pytest.mark.usefixtures("hlsl", "slang")
-def test_a_whole_number_divided_by_zero_is_refused_in_a_line(tmp_path):
+def test_integer_division_by_zero_is_a_one_line_error(tmp_path):
     error = first_look(hlsl_of(tmp_path, "mine", "int k = int(n.x * 0.0); return n.xy + (7 / k) * 1e-12;"))["error"]
     assert error.endswith(UNDEFINED)
 
@@ -161,7 +161,7 @@ FEW = ("of a number", "a remainder without a sign", "of the lowest number", "in 
 
 @pytest.mark.usefixtures("slang")
 @pytest.mark.parametrize("name", FEW)
-def test_divisions_of_whole_numbers_are_noted(name, tmp_path):
+def test_integer_divisions_are_noted(name, tmp_path):
     """The second translation finds the division, whatever the driver returns."""
     division, is_undefined = DIVISIONS[name]
     path = tmp_path / "mine.slang"

@@ -1,4 +1,4 @@
-"""A file with its includes: where includes are read from, and the original place of each line."""
+"""A file with its includes: the folders that may be read, and the original position of each line."""
 
 import pytest
 from typed import Source
@@ -29,7 +29,7 @@ def test_lines_keep_their_file_and_number(tmp_path):
 
 
 @pytest.mark.parametrize("guard", ["#pragma once\n", ""])
-def test_a_file_is_not_included_by_itself(tmp_path, guard):
+def test_a_file_does_not_include_itself(tmp_path, guard):
     """With `#pragma once` a file is also included only once."""
     written(tmp_path, f'{guard}#include "mine.hlsl"\npart', "part.hlsli")
     words = Source(written(tmp_path, '#include "part.hlsli"\n#include <part.hlsli>\nmine')).text.split()
@@ -40,7 +40,7 @@ ONCE, GUARD = "#pragma once\npart", "\n#ifndef PART\n#define PART\npart\n#endif"
 
 
 @pytest.mark.parametrize("part, times", [("part", 2), (ONCE, 2), (GUARD, 2)])
-def test_each_branch_has_what_it_includes(tmp_path, part, times):
+def test_each_branch_has_its_own_includes(tmp_path, part, times):
     """Every branch keeps its include, whichever is compiled; a guarded file that was read before is left out."""
     written(tmp_path, part, "part.hlsli")
     text = '#if A\n#include "part.hlsli"\n#else\n#include <part.hlsli>\n#endif\n#include "part.hlsli"'
@@ -60,7 +60,7 @@ def test_include_guard_is_not_a_branch(tmp_path):
     assert Source(written(tmp_path, '#include "0.hlsli"\n#include "7.hlsli"')).text.split().count("part") == 1
 
 
-def test_a_list_of_macros_is_included_as_often_as_it_is_asked_for(tmp_path):
+def test_a_list_of_macros_is_included_each_time_it_is_requested(tmp_path):
     written(tmp_path, "KIND(a)\nKIND(b)", "list.hlsli")
     text = '#define KIND(x) float x;\n#include "list.hlsli"\n#undef KIND\n#define KIND(x) x,\n#include "list.hlsli"\n'
     assert Source(written(tmp_path, text)).text.split().count("KIND(a)") == 2
@@ -93,7 +93,7 @@ def test_macro_is_not_accepted_as_an_included_file(tmp_path):
     assert source.text == "#define FILE <part.hlsli>\n#error not read\nint part;\n"
 
 
-def test_an_include_in_disguise_is_refused(tmp_path):
+def test_a_disguised_include_is_refused(tmp_path):
     with pytest.raises(UsageError, match="on one line"):
         Source(written(tmp_path, '#/**/include "a" "b"'))
 
@@ -106,13 +106,13 @@ def test_an_include_in_disguise_is_refused(tmp_path):
         ("// gone \\\ngone\nint x; \\", ["", "", "int x;"]),
     ],
 )
-def test_a_line_that_goes_on_is_read_as_one(tmp_path, text, lines):
+def test_a_continued_line_is_read_as_one_line(tmp_path, text, lines):
     """As in compilers, spaces may follow the backslash; later lines keep their numbers."""
     written(tmp_path, "int part;", "part.hlsli")
     assert Source(written(tmp_path, text)).text.splitlines() == lines
 
 
-def test_comments_leave_every_column_where_it_is():
+def test_removing_comments_does_not_move_any_column():
     text = 'a /* b\nc */ d // e\n"// f" g'
     bare = without_comments(text)
     assert len(bare) == len(text) and bare == 'a     \n     d     \n"   f" g'
@@ -134,6 +134,6 @@ def test_wgsl_comments_follow_their_own_rules(text, left):
     assert bare(text, is_wgsl=True) == left
 
 
-def test_a_comment_without_an_end_is_named(tmp_path):
+def test_an_unclosed_comment_is_reported(tmp_path):
     with pytest.raises(UsageError, match=r"mine\.hlsl:2: a comment that begins with /\* is not closed"):
         Source(written(tmp_path, "float x;\n/* never"))

@@ -74,7 +74,7 @@ def test_invalid_setting_is_an_error(mine, settings, why):
     "name, root",
     [("lib/part.hlsl", ""), ("Packages/lib/part.hlsl", "Packages="), ("/Engine/lib/part.hlsl", "/Engine=")],
 )
-def test_includes_are_read_from_the_folders_that_are_given(tmp_path, mine, name, root):
+def test_includes_are_read_from_the_given_folders(tmp_path, mine, name, root):
     """Angle brackets work the same way; no other folder is read."""
     library = tmp_path / "library" / "lib"
     library.mkdir(parents=True)
@@ -100,7 +100,7 @@ def test_file_is_read_in_the_given_language(tmp_path):
     assert translated(word_with(str(path), language="slang")).components == 2
 
 
-def test_files_that_are_named_are_found(tmp_path, mine):
+def test_files_in_settings_are_found(tmp_path, mine):
     (tmp_path / "pre.hlsl").write_text("")
     word = f"{mine}:prelude={tmp_path / 'pre.hlsl'}:include=X={tmp_path}:define=A"
     assert files_in(word) == [str(mine), str(tmp_path / "pre.hlsl"), str(tmp_path)]
@@ -120,7 +120,7 @@ def test_gates_resolve_files_and_folders_relative_to_their_own_folder(tmp_path, 
     assert resolved["include"][0].startswith("Packages=")
 
 
-def test_a_path_of_windows_has_a_drive():
+def test_a_windows_path_may_have_a_drive():
     """A colon before a slash does not end a word."""
     word = r"C:\shaders\mine.hlsl:Pack:Unpack:include=C:\library:define=ROUND=1"
     settings = UserFile(word).settings

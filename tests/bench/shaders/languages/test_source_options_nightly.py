@@ -11,7 +11,7 @@ mine = test_source_options.mine
 
 
 @pytest.mark.usefixtures("gl", "slang")
-def test_rows_of_workers_say_what_they_were_read_with(run, mine, tmp_path):
+def test_rows_from_workers_record_the_settings_they_were_read_with(run, mine, tmp_path):
     asked, mean = rows_by_macros(run, mine, tmp_path)
     status, out, err = run(*asked, "-DHALF=1.0", "--on", "local:1")
     assert status == 0, err

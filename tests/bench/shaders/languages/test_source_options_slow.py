@@ -63,8 +63,8 @@ def test_every_command_accepts_macros(run, mine, tmp_path, monkeypatch, command)
 
 
 @pytest.mark.usefixtures("gl", "slang")
-def test_rows_say_what_they_were_read_with(run, mine, tmp_path):
-    """Each macro value gives another row; the nightly test sends the same to workers."""
+def test_rows_record_the_settings_they_were_read_with(run, mine, tmp_path):
+    """Each macro value gives another row; the nightly test sends the same options to workers."""
     rows_by_macros(run, mine, tmp_path)
 
 

@@ -34,7 +34,7 @@ QUICK = ("--storage", "rg8", "--normals", "hemisphere", "--backend", "glsl", "--
 
 
 def changed(code: str) -> str:
-    """Return MINE with another end of its encoder."""
+    """Return MINE with another return statement in its encoder."""
     return MINE.replace("return float2(p.x + p.y, p.x - p.y);", code)
 
 
@@ -70,7 +70,7 @@ def test_glsl_style_function_names_name_the_encoding(run, tmp_path):
 
 
 @pytest.mark.usefixtures("hlsl")
-def test_codes_in_0_to_1_are_stored_as_they_are(run, tmp_path):
+def test_codes_in_0_to_1_are_stored_unchanged(run, tmp_path):
     """An unsigned storage holds the returned value itself; rows say so in a column, and `doctor` in a line."""
     text = changed("return float2(p.x + p.y, p.x - p.y) * 0.5 + 0.5;").replace(
         "float2 p = float2(e", "e = e * 2.0 - 1.0; float2 p = float2(e"
@@ -100,7 +100,7 @@ def test_conversion_to_signed_and_back_keeps_every_integer():
         assert np.array_equal(np.rint(((scaled * 2 - unity) * half + half) * np.float32(2**bits - 1)), whole)
 
 
-def test_codes_in_0_to_1_are_told_from_others():
+def test_codes_in_0_to_1_are_distinguished_from_others():
     n = directions()
     assert is_unit(n * 0.5 + 0.5) and is_unit((n[:, :2] * 0.5 + 0.5) * 1.0000001)
     assert not is_unit(n) and not is_unit(n * 0.25 + 0.5) and not is_unit(n[:, :1] * 0)
@@ -136,7 +136,7 @@ def test_cached_rows_depend_on_includes_and_twin(tmp_path):
     assert len(seen) == 4
 
 
-def test_a_shader_becomes_functions_of_other_names():
+def test_a_shader_becomes_functions_with_other_names():
     shader = "#version 430\nlayout(location = 0) in vec3 _8;\nlayout(location = 0) out vec2 _9;\n"
     shader += "void main()\n{\n    _9 = _8.xy;\n}\n"
     expected = "vec2 p_main(vec3 p_0, vec3 view)\n{\n    vec2 p_out;\n    p_out = p_0.xy;\n    return p_out;\n}\n"
@@ -145,7 +145,7 @@ def test_a_shader_becomes_functions_of_other_names():
         plain("layout(binding = 0) uniform sampler2D _7;\n" + shader, "p", "vec3")
 
 
-def test_nothing_heavy_is_imported_to_translate():
+def test_translation_imports_no_heavy_libraries():
     """The process that translates starts in a tenth of a second."""
     code = "import sys, normalbench.bench.shaders.languages.child\n"
     code += "print([name for name in ('jax', 'numpy', 'moderngl', 'torch') if name in sys.modules])"
@@ -153,7 +153,7 @@ def test_nothing_heavy_is_imported_to_translate():
 
 
 @pytest.mark.parametrize("version", ["", "#define __HLSL_VERSION 2016\n"])
-def test_the_version_of_hlsl_is_known(run, ending, version):
+def test_the_hlsl_version_macro_is_defined(run, ending, version):
     """Engines check the version before they use newer features; a file may still set another version."""
     Path(f"mine.{ending}").write_text(
         f"{version}#ifdef __HLSL_VERSION\n#if __HLSL_VERSION < 2021\n{MINE}\n#endif\n#endif\n"

@@ -98,7 +98,7 @@ def in_hlsl(name: str) -> str:
 
 
 @pytest.mark.usefixtures("radv")
-def test_the_same_steps_cost_the_same_instructions(run, ending, tmp_path):
+def test_the_same_steps_take_the_same_number_of_instructions(run, ending, tmp_path):
     """Counts are equal on two generations of GPUs."""
     # Slang is given HLSL's text, and takes a second for each.
     names = PLAIN if ending == "hlsl" else PLAIN[:2]
@@ -138,7 +138,7 @@ WRONG = {
 
 
 def test_invalid_files_do_not_affect_the_others(run, tmp_path, ending):
-    """One line names each invalid file, and the rows of the others are measured."""
+    """One line reports each invalid file, and the rows of the other files are measured."""
     text = {name: text for name, (text, _) in WRONG.items()}
     text |= {"large": "// " + "x" * 10_000_000 + "\n" + MINE, "good": MINE}
     files = [str(tmp_path / written(tmp_path, each, f"{name}.{ending}")) for name, each in text.items()]

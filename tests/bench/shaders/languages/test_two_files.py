@@ -29,7 +29,7 @@ def two(tmp_path):
     return f"{tmp_path / 'enc.hlsl'}:PackDir,{tmp_path / 'dec.hlsl'}:UnpackDir"
 
 
-def test_encoder_and_decoder_in_a_row_are_one_name(two):
+def test_consecutive_encoder_and_decoder_form_one_name(two):
     assert file_names(f"octahedral,{two},mine.hlsl:A:B,xyz") == ("octahedral", two, "mine.hlsl:A:B", "xyz")
     assert file_names("a.hlsl:A, b.hlsl:B,c.hlsl:C,d.hlsl:D") == ("a.hlsl:A, b.hlsl:B", "c.hlsl:C,d.hlsl:D")
     assert file_names("a.hlsl:A:define=X,b.hlsl:B")[0] == "a.hlsl:A:define=X"
@@ -47,6 +47,6 @@ def test_both_files_are_fingerprinted(two, tmp_path):
     assert len(before["files"]) == 1 and files_of(options) != before
 
 
-def test_one_name_for_both_is_refused(two):
+def test_the_same_name_for_both_functions_is_refused(two):
     with pytest.raises(UsageError, match="both functions are called PackDir; rename one"):
         Source(two.replace("UnpackDir", "PackDir"))

@@ -8,5 +8,5 @@ two = test_two_files.two
 
 
 @pytest.mark.usefixtures("gl", "slang", "two")
-def test_workers_have_the_figures_of_xy_of_two_files(run, tmp_path, monkeypatch):
+def test_workers_give_the_figures_of_xy_for_two_files(run, tmp_path, monkeypatch):
     check_figures(run, tmp_path, monkeypatch, "--on", "local:1")

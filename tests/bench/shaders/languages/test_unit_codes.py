@@ -65,7 +65,7 @@ def figures(run, encodings: str, storages: str, *words: str) -> dict[tuple[str, 
 
 
 @pytest.mark.parametrize("ending", TEXTS)
-def test_every_language_gives_the_row_of_the_catalogue(run, ending, request):
+def test_every_language_gives_the_catalogues_figures(run, ending, request):
     if ending in ("hlsl", "slang"):
         request.getfixturevalue(ending)
     rows = figures(run, f"unit.{ending},octahedral", "rg8", "--backend", "glsl")
@@ -75,8 +75,8 @@ def test_every_language_gives_the_row_of_the_catalogue(run, ending, request):
 
 
 @pytest.mark.parametrize("name", ["rg8_snorm", "rg16_snorm", "rg16f", "rgba32f"])
-def test_a_signed_storage_of_unsigned_numbers_keeps_them(name):
-    """Numbers return within half a step, and [0, 1] has as many numbers as texels."""
+def test_a_signed_storage_preserves_unsigned_numbers(name):
+    """Numbers return within half a step, and a SNORM channel has one number per code in [0, 1]."""
     storage = of_unit(STORAGES[name])
     codec = Codec(ENCODINGS["octahedral"], storage)
     c = np.linspace(-1, 1, 1001, dtype=np.float32)
@@ -88,5 +88,5 @@ def test_a_signed_storage_of_unsigned_numbers_keeps_them(name):
         assert len(storage.numbers(0)) == storage.levels(0)
 
 
-def test_storages_without_a_sign_are_as_they_were():
+def test_unsigned_storages_are_unchanged():
     assert of_unit(STORAGES["rg8"]) is STORAGES["rg8"]

@@ -23,7 +23,7 @@ def decode(e, view):
 """
 
 
-def test_signed_and_float_targets_hold_what_the_engine_writes(run):
+def test_signed_and_float_targets_store_codes_as_the_engine_does(run):
     """Only half of the codes are used: 1 dB is a sixth of a bit, and twice the angle is one bit."""
     rows = figures(run, "unit.glsl,octahedral", "rg8,rg8_snorm,rg16f,rg16_snorm", "--backend", "glsl")
     means = {name: row["angle_mean_deg"] for name, row in rows.items()}
@@ -34,7 +34,7 @@ def test_signed_and_float_targets_hold_what_the_engine_writes(run):
     assert {(name, row["code_range"]) for (name, _), row in rows.items()} == {("dir", "[0, 1]"), ("octahedral", None)}
 
 
-def test_a_layout_holds_what_the_engine_writes(run):
+def test_a_layout_stores_codes_as_the_engine_does(run):
     """In an image, normals lose about one bit in signed and float targets, and nothing in unsigned targets."""
     storages = "rg8,rg8_snorm,rg16f"
     words = ("--size", "160x100", "--repeats", "1", "--scene", "room", "--format", "json")
@@ -56,7 +56,7 @@ def test_python_twin_of_unit_codes_gives_the_same_figures(run, tmp_path):
 
 
 @pytest.mark.parametrize("storage", ["rg8_snorm", "rg16f"])
-def test_written_code_of_unit_codes_is_verified(run, storage):
+def test_written_code_for_unit_codes_is_verified(run, storage):
     """The code that `code` writes gives the measured texels."""
     status, out, err = run("code", "unit.glsl", "--storage", storage, "--to", "c")
     assert status == 0 and "dir" in out, err

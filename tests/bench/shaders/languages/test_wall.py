@@ -42,7 +42,7 @@ SAID = {
 
 @pytest.mark.parametrize("name", SAID)
 def test_answer_of_a_compromised_process_writes_nothing_elsewhere(tmp_path, monkeypatch, name):
-    """A compromised compiler may print anything; the answer becomes one line and is never used as a path."""
+    """A compromised compiler may print anything; the answer becomes a one-line error and is never used as a path."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     path = tmp_path / "mine.hlsl"
     path.write_text(MINE)
@@ -54,7 +54,7 @@ def test_answer_of_a_compromised_process_writes_nothing_elsewhere(tmp_path, monk
     assert not (tmp_path / "out").exists()
 
 
-def test_answer_of_the_process_is_one_line(tmp_path, monkeypatch):
+def test_error_from_the_process_is_a_one_line_error(tmp_path, monkeypatch):
     path = tmp_path / "mine.hlsl"
     path.write_text(MINE)
     stdout = json.dumps({"error": "a\x1b[31m\nnormalbench: all is well"})

@@ -81,7 +81,7 @@ ATTEMPTS = {
 
 @pytest.mark.usefixtures("wall")
 @pytest.mark.parametrize("name", ATTEMPTS)
-def test_code_in_the_process_opens_writes_and_starts_nothing(tmp_path, name):
+def test_code_in_the_process_cannot_open_write_or_start_anything(tmp_path, name):
     attempt = ATTEMPTS[name].format(elsewhere=str(tmp_path / "written"), python=sys.executable)
     telling = f"""
     try:
@@ -97,7 +97,7 @@ def test_code_in_the_process_opens_writes_and_starts_nothing(tmp_path, name):
 
 
 @pytest.mark.usefixtures("wall")
-def test_no_variable_that_compilers_do_not_need_is_left_in_the_process(tmp_path, monkeypatch):
+def test_only_variables_that_compilers_need_are_left_in_the_process(tmp_path, monkeypatch):
     """Access tokens, for example, are removed."""
     monkeypatch.setenv("SOME_TOKEN", "1")
     monkeypatch.setenv("PYPI_TOKEN", "1")

@@ -1,4 +1,4 @@
-"""Users' encoders in WGSL: the catalogue's figures by OpenGL and by wgpu, and one-line errors."""
+"""Users' encoders in WGSL: the catalogue's figures with OpenGL and with wgpu, and one-line errors."""
 
 import json
 import re
@@ -45,7 +45,7 @@ def written(folder, text, name="mine.wgsl"):
     return str(folder / name)
 
 
-def test_an_encoder_in_wgsl_has_the_figures_of_the_catalogues(run, tmp_path):
+def test_a_wgsl_encoder_has_the_figures_of_the_catalogues_encoder(run, tmp_path):
     """The octahedral map written in WGSL agrees with the catalogue's to a relative 1e-6."""
     status, out, err = run("quality", "--encoding", f"{written(tmp_path, MINE)},octahedral", *QUICK)
     assert status == 0, err
@@ -54,7 +54,7 @@ def test_an_encoder_in_wgsl_has_the_figures_of_the_catalogues(run, tmp_path):
     assert [mine[name] for name in FIGURES] == pytest.approx([ours[name] for name in FIGURES], rel=1e-6)
 
 
-def test_the_users_own_text_by_wgpu_gives_the_codes_of_its_translation(tmp_path):
+def test_the_users_own_text_in_wgpu_gives_the_codes_of_its_translation(tmp_path):
     """The original text, compiled by naga, is called by the functions of the codec's code."""
     require_runner("wgsl")
     (codec,) = codecs_named(written(tmp_path, MINE), "rgb10a2", "nearest")
@@ -104,7 +104,7 @@ def test_invalid_file_is_a_one_line_error_with_status_2(run, tmp_path, name):
     assert "mine.wgsl" in err and re.search(pattern, err), err
 
 
-def test_a_wrong_file_loses_its_own_rows_alone(run, tmp_path):
+def test_an_invalid_file_loses_only_its_own_rows(run, tmp_path):
     """The other file's row is measured, and the status is 0."""
     wrong = written(tmp_path, WRONG["syntax"][0], "wrong.wgsl")
     status, out, err = run("quality", "--encoding", f"{wrong},{written(tmp_path, MINE)}", *QUICK)

@@ -1,4 +1,4 @@
-"""Users' encoders in WGSL: the catalogue's figures by OpenGL and by wgpu, and one-line errors."""
+"""Users' encoders in WGSL: the catalogue's figures with OpenGL and with wgpu, and one-line errors."""
 
 import json
 import re
@@ -71,7 +71,7 @@ def test_an_array_in_wgsl_has_elements_of_any_type(run, tmp_path, names=("typed 
         ("array<array<f32, 2>, 2>()", "arrays of arrays are not supported"),
     ],
 )
-def test_an_array_that_is_not_read_says_why(array, said, tmp_path):
+def test_an_unsupported_array_is_reported_with_a_reason(array, said, tmp_path):
     with pytest.raises(UsageError, match=said):
         translated(written(tmp_path, with_array("module", f"const A = {array};", "A[{}].y")))
 

@@ -24,7 +24,7 @@ def test_wiring_round_trips_through_its_text(text):
     assert wiring_of(text).is_plain == text.isalpha()
 
 
-def test_commas_and_spaces_are_read_as_well():
+def test_commas_and_spaces_are_also_accepted():
     assert wiring_of("f(a=n,b= 1 )->(x, y)") == Wiring("f", (("a", "n"), ("b", "1")), ("x", "y"))
     for wrong in ("f(a)", "f(=n)", "f(a=)", "->x", "f(a=n"):
         with pytest.raises(NoPairError, match="is not in the form Pack"):

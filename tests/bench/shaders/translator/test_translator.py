@@ -51,7 +51,7 @@ def written(writer, source=SOURCE):
     return writer("p", {}).program(reduced(read_glsl(source), ROOTS, "p", "mine"))
 
 
-def test_a_program_keeps_what_its_roots_need_under_one_prefix():
+def test_a_program_keeps_only_the_functions_its_roots_need_under_one_prefix():
     """Overloads get distinct names; an unused view and uncalled functions are removed."""
     text = written(GlslWriter)
     assert re.findall(r"^\w+ (\w+)\(", text, re.MULTILINE) == ["p_unit1", "p_unit2", "p_encode", "p_decode"]
@@ -61,7 +61,7 @@ def test_a_program_keeps_what_its_roots_need_under_one_prefix():
 @pytest.mark.parametrize(
     "text", ["a\nb", "a\r\nb", "a\u2028b", "a\x85b", "a\fb", "a \\", "a ??/ ", "  a\nb", "a\\ " * 90]
 )
-def test_no_comment_ends_or_goes_on_where_it_should_not(text):
+def test_no_comment_ends_or_continues_where_it_should_not(text):
     """This holds in every language, whatever text a name or a title has."""
     line = in_a_comment(text)
     assert line.isprintable() and not line.endswith(("\\", "/"))
@@ -70,7 +70,7 @@ def test_no_comment_ends_or_goes_on_where_it_should_not(text):
         assert all(comment.startswith("//") for comment in lines[: lines.index("")]), lines
 
 
-def test_comments_stay_where_they_were():
+def test_comments_keep_their_positions():
     """The output has the source's comments above a function and after a statement."""
     text = written(GlslWriter)
     assert "// Above the function.\nvec2 p_encode(vec3 n)" in text
@@ -92,7 +92,7 @@ def test_each_language_uses_its_own_syntax(writer, expected):
     assert expected.lower() in written(writer).lower()
 
 
-def test_wgsl_chooses_by_select_and_only_changes_variables():
+def test_wgsl_uses_select_and_declares_assigned_names_as_var():
     """`?:` becomes `select` with swapped arguments, and assigned names become `var`."""
     text = written(WgslWriter)
     assert "return select(1.0, -1.0, v < 0.0);" in text
@@ -156,7 +156,7 @@ def test_unreadable_glsl_error_has_line_and_column(source, said):
     assert "\n" not in str(error.value)
 
 
-def test_a_power_that_no_float_holds_stays_a_call():
+def test_a_power_too_large_for_a_float_stays_a_call():
     """For literal numbers 2^x becomes a number only if a float can hold it."""
     text = written(GlslWriter, SOURCE.replace("n.xy * (", "vec2(exp2(2000.0), exp2(3.0)) * ("))
     assert "vec2(exp2(2000.0), 8.0)" in text
@@ -218,7 +218,7 @@ def test_wgsl_loop_may_break_before_its_continuing_block():
     assert "break;" in GlslWriter("p", {}).program(reduced(read_wgsl(source), {"f": "encode"}, "p", ""))
 
 
-def test_a_step_of_c_is_1_at_its_edge():
+def test_step_in_c_is_1_at_its_edge():
     """As in GLSL, the result is 0 only if x is less than the edge."""
     source = "vec2 mine_encode(vec3 n) { return vec2(step(0.5, n.x), n.y); } vec3 mine_decode(vec2 e) { return e.xyx; }"
     assert " < 0.5f ? 0.0f : 1.0f" in written(CWriter, source), written(CWriter, source)
@@ -268,7 +268,7 @@ vec3 mine_decode(vec2 e, vec3 view) { return vec3(e, 1.0); }
 
 
 def test_cuda_supports_array_and_inout_parameters():
-    """Arrays are values, as in GLSL; both sides of a choice are computed, and loops have an unroll pragma."""
+    """Arrays are values, as in GLSL; both sides of a ternary are computed, and loops have an unroll pragma."""
     text = written(CudaWriter, ARRAYS)
     assert "__forceinline__ void p_turn(int at, Array<float, 2> &numbers) {" in text
     assert "__forceinline__ Array<vec4, 2> p_both(Array<float, 2> numbers) {" in text
@@ -278,7 +278,7 @@ def test_cuda_supports_array_and_inout_parameters():
 
 
 @pytest.mark.parametrize("writer", [CWriter, GlslWriter, HlslWriter, MslWriter, WgslWriter])
-def test_other_languages_refuse_functions_of_arrays(writer):
+def test_other_languages_refuse_array_and_inout_parameters(writer):
     with pytest.raises(TranslationError, match="turn has an array as a parameter or a result; use separate numbers"):
         written(writer, ARRAYS)
     changed = "void turn(inout float x) { x = -x; }\n" + SOURCE.replace(
@@ -288,7 +288,7 @@ def test_other_languages_refuse_functions_of_arrays(writer):
         written(writer, changed)
 
 
-def test_cuda_assigns_to_several_components_and_hides_no_function():
+def test_cuda_assigns_to_several_components_and_shadows_no_function():
     text = written(CudaWriter, SOURCE.replace("float sum", "vec2 max = n.xy; max.yx = max; max.xy += n.yz; float sum"))
     assert "assign<1, 0>(max_, max_);" in text
     assert "assign<0, 1>(max_, swizzled<0, 1>(max_) + swizzled<1, 2>(n));" in text
@@ -300,7 +300,7 @@ def test_array_with_a_variable_length_is_an_error_with_its_position(length):
         read_glsl(f"vec2 f(vec3 n) {{\n    float x[{length}];\n    return n.xy;\n}}")
 
 
-def test_the_room_for_deep_trees_is_given_back_by_the_last_thread():
+def test_the_last_thread_restores_the_recursion_limit():
     """All threads share the recursion limit: two overlapping readers leave it unchanged."""
     before, first, second = sys.getrecursionlimit(), one_error_type(), one_error_type()
     first.__enter__()

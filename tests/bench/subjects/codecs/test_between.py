@@ -123,7 +123,7 @@ def test_missing_step_is_the_only_finding(tmp_path):
     assert len(findings(tmp_path, PAIRS["half of [0, 1]"][0])) == 1
 
 
-def test_signed_codes_truncated_toward_0_are_named(tmp_path):
+def test_signed_codes_truncated_toward_0_are_reported(tmp_path):
     (first, *_) = findings(tmp_path, with_code("trunc(c * 127.0) / 127.0"))
     assert "codes are truncated to 8 bits, and all are off by half a step" in first
 
@@ -134,6 +134,6 @@ def test_shift_other_than_half_a_step_is_reported_as_a_number(tmp_path):
 
 
 @pytest.mark.parametrize("scale, said", [(0.9, "0.9 times"), (0.99, "0.99 times"), (1 / 1.5, "0.66667 times")])
-def test_a_scale_is_named(tmp_path, scale, said):
+def test_a_scale_is_reported(tmp_path, scale, said):
     lines = findings(tmp_path, with_code(f"c * {scale}"))
     assert any(f"encode gives {said} the code that decode expects" in line for line in lines), lines

@@ -9,5 +9,5 @@ pytestmark = pytest.mark.usefixtures("gl")
 
 @pytest.mark.parametrize("bits", [10, 16])
 @pytest.mark.parametrize("rounds", ROUNDED)
-def test_an_encoder_that_rounds_rightly_to_other_bits_raises_nothing(tmp_path, rounds, bits):
-    test_between_slow.test_an_encoder_that_rounds_rightly_raises_nothing(tmp_path, rounds, bits)
+def test_an_encoder_that_rounds_correctly_to_other_bits_has_no_findings(tmp_path, rounds, bits):
+    test_between_slow.test_an_encoder_that_rounds_correctly_has_no_findings(tmp_path, rounds, bits)

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.usefixtures("gl")
 
 
 @pytest.mark.parametrize("what", PAIRS)
-def test_step_that_completes_a_pair_is_named(tmp_path, what):
+def test_step_that_completes_a_pair_is_reported(tmp_path, what):
     text, finding = PAIRS[what]
     lines = findings(tmp_path, text)
     assert lines and finding in lines[0], lines
@@ -28,7 +28,7 @@ def test_wrong_code_is_not_blamed_on_a_missing_normalize(tmp_path, text):
     assert findings(tmp_path, mapped()) == ["a pole is lost: (0, 0, -1) becomes (0, 0, 1)"]
 
 
-def test_fold_that_does_not_match_the_unfold_is_named(tmp_path):
+def test_fold_that_does_not_match_the_unfold_is_reported(tmp_path):
     """Two folds each make a pair with their own unfold."""
     text = program("by mix and step", "", 8)
     own = text.replace("abs(p.yx)", "abs(p)").replace("abs(e.yx)", "abs(e)")
@@ -42,14 +42,14 @@ ROUNDED = ("floor(({}) * STEPS.0 + 0.5) / STEPS.0", "round(({}) * STEPS.0) / STE
 
 @pytest.mark.parametrize("bits", [8, 12])
 @pytest.mark.parametrize("rounds", ROUNDED)
-def test_an_encoder_that_rounds_rightly_raises_nothing(tmp_path, rounds, bits):
+def test_an_encoder_that_rounds_correctly_has_no_findings(tmp_path, rounds, bits):
     unit = rounds.format("c * 0.5 + 0.5").replace("STEPS", str(2**bits - 1))
     signed = rounds.format("c").replace("STEPS", str(2 ** (bits - 1) - 1))
     assert findings(tmp_path, with_code(f"({unit}) * 2.0 - 1.0")) == []
     assert findings(tmp_path, with_code(signed)) == []
 
 
-def test_encoder_is_compared_with_the_same_map_of_the_catalogue(run, tmp_path):
+def test_encoder_is_compared_with_the_same_map_in_the_catalogue(run, tmp_path):
     """Scaling codes by 1023/1024 loses half a step of 10 bits near 1; in 8 bits the loss is negligible."""
     path = tmp_path / "mine.glsl"
     path.write_text(with_code("c * (1023.0 / 1024.0)"))

@@ -82,19 +82,19 @@ def said(name, bits, encode, decode) -> list[str]:
 
 @pytest.mark.parametrize("way", RIGHT)
 @pytest.mark.parametrize("name, bits", SIZED)
-def test_a_code_in_the_middle_of_its_directions_raises_nothing(name, bits, way):
+def test_a_code_in_the_middle_of_its_directions_has_no_findings(name, bits, way):
     assert said(name, bits, *RIGHT[way]) == []
 
 
 @pytest.mark.parametrize("way", CUT)
 @pytest.mark.parametrize("name, bits", SIZED)
-def test_truncated_code_is_named(name, bits, way):
+def test_truncated_code_is_reported(name, bits, way):
     """For every map, bit count and side, rounding would halve the error."""
     assert said(name, bits, *CUT[way]) == ["codes are truncated instead of rounded: rounding would halve the error"]
 
 
 def of_signed(cut):
-    """Return encode and decode of [-1, 1] as signed integers in two's complement: (x * 2 - 1) * (most // 2)."""
+    """Return encode and decode for [-1, 1] as signed integers in two's complement: (x * 2 - 1) * (most // 2)."""
 
     def encode(x, most):
         return cut((x * 2 - 1) * (most // 2)) % (most + 1)
@@ -106,7 +106,7 @@ def of_signed(cut):
 
 
 @pytest.mark.parametrize("bits", BITS[2])
-def test_truncated_signed_codes_are_named(bits):
+def test_truncated_signed_codes_are_reported(bits):
     """Truncation is toward 0, which cancels the shifts of the quadrants, or downwards."""
     expected = ["codes are truncated instead of rounded: rounding would halve the error"]
     for cut in (np.trunc, np.floor):
@@ -121,7 +121,7 @@ def test_xyz_truncated_toward_0_is_reported_as_shifted():
     assert said("xyz", (8, 8, 8), *of_signed(lambda x: np.floor(x + 0.5))) == []
 
 
-def test_truncation_of_one_of_two_numbers_is_named():
+def test_truncation_of_one_of_two_numbers_is_reported():
     """The finer number is truncated, the other rounded. Rounding both leaves 0.79 of the root mean square error."""
 
     def encode(x, most):
@@ -132,6 +132,6 @@ def test_truncation_of_one_of_two_numbers_is_named():
     assert 74 < float(line.split()[-1].rstrip("%")) < 84, line
 
 
-def test_scale_of_one_step_is_not_taken_for_truncation():
+def test_scale_of_one_step_is_not_mistaken_for_truncation():
     (line,) = said("octahedral", (8, 8), lambda x, most: np.floor(x * (most - 1) + 0.5), lambda i, most: i / most)
     assert line.startswith("codes are shifted, "), line

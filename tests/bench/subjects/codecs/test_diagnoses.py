@@ -1,4 +1,4 @@
-"""Diagnoses of users' encoders: likely errors of wrong encoders, and only the domain of correct encoders."""
+"""Diagnoses of users' encoders: the likely error in a wrong encoder, and only the domain of a correct encoder."""
 
 import json
 from pathlib import Path
@@ -151,7 +151,7 @@ OF_A_HALF = {
 
 
 def both(kind: str, encode: str, decode: str) -> str:
-    """Return the two functions of a code of a kind, given their bodies."""
+    """Return an encoder and a decoder with these bodies, for codes of this GLSL type."""
     return f"{kind} mine_encode(vec3 n) {{ {encode} }}\nvec3 mine_decode({kind} e) {{ {decode} }}\n"
 
 
@@ -160,7 +160,7 @@ def octahedral(code="p", before="", result="normalize(n)") -> str:
 
 
 def three(text: str) -> str:
-    """Return an encoding of two numbers with a third that is always 0."""
+    """Return an encoding of two numbers, given as text, with a third number that is always 0."""
     return (
         text.replace("vec2 mine", "vec3 mine")
         .replace("return p;", "return vec3(p, 0.0);")
@@ -269,7 +269,7 @@ def looked_at(folder: Path, text: str) -> dict:
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("what", WRONG)
-def test_error_of_an_encoder_is_named_first(tmp_path, what):
+def test_error_in_an_encoder_is_reported_first(tmp_path, what):
     text, finding = WRONG[what]
     look = looked_at(tmp_path, text)
     first, *_ = [look["broken"]] if "broken" in look else look["wrong"]
@@ -286,7 +286,7 @@ def test_correct_encoder_has_no_findings(gl, tmp_path, what):
 
 
 @pytest.mark.parametrize("name", ENCODINGS)
-def test_encodings_of_the_catalogue_have_no_findings(gl, name):
+def test_encodings_in_the_catalogue_have_no_findings(gl, name):
     """The domain of each encoding is also found."""
     encoding = ENCODINGS[name]
     diagnosis = diagnosed(probe_of(gl, encoding), gl)
@@ -315,7 +315,7 @@ def faces(encode: str, decode: str) -> str:
 
 @pytest.mark.usefixtures("gl")
 @pytest.mark.parametrize("steps, reach", [(8.0, 0.625), (16.0, 0.312)])
-def test_a_number_of_few_values_need_not_fill_its_range(run, tmp_path, steps, reach):
+def test_a_component_with_few_values_need_not_fill_its_range(run, tmp_path, steps, reach):
     """A note states the unused range in the user's own units."""
     path = tmp_path / "mine.glsl"
     path.write_text(faces(f"f / {steps}", f"e.z * {steps}"))

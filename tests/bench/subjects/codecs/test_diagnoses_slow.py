@@ -1,4 +1,4 @@
-"""Diagnoses of users' encoders: likely errors of wrong encoders, and only the domain of correct encoders."""
+"""Diagnoses of users' encoders: the likely error in a wrong encoder, and only the domain of a correct encoder."""
 
 import json
 
@@ -7,7 +7,7 @@ from test_diagnoses import FLAT, faces, looked_at, octahedral
 
 
 @pytest.mark.usefixtures("gl")
-def test_doctor_names_the_error_and_draws_the_sphere(run, tmp_path):
+def test_doctor_reports_the_error_and_plots_the_sphere(run, tmp_path):
     path, picture = tmp_path / "mine.glsl", tmp_path / "sphere.png"
     path.write_text(octahedral(result="normalize(n.yxz)"))
     status, out, err = run("doctor", str(path), "--plot", str(picture), "--format", "json")
@@ -25,13 +25,13 @@ def test_doctor_names_the_error_and_draws_the_sphere(run, tmp_path):
 
 
 @pytest.mark.usefixtures("gl")
-def test_a_wrong_number_of_few_values_blames_no_other_number(tmp_path):
+def test_error_in_a_component_with_few_values_is_not_blamed_on_other_components(tmp_path):
     look = looked_at(tmp_path, faces("f / 6.0", "e.z * 5.0"))
     assert look["is_unit"] and len(look["wrong"]) == 1 and "are not a pair" in look["wrong"][0]
 
 
 @pytest.mark.usefixtures("gl")
-def test_doctor_says_its_verdict_first_and_notes_apart(run, tmp_path):
+def test_doctor_prints_its_verdict_first_and_notes_separately(run, tmp_path):
     """A note, such as a guess about the range of codes, is not a finding."""
     path = tmp_path / "mine.glsl"
     path.write_text(octahedral("p * 0.5 + 0.5", "e = e * 2.0 - 1.0;"))

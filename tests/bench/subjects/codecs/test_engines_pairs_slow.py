@@ -35,18 +35,18 @@ SAID = {
 
 
 @pytest.mark.parametrize("name", SAID)
-def test_error_of_a_pair_is_named(name):
+def test_error_in_a_pair_is_reported(name):
     begin, also = SAID[name]
     (line,) = first_look(FORMS / name)["wrong"]
     assert line.startswith(begin) and also in line, line
 
 
-def test_doctor_ends_with_status_1_and_names_the_side(run):
+def test_doctor_exits_with_status_1_and_names_the_faulty_function(run):
     status, out, _ = run("doctor", str(FORMS / "no_unfold.hlsl"), "--format", "json")
     assert status == 1 and json.loads(out)[0]["finding"].startswith("decode is octahedral, but its unfold is missing")
 
 
-def test_octahedral_in_three_bytes_is_measured_as_it_stands(run):
+def test_octahedral_in_three_bytes_is_measured_as_written(run):
     """A float64 reference of truncated 12:12 has mean 0.0418 and maximum 0.117 degrees; rounding halves both."""
     asked = ("--normals", "sphere", "--storage", "rgba8", "--backend", "glsl", "--count", "65536", "--format", "json")
     status, out, err = run("quality", "--encoding", str(FORMS / "888.hlsl"), *asked)
@@ -96,7 +96,7 @@ def test_single_function_is_identified(run, tmp_path, command, name):
 @pytest.mark.parametrize(
     "name, said, table", [("frame.hlsl", "tangent frames", "frames"), ("motion.hlsl", "motion vectors", "vectors")]
 )
-def test_codes_of_something_else_are_named(name, said, table):
+def test_encodings_of_other_quantities_are_identified(name, said, table):
     path = FORMS / name
     assert (
         f"is of {said}, not of normals: `normalbench {table} --encoding {path}` measures it"

@@ -1,4 +1,4 @@
-"""A half of the sphere that does not come back: lost by one of the two functions, or a design for the other half."""
+"""Pairs that return half of the sphere: one function loses the other half, or the pair is designed for one half."""
 
 import json
 import re
@@ -113,7 +113,7 @@ def _here(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("what", LOST)
-def test_a_lost_half_is_a_finding_that_names_the_side(run, tmp_path, what):
+def test_a_lost_half_is_a_finding_that_names_the_faulty_function(run, tmp_path, what):
     text, finding = LOST[what]
     (tmp_path / "dir.glsl").write_text(text)
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")
@@ -128,7 +128,7 @@ def test_a_lost_half_is_a_finding_that_names_the_side(run, tmp_path, what):
 @pytest.mark.parametrize("half", HALVES)
 @pytest.mark.parametrize("what", ["no fold", "no unfold"])
 def test_a_lost_half_is_found_along_any_axis(tmp_path, what, half):
-    """An octahedron with y up, of left-handed view space, or of -n."""
+    """Examples are octahedral maps with y up, in left-handed view space and of -n."""
     to, back = HALVES[half]
     text = LOST[what][0].replace("dir_encode", "own_in").replace("dir_decode", "own_out")
     text += f"vec2 dir_encode(vec3 n) {{ return own_in({to}); }}\n"
@@ -142,7 +142,7 @@ def test_a_lost_half_is_found_along_any_axis(tmp_path, what, half):
 
 @pytest.mark.parametrize("half", HALVES)
 @pytest.mark.parametrize("what", DESIGNS)
-def test_design_for_a_half_is_not_a_finding(tmp_path, what, half):
+def test_encoding_designed_for_a_hemisphere_is_not_a_finding(tmp_path, what, half):
     (tmp_path / "dir.glsl").write_text(design(what, half))
     look = first_look(tmp_path / "dir.glsl")
     axis, side = look.get("half", (2, 1))
@@ -150,8 +150,8 @@ def test_design_for_a_half_is_not_a_finding(tmp_path, what, half):
     assert f"{'xyz'[axis]} {'>=' if side > 0 else '<='} 0" == half
 
 
-def test_a_layout_in_world_space_keeps_the_axes_of_a_half(tmp_path):
-    """A code for y >= 0 holds normals that face up in world space, or face the viewer in view space."""
+def test_a_world_space_layout_keeps_the_axes_of_a_hemisphere_encoding(tmp_path):
+    """An encoding for y >= 0 stores normals that face up in world space, or face the viewer in view space."""
     (tmp_path / "dir.glsl").write_text(design("xy", "y >= 0"))
     (encoding,) = encodings_named("dir.glsl")
     layout = replace(LAYOUTS["fp32"].with_codec(Codec(encoding, STORAGES["rg8"])), space="view")
@@ -159,7 +159,7 @@ def test_a_layout_in_world_space_keeps_the_axes_of_a_half(tmp_path):
     assert not replace(layout, space="world").encoding.is_turned
 
 
-def test_a_domain_that_does_not_come_back_is_a_finding(run, tmp_path):
+def test_a_domain_that_does_not_round_trip_is_a_finding(run, tmp_path):
     (tmp_path / "dir.glsl").write_text(design("xy", "z >= 0"))
     assert run("doctor", "dir.glsl")[0] == run("doctor", "dir.glsl", "--domain", "hemisphere")[0] == 0
     status, out, _ = run("doctor", "dir.glsl", "--domain", "sphere", "--format", "json")
@@ -185,7 +185,7 @@ OPEN = {
 }
 
 
-def test_a_code_that_is_finite_on_its_half_alone_is_measured_there(run, tmp_path, monkeypatch):
+def test_encoding_finite_only_on_its_hemisphere_is_measured_there(run, tmp_path, monkeypatch):
     monkeypatch.setitem(DESIGNS, "open", OPEN["hemi-octahedral"])
     (tmp_path / "dir.glsl").write_text(design("open", "z >= 0"))
     words = ("--storage", "rg8", "--normals", "hemisphere", "--count", "4096", "--backend", "glsl")
@@ -206,7 +206,7 @@ vec3 dir_decode(vec2 e) {
 """
 
 
-def test_hole_in_a_code_is_a_finding_unless_the_domain_excludes_it(run, tmp_path):
+def test_a_hole_in_an_encoding_is_a_finding_unless_the_domain_excludes_it(run, tmp_path):
     """The other directions are measured."""
     (tmp_path / "dir.glsl").write_text(SPHEREMAP)
     status, out, _ = run("doctor", "dir.glsl", "--format", "json")
@@ -223,7 +223,7 @@ def test_hole_in_a_code_is_a_finding_unless_the_domain_excludes_it(run, tmp_path
     assert status == 0 and json.loads(out)[0]["angle_mean_deg"] < 0.05
 
 
-def test_directions_that_are_lost_are_counted(run, tmp_path):
+def test_lost_directions_are_counted(run, tmp_path):
     """Most of a half round-trips; the finding gives the number of other directions and their largest error."""
     text = NO_FOLD.replace("return n.xy; }", "return n.z >= 0.0 ? n.xy : fold(n.xy); }")
     wrong = text.replace("return normalize(n);", "if (n.z < -0.6) n.x += 0.3 * sign(n.x); return normalize(n);")

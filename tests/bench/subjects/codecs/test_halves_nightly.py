@@ -1,4 +1,4 @@
-"""A half of the sphere that does not come back: lost by one of the two functions, or a design for the other half."""
+"""Pairs that return half of the sphere: one function loses the other half, or the pair is designed for one half."""
 
 import pytest
 import test_halves
@@ -12,5 +12,7 @@ _here = test_halves._here
 
 @pytest.mark.parametrize("half", [half for half in HALVES if half not in TWO])
 @pytest.mark.parametrize("what", OPEN)
-def test_a_code_that_is_finite_on_any_half_alone_is_taken_for_it(tmp_path, monkeypatch, what, half):
-    test_halves_slow.test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monkeypatch, what, half)
+def test_encoding_finite_only_on_any_one_hemisphere_is_assumed_to_be_for_it(tmp_path, monkeypatch, what, half):
+    test_halves_slow.test_encoding_finite_only_on_its_hemisphere_is_assumed_to_be_for_it(
+        tmp_path, monkeypatch, what, half
+    )

@@ -1,4 +1,4 @@
-"""A half of the sphere that does not come back: lost by one of the two functions, or a design for the other half."""
+"""Pairs that return half of the sphere: one function loses the other half, or the pair is designed for one half."""
 
 import json
 
@@ -11,8 +11,8 @@ pytestmark = pytest.mark.usefixtures("gl")
 _here = test_halves._here
 
 
-def test_a_code_for_a_half_is_measured_on_its_half(run, tmp_path):
-    """Figures of each half equal the figures for z >= 0, and a message names the half."""
+def test_encoding_for_a_hemisphere_is_measured_on_that_hemisphere(run, tmp_path):
+    """Figures for each half agree with the figures for z >= 0, and a message names the half."""
     means = {}
     for half in HALVES:
         (tmp_path / "dir.glsl").write_text(design("hemi-octahedral", half))
@@ -27,8 +27,8 @@ def test_a_code_for_a_half_is_measured_on_its_half(run, tmp_path):
 
 
 @pytest.mark.parametrize("half", ["y >= 0", "z <= 0"])
-def test_code_of_a_half_is_in_its_own_axes(run, tmp_path, half):
-    """Code written for an engine has the axes of the engine's file, although tables rotate it."""
+def test_shader_code_for_a_hemisphere_keeps_its_own_axes(run, tmp_path, half):
+    """Shader code is written in the axes of the user's file, although tables rotate the encoding."""
     (tmp_path / "dir.glsl").write_text(design("hemi-octahedral", half))
     status, out, _ = run("code", "dir.glsl", "--storage", "rg8", "--to", "glsl")
     assert status == 0 and f"Normals: unit vectors with {half}." in out
@@ -45,7 +45,7 @@ TWO = ("z >= 0", "x <= 0")
 @pytest.mark.drawn(3)
 @pytest.mark.parametrize("half", TWO)
 @pytest.mark.parametrize("what", OPEN)
-def test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monkeypatch, what, half):
+def test_encoding_finite_only_on_its_hemisphere_is_assumed_to_be_for_it(tmp_path, monkeypatch, what, half):
     monkeypatch.setitem(DESIGNS, what, OPEN[what])
     (tmp_path / "dir.glsl").write_text(design(what, half))
     for domain in ("", "hemisphere"):
@@ -57,7 +57,7 @@ def test_a_code_that_is_finite_on_its_half_alone_is_taken_for_it(tmp_path, monke
     assert "not finite" in (look.get("broken") or look["wrong"][0])
 
 
-def test_hole_in_the_half_that_comes_back_stays_a_finding(tmp_path):
+def test_a_hole_in_the_half_that_round_trips_remains_a_finding(tmp_path):
     """Rounding makes the square root's argument negative on the rim; the NaN remains a finding for z >= 0."""
     text = "vec2 dir_encode(vec3 n) { return n.xy * 0.5 + 0.5; }\n"
     text += "vec3 dir_decode(vec2 e) { e = e * 2.0 - 1.0; return vec3(e, sqrt(1.0 - dot(e, e))); }\n"

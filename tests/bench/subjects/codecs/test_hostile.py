@@ -1,4 +1,4 @@
-"""Users' code that hangs, crashes, grows or lies, and loses only its own rows with a stated reason."""
+"""Users' code that hangs, crashes, exhausts memory or lies, and loses only its own rows with a stated reason."""
 
 import pytest
 from typed import read_encoding
@@ -15,7 +15,7 @@ vec3 NAME_decode(vec2 e, vec3 view) { return vec3(e, sqrt(max(1.0 - dot(e, e), 0
 """
 
 
-def test_a_file_elsewhere_is_not_opened(tmp_path, monkeypatch):
+def test_a_file_outside_the_shaders_folder_is_not_opened(tmp_path, monkeypatch):
     """The includes of such a file would also be read, and an error message could quote them."""
     note, opened = tmp_path / "note.txt", []
     note.write_text("password\n#include SECRET_WORD\n")
@@ -30,7 +30,7 @@ def test_a_file_elsewhere_is_not_opened(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("letter", ['"', "\n", "\x0b", "\u2028"])
-def test_a_path_does_not_end_the_line_that_includes_it(tmp_path, letter):
+def test_a_path_cannot_break_the_include_line(tmp_path, letter):
     """For codes in [0, 1], generated text includes the file."""
     path = tmp_path / f"a{letter}b" / "mine.glsl"
     path.parent.mkdir()
@@ -41,7 +41,7 @@ def test_a_path_does_not_end_the_line_that_includes_it(tmp_path, letter):
 
 @pytest.mark.parametrize("ending", ["glsl", "txt"])
 @pytest.mark.parametrize("text", ['#include "NOTE"', '/*\n#include "NOTE"\n*/', '\u2028#include "NOTE"'])
-def test_a_file_elsewhere_is_not_included(run, tmp_path, text, ending):
+def test_only_shader_files_in_the_repository_are_included(run, tmp_path, text, ending):
     """Neither a file outside the repository nor a file without a shader extension is compiled."""
     home, note = tmp_path / "own", tmp_path / ("elsewhere" if ending == "glsl" else "own") / f"note.{ending}"
     (home / ".git").mkdir(parents=True)

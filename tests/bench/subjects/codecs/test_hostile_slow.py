@@ -1,4 +1,4 @@
-"""Users' code that hangs, crashes, grows or lies, and loses only its own rows with a stated reason."""
+"""Users' code that hangs, crashes, exhausts memory or lies, and loses only its own rows with a stated reason."""
 
 import json
 import re
@@ -131,7 +131,7 @@ def twin_of(name: str) -> str:
     return TWIN.replace("BODY", body).replace("TOP", top)
 
 
-def test_two_dozen_hostile_files_do_not_affect_the_others(tmp_path):
+def test_two_dozen_hostile_files_do_not_affect_other_files(tmp_path):
     files = [written(tmp_path, name, twin=twin_of(name)) for name in TWINS]
     files += [written(tmp_path, name, text) for name, (text, _) in SHADERS.items()]
     files += [written(tmp_path, name, text) for name, text in READ_IN_PART.items()]
@@ -155,15 +155,15 @@ def but_the_domain(said: str) -> list[str]:
     return [line for line in said.splitlines() if not re.search("assumed to be made only for|computed by XLA", line)]
 
 
-def test_a_twin_that_contradicts_its_shader_is_named(tmp_path):
+def test_a_twin_that_contradicts_its_shader_is_reported(tmp_path):
     twin = TWIN.replace("BODY", "return Vec2(n.y, n.x)").replace("TOP", "")
     rows, messages = measured(tmp_path, written(tmp_path, "turned", twin=twin))
     assert len(rows) == 2 and re.search(r"turned\.py: encode differs from the GLSL for \d+% of inputs", messages)
     assert len(but_the_domain(messages)) == 1
 
 
-def test_nothing_of_the_current_folder_is_imported(tmp_path):
-    """The user's folder has a module with every name of the standard library."""
+def test_nothing_in_the_current_folder_is_imported(tmp_path):
+    """The user's folder has a module with the name of each module in the standard library."""
     for name in sorted(sys.stdlib_module_names - {"__main__"}):
         (tmp_path / f"{name}.py").write_text(f"open('{tmp_path}/ran-{name}', 'w'); raise SystemExit('ran {name}')")
     path = written(tmp_path, "mine")

@@ -53,7 +53,7 @@ def written(folder: Path, encoding: str, name: str = "own.toml") -> str:
     return str(folder / name)
 
 
-def test_a_layout_takes_a_tuned_table(tmp_path):
+def test_a_layout_accepts_a_tuned_table(tmp_path):
     path, encoding = tmp_path / "own.toml", ENCODINGS["best_fit"]
     path.write_text(THREE_NUMBERS)
     np.save(tmp_path / "scales.npy", encoding.tables()[encoding.look_up.sampler])
@@ -63,7 +63,7 @@ def test_a_layout_takes_a_tuned_table(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["mine.glsl", "wrap.glsl", "mine.py"])
-def test_rows_of_an_encoder_that_changed_are_not_used_again(tmp_path, name):
+def test_rows_of_a_changed_encoder_are_not_reused(tmp_path, name):
     """The encoder's file, its includes and its twin count like the layout's own file."""
     options = RenderOptions(layout=written(tmp_path, "code/mine.glsl"))
     before = files_of(options)
@@ -88,14 +88,14 @@ def test_rows_of_an_encoder_that_changed_are_not_used_again(tmp_path, name):
         ("octahedral:axis=w", "axis is x, y or z, not 'w'"),
     ],
 )
-def test_invalid_encoding_of_a_layout_is_a_one_line_error(run, tmp_path, encoding, said):
+def test_invalid_encoding_in_a_layout_is_a_one_line_error(run, tmp_path, encoding, said):
     path = written(tmp_path, encoding)
     (tmp_path / "code" / "bad.glsl").write_text("float f() { return 1.0; }\n")
     status, out, err = run("render", "--layout", path, "--size", "96x64")
     assert (status, out) == (2, "") and err.count("\n") == 1 and said.format(tmp_path) in err, err
 
 
-def test_an_encoding_that_is_a_link_out_of_the_layouts_folder_is_refused(run, tmp_path):
+def test_link_to_an_encoding_outside_the_layouts_folder_is_refused(run, tmp_path):
     """Includes follow the same rule; a link within the folder is accepted."""
     path, mine = Path(written(tmp_path / "inside", "code/link.glsl")), tmp_path / "inside/code/mine.glsl"
     link = mine.with_name("link.glsl")

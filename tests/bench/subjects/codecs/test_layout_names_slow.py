@@ -9,8 +9,8 @@ from test_layout_names import written
 pytestmark = pytest.mark.usefixtures("gl")
 
 
-def test_a_layout_takes_a_users_encoder(run, tmp_path, monkeypatch):
-    """A user's octahedral encoder loses as much as the catalogue's; its file is found relative to the layout."""
+def test_a_layout_accepts_a_users_encoder(run, tmp_path, monkeypatch):
+    """A user's octahedral encoder is as accurate as the catalogue's; its file is found relative to the layout."""
     monkeypatch.chdir(tmp_path)
     layouts = f"{written(Path('here'), 'code/mine.glsl')},{written(Path('here'), 'octahedral', 'other.toml')}"
     words = ("--scene", "room", "--size", "96x64", "--repeats", "0", "--format", "json")

@@ -61,13 +61,13 @@ def check(folder: Path, text: str, mistake: str, bits: int) -> None:
 
 
 @pytest.mark.parametrize("text, mistake, bits", QUICK)
-def test_a_mistake_is_named(tmp_path, text, mistake, bits):
+def test_a_mistake_is_identified(tmp_path, text, mistake, bits):
     check(tmp_path, text, mistake, bits)
 
 
 @pytest.mark.parametrize("mistake", ["cut off", "half-step bias", "254 for 255"])
 @pytest.mark.parametrize("storage, bits", [("rg8", 8), ("rgb10a2", 10), ("rg16", 16)])
-def test_doctor_names_a_mistake_and_its_cost_in_a_storage(run, tmp_path, storage, bits, mistake):
+def test_doctor_reports_a_mistake_and_its_cost_in_a_storage(run, tmp_path, storage, bits, mistake):
     (tmp_path / "mine.glsl").write_text(program("in [0, 1]", mistake, bits))
     status, out, _ = run("doctor", str(tmp_path / "mine.glsl"), "--storage", storage, "--format", "json")
     first, *rest = [row["finding"] for row in json.loads(out)]
@@ -77,7 +77,7 @@ def test_doctor_names_a_mistake_and_its_cost_in_a_storage(run, tmp_path, storage
 
 
 @pytest.mark.parametrize("text", TEXTS)
-def test_a_text_without_a_mistake_raises_nothing(tmp_path, text):
+def test_a_text_without_a_mistake_has_no_findings(tmp_path, text):
     assert findings(tmp_path, program(text, "", 8)) == []
 
 

@@ -23,7 +23,7 @@ ALL = [(text, mistake, bits) for text in TEXTS for mistake in MISTAKES for bits 
 
 
 @pytest.mark.parametrize("text, mistake, bits", [case for case in ALL if case not in QUICK])
-def test_every_mistake_is_named(tmp_path, text, mistake, bits):
+def test_every_mistake_is_identified(tmp_path, text, mistake, bits):
     check(tmp_path, text, mistake, bits)
 
 
@@ -36,6 +36,6 @@ LANGUAGES = ("glsl", "hlsl", "slang", "wgsl")
 
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("name", WRITTEN)
-def test_all_code_of_the_catalogue_raises_nothing(tmp_path, monkeypatch, name, language):
+def test_all_code_from_the_catalogue_has_no_findings(tmp_path, monkeypatch, name, language):
     monkeypatch.chdir(tmp_path)
     check_written(Path(), name, language)

@@ -30,6 +30,6 @@ def check_written(folder: Path, name: str, language: str) -> None:
 
 
 @pytest.mark.parametrize("name, language", sorted(SOME))
-def test_code_of_the_catalogue_raises_nothing(tmp_path, monkeypatch, name, language):
+def test_code_from_the_catalogue_has_no_findings(tmp_path, monkeypatch, name, language):
     monkeypatch.chdir(tmp_path)
     check_written(Path(), name, language)

@@ -1,4 +1,4 @@
-"""Users' encodings from GLSL files, and one-line errors that do not affect the others."""
+"""Users' encodings from GLSL files, and one-line errors that do not affect other files."""
 
 import json
 import re
@@ -97,7 +97,7 @@ def test_missing_file_is_a_one_line_error(run, tmp_path):
     assert (status, err) == (2, f"normalbench: {tmp_path / 'none.glsl'}: there is no such file\n")
 
 
-def test_a_shader_that_does_not_end_or_kills_the_process_is_named(run, tmp_path, monkeypatch):
+def test_a_shader_that_does_not_end_or_kills_the_process_is_reported(run, tmp_path, monkeypatch):
     path = written(tmp_path)
     monkeypatch.setattr(user_encodings, "TIME_LIMIT", 0.01)
     status, _, err = run("quality", "--encoding", path, *QUICK)

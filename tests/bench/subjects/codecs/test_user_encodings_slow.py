@@ -1,4 +1,4 @@
-"""Users' encodings from GLSL files, and one-line errors that do not affect the others."""
+"""Users' encodings from GLSL files, and one-line errors that do not affect other files."""
 
 import json
 
@@ -12,7 +12,7 @@ from normalbench.encodings.catalogue import NAMES
 pytestmark = pytest.mark.usefixtures("gl")
 
 
-def test_two_functions_are_measured_like_any_other(run, tmp_path):
+def test_a_users_pair_is_measured_like_a_catalogue_encoding(run, tmp_path):
     """Using the whole square for half the sphere gains about one bit over the full octahedral map."""
     path = written(tmp_path)
     status, out, err = run("quality", "--encoding", f"{path},octahedral", "--backend", "glsl", *QUICK)
@@ -64,7 +64,7 @@ def test_decoder_that_does_not_invert_the_encoder_is_reported_and_measured(run, 
         ("", "no function vec2"),
     ],
 )
-def test_invalid_file_does_not_affect_the_others(run, tmp_path, text, said):
+def test_invalid_file_does_not_affect_other_encodings(run, tmp_path, text, said):
     path = written(tmp_path, text)
     status, out, err = run("quality", "--encoding", path, *QUICK)
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
@@ -73,8 +73,8 @@ def test_invalid_file_does_not_affect_the_others(run, tmp_path, text, said):
     assert err.startswith("normalbench: left out: ") and said in err and err.count("\n") == 1
 
 
-def test_all_is_the_catalogue_whatever_files_there_were(tmp_path):
-    """A session of tests, or a file of gates, measures the same in any order."""
+def test_all_means_the_catalogue_even_after_files_were_read(tmp_path):
+    """A test session or a file of gates gives the same results in any order."""
     path = written(tmp_path)
     assert [encoding.name for encoding in encodings_named(path)] == ["mine"]
     assert [encoding.name for encoding in encodings_named("all")] == list(NAMES)
@@ -98,7 +98,7 @@ GOOD_ENCODE = "from normalbench.encodings.vec import Vec2\ndef encode(n, view):\
         ("print('hello')\nraise SystemExit(0)\n", "mine.py: SystemExit"),
     ],
 )
-def test_a_twin_that_fails_costs_the_rows_by_jax(run, tmp_path, twin, said):
+def test_a_failing_twin_loses_only_the_jax_row(run, tmp_path, twin, said):
     (tmp_path / "mine.py").write_text(twin)
     status, out, err = run("quality", "--encoding", written(tmp_path), *QUICK)
     by_jax, by_gl = json.loads(out)

@@ -16,7 +16,7 @@ from normalbench.gbuffer.environment.prefilter import prefiltered
 
 @pytest.fixture
 def in_here(monkeypatch):
-    """Reading of files in this process, because a process for each takes half a second."""
+    """Reading of files in this process, because starting a process for each file takes half a second."""
     monkeypatch.setattr(pixel_files, "_in_a_process", in_this_process)
 
 
@@ -42,14 +42,14 @@ def test_exr_file_is_read_bit_for_bit(tmp_path, kind):
 
 
 @here
-def test_a_file_of_large_radiance_is_not_clamped(tmp_path):
+def test_large_radiance_is_not_clamped(tmp_path):
     radiance = light()
     radiance[3, 4] = 72704
     assert environment_named(str(exr(tmp_path / "a.exr", radiance))).radiance.max() == 72704
 
 
 def test_averages_are_over_the_area_of_each_texel():
-    """Reduction by 2 weights two rows by area and two columns; reduction by 1.5 weights texels by their overlap."""
+    """Reduction by 2 averages two columns, and two rows by area; reduction by 1.5 weights texels by overlap."""
     radiance, area = light(8).astype(np.float64), solid_angles(8)[..., None]
     blocks = (radiance * area).reshape(4, 2, 8, 2, 3).sum((1, 3)) / (2 * area.reshape(4, 2, 1, 1).sum(1))
     assert averaged(radiance, 4) == pytest.approx(blocks, rel=1e-6)
@@ -90,7 +90,7 @@ def refused(path):
     return message
 
 
-def test_too_wide_a_file_is_refused_by_its_header(tmp_path):
+def test_file_that_is_too_wide_is_refused_from_its_header(tmp_path):
     """The file has no pixels, so nothing but the header can be read."""
     path = tmp_path / "wide.hdr"
     path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4100 +X 8200\n" + bytes(8200 * 4))
@@ -98,14 +98,14 @@ def test_too_wide_a_file_is_refused_by_its_header(tmp_path):
 
 
 @here
-def test_grey_and_normals_are_refused_by_their_channels(tmp_path):
+def test_grey_and_normal_images_are_refused_because_of_their_channels(tmp_path):
     grey = write_exr(tmp_path / "grey.exr", {"Y": np.ones((8, 16), np.float32)})
     assert "it has Y; it must have channels R, G and B" in refused(grey)
     normals = write_exr(tmp_path / "n.exr", {f"N.{axis}": np.ones((8, 16), np.float32) for axis in "XYZ"})
     assert "it has N.X, N.Y, N.Z; it must have" in refused(normals)
 
 
-def test_an_unknown_name_lists_those_there_are():
+def test_unknown_name_is_an_error_that_lists_the_known_names():
     with pytest.raises(
         UsageError, match=r"did you mean studio\? known: studio, sky, strips, lamp; or a file ending in .hdr, .exr"
     ):
@@ -113,7 +113,7 @@ def test_an_unknown_name_lists_those_there_are():
 
 
 @here
-def test_levels_of_a_file_are_made_once(own_cache, monkeypatch, tmp_path):
+def test_prefiltered_levels_of_a_file_are_computed_once(own_cache, monkeypatch, tmp_path):
     monkeypatch.delenv("NORMALBENCH_NO_CACHE", raising=False)
     path = exr(tmp_path / "a.exr", light(8))
     first = prefiltered(environment_named(str(path)), kept_arrays)

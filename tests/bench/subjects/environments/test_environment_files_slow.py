@@ -24,14 +24,14 @@ def test_radiance_file_is_read_to_rgbe_precision(tmp_path):
     assert (np.abs(sky.radiance - light()).max(-1) <= light().max(-1) / 127).all()
 
 
-def test_names_are_those_of_the_catalogue_however_spelled():
+def test_catalogue_names_ignore_case_and_spaces():
     for name in ENVIRONMENTS:
         assert environment_named(f" {name.upper()} ").name == name
 
 
 @here
 @pytest.mark.parametrize(("height", "wanted"), [(513, 512), (1024, 512), (10, 8), (30, 28)])
-def test_a_larger_file_is_averaged_and_says_so(tmp_path, height, wanted):
+def test_a_larger_file_is_averaged_and_the_change_is_recorded(tmp_path, height, wanted):
     """The result is at most 1024 x 512, with a width divisible by 8; no light is lost."""
     radiance = light(height)
     sky = environment_named(str(exr(tmp_path / "a.exr", radiance)))
@@ -43,7 +43,7 @@ def test_a_larger_file_is_averaged_and_says_so(tmp_path, height, wanted):
     assert after == pytest.approx(before, rel=1e-6)
 
 
-def test_other_files_are_one_line_errors(tmp_path):
+def test_files_that_are_not_environments_are_one_line_errors(tmp_path):
     (tmp_path / "sky.png").write_bytes(png_bytes(np.zeros((8, 16, 3), np.uint8)))
     (tmp_path / "photo.hdr").write_bytes(b"\xff\xd8\xff\xe0" + bytes(99))
     (tmp_path / "cut.hdr").write_bytes(write_image(tmp_path / "whole.hdr", light()).read_bytes()[:-900])

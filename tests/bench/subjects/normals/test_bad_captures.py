@@ -1,4 +1,4 @@
-"""Bad captures, each refused in one line without ending the process."""
+"""Bad captures, each refused with a one-line error that does not end the process."""
 
 import io
 import os
@@ -151,7 +151,7 @@ def test_bad_usage_is_a_one_line_error(run, arguments, said):
     assert (status, out) == (2, "") and err.count("\n") == 1 and said in err, err
 
 
-def test_an_exr_that_is_never_done_is_given_up(tmp_path, monkeypatch):
+def test_reading_an_exr_times_out(tmp_path, monkeypatch):
     path = write_exr(tmp_path / "frame.exr", planes_of(some_normals()))
     monkeypatch.setattr(pixel_files, "SECONDS", 0.001)
     with pytest.raises(UsageError, match="not read within"):

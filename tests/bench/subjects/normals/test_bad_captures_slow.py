@@ -1,4 +1,4 @@
-"""Bad captures, each refused in one line without ending the process."""
+"""Bad captures, each refused with a one-line error that does not end the process."""
 
 import numpy as np
 import pytest

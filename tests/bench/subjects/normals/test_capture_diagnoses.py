@@ -1,4 +1,4 @@
-"""Diagnoses of captures: frames read incorrectly are named with the option that corrects them, and no others."""
+"""Diagnoses of captures: only frames read incorrectly are reported, each with the option that corrects it."""
 
 import math
 from collections.abc import Callable
@@ -193,7 +193,7 @@ def said_of(path: Path, reading: Reading) -> list[str]:
 
 
 @pytest.mark.parametrize("what", WRONG)
-def test_wrongly_read_frame_is_named_with_an_option_that_corrects_it(tmp_path, what):
+def test_incorrectly_read_frame_is_reported_with_the_option_that_corrects_it(tmp_path, what):
     """One line names the option; with that option the frame equals the written frame, and no note remains."""
     wrong = WRONG[what]
     path = wrong.write(tmp_path / "frame")
@@ -243,19 +243,19 @@ def test_correctly_read_frame_has_no_notes(tmp_path, what):
     assert besides_bits(said_of(write(tmp_path / "frame"), reading)) == []
 
 
-def test_rows_from_the_bottom_up_are_told_from_another_angle_of_view(tmp_path):
+def test_bottom_up_rows_are_distinguished_from_another_field_of_view(tmp_path):
     (line,) = said_of(floats(tmp_path / "frame", N[::-1]), Reading(fov=CAMERA.fov))
     assert "if y points down, or rows run from the bottom up" in line
 
 
 def test_8_bit_frame_has_a_note_on_the_encodings_it_favours(tmp_path):
-    """8-bit normals are on the steps of RGBA8, which loses nothing more; 16 bits and floats favour no storage."""
+    """8-bit normals are already rounded to RGBA8, which adds no error; 16 bits and floats favour no storage."""
     (line,) = said_of(of_8_bits(tmp_path / "frame", N), Reading())
     assert line.startswith("8 bits per channel, with errors of about 0.2 degrees")
     assert said_of(png(tmp_path / "frame", N), Reading()) == []
 
 
-def test_a_grey_background_of_packed_normals_is_background(tmp_path):
+def test_grey_background_of_packed_normals_is_treated_as_background(tmp_path):
     packed_floats = np.where(ON_SURFACE, N * 0.5 + 0.5, 0.5)
     path = floats(tmp_path / "frame", packed_floats)
     (line,) = said_of(path, Reading())

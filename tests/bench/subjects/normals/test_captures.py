@@ -29,7 +29,7 @@ def capture(path: Path, reading: Reading) -> NormalSet:
     return captures.capture(path, reading)[0]
 
 
-def test_a_list_of_normals_is_a_set_without_a_picture(tmp_path, run):
+def test_a_list_of_normals_is_a_set_without_an_image(tmp_path, run):
     np.save(tmp_path / "list.npy", some_normals().reshape(-1, 3))
     arguments = ("--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--format", "json")
     status, out, err = run("quality", "--normals", f"axes,{tmp_path / 'list.npy'}", *arguments)
@@ -55,7 +55,7 @@ NAMES = {
 
 
 @pytest.mark.parametrize("what", NAMES)
-def test_the_channels_that_are_normals_are_found(what):
+def test_channels_with_normals_are_found(what):
     names, asked, expected = NAMES[what]
     if isinstance(expected, str):
         stem, axes = expected[:-1].split("{")
@@ -105,7 +105,7 @@ def test_normals_that_are_not_unit_length_are_refused_with_their_lengths(tmp_pat
     assert "are not unit" in refusal(run, tmp_path / "codes.npy")
 
 
-def test_few_normals_off_unit_length_are_normalised_with_a_note(tmp_path):
+def test_a_few_normals_off_unit_length_are_normalised_with_a_note(tmp_path):
     n = some_normals()
     n[0, :10] *= 0.5
     np.save(tmp_path / "frame.npy", n)
@@ -114,8 +114,8 @@ def test_few_normals_off_unit_length_are_normalised_with_a_note(tmp_path):
     assert notes == ["0.326% of the normals are not unit length: normalised"]
 
 
-def test_world_space_is_turned_to_view_space(tmp_path):
-    """The matrix has 9 numbers, or 16 with a move and a scale, or is a file; left-handed frames are mirrored."""
+def test_world_space_is_rotated_to_view_space(tmp_path):
+    """The matrix has 9 numbers, or 16 with translation and scale, or is a file; left-handed frames are mirrored."""
     n = some_normals()
     np.save(tmp_path / "world.npy", n.astype(np.float64) @ ROTATION)
     four = np.eye(4)
@@ -138,7 +138,7 @@ def test_world_space_is_turned_to_view_space(tmp_path):
     assert "if z points the other way: use --space view-left-handed" in note
 
 
-def test_normals_are_given_to_encoders_in_the_space_that_the_engine_encodes(tmp_path):
+def test_encoders_get_normals_in_the_space_that_the_engine_encodes_in(tmp_path):
     """A world-space frame of an engine that encodes in world space is measured unchanged, with or without the matrix;
     a view-space frame is rotated back. Rays are rotated with the normals."""
     n, matrix = some_normals(), ",".join(map(str, ROTATION.ravel()))
@@ -158,8 +158,8 @@ def test_normals_are_given_to_encoders_in_the_space_that_the_engine_encodes(tmp_
     assert playground().code_space is None
 
 
-def test_the_space_of_codes_is_in_the_row_and_named_by_the_hint(run, tmp_path):
-    """The octahedral map in world space has other errors than in view space for the same frame."""
+def test_code_space_is_in_the_row_and_in_the_hint(run, tmp_path):
+    """For the same frame, the octahedral map has different errors in world space and in view space."""
     n = rendered().normals[1::4, 1::4]
     np.save(tmp_path / "world.npy", n.astype(np.float64) @ ROTATION)
     matrix = ",".join(map(str, ROTATION.ravel()))
@@ -178,7 +178,7 @@ def test_the_space_of_codes_is_in_the_row_and_named_by_the_hint(run, tmp_path):
     assert "--space world --view-matrix" in err and "--space world --code-space world" in err
 
 
-def test_codes_that_need_the_view_ray_need_it_in_their_own_space(run, tmp_path):
+def test_encodings_that_need_the_view_ray_need_it_in_their_own_space(run, tmp_path):
     np.save(tmp_path / "world.npy", some_normals())
     words = ("quality", "--normals", str(tmp_path / "world.npy"), "--space", "world", "--code-space", "world")
     status, out, err = run(*words, "--encoding", "per_pixel_view", "--storage", "rg8")
@@ -216,7 +216,7 @@ def test_invalid_code_space_is_an_error():
         turns_of(checked(Reading(space="world")))
 
 
-def test_masks_by_file_and_by_channel(tmp_path, monkeypatch):
+def test_masks_come_from_a_file_or_a_channel(tmp_path, monkeypatch):
     """Garbage under the mask is ignored."""
     monkeypatch.setattr(pixel_files, "_in_a_process", in_this_process)
     n, surface = some_normals(), np.zeros((48, 64), bool)
@@ -238,7 +238,7 @@ def test_masks_by_file_and_by_channel(tmp_path, monkeypatch):
             capture(tmp_path / "frame.exr", Reading(mask=mask))
 
 
-def test_nan_is_refused_or_masked_and_counted_as_is_asked_for(tmp_path, run):
+def test_nan_is_refused_or_masked_and_counted_as_requested(tmp_path, run):
     n = some_normals()
     n[3, 4:7] = [(np.nan,) * 3, (np.inf, 0, 0), (0, 0, np.nan)]
     n[5, :10] = 0
@@ -256,8 +256,8 @@ def test_nan_is_refused_or_masked_and_counted_as_is_asked_for(tmp_path, run):
 
 @pytest.mark.parametrize("kind", [np.uint8, np.uint16])
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
-def test_png_of_every_filter_and_depth(tmp_path, kind, channels):
-    """The files are written byte by byte after the specification; noise on a ramp exercises every predictor."""
+def test_png_with_every_filter_and_bit_depth_is_read(tmp_path, kind, channels):
+    """The files are written byte by byte from the specification; noise on a ramp exercises every predictor."""
     rng = np.random.default_rng(0)
     ramp = np.arange(21 * 17 * channels).reshape(21, 17, channels) * (np.iinfo(kind).max // 4000)
     pixels = (ramp + rng.integers(0, np.iinfo(kind).max // 3, ramp.shape)).astype(kind)

@@ -41,7 +41,7 @@ def figures(made, codec: Codec = RG8) -> dict:
     return {column: value for column, value in row.items() if column not in hidden}
 
 
-def test_rays_of_a_field_of_view_are_the_cameras(tmp_path):
+def test_rays_from_a_field_of_view_agree_with_the_cameras_rays(tmp_path):
     """`per_pixel_view` with the playground's normals and field of view is within 0.01 dB of the playground itself."""
     np.save(tmp_path / "frame.npy", rendered().normals)
     codec = Codec(ENCODINGS["per_pixel_view"], STORAGES["rg8"])
@@ -52,7 +52,7 @@ def test_rays_of_a_field_of_view_are_the_cameras(tmp_path):
     assert abs(without - own) > 5, "parallel rays are another matter"
 
 
-def test_normals_of_no_length_are_background(tmp_path):
+def test_zero_length_normals_are_background(tmp_path):
     """Zeros, values within an 8-bit step of zero and cleared packed targets are background, and never NaN."""
     n = some_normals()
     n[:5] = 0
@@ -68,7 +68,7 @@ def test_normals_of_no_length_are_background(tmp_path):
 
 
 def all_of(path: Path):
-    """Return every channel of a file, (channels, height, width), and the value that stands for 1."""
+    """Return every channel of a file, (channels, height, width), and the value that represents 1."""
     image = read_pixels(path, lambda names: names)
     return image.planes, image.full
 
@@ -86,7 +86,7 @@ FORMATS = {
 
 
 @pytest.mark.parametrize("name", FORMATS)
-def test_numbers_of_every_format_come_back_as_they_are(tmp_path, name):
+def test_numbers_in_every_format_are_read_unchanged(tmp_path, name):
     """Colour is neither multiplied by alpha nor converted, and 16 bits stay 16."""
     kind, how = FORMATS[name]
     pixels = np.random.default_rng(0).integers(0, 2**16, (9, 7, 4))
@@ -122,7 +122,7 @@ def test_pages_of_a_file_are_layers(tmp_path):
     assert chosen_channels(tmp_path / "a.tif", seen, None) == ["R", "G", "B"]
 
 
-def test_whole_numbers_of_an_exr_are_not_scaled(tmp_path):
+def test_integers_in_an_exr_are_not_scaled(tmp_path):
     """An object's id is not a fraction of 2^32."""
     objects = np.arange(63, dtype=np.uint32).reshape(9, 7)
     planes, full = all_of(write_exr(tmp_path / "a.exr", {"id": objects}))
@@ -142,7 +142,7 @@ def test_an_interlaced_png_is_read(tmp_path, size):
     assert np.array_equal(all_of(tmp_path / "a.png")[0], np.moveaxis(pixels, -1, 0))
 
 
-def test_the_playground_through_a_file_has_the_playgrounds_own_figures(tmp_path):
+def test_playground_read_from_a_file_has_the_playgrounds_own_figures(tmp_path):
     """EXR in float and NPY in float32 and float64 agree to the bit, including the counts."""
     n = rendered().normals
     write_exr(tmp_path / "frame.exr", planes_of(n))
@@ -154,7 +154,7 @@ def test_the_playground_through_a_file_has_the_playgrounds_own_figures(tmp_path)
 
 
 @pytest.mark.parametrize("how, angle", [("half", 0.03), ("half npy", 0.03), ("png16", 0.002), ("png8", 0.4)])
-def test_coarser_files_are_as_far_off_as_their_numbers_are_coarse(tmp_path, how, angle):
+def test_error_of_coarser_files_matches_their_number_format(tmp_path, how, angle):
     """Half steps near 1 are 2^-12 in half floats, 2^-16 in 16 bits, 1/255 in 8; errors reach sqrt(3) half steps."""
     n = rendered().normals
     if how == "half":
@@ -174,7 +174,7 @@ def test_coarser_files_are_as_far_off_as_their_numbers_are_coarse(tmp_path, how,
     assert abs(np.linalg.norm(normals[covered].astype(np.float64), axis=1) - 1).max() < 2e-6
 
 
-def test_pictures_are_drawn_of_a_capture(tmp_path, run):
+def test_images_are_written_for_a_capture(tmp_path, run):
     (tmp_path / "frame.png").write_bytes(png_bytes(packed(some_normals(), np.uint16)))
     arguments = ("--encoding", "octahedral", "--storage", "rg8", "--backend", "jax", "--images", str(tmp_path / "p"))
     assert run("quality", "--normals", str(tmp_path / "frame.png"), *arguments)[0] == 0
@@ -183,7 +183,7 @@ def test_pictures_are_drawn_of_a_capture(tmp_path, run):
     assert shown.shape == (48, 64, 3) and abs(shown - (some_normals() * 0.5 + 0.5) * 255).max() < 4
 
 
-def test_layers_and_parts_of_an_exr_by_name(tmp_path):
+def test_layers_and_parts_of_an_exr_are_selected_by_name(tmp_path):
     n, other = some_normals(), some_normals(seed=1)
     planes = planes_of(other, ("R", "G", "B")) | planes_of(n.astype(np.float16), ("Nx", "Ny", "Nz"))
     write_exr(tmp_path / "layers.exr", planes, compression="piz")
@@ -197,7 +197,7 @@ def test_layers_and_parts_of_an_exr_by_name(tmp_path):
 
 
 @pytest.mark.parametrize("shape", [(1080, 1920, 3), (1, 262144, 3), (262144, 1, 3)])
-def test_16_bits_of_any_shape_are_read_in_seconds(tmp_path, shape):
+def test_16_bit_images_of_any_shape_are_read_in_seconds(tmp_path, shape):
     n = np.random.default_rng(0).integers(0, 2**16, shape, np.uint16)
     (tmp_path / "a.png").write_bytes(png_bytes(n))
     start = time.perf_counter()

@@ -24,7 +24,7 @@ def normals_of(path, **reading):
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
-def test_binary_clouds_are_read_as_text_is(tmp_path, order):
+def test_binary_clouds_are_read_like_text_clouds(tmp_path, order):
     """Capture options apply to binary clouds."""
     n = np.array([[0, 0, 1], [0, 0.6, 0.8], [-1, 0, 0]], np.float32)
     kind = {"<": "little", ">": "big"}[order]
@@ -38,7 +38,7 @@ def test_binary_clouds_are_read_as_text_is(tmp_path, order):
         normals_of(path, unpack=True)
 
 
-def test_a_cloud_without_normals_is_refused_as_before(tmp_path):
+def test_a_cloud_without_normals_is_refused(tmp_path):
     path = tmp_path / "cloud.ply"
     path.write_text(CLOUD.read_text().replace(" nx", " ax"))
     with pytest.raises(UsageError, match="vertices with x, y, z and faces"):
@@ -63,7 +63,7 @@ def test_a_cloud_without_normals_is_refused_as_before(tmp_path):
         (("check",), "mine.toml"),
     ],
 )
-def test_a_pointer_of_git_lfs_is_named(run, tmp_path, monkeypatch, words, name):
+def test_git_lfs_pointer_is_a_one_line_error(run, tmp_path, monkeypatch, words, name):
     monkeypatch.chdir(tmp_path)
     (tmp_path / name).write_text(POINTER)
     status, out, err = run(*words, name)

@@ -82,7 +82,7 @@ def test_duplicate_vertices_count_once_and_unused_vertices_do_not_count(tmp_path
     assert sorted_rows(kept).tolist() == sorted_rows([(0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 0, 1)]).tolist()
 
 
-def test_a_mesh_without_normals_leaves_the_others_of_its_file(tmp_path):
+def test_mesh_without_normals_does_not_affect_other_meshes_in_its_file(tmp_path):
     document = Document()
     n = unit(np.array([(1, 2, 2), (0, 3, 4), (-2, 1, 2)], float))
     document.node(mesh=document.mesh(TRIANGLE, None, [(0, 1, 2)]))
@@ -91,7 +91,7 @@ def test_a_mesh_without_normals_leaves_the_others_of_its_file(tmp_path):
     assert sorted_rows(normals) == pytest.approx(sorted_rows(n), abs=1e-6)
 
 
-def test_normals_of_no_length_and_nan_are_left_out_and_counted(tmp_path, run):
+def test_zero_length_and_nan_normals_are_left_out_and_counted(tmp_path, run):
     document = Document()
     n = [(0, 0, 2), (0, 0, 0), (np.nan, 0, 1), (0, -1e30, 1), (0.1, 0, 0)]
     document.node(mesh=document.mesh(np.arange(15.0).reshape(5, 3), n, mode=0))
@@ -120,8 +120,8 @@ def test_each_kind_of_mesh_file_gives_its_normals(tmp_path):
     assert vertices(CLOUD)[1].tolist() == [[0, 0, 1], [0, 1, 0]]
 
 
-def test_a_clouds_normals_of_no_length_are_counted_and_splats_have_none(tmp_path, run):
-    """Gaussian splats have nx, ny and nz, all of them 0."""
+def test_zero_length_normals_of_a_cloud_are_counted_and_splats_have_no_normals(tmp_path, run):
+    """In Gaussian splats, nx, ny and nz are all 0."""
     path = tmp_path / "a.ply"
     path.write_text(CLOUD.read_text().replace("vertex 2", "vertex 3") + "2 0 0 0 0 0\n")
     (cloud,) = normal_sets_named(str(path), 0, 0, Reading())
@@ -134,7 +134,7 @@ def test_a_clouds_normals_of_no_length_are_counted_and_splats_have_none(tmp_path
         assert (status, out) == (2, "") and len(err.splitlines()) == 1 and text in err, err
 
 
-def test_a_code_that_needs_a_view_ray_is_left_out_in_a_line(tmp_path, run):
+def test_encoding_that_needs_a_view_ray_is_left_out_with_a_one_line_message(tmp_path, run):
     path = as_glb(tmp_path / "a.glb", BALL)
     words = ("quality", "--normals", f"{path}#vertices", "--backend", "jax", "--format", "json")
     status, out, err = run(*words, "--encoding", "octahedral,per_pixel_view")
@@ -188,7 +188,7 @@ def test_bad_input_is_a_one_line_error(run, tmp_path, monkeypatch, what):
 
 
 def test_gates_and_workers_find_the_file(tmp_path, monkeypatch, run):
-    """The word counts as a file next to the gates, and in the identity of a step."""
+    """The option's value counts as a file next to the gates, and the file is part of a step's identity."""
     from normalbench.bench.ground.user_files import file_of, files_in, with_files
     from normalbench.bench.run.measuring import files_of
     from normalbench.bench.tables.quality.table import QualityOptions
@@ -239,8 +239,8 @@ def test_gltf_integers_report_their_own_error(tmp_path, capsys, kind, noted):
 
 
 @pytest.mark.parametrize("bits", [6, 8, 10, 12])
-def test_an_octahedral_map_is_found_and_its_error_known(bits):
-    """Draco and meshoptimizer pack normals in such a map of few bits; exact normals show no such grid."""
+def test_an_octahedral_map_is_detected_with_its_error(bits):
+    """Draco and meshoptimizer pack normals in an octahedral map of few bits; exact normals show no such grid."""
     exact = directions(2000)
     (storage,) = storages_named(f"snorm:{bits}:{bits}")
     codec = Codec(ENCODINGS["octahedral"], storage)
@@ -254,7 +254,7 @@ def test_an_octahedral_map_is_found_and_its_error_known(bits):
     assert all_roundings(exact, ()) == ()
 
 
-def test_few_normals_and_those_along_axes_show_no_map():
+def test_few_normals_or_normals_along_axes_are_not_taken_for_a_map():
     """A box fits every grid and is exact, so no map is reported."""
     box = np.repeat(np.concatenate([np.eye(3), -np.eye(3)]), 100, axis=0)
     assert all_roundings(box, ()) == () and own_error_deg(box, [Rounding(127)]) == 0
@@ -266,7 +266,7 @@ def test_few_normals_and_those_along_axes_show_no_map():
     "kind, order", [("char", "ascii"), ("uchar", "ascii"), ("char", "binary_big_endian"), ("short", "ascii")]
 )
 def test_integer_normals_of_points_are_read_with_their_error(tmp_path, run, kind, order):
-    """Signed, 127 stands for 1; unsigned, 0 to 255 stand for -1 to 1. Files are read as clouds and as vertices."""
+    """A signed 127 means 1; unsigned 0 to 255 mean -1 to 1. Files are read as clouds and as vertices."""
     exact = directions(2000)
     full = {"char": 127, "uchar": 255, "short": 32767}[kind]
     stored = np.round((exact + 1) / 2 * 255) if kind == "uchar" else np.round(exact * full)
@@ -286,8 +286,8 @@ def test_integer_normals_of_points_are_read_with_their_error(tmp_path, run, kind
 
 
 def test_rendered_mesh_reports_the_error_of_its_vertices(tmp_path):
-    """Vertex errors partly cancel inside a triangle, in the mean of many by at most a factor of sqrt(1/2); the error
-    is measured against the same image with float normals."""
+    """Vertex errors partly cancel inside a triangle, on average by at most a factor of sqrt(1/2); the error is
+    measured against the same image with float normals."""
     ball = sphere(1.0, 48, 32)
     exact, coarse = Document(), Document()
     for document, kind in ((exact, None), (coarse, np.int8)):

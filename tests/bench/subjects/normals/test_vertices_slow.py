@@ -9,8 +9,8 @@ from normalbench.encodings.catalogue import ENCODINGS
 from normalbench.encodings.vec import Vec3
 
 
-def test_meshopts_map_is_read_from_the_file(tmp_path):
-    """For an 8-bit map in bytes, neither number alone gives the whole error."""
+def test_meshoptimizers_map_is_read_from_the_file(tmp_path):
+    """For an 8-bit map in bytes, neither the bits of the map nor the bytes alone explain the whole error."""
     pytest.importorskip("meshoptimizer")
     exact = directions(3000)
     square = np.stack([*ENCODINGS["octahedral"].encode(Vec3(*exact.T), Vec3(*exact.T))], axis=1)

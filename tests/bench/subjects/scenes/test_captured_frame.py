@@ -93,7 +93,7 @@ def test_invalid_entry_is_a_one_line_error(tmp_path, changes, said):
 
 
 @pytest.mark.parametrize("number", ["9" * 310, "-" + "9" * 5000, "1e999", "NaN", "-Infinity"])
-def test_number_beyond_float_range_is_a_one_line_error_with_its_place(run, tmp_path, number):
+def test_number_beyond_float_range_is_a_one_line_error_with_its_location(run, tmp_path, number):
     path = frame(tmp_path, roughness={"file": "roughness.npy", "scale": 7.25})
     path.write_text(path.read_text().replace("7.25", number))
     status, out, err = run("budget", "--bytes", "12", "--scene", str(path))
@@ -112,7 +112,7 @@ def test_malformed_description_is_a_one_line_error(tmp_path, text):
         read(path)
 
 
-def test_numbers_stand_for_quantities_and_smoothness_for_roughness(tmp_path):
+def test_numbers_may_replace_images_and_smoothness_may_replace_roughness(tmp_path):
     smooth = {"roughness": None, "smoothness": {"file": "roughness.npy"}, "metallic": 1, "emissive": [0, 0.5, 2]}
     pixels = pixels_of(frame(tmp_path, **smooth, f0={"file": "roughness.npy", "scale": 0.08}))
     rough = np.load(tmp_path / "roughness.npy")
@@ -135,8 +135,8 @@ def test_depth_and_normals_define_the_background(tmp_path):
     assert sum(len(mesh.triangles) for mesh in meshes) == 2 * 14 * 24
 
 
-def test_large_frames_are_drawn_by_some_of_their_pixels(tmp_path, monkeypatch):
-    """Rows and columns are taken at regular steps without averaging, and the camera keeps its field of view."""
+def test_large_frames_are_subsampled(tmp_path, monkeypatch):
+    """Rows and columns are sampled at regular steps without averaging, and the camera keeps its field of view."""
     monkeypatch.setattr(reading, "MOST_PIXELS", 100)
     path = frame(tmp_path)
     captured = read(path)
@@ -154,7 +154,7 @@ def test_large_frames_are_drawn_by_some_of_their_pixels(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("up", [0, 1, 2])
 @pytest.mark.parametrize("hand", [1.0, -1.0])
-def test_worlds_of_any_axes_have_y_up(up, hand):
+def test_worlds_with_any_axes_are_converted_to_y_up(up, hand):
     """For a slightly tilted camera in a world of either handedness, world axes are mapped to world axes."""
     level = np.roll(np.eye(3), up - 1, axis=0) * (1, 1, hand)
     turn = rotation(0.7, 0.3, 0.1)
@@ -175,7 +175,7 @@ def test_many_reflectances_are_rounded_and_few_are_not(tmp_path):
     assert reflectances[[0, -1]] == pytest.approx((0.01, 0.09)) and len(many.parts) == len(reflectances)
 
 
-def test_images_belong_to_what_is_measured(tmp_path):
+def test_images_count_as_inputs_of_a_measurement(tmp_path):
     """A changed image is a changed input, and workers receive the images."""
     matrix = tmp_path / "view.txt"
     matrix.write_text("1 0 0 0 1 0 0 0 1")

@@ -49,8 +49,8 @@ def written(exact: Exact, folder: Path) -> Path:
 
 
 @pytest.mark.parametrize("name", ["ramps", "studio"])
-def test_a_scene_that_was_read_back_has_the_images_of_the_scene(gl, name, tmp_path):
-    """Attributes and the lit image agree to the rounding of texels, and each code's errors to 0.1 dB."""
+def test_a_scene_that_is_read_back_renders_the_same_images(gl, name, tmp_path):
+    """Attributes and the lit image agree to within texel rounding, and the errors of each code to within 0.1 dB."""
     with ExitStack() as stack:
         whole = Exact(gl, stack, Stage(unlit(name), Setting(), SIZE))
         (maker,) = scene_makers_named(str(written(whole, tmp_path)))
@@ -70,7 +70,7 @@ def test_a_scene_that_was_read_back_has_the_images_of_the_scene(gl, name, tmp_pa
                     assert 10 * abs(np.log10(error / others[of_class])) < 0.1, (attribute, of_class)
 
 
-def test_images_of_eight_bits_are_read_by_their_curve_and_named(tmp_path):
+def test_8_bit_images_are_decoded_with_their_curve_and_noted(tmp_path):
     """A PNG's base colour, and roughness that RenderDoc's script wrote as floats, are on 8-bit steps."""
     rng = np.random.default_rng(5)
     colours = rng.integers(0, 256, (16, 24, 3), np.uint8)

@@ -1,4 +1,4 @@
-"""A process behind a Landlock wall, and its children, can access only what is named."""
+"""A process behind a Landlock wall, and its children, can access only the listed files and folders."""
 
 import os
 import shutil
@@ -135,7 +135,7 @@ def test_shader_tools_run_behind_a_wall(tool, place):
 
 
 def test_an_untrusted_program_can_access_nothing_outside(place, monkeypatch):
-    """Its child and its own restart are blocked too; it can write only its own folder."""
+    """The program's child and its restart are blocked too; the program can write only to its own folder."""
     monkeypatch.setenv("SECRET", SECRET)
     outside = place.parent / "outside"
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -170,8 +170,8 @@ def test_an_untrusted_program_can_access_nothing_outside(place, monkeypatch):
         ("open('/dev/tty')", "PermissionError|OSError"),
     ],
 )
-def test_python_behind_a_wall_is_refused(place, line, says):
-    """A forked child, such as those of `multiprocessing`, is denied access too."""
+def test_python_behind_a_wall_is_denied_access(place, line, says):
+    """A forked child, as in `multiprocessing`, is denied access too."""
     line = line.format(secret=str(place.parent / "outside" / "secret"), home=str(Path.home()))
     done = tried(place, line)
     assert done.returncode == 1 and any(says_one in done.stderr for says_one in says.split("|")), done.stderr

@@ -1,4 +1,4 @@
-"""A process behind a Landlock wall, and its children, can access only what is named."""
+"""A process behind a Landlock wall, and its children, can access only the listed files and folders."""
 
 import os
 
@@ -14,7 +14,7 @@ pytestmark = pytest.mark.skipif(
 place = test_landlock.place
 
 
-def test_python_behind_a_wall_imports_modules_and_writes_its_folder(place):
+def test_python_behind_a_wall_imports_modules_and_writes_to_its_folder(place):
     """This program and its dependencies can be imported; a folder that may be read cannot be written."""
     line = f"import numpy, normalbench; open({str(place / 'made')!r}, 'w').write('1')"
     assert tried(place, line).returncode == 0 and (place / "made").read_text() == "1"

@@ -1,4 +1,4 @@
-"""Users' encodings of other quantities than normals: measured like the catalogue's, with one-line errors."""
+"""Users' encodings of quantities other than normals: measured like the catalogue's, with one-line errors."""
 
 import json
 import re
@@ -31,18 +31,18 @@ VECTORS = ("vectors", "--backend", "glsl", "--speed", "0.25,4", "--count", "512"
 KEYS = ("encoding", "device", "range")
 
 
-def test_every_kind_has_a_shape_and_is_tried():
+def test_every_kind_has_a_shape_and_is_tested():
     assert set(SHAPES) == set(OWN) == set(KINDS) - {NORMAL}
 
 
 def figures(out: str, name: str) -> list[dict]:
-    """Return the rows of a code without the columns that name it."""
+    """Return the rows of an encoding without the columns that identify the encoding."""
     rows = [row for row in json.loads(out) if row["encoding"] == name]
     return [{column: value for column, value in row.items() if column not in KEYS} for row in rows]
 
 
-def test_codes_in_0_to_1_are_held_as_they_are(run, tmp_path):
-    """In UNORM such codes equal codes in [-1, 1]; SNORM keeps half of the numbers, and no exact code for rest."""
+def test_codes_from_0_to_1_are_stored_unchanged(run, tmp_path):
+    """In UNORM these codes match codes in [-1, 1]; SNORM has half as many values and no exact code for no motion."""
     (tmp_path / "biased.hlsl").write_text(
         "float2 EncodeVelocity(float2 v) { return v * 0.5 + 0.5; }"
         "float2 DecodeVelocity(float2 e) { return e * 2.0 - 1.0; }"
@@ -59,7 +59,7 @@ def test_codes_in_0_to_1_are_held_as_they_are(run, tmp_path):
 
 
 @pytest.mark.parametrize("scale, reach", [(1.0, 1.0), (0.25, 4.0), (1 / 0.4985, 0.4985)])
-def test_a_code_without_a_range_has_its_own(tmp_path, scale, reach):
+def test_an_encoding_without_a_range_parameter_has_its_own_range(tmp_path, scale, reach):
     """The range is the motion whose code is 1."""
     file = tmp_path / "own.hlsl"
     file.write_text(
@@ -71,7 +71,7 @@ def test_a_code_without_a_range_has_its_own(tmp_path, scale, reach):
     assert not code.is_unit
 
 
-def test_an_encoder_that_clips_by_itself_has_the_range_that_comes_back(tmp_path):
+def test_range_of_a_clipping_encoder_is_the_range_that_round_trips(tmp_path):
     file = tmp_path / "own.hlsl"
     file.write_text(
         "float2 EncodeMotion(float2 v) { return saturate(v * 2 + 0.5); }"
@@ -132,7 +132,7 @@ def test_pair_that_round_trips_is_chosen_from_several(tmp_path):
     assert own_code(MOTION, f"{file}:EncodeMotionA:DecodeMotionB").found["error_max"] == 1
 
 
-def test_rows_by_jax_need_a_twin(run):
+def test_jax_rows_require_a_twin(run):
     """Without a twin the rows are left out with a message, as for normals."""
     words = ("--storage", "rg16", "--speed", "1", "--count", "64")
     status, out, err = run("vectors", "--encoding", str(INPUTS / "velocity.wgsl"), *words)
@@ -143,7 +143,7 @@ def test_rows_by_jax_need_a_twin(run):
 
 
 @pytest.mark.parametrize("ending", ["hlsl", "slang", "glsl", "wgsl"])
-def test_a_copy_of_a_depth_code_has_its_rows(run, ending):
+def test_a_copy_of_a_depth_encoding_has_the_same_rows(run, ending):
     """Each file is the catalogue's `window`, with the planes after the depth, before it or in a structure."""
     file = INPUTS / f"depth.{ending}"
     words = ("--storage", "depth16,packed24,r16f", "--rebuild", "eye_ray", "--near", "0.1", "--distance", "1,100")
@@ -183,7 +183,7 @@ OWN_DEPTHS = {"own.hlsl": set(DEPTH_STORAGES), "units.hlsl": {"r16f", "r32f"}}
 
 
 @pytest.mark.parametrize("ending", ["hlsl", "slang", "glsl", "wgsl"])
-def test_a_copy_of_a_curve_gives_its_quantities(ending):
+def test_a_copy_of_a_curve_decodes_to_the_same_quantities(ending):
     """Each file is the catalogue's `squared`: in half types, with an out parameter, with or without a range."""
     (ours, theirs) = own_codes_named(CURVE, f"{INPUTS / f'roughness.{ending}'},squared", CURVE_ENCODINGS)
     given = np.linspace(0, 1, 4096, dtype=np.float32).reshape(64, 64)
@@ -222,7 +222,7 @@ def lit(out: str, name: str) -> list[dict]:
 
 
 @pytest.mark.parametrize("ending", ["hlsl", "slang", "frag", "wgsl"])
-def test_a_copy_of_a_light_code_has_its_rows_on_the_device(run, ending):
+def test_a_copy_of_a_light_encoding_has_the_same_rows_on_the_device(run, ending):
     """Each file is the catalogue's RGBM; without a twin it has no model."""
     file = INPUTS / f"light.{ending}"
     status, out, err = run(*LIGHTS, "--experiment", "equal,random", "--light-buffer", f"{file},rgbm")
@@ -269,9 +269,9 @@ FRAMES = ("frames", "--count", "4096", "--backend", "glsl", "--format", "json")
 
 
 @pytest.mark.parametrize("ending", ["hlsl", "slang", "glsl", "wgsl"])
-def test_a_copy_of_a_code_of_frames_has_its_rows(run, ending):
-    """Each file is the catalogue's `hexadecachoral`: with vectors and a hand, with structures, with three vectors in
-    [0, 1], or with a quaternion without a hand, which describes only a rotation."""
+def test_a_copy_of_a_tangent_frame_encoding_has_the_same_rows(run, ending):
+    """Each file is the catalogue's `hexadecachoral`: with vectors and handedness, with structures, with three
+    vectors in [0, 1], or with a quaternion without handedness, which describes only a rotation."""
     file = INPUTS / f"frame.{ending}"
     status, out, err = run(*FRAMES, "--encoding", f"{file},hexadecachoral", "--storage", "rgb10a2,rgba16,rgba8")
     assert status == 0 and ("its decoder returns no handedness" in err) == (ending == "wgsl"), err
@@ -289,8 +289,8 @@ def test_a_copy_of_a_code_of_frames_has_its_rows(run, ending):
             assert ours["codes"] * 2 == theirs["codes"] and ours["hands_lost"] is None
 
 
-def test_a_usual_storage_is_one_that_fits(tmp_path):
-    """Two bits suit only a number of few values, but the fourth number of this code has many."""
+def test_usual_storages_fit_the_encoding(tmp_path):
+    """Two bits suit only a number with few values, but the fourth number of this code has many."""
     file = tmp_path / "own.hlsl"
     file.write_text(
         "float4 EncodeRotation(float4 q) { return q; } float4 DecodeRotation(float4 q) { return normalize(q); }"
@@ -338,7 +338,7 @@ def test_kind_of_a_function_follows_from_its_name(name, kind):
     assert kind_spoken_of(name) is BY_NAME.get(kind)
 
 
-def test_two_curves_in_a_file_are_named(tmp_path):
+def test_two_curves_in_a_file_require_a_choice(tmp_path):
     file = tmp_path / "mine.hlsl"
     text = "float EncodeX(float r) { return r * r; } float DecodeX(float e) { return sqrt(e); }"
     file.write_text(text.replace("X", "Roughness") + text.replace("X", "Metalness"))
@@ -353,7 +353,7 @@ def test_format_applies_only_to_light_buffers(run):
     assert status == 2 and "format applies only to light buffers; for others use --storage" in err
 
 
-def test_structures_of_wgsl_are_bound(tmp_path):
+def test_wgsl_structures_are_bound(tmp_path):
     """Other fields of a structure are set to 0.5, as in other languages."""
     file = tmp_path / "mine.wgsl"
     file.write_text(

@@ -1,4 +1,4 @@
-"""Users' encodings of other quantities than normals: measured like the catalogue's, with one-line errors."""
+"""Users' encodings of quantities other than normals: measured like the catalogue's, with one-line errors."""
 
 import json
 
@@ -10,7 +10,7 @@ pytestmark = pytest.mark.usefixtures("gl", "slang")
 
 
 @pytest.mark.parametrize("ending", ["hlsl", "slang", "glsl", "wgsl"])
-def test_a_copy_of_a_motion_code_has_its_rows(run, ending):
+def test_a_copy_of_a_motion_encoding_has_the_same_rows(run, ending):
     """Each file is the catalogue's `sqrt`: with a range, a structure, an out parameter or a stage around it."""
     file = INPUTS / f"velocity.{ending}"
     words = ("--storage", "rg16,rg8_snorm,rg16f", "--range", "0.5,1")
@@ -44,7 +44,7 @@ def test_format_follows_the_file_name(run, tmp_path):
 
 
 def test_a_direction_to_a_light_is_still_measured_as_a_normal(tmp_path):
-    """The code has two numbers, which no light code has."""
+    """The code has two numbers; codes of light never have two."""
     file = tmp_path / "mine.hlsl"
     file.write_text(
         "float2 EncodeLightDir(float3 n) { return n.xy; }"
