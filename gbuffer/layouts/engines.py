@@ -195,7 +195,7 @@ ENGINES = (
         "Skyrim Community Shaders",
         2026,
         "skyrim_community",
-        "octahedral of -n (z into the screen), so visible normals are in the middle; in halves, with 1 - roughness",
+        "octahedral of -n (z into the screen), so visible normals are central; in half floats, with 1 - roughness",
         ENCODINGS["octahedral"],
         f"rgb10a2: normal.x normal.y roughness shading_model; rgba8: diffuse_color -; {SPECULAR}",
         "community-shaders/skyrim-community-shaders, package/Shaders/Common/GBuffer.hlsli (fd20066)",

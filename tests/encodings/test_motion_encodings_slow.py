@@ -28,7 +28,7 @@ def test_an_encoding_is_odd_and_rises_from_0_to_1_at_the_range(name):
 
 
 def test_a_bias_in_half_floats_loses_slow_motion():
-    """1/2 plus half of the motion: 0.05 pixels of 1920 come back as 0 (ufloat:5:10 is the positive halves)."""
+    """Stored as 1/2 plus half of the motion, 0.05 pixels at a width of 1920 come back as 0."""
     slow = planes(Vec2, np.float32([[0.05 / 1920, -0.05 / 1920]]))
     biased = MotionCodec(MOTION_ENCODINGS["linear"], by_rule("ufloat", (5, 10)))
     assert np.array_equal(rows(biased.round_trip(slow, np.float32(1))), [[0, 0]])

@@ -369,7 +369,7 @@ def test_a_stand_in_format_stores_the_same_numbers(name):
 @pytest.mark.parametrize("bits", [(4, 4), (9, 7), (12, 12), (11, 11, 10), (20, 20), (12, 12, 12), (20, 20, 20)])
 @pytest.mark.parametrize("kind", ["unorm", "snorm", "float"])
 def test_a_packing_writes_the_channels_that_its_target_has(kind, bits):
-    """A packing has two channels or more, because GLSL has no vectors of one, and enough for all numbers."""
+    """A packing has enough channels for all numbers, and at least two, because GLSL has no one-component vectors."""
     storage = by_rule(kind, bits) if kind != "float" else by_rule("float", (8, 7))
     numbers = min(len(bits), 3)
     packing = StoragePacking(storage, numbers)

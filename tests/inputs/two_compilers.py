@@ -19,7 +19,7 @@ SIGN_OF_ZERO = {"spherical"}
 
 
 def differences(codecs: Sequence[str]) -> dict[str, str]:
-    """Return how C and XLA differ, in words, for the codecs (such as "octahedral rg8") in which they do."""
+    """Describe how C and XLA differ, for each codec (such as "octahedral rg8") for which they do."""
     environment = os.environ | {"XLA_FLAGS": FLAGS, "PYTHONPATH": str(Path(__file__).parent)}
     command = [sys.executable, "-m", "two_compilers", *codecs]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=1200)

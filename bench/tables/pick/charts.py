@@ -106,9 +106,9 @@ def _spread(name: str, counted: Sequence[tuple[Row, Bins]]) -> Chart:
     return Chart(
         name=name,
         title=f"{question(first)}: {_median_sentence(first, *next(iter(shares.values())))}",
-        subtitle="The share of normals with an error below an angle; the area covers all encodings",
-        description="The share of normals with an error below an angle, by angle, on a logarithmic scale. The area "
-        "covers all encodings that could be the answer; each is a thin line in the area.",
+        subtitle="Share of normals with an error below a given angle; shaded: range of all eligible encodings",
+        description="The share of normals with an error below a given angle, on a logarithmic scale. The shaded area "
+        "covers all encodings that could be the answer; each is a thin line in it.",
         x=Axis(title="angle between normal and decode (degrees)", scale=Scale.LOG),
         y=Axis(title="share of normals (%)", domain=(0.0, 100.0)),
         rows=points,

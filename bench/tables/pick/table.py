@@ -143,8 +143,9 @@ COLUMNS = (
     Column(
         "place",
         "best: the answer. tie: its image ties with the best. more accurate, most accurate, cheaper, fewer bits: the "
-        "alternatives. inside a surface: better, but survives --needs only there. plain channels: the first that is "
-        "not packed. against: named by --against. elsewhere: in a different storage of the same size, 6 dB better.",
+        "alternatives. inside a surface: better, but meets --needs only inside a surface. plain channels: the best "
+        "without packing. against: named by --against. elsewhere: in a different storage of the same size, 6 dB "
+        "better.",
         HOW,
     ),
     Column(
@@ -165,15 +166,14 @@ COLUMNS = (
     ),
     Column(
         "angle_sup_deg",
-        "The supremum: the largest angle in exact arithmetic. Only for encodings with a place; with --aim worst for "
+        "The supremum: the largest angle in exact arithmetic. Only for encodings in the answer; with --aim worst for "
         "all that qualify.",
         unit="degrees",
         better="less",
     ),
     Column(
         "angle_axes_deg",
-        "Largest error of axis-aligned normals, such as those of floors and walls. Only for encodings with a place in "
-        "the answer.",
+        "Largest error of axis-aligned normals, such as those of floors and walls. Only for encodings in the answer.",
         unit="degrees",
         better="less",
         drops=5,
@@ -184,7 +184,7 @@ COLUMNS = (
         "image_db_*",
         "PSNR of the displayed image of that scene, at that specular power if its materials have one, against 32-bit "
         "normals, over covered pixels whose normals the encoding can represent: from the mean squared error over "
-        "yaws of the encoding's axes about the vertical, at `image_pole`. Only for encodings with a place; with "
+        "yaws of the encoding's axes about the vertical, at `image_pole`. Only for encodings in the answer; with "
         "--aim image for all that qualify, but with four yaws if far from the best.",
         unit="dB",
         better="more",

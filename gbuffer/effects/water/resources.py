@@ -45,17 +45,17 @@ class Maps:
 
     @property
     def heights(self) -> Resource:
-        """The volume of the water's height and slope."""
+        """The volume texture that holds the water's height and slope."""
         return Resource("water_heights", "rgba32f", (self.texels, self.texels), depth=self.octaves)
 
     @property
     def bends(self) -> Resource:
-        """The volume of the second derivatives of the height."""
+        """The volume texture that holds the second derivatives of the height."""
         return Resource("water_bends", "rgba32f", (self.texels, self.texels), depth=self.octaves)
 
     @property
     def caustics(self) -> Resource:
-        """The volume of ratios between the sunlight on the ground and that under still water, one slice per depth."""
+        """The volume texture of the ratios of sunlight on the ground to that under still water, one slice per depth."""
         return Resource("water_caustics", "r32f", (self.texels, self.texels), depth=CONSTANTS["CAUSTIC_SLICES"])
 
     def defines(self, chop: float) -> dict[str, object]:

@@ -5,12 +5,12 @@
 // Names of columns, what they say, and whether they hold numbers.
 const COLUMNS = [
   ["codec", "The encoding and its storage."],
-  ["target", "The WebGL format rendered to. R32UI, RG32UI and RGBA32UI hold codes that the shader rounded and packed."],
+  ["target", "The WebGL format of the render target. R32UI, RG32UI and RGBA32UI hold codes that the shader rounded and packed."],
   ["equal", "Percentage of codes that match the run's, bit for bit.", true],
   ["one step", "Codes that differ from the run's by one step in one component.", true],
   ["further", "Codes that differ by more, and codes in groups whose differences a checksum cannot distinguish.", true],
   ["mean", "The mean angle between normals and what this device decodes, in degrees.", true],
-  ["run", "The same angle of the run's own codes.", true],
+  ["run", "The same mean angle for the run's codes.", true],
   ["max", "The largest angle on this device, in degrees.", true],
   ["encode", "Milliseconds to encode a megapixel, minus a pass that only reads and writes.", true],
   ["decode", "Milliseconds to decode a megapixel, minus a pass that only reads and writes.", true],

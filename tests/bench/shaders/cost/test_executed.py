@@ -1,4 +1,4 @@
-"""Executed issue slots: turns of loops and the totals that follow from a listing."""
+"""Executed issue slots: loop iterations and the totals that follow from a listing."""
 
 import numpy as np
 import pytest
