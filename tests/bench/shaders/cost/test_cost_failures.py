@@ -81,7 +81,7 @@ def test_the_help_of_run_lists_cost():
         (["--family", "gcn"], "unknown family 'gcn'; did you mean vega10? known: all, polaris10"),
         (["--stage", "vertex"], "unknown stage 'vertex'"),
         (["--operation", "sign"], "unknown operation 'sign'"),
-        (["--storage", "13:13"], "unknown storage '13:13'"),
+        (["--storage", "13-13"], "unknown storage '13-13'"),
         (["--repeats", "1"], "--repeats 1"),
         (["--disassembly", "d", "--time"], "--disassembly requires --isa"),
     ],
