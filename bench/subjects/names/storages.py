@@ -74,8 +74,10 @@ def _storage_of(word: str) -> Storage | None:
 
 
 def _rule_of(word: str) -> str | None:
-    """Return the bits, such as `unorm:5:6:5`, of an API's format that is not in the catalogue, such as B5G6R5_UNORM;
-    None for any other word."""
+    """Return the bits, as `unorm:5:6:5`, for bits alone (5:6:5), or for a format that an API names and the catalogue
+    lacks, such as B5G6R5_UNORM; None for any other word."""
+    if re.fullmatch(r"\d+(:\d+)+", word):
+        return f"unorm:{word}"
     if vertex := VERTEX.fullmatch(word):
         bits = vertex["bits"].split("-") if vertex["bits"] else [vertex["size"]] * int(vertex["count"])
         kind = vertex["kind"].lower()
@@ -95,8 +97,7 @@ def _in_range(word: str) -> list[str]:
 
     Raises UsageError for an invalid range.
     """
-    # Bits alone are those of a UNORM target.
-    word = f"unorm:{word}" if re.fullmatch(r"\d+(:\d+)+", word) else word.lower() if RULE.match(word) else word
+    word = word.lower() if RULE.match(word) else word
     match = RANGE.fullmatch(word)
     if not match and RULE.match(word) and not BY_RULE.fullmatch(word):
         raise UsageError(

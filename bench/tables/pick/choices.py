@@ -21,7 +21,7 @@ from ..mix.table import USES
 from . import answer
 from .answer import Row, asked_of, groups, largest, largest_mixed, loss_db, mean, why_unfit
 from .charts import FOUND, chart_name, spread_name
-from .sentences import around_gain, called, constraints, not_held, question
+from .sentences import around_gain, axis_text, called, constraints, not_held, question
 from .table import TABLE
 
 # The constants of the rule, by their names there.
@@ -118,7 +118,7 @@ def _code(row: Row) -> dict[str, Any]:
         "free": row["free_bits"],
         "table": bool(row["table"]),
         "image": answer.image_db(row),
-        "pole": {"y": "z axis up", None: ""}.get(row.get("image_pole"), "z axis sideways"),
+        "pole": axis_text(row["image_pole"]) if row.get("image_pole") else "",
         "beside": row["beside"],
         "packed": row["packed"],
         "lost": " ".join(not_held(row)),

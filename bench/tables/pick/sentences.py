@@ -374,11 +374,16 @@ def _pole_sentence(row: Row, names: str | None = None) -> str:
     pole, cost = row.get("image_pole"), row.get("image_wrong_pole_db") or 0.0
     if not pole or cost < max(STEP, ERRORS * (row.get("image_se_db") or 0.0)):
         return ""
-    where, ups = ("up", "yz") if pole == "y" else ("sideways", "zy")
+    ups = "yz" if pole == "y" else "zy"
     name, known = row["encoding"], ENCODINGS.get(row["encoding"])
     if names is None and known and known.can_turn:
         names = f": {name}:axis=y if {ups[0]} is up in your world, {name} if {ups[1]} is"
-    return f" Point its z axis {where}{names or ''}; the worst axis costs {cost:.1f} dB."
+    return f" Point its {axis_text(pole)}{names or ''}; the worst axis costs {cost:.1f} dB."
+
+
+def axis_text(pole: str) -> str:
+    """Return where an encoding's z axis points if it is along an axis of the world, x, y or z."""
+    return f"z axis {'up' if pole == 'y' else 'sideways'}"
 
 
 def _mixing_text(row: Row) -> str:

@@ -47,13 +47,17 @@ function gapError(one, other, equal) {
   return Math.sqrt(((count - 1) / count) * gaps.reduce((sum, gap) => sum + (gap - mean) ** 2, 0));
 }
 
+// From how many decibels on two codes' images do not tie.
+const clearImageGap = (one, other, { step, errors, equal }) => Math.max(step, errors * gapError(one, other, equal));
+
 // What qualifies, in its order, and why the others do not.
-function answerOf(question, asked, { hidden, affordable, step, same, least, much, needless, hole, lost, errors, equal }) {
+function answerOf(question, asked, constants) {
+  const { hidden, affordable, step, same, least, much, needless, hole, lost } = constants;
   const { said } = question, isImage = question.aim === "image", codes = question.codes.map((code) => codeAs(code, question, asked));
   const price = ({ encode, decode }) => Math.max(encode || 0, hidden) + asked.readers * Math.max(decode || 0, hidden);
   const doublings = (code) => Math.log2(price(code) / (hidden * (1 + asked.readers)));
   const loss = (code) => code.loss ?? Infinity, bits = (code) => code.bits || Infinity, tenth = (x) => (Number.isFinite(x) ? even(x * 10) / 10 : x);
-  const score = (code) => loss(code) + asked.worth * doublings(code), clearGap = (a, b) => (isImage ? Math.max(step, errors * gapError(a, b, equal)) : least);
+  const score = (code) => loss(code) + asked.worth * doublings(code), clearGap = (a, b) => (isImage ? clearImageGap(a, b, constants) : least);
   const isClearlyBetter = (one, other) => loss(other) - loss(one) >= clearGap(one, other);
   const ties = (code) => [price(code), bits(code), code.priced ? (code.encode || 0) + asked.readers * (code.decode || 0) : 0];
   const order = (code, count) => {
@@ -284,9 +288,9 @@ class Choose {
 }
 
 // A and B in the figures by which codes are chosen, the better one of each marked; images that tie are no better.
-function pairTable(question, asked, { step, errors, equal }, sides) {
-  const codes = question.codes.map((code) => codeAs(code, question, asked)), [a, b] = CODECS.map((side) => codes.find(({ codec }) => codec === sides[side]));
-  const isTie = a && b && a.image !== null && b.image !== null && Math.abs(a.image - b.image) < Math.max(step, errors * gapError(a, b, equal));
+function pairTable(question, asked, constants, sides) {
+  const [a, b] = CODECS.map((side) => question.codes.find(({ codec }) => codec === sides[side])).map((code) => code && codeAs(code, question, asked));
+  const isTie = a && b && a.image !== null && b.image !== null && Math.abs(a.image - b.image) < clearImageGap(a, b, constants);
   const cell = ([title, text, value, better], one, other) => {
     const isTied = isTie && title === IMAGE, isBest = !isTied && one && other && value(one) !== null && value(other) !== null && (better === "less" ? value(one) < value(other) : value(one) > value(other));
     return element("td", { class: isBest ? "n best" : "n" }, one ? `${text(one)}${isTied ? ", a tie" : ""}` : "");

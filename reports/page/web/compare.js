@@ -75,34 +75,34 @@ class Compare {
   }
 
   group({ about, figures }, isOpen) {
-    const differ = figures.filter(({ most, figure }) => most && !figure.hidden), equal = figures.filter(({ most }) => !most), fine = figures.filter(({ most, figure }) => most && figure.hidden);
+    const differ = figures.filter(({ most }) => most), equal = figures.filter(({ most }) => !most);
     const head = ["figure", "A", "B", "B against A", "where they differ most"].map((title, at) => element("th", { scope: "col", class: at === 1 || at === 2 ? `n side-${"ab"[at - 1]}` : "" }, title));
-    const body = element("tbody", {}, ...[...differ, ...fine].map((one) => this.line(about, one, one.cases[0], true)));
+    const body = element("tbody", {}, ...[false, true].flatMap((isHidden) => differ.filter(({ figure }) => Boolean(figure.hidden) === isHidden)).map((one) => this.line(one, one.cases[0], true)));
     const table = element("table", {}, element("thead", { class: "plain" }, element("tr", {}, ...head)), body);
     const same = equal.length ? [element("p", { class: "note" }, `Equal: ${equal.map(({ figure }) => figure.title).join(", ")}.`)] : [];
     const rows = element("a", { href: about.view === "codecs" ? `#${about.key}` : `#rows-${about.key}` }, "All rows");
-    const said = `${about.title}: ${differ.length + fine.length} of ${figures.length} figures differ`;
+    const said = `${about.title}: ${differ.length} of ${figures.length} figures differ`;
     return element("details", { class: "aside", "data-group": about.title, ...(isOpen ? { open: "" } : {}) }, element("summary", {}, said), ...(body.rows.length ? [element("div", { class: "scroll", role: "region", "aria-label": `A and B compared: ${about.title}`, tabindex: "0" }, table)] : []), ...same, element("p", { class: "tools" }, rows));
   }
 
-  line(about, one, { under, a, b, apart, said }, isFirst) {
+  line(one, { under, a, b, apart, said }, isFirst) {
     const { figure, isVerdict, cases } = one, winner = !figure.better || !apart ? "" : (apart > 0) === (figure.better === "more") ? "b" : "a";
     const cell = (side, text) => element("td", { class: winner === side ? "n best" : "n" }, text);
     const name = element("th", { scope: "row", ...(isFirst && figure.says ? { title: figure.says } : {}) }, isFirst ? figure.title : "");
     const row = element("tr", {}, name, cell("a", a), cell("b", b), element("td", { class: "apart" }, ...(isVerdict ? [] : [bar(apart, winner), said])), element("td", { class: "long" }, under));
     if (!isFirst || cases.length < 2) return row;
     const all = element("button", { type: "button", class: "pick", "aria-expanded": "false" }, `all ${cases.length}`);
-    all.addEventListener("click", () => this.unfold(about, row, all, one));
+    all.addEventListener("click", () => this.unfold(row, all, one));
     row.lastChild.append(" ", all);
     return row;
   }
 
   // The other conditions, below the first one.
-  unfold(about, row, button, one) {
+  unfold(row, button, one) {
     const isOpen = button.getAttribute("aria-expanded") === "true";
     button.setAttribute("aria-expanded", String(!isOpen));
     for (const other of one.rows ?? []) other.remove();
-    one.rows = isOpen ? [] : one.cases.slice(1).map((each) => this.line(about, one, each, false));
+    one.rows = isOpen ? [] : one.cases.slice(1).map((each) => this.line(one, each, false));
     row.after(...one.rows);
   }
 }

@@ -28,6 +28,7 @@ from normalbench.encodings.storages.storage import DITHERED, MOTION_STORAGES, RO
     [
         ("unorm:8:8,snorm:16:16,unorm:10:10:10:2", "rg8 rg16_snorm rgb10a2"),
         ("unorm:9:7", "rg8_9_7"),
+        ("10:10,5:6:5", "rgb8_10_10 rgb565"),
         ("snorm:7:7", "rg8_7_7_snorm"),
         ("unorm:12:12:7:1", "rgba8_12_12_7_1"),
         ("unorm:6:6..9:9", "rg8_6_6 rg8_7_7 rg8 rgb8_9_9"),
