@@ -83,6 +83,16 @@ READ = """(choices) => {
   const figure = document.querySelector("figure");
   const said = (node) => node.querySelector("title")?.textContent ?? node.textContent;
   const numbers = (node) => node.getAttribute("transform").match(/-?[0-9.]+(e-?[0-9]+)?/g).map(Number);
+  // Texts one over another; names at a slant stand in each other's boxes, not in each other.
+  const overlaps = (texts) => {
+    const straight = texts.filter((one) => !one.getAttribute("transform")?.includes("rotate(-30)"));
+    const boxes = straight.map((one) => [said(one), one.getBoundingClientRect()]);
+    const isOver = (one, other) => Math.min(one.right, other.right) - Math.max(one.left, other.left) > 2
+      && Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top) > 3;
+    return boxes.flatMap(([text, one], at) => {
+      return boxes.slice(at + 1).filter(([, other]) => isOver(one, other)).map(([other]) => [text, other]);
+    });
+  };
   const panel = (svg) => {
     const box = svg.querySelector("clipPath rect"), kinds = ["points", "lines", "areas", "rules", "bars", "cells"];
     const [x, y, width, height] = ["x", "y", "width", "height"].map((name) => Number(box.getAttribute(name)));
@@ -95,6 +105,7 @@ READ = """(choices) => {
       axes: all(svg, ".axis").map((axis) => all(axis, ".tick").map(tick)),
       titles: all(svg, ".title[transform]").map(said),
       points: all(svg, ".points").map((one) => numbers(one).slice(0, 2)),
+      overlaps: overlaps(all(svg, "text").filter((one) => one.textContent && getComputedStyle(one).display !== "none")),
     };
   };
   return choices.flatMap((choice) => {
@@ -151,6 +162,7 @@ class Page:
         named = {name for axis in (chart.x, chart.y) for name in (*axis.names, *(name for _, name in axis.ticks))}
         for file, page, (_, part) in zip(files, pages, chart.still(), strict=True):
             same(file, page)
+            assert page["overlaps"] == []
             stands(part, page)
             ticks = {text for axis in page["axes"] for text, *_ in axis}
             assert named <= file.ticks and named <= ticks, (named - file.ticks, named - ticks)

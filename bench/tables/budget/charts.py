@@ -15,9 +15,9 @@ NEAR_DB = 30.0
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield one chart if at least two rows can be compared and at least one of them is a proposal."""
+    """Yield one chart if at least three rows can be compared and at least one of them is a proposal."""
     usable = having(rows, "held_back_db", "contract_bytes")
-    if len(usable) > 1 and any(row["kind"] == PROPOSAL for row in usable):
+    if len(usable) > 2 and any(row["kind"] == PROPOSAL for row in usable):
         yield budget_chart(usable)
 
 
@@ -30,7 +30,7 @@ def budget_chart(rows: Sequence[Row]) -> Chart:
     best = max(row["held_back_db"] for row in rows)
     points = tuple(
         {
-            "layout": row["layout"].replace("budget_", "") if row["kind"] == PROPOSAL else row["layout"],
+            "layout": f"proposed, {row['contract_bytes']} bytes" if row["kind"] == PROPOSAL else row["layout"],
             "x": row["contract_bytes"],
             "y": row["held_back_db"],
             "worst": row["worst_db"],
@@ -41,6 +41,8 @@ def budget_chart(rows: Sequence[Row]) -> Chart:
         for row in sorted(rows, key=lambda row: row["contract_bytes"])
         if row["held_back_db"] > best - NEAR_DB or row["kind"] == PROPOSAL
     )
+    # A larger budget may give the same layout.
+    points = tuple({(point["layout"], point["x"], point["y"]): point for point in points}.values())
     ours = tuple(point for point in points if point["kind"] == PROPOSAL)
     others = tuple(point for point in points if point["kind"] != PROPOSAL)
     tips = (
@@ -60,13 +62,13 @@ def budget_chart(rows: Sequence[Row]) -> Chart:
         "by bytes per pixel of the G-buffer: a line for the proposed layouts, each chosen without the "
         "scene that judges it, and a point for each engine's layout. The figures are in the table.",
         x=Axis(title="bytes per pixel (excluding depth; missing attributes added)", ticks=_ticks(points)),
-        y=Axis(title="PSNR of the worst class (dB)"),
+        y=Axis(title="PSNR of the worst class, in scenes left out of the choice (dB)"),
         rows=points,
         marks=(
             Mark(kind=Kind.LINES, rows=ours, tips=tips),
             Mark(kind=Kind.POINTS, rows=ours, tips=tips),
             Mark(kind=Kind.POINTS, rows=others, colour=MUTED, tips=tips),
-            Mark(kind=Kind.LABELS, rows=others, colour=MUTED, text="layout"),
+            Mark(kind=Kind.LABELS, rows=points, colour=MUTED, text="layout"),
         ),
     )
 

@@ -5,33 +5,44 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from ....encodings.catalogue import LIGHT_BUFFERS
 from ....reports.charts.chart import Axis, Chart, Kind, Mark, Names, Scale, distinct
 from ..charts import having
 from ..table import Row
 
 # A logarithmic axis has no zero: what is exact is drawn at its foot.
 LEAST_ERROR = 1e-6
+# The ways to add lights, in the order of the charts.
+WAYS = ("blended", "read first")
 RANDOM = "coloured lights with falloff, worst pixel and order"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
-    """Yield the chart of the error in accumulated light by the number of lights; nothing without rows."""
+    """Yield a chart of the error in accumulated light by the number of lights, for light buffers that blend and for
+    those that are read first, so that each has its own colour; nothing without rows."""
     equal = [r for r in having(rows, "sum", "lights", "error", "bound") if r.get("experiment") == "equal"]
     random = [r for r in having(rows, "lights", "model_max", "bound") if r.get("experiment") == "random"]
     points = [*_equal_rows(equal), *_random_rows(random)]
-    if points:
-        yield lights_chart(points, distinct([*equal, *random], "light_buffer"))
+    for way in WAYS:
+        if own := [point for point in points if way_of(point["light_buffer"]) == way]:
+            yield lights_chart(own, way)
 
 
-def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
-    """Return the chart, with a line for each light buffer, a dotted line for the bound on its error, and panels for
-    equal and for coloured lights."""
+def way_of(light_buffer: str) -> str:
+    """Return how lights are added in a light buffer: blended, or read first, which adds them in the shader."""
+    known = LIGHT_BUFFERS.get(light_buffer)
+    return "read first" if known and known.blend == "read" else "blended"
+
+
+def lights_chart(points: Sequence[Row], way: str) -> Chart:
+    """Return the chart of one way to add lights, with a line for each light buffer, a dotted line for the bound on its
+    error, and panels for equal and for coloured lights."""
     looks: dict[str, Any] = {"by": ("light_buffer", "panel"), "colour": "light_buffer"}
     tips = (("light_buffer", "light buffer"), ("x", "lights"), ("error", "error"), ("bound", "bound"))
     counts = sorted({point["x"] for point in points})
     return Chart(
-        name="lights",
-        title=_finding_sentence(points),
+        name=f"lights-{way.replace(' ', '-')}",
+        title=f"Light buffers, {way}: {_finding_sentence(points)}",
         subtitle="Error by number of lights; dotted: number of blends times half a step; errors below 1e-6 are drawn "
         "at 1e-6",
         description="Error of the sum, from the model, by the number of lights, with a line for each light buffer; "
@@ -39,7 +50,7 @@ def lights_chart(points: Sequence[Row], buffers: tuple[Any, ...]) -> Chart:
         x=Axis(title="lights", scale=Scale.LOG, ticks=tuple((count, str(count)) for count in counts)),
         y=Axis(title="error in light (model)", scale=Scale.LOG),
         rows=tuple(points),
-        colour=Names("light_buffer", buffers),
+        colour=Names("light_buffer", distinct(points, "light_buffer")),
         panels=Names("panel", distinct(points, "panel")),
         marks=(
             Mark(kind=Kind.LINES, **looks, y="bound", dash="dotted"),
@@ -80,5 +91,5 @@ def _finding_sentence(points: Sequence[Row]) -> str:
     panel, most = points[-1]["panel"], max(point["x"] for point in points)
     last = sorted((p for p in points if (p["panel"], p["x"]) == (panel, most)), key=lambda p: p["y"])
     best, worst = last[0], last[-1]
-    sentence = f"Smallest error with {most} lights: {best['light_buffer']}, {best['error']:.2g}"
+    sentence = f"smallest error with {most} lights: {best['light_buffer']}, {best['error']:.2g}"
     return f"{sentence}; largest: {worst['light_buffer']}, {worst['error']:.2g}"

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ....encodings.catalogue import LIGHT_BUFFERS
 from ....encodings.codecs.light_codec import LightCodec
 from ....gbuffer.display import displayed
 from ....gbuffer.gl.device import Device
@@ -21,7 +20,7 @@ from ...subjects.codecs.kinds.named import light_codecs_named
 from ...subjects.names.light_buffers import MOST_LIGHT
 from ..table import Row, Sheet, Step, Work, each
 from . import measure
-from .charts import charts
+from .charts import charts, way_of
 from .sums import ORDERS
 from .table import LightsOptions, LightsOutputs
 
@@ -110,12 +109,10 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     errors: dict[str, list[str]] = {}
     for row in sorted(sums, key=lambda row: _errors(row)[-1]):
         if row["lights"] == most:
-            known = LIGHT_BUFFERS.get(row["light_buffer"])
-            how = "read first" if known and known.blend == "read" else "blended"
             ends = dict.fromkeys(f"{error:.1%}" for error in _errors(row))
-            errors.setdefault(how, []).append(f"{row['light_buffer']} {' to '.join(ends)}")
+            errors.setdefault(way_of(row["light_buffer"]), []).append(f"{row['light_buffer']} {' to '.join(ends)}")
     if errors:
-        parts = "; ".join(f"{how} {', '.join([*of[:NAMED], *of[NAMED:][-1:]])}" for how, of in errors.items())
+        parts = "; ".join(f"{way} {', '.join([*of[:NAMED], *of[NAMED:][-1:]])}" for way, of in errors.items())
         yield f"RMS error of {most} random lights, model to device: {parts}."
 
 

@@ -52,6 +52,10 @@ class Axis {
     return this.names ? this.names(value) + this.names.bandwidth() / 2 : this.scale(this.along(value));
   }
 
+  get small() {
+    return this.names ? clamped(this.names.bandwidth() * 0.35, 7, NAME) : NAME;
+  }
+
   ticks(many) {
     if (this.names) return this.axis.names.map((name) => [name, name]);
     const [low, high] = this.scale.domain().map(this.back), isInside = ([value]) => value >= low && value <= high;
@@ -118,7 +122,7 @@ class View {
     svg.style("touch-action", zoom.k > 1 ? "none" : "pan-y");
   }
 
-  // With room for their texts, and at the right for names at ends where enough is left.
+  // With room for their texts, and at the right for names at ends.
   axes() {
     const { svg, spec, panel, width, zoom } = this, top = (this.top = spec.top), bottom = (this.bottom = top + spec.height);
     this.y = new Axis(panel.y, bottom, top, (scale) => zoom.rescaleY(scale));
@@ -135,7 +139,7 @@ class View {
     });
     const group = (at) => set(svg.append("g"), { class: "axis", transform: `translate(${at})` });
     const across = group([0, bottom]).call(this.x.drawn(d3.axisBottom, below, top - bottom));
-    if (panel.x.names) set(across.selectAll("text"), { "text-anchor": "end", transform: "rotate(-30)translate(-4,-4)" });
+    if (panel.x.names) set(across.selectAll("text"), { "text-anchor": "end", transform: "rotate(-30)translate(-4,-4)", "font-size": this.x.small });
     // What is in a place of its own needs no line.
     const up = group([left, 0]).call(this.y.drawn(d3.axisLeft, beside, panel.y.has_words ? 0 : left - right));
     if (panel.y.names) up.selectAll("text").append("title").text((name) => name);
@@ -294,11 +298,11 @@ const DRAW = {
 
   texts(view, group, mark, rows) {
     const [away, anchor] = view.x.names ? [0, "middle"] : [4, "start"];
-    const given = { x: (row) => view.x.at(row[mark.x]) + away, y: (row) => view.y.at(row[mark.y]), dy: "0.35em", "text-anchor": anchor };
+    const given = { x: (row) => view.x.at(row[mark.x]) + away, y: (row) => view.y.at(row[mark.y]), dy: "0.35em", "text-anchor": anchor, "font-size": view.x.small };
     view.put(group, "text", mark, rows, given).text((row) => (away ? fitted(row[mark.text], view.width - given.x(row), NAME) : row[mark.text]));
   },
 
-  // Names near their points. Of what is beside the point, those without room are seen when they are A or B.
+  // Names near their points. Others without room are seen as A or B.
   labels(view, group, mark, rows) {
     const taken = Array.from(covered(view));
     for (const row of restLast(mark, rows)) {
