@@ -28,6 +28,7 @@ SEEING = (
     "own.js",
     "share.js",
     "files.js",
+    "mesh.js",
     "dropped.js",
     "chosen.js",
 )

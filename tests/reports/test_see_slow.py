@@ -11,6 +11,7 @@ import pixel_files
 import pytest
 from browsing import Laboratory, no_files
 from PIL import Image
+from written import Document
 
 # The least share of pixels that a step of octahedral 8:8 is to be seen in, and by how much of 255.
 LEAST_SHARE, VISIBLE = 0.03, 8
@@ -51,7 +52,7 @@ def opened_file(laboratory, name: str, data: bytes, said_of: str = "") -> str:
     """Choose a file and return the message about it."""
     status = laboratory.page.locator("[data-drop=said]")
     laboratory.page.locator("[data-drop=file]").set_input_files({"name": name, "mimeType": "", "buffer": data})
-    laboratory.says("[data-drop=said]", re.compile(rf"{said_of}.*( as |is not shown)"))
+    laboratory.says("[data-drop=said]", re.compile(rf"{said_of}.*( as | triangles |is not shown)"))
     laboratory.settle()
     return status.text_content()
 
@@ -198,7 +199,7 @@ def test_surroundings_from_a_file_are_reflected(laboratory, make):
 
 
 DAMAGED = {
-    "no file": (b"GIF89a", "it is not a PNG, Radiance HDR or EXR file"),
+    "no file": (b"GIF89a", "it is not a PNG, Radiance HDR, EXR or glTF file"),
     "half an EXR": (pixel_files.exr(bumps(), "none")[:4000], "the file ends too early"),
     "a packed EXR": (pixel_files.exr(bumps(), "RLE"), "its compression is RLE; use none, ZIPS or ZIP"),
     "tiles": (pixel_files.exr(bumps(), flags=0x200), "EXR with tiles is not supported; save one part as scanlines"),
@@ -234,6 +235,96 @@ def test_a_file_can_be_dropped_on_the_image(laboratory):
     data = base64.b64encode(pixel_files.exr(bumps(), names="XYZ")).decode("ascii")
     laboratory.page.evaluate(DROP, ["dropped.exr", data])
     laboratory.says("[data-drop=said]", "dropped.exr as normals, as vectors")
+
+
+def ball(how: str, path: Path) -> bytes:
+    """Return a glTF file of a sphere that is mirrored, turned, moved and twice as large."""
+    v, u = np.meshgrid(np.linspace(0, np.pi, 49), np.linspace(0, 2 * np.pi, 97), indexing="ij")
+    n = np.stack([np.sin(v) * np.cos(u), np.cos(v), -np.sin(v) * np.sin(u)], axis=-1)
+    corner = np.arange(v.size).reshape(v.shape)
+    a, b, c, d = corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]
+    document = Document()
+    mesh = document.mesh(n.reshape(-1, 3), n.reshape(-1, 3), np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3))
+    child = document.node(mesh=mesh, scale=[-2, 2, 2])
+    document.node(children=[child], rotation=[0, 0, 0.5**0.5, 0.5**0.5], translation=[1, 2, 3])
+    document.json["scenes"] = [{"nodes": [1]}]
+    return document.write(path, how).read_bytes()
+
+
+@pytest.mark.parametrize("how", ["glb", "data"])
+def test_a_dropped_gltf_is_drawn_with_its_normals(laboratory, tmp_path, how):
+    """A sphere's normal is the direction from its centre to the place, at each pixel."""
+    name = f"ball.{'glb' if how == 'glb' else 'gltf'}"
+    message = opened_file(laboratory, name, ball(how, tmp_path / name))
+    assert message == f"{name}: 9216 triangles with the model's normals; no materials or normal maps"
+    laboratory.choose(left="exact normals", right="exact normals")
+    width, height, words, camera, slope = laboratory.page.evaluate("""() => {
+      const { seen } = live.see, { to_view: axes, eye, slope } = live.see.uniforms();
+      return [seen.width, seen.height, Array.from(live.device.words(seen)), [...axes, ...eye], slope];
+    }""")
+    texels = np.array(words, np.uint32).reshape(height, width, 4)
+    axes, eye = np.array(camera[:9]).reshape(3, 3).T, np.array(camera[9:])
+    is_there = texels[..., 3] > 0
+    assert 0.1 < is_there.mean() < 0.6
+    y, x = (np.argwhere(is_there) + 0.5).T
+    ray = np.stack([(2 * x / width - 1) * slope[0], (2 * y / height - 1) * slope[1], -np.ones_like(x)], axis=-1)
+    distance = (texels[is_there][:, 3] & ~np.uint32(31)).view(np.float32)
+    place = ray / np.linalg.norm(ray, axis=-1, keepdims=True) * distance[:, None] + axes @ eye
+    normal = texels[is_there][:, :3].view(np.float32)
+    expected = place - axes @ [0, 1.2, 0]
+    assert np.linalg.norm(expected, axis=-1) == pytest.approx(1, abs=0.005)
+    assert abs(normal - expected).max() < 0.05
+
+
+BAD_MODELS = {
+    "no mesh": (b'{"asset": {"version": "2.0"}}', "it has no triangles"),
+    "no glTF": (b'{"asset": 1}', "it is not a glTF file"),
+    "no JSON": (b"glTF", "it is not a glTF file"),
+    "data beside": (
+        b'{"asset": {"version": "2.0"}, "buffers": [{"uri": "a.bin", "byteLength": 1}]}',
+        "its data is in other files; export it as .glb",
+    ),
+    "packed": (
+        b'{"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_draco_mesh_compression"]}',
+        "it needs KHR_draco_mesh_compression, which is not supported; export it without",
+    ),
+    "a loop": (
+        b'{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"children": [0]}]}',
+        "its nodes are damaged",
+    ),
+}
+
+
+def test_a_bad_gltf_is_a_one_line_error(laboratory, tmp_path):
+    whole = ball("glb", tmp_path / "ball.glb")
+    for name, (data, reason) in {**BAD_MODELS, "half": (whole[: len(whole) // 2], "the file ends too early")}.items():
+        file = f"{name}.glb"
+        assert opened_file(laboratory, file, data, said_of=file) == f"{file} is not shown: {reason}."
+
+
+def test_the_difference_from_exact_has_one_scale_and_none_for_exact_normals(laboratory):
+    laboratory.page.evaluate("live.see.preset('floor')")
+    legend, most = laboratory.page.locator("[data-see=legend]"), laboratory.page.locator("[data-see-out=most]")
+    laboratory.choose(shown="studio")
+    assert not legend.is_visible(), "it has no false colours"
+    laboratory.choose(shown="difference", left="octahedral rgba8", right="exact normals")
+    assert legend.is_visible() and most.text_content() == "16 of 255"
+    picture = laboratory.picture()
+    left, right = picture[:, : picture.shape[1] // 2 - 4], picture[:, picture.shape[1] // 2 + 4 :]
+    colours = [len(np.unique(side.reshape(-1, 3), axis=0)) for side in (left, right)]
+    assert colours[0] > 50 and colours[1] <= 2, f"{colours}: black, and the colour of 0"
+
+
+def test_the_space_bar_shows_one_codec_everywhere_and_then_the_other(laboratory):
+    laboratory.choose(left="octahedral rgba8", right="exact normals")
+    pictures = []
+    for divider in (100, 0, 100):
+        laboratory.press(".live-stage", " ")
+        assert laboratory.page.evaluate("live.see.value('divider')") == divider
+        names = laboratory.page.locator(".live-stage .name").evaluate_all("all => all.map((one) => !one.hidden)")
+        assert names == [divider == 100, divider == 0]
+        pictures.append(laboratory.picture())
+    assert (pictures[0] == pictures[2]).all() and (pictures[0] != pictures[1]).any()
 
 
 def test_an_address_restores_everything(reader_browser, report, laboratory):

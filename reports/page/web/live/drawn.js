@@ -32,6 +32,7 @@ class Renderer {
     this.device.renders(this.device.gl.RGBA32UI);
     this.colours = this.device.texture("RGBA8", 256, 1, this.scale, true);
     this.pictures = new Map();
+    for (const scene of this.scenes.values()) scene.corners = null;
     this.sides = { left: {}, right: {} };
     this.seen = this.back = null;
     this.environment = null;
@@ -110,6 +111,7 @@ class Renderer {
     const { scene } = this, { subject } = this.wanted;
     await this.device.compiled(...this.programs(scene));
     if (scene.isPicture && !this.pictures.has(subject)) await this.hang(subject, scene);
+    if (scene.triangles && !scene.corners) scene.corners = this.device.corners(scene.triangles);
     // Meanwhile it may have been taken away, or another one asked for.
     if (this.device.isLost || scene !== this.scene) return;
     const began = performance.now();
@@ -164,6 +166,7 @@ class Renderer {
   }
 
   scenery(scene) {
+    if (scene.triangles) return [null, ["mesh.frag"], { vertex: "mesh.vert" }];
     return [null, scene.isPicture ? ["ray.frag", "pixels.frag"] : ["ray.frag", "camera.frag", scene.shader, "leave.frag"]];
   }
 
@@ -208,6 +211,7 @@ class Renderer {
     if (this.seen?.key === key) return;
     this.seen = this.sized(this.seen, ...size.ints);
     this.seen.key = key;
+    if (this.scene.triangles) return void device.drawCorners(device.program(...this.scenery(this.scene)), this.seen, { to_view: axes, eye, slope, depths: MESH_DEPTHS }, this.scene.corners);
     const textures = this.scene.isPicture ? { normals: this.pictures.get(name) } : {};
     device.draw(device.program(...this.scenery(this.scene)), this.seen, uniforms, textures);
   }

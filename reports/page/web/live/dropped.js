@@ -22,10 +22,11 @@ class Dropped {
   async take(file) {
     this.field.said.textContent = `Reading ${file.name}`;
     try {
-      const found = await pixelsOfFile(file);
-      this.found = { ...found, name: file.name };
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      if (isGltf(file.name, bytes)) return this.place(file.name, trianglesOf(bytes));
+      this.found = { ...(await pixelsOfFile(file, bytes)), name: file.name };
     } catch (error) {
-      this.field.said.textContent = `${file.name} is not shown: ${error.message}.`;
+      this.field.said.textContent = `${file.name} is not shown: ${error instanceof RangeError ? SHORT : error.message}.`;
       return;
     }
     this.field.kind.value = kindOf(this.found.pixels);
@@ -33,17 +34,28 @@ class Dropped {
     this.show();
   }
 
+  // A model, in the surroundings that there are.
+  place(name, triangles) {
+    const { see, field } = this;
+    this.found = null;
+    see.add(DROPPED, sceneOfMesh({ title: name, triangles }));
+    see.go(DROPPED);
+    field.chosen.hidden = false;
+    for (const one of [field.kind, field.flipped]) one.parentNode.hidden = true;
+    field.said.textContent = `${name}: ${triangles.count / 3} triangles with the model's normals; no materials or normal maps`;
+  }
+
   show() {
     if (!this.found) return;
     const { name, width, height, full, kind: format } = this.found, kind = this.field.kind.value, { see } = this;
-    this.field.chosen.hidden = false;
+    this.field.chosen.hidden = this.field.kind.parentNode.hidden = false;
     this.field.flipped.parentNode.hidden = kind === "surroundings";
     const part = width < full[0] ? `, ${width} x ${height} of its ${full.join(" x ")} pixels` : "";
     this.field.said.textContent = `${name} as ${this.field.kind.selectedOptions[0].textContent}${part}`;
     if (kind === "surroundings") return this.surround(format);
     see.surround(null);
     const normals = normalsOf(this.found, kind === "coded", this.field.flipped.checked);
-    see.add(DROPPED, { title: name, width, height, slope: [DROPPED_SLOPE, (DROPPED_SLOPE * height) / width], normals: async () => normals });
+    see.add(DROPPED, sceneOf({ title: name, width, height, slope: [DROPPED_SLOPE, (DROPPED_SLOPE * height) / width], normals: async () => normals }));
     see.go(DROPPED);
   }
 

@@ -38,8 +38,8 @@ class Kept {
 }
 
 // The kind of a file by its first bytes, and its pixels: { width, height, pixels, full, kind }.
-async function pixelsOfFile(file) {
-  const bytes = new Uint8Array(await file.arrayBuffer()), begins = (...wanted) => wanted.every((byte, at) => bytes[at] === byte);
+async function pixelsOfFile(file, bytes) {
+  const begins = (...wanted) => wanted.every((byte, at) => bytes[at] === byte);
   try {
     if (begins(0x89, 0x50, 0x4e, 0x47)) return { ...(await readPng(file, bytes)), kind: "PNG" };
     if (begins(0x23, 0x3f)) return { ...(await readHdr(bytes)), kind: "HDR" };
@@ -47,7 +47,7 @@ async function pixelsOfFile(file) {
   } catch (error) {
     throw error instanceof RangeError ? new Error(SHORT) : error;
   }
-  throw new Error("it is not a PNG, Radiance HDR or EXR file");
+  throw new Error("it is not a PNG, Radiance HDR, EXR or glTF file");
 }
 
 async function readPng(file, bytes) {

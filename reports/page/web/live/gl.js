@@ -78,8 +78,8 @@ class LiveDevice {
 
   // A program of a codec's functions and one of the page's shaders.
   //   codec: a codec of the page's data; null for shaders that need none.
-  //   parts: names of shaders, in order; `screen.vert` is the vertex shader.
-  //   options.defines: names that are defined; options.precision: of the codec's own arithmetic.
+  //   parts: names of shaders, in order.
+  //   options.defines: names that are defined; options.precision: of the codec's own arithmetic; options.vertex: the vertex shader.
   // Kept until the context is lost. Raises an Error with the compiler's log.
   program(codec, parts, options) {
     const [key, made] = this.begun(codec, parts, options);
@@ -93,9 +93,9 @@ class LiveDevice {
   }
 
   // Begins to compile it, which does not wait for the compiler.
-  begun(codec, parts, { defines = [], precision = "highp" } = {}) {
-    const key = [codec?.label, codec?.source, precision, ...defines, ...parts].join("\0");
-    if (!this.programs.has(key)) this.programs.set(key, this.link(this.text(codec, parts, defines, precision)));
+  begun(codec, parts, { defines = [], precision = "highp", vertex = "screen.vert" } = {}) {
+    const key = [codec?.label, codec?.source, precision, vertex, ...defines, ...parts].join("\0");
+    if (!this.programs.has(key)) this.programs.set(key, this.link(this.text(codec, parts, defines, precision), vertex));
     return [key, this.programs.get(key)];
   }
 
@@ -129,9 +129,9 @@ class LiveDevice {
     return [...head, ...own, "precision highp float;", ...parts.map((name) => live.data.shaders[name])].join("\n") + "\n";
   }
 
-  link(fragment) {
+  link(fragment, name = "screen.vert") {
     const { gl } = this, program = gl.createProgram();
-    const vertex = `#version 300 es\n${live.data.shaders["screen.vert"]}`;
+    const vertex = `#version 300 es\n${live.data.shaders[name]}`;
     const shaders = [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]].map(([kind, text]) => {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, text);
@@ -231,16 +231,50 @@ class LiveDevice {
     return this.tables.get(key);
   }
 
-  // Draws one triangle over a target, or over the canvas where that is null.
+  // Corners of triangles on the GPU: three floats each for their places and normals.
+  corners({ places, normals, count }) {
+    const { gl } = this, vertices = gl.createVertexArray(), buffers = [places, normals].map(() => gl.createBuffer());
+    gl.bindVertexArray(vertices);
+    for (const [location, numbers] of [places, normals].entries()) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffers[location]);
+      gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(location);
+      gl.vertexAttribPointer(location, 3, gl.FLOAT, false, 0, 0);
+    }
+    return { vertices, buffers, count };
+  }
+
+  releaseCorners({ vertices, buffers }) {
+    this.gl.deleteVertexArray(vertices);
+    for (const buffer of buffers) this.gl.deleteBuffer(buffer);
+  }
+
+  // Draws them over a target that was cleared, the nearest in front.
+  drawCorners(made, target, uniforms, corners) {
+    const { gl } = this, { width, height, framebuffer } = target, depth = gl.createRenderbuffer();
+    gl.bindRenderbuffer(gl.RENDERBUFFER, depth);
+    gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT32F, width, height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, depth);
+    gl.clearBufferuiv(gl.COLOR, 0, new Uint32Array(4));
+    gl.clearBufferfv(gl.DEPTH, 0, [1]);
+    gl.enable(gl.DEPTH_TEST);
+    this.draw(made, target, uniforms, {}, null, corners);
+    gl.disable(gl.DEPTH_TEST);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, null);
+    gl.deleteRenderbuffer(depth);
+  }
+
+  // Draws one triangle over a target, or over the canvas where that is null; or the corners that are given.
   //   uniforms: numbers and arrays by name; a whole number of an `int` is given as { int: 3 } or { ints: [1, 2] }.
   //   textures: by the name of their samplers.
   //   scissor: [x, y, width, height] in pixels, or null for all.
-  draw({ program, places }, target, uniforms = {}, textures = {}, scissor = null) {
+  draw({ program, places }, target, uniforms = {}, textures = {}, scissor = null, { vertices = this.empty, count = 3 } = {}) {
     const { gl } = this, { width, height } = target ?? this.canvas;
     gl.bindFramebuffer(gl.FRAMEBUFFER, target?.framebuffer ?? null);
     gl.viewport(0, 0, width, height);
     gl.useProgram(program);
-    gl.bindVertexArray(this.empty);
+    gl.bindVertexArray(vertices);
     const place = (name) => {
       if (!places.has(name)) places.set(name, gl.getUniformLocation(program, name));
       return places.get(name);
@@ -255,7 +289,7 @@ class LiveDevice {
       gl.enable(gl.SCISSOR_TEST);
       gl.scissor(...scissor);
     }
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.drawArrays(gl.TRIANGLES, 0, count);
     gl.disable(gl.SCISSOR_TEST);
   }
 

@@ -2,23 +2,32 @@
 
 // What the laboratory shows: scenes, the three that have a button, and sets of normals that are pictures.
 const FULL_DEGREES = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
-const SHOWN = { lit: 0, error: 1, normals: 2, code: 3, zebra: 4, studio: 5 };
+const SHOWN = { lit: 0, error: 1, normals: 2, code: 3, zebra: 4, studio: 5, difference: 6 };
+// Full colour of a difference, in steps of 8 bits, as light.frag has it.
+const DIFFERENCE = 16;
 const RADIANS = Math.PI / 180, SLOPE = 0.62, SHAPE = 4 / 3, AS_STORED = 17;
 // Each scene's shader, the place that the camera turns around, its set of lights in reflections.frag, and where the camera is at
 // first: degrees around and above, and the distance; `high` is the slope of its upper edge. A preset also says how it is shown.
 const SCENES = {
-  bonnet: { shader: "bonnet.frag", middle: [0, 0.55, 0.35], studio: 0, camera: { around: 18, over: 30, away: 2.75 }, preset: { shown: "zebra", roughness: 0.1 } },
+  bonnet: { shader: "bonnet.frag", middle: [0, 0.55, 0.35], studio: 0, camera: { around: 18, over: 30, away: 3.5 }, preset: { shown: "zebra", roughness: 0.1 } },
   floor: { shader: "floor.frag", middle: [0, 0.25, -1], studio: 1, backdrop: 0.02, camera: { around: -8, over: 7, away: 3 }, preset: { shown: "studio", roughness: 0.12 } },
   face: { shader: "face.frag", middle: [0, 0.98, 0], studio: 2, camera: { around: -13, over: 3, away: 3 }, preset: { shown: "studio", roughness: 0.3 } },
   // As gbuffer/scenes has it: its camera looks from (0, 2.1, 8.6), 38 degrees high. Roughness is that of its materials, or more.
   studio: { shader: "studio.frag", middle: [0, 1.45, 0], studio: 3, backdrop: 0.02, exposure: 2 ** -1.5, high: Math.tan(19 * RADIANS), camera: { around: 0, over: 4.322, away: 8.625 } },
 };
+// Where a model's middle is over the ground, below which no camera goes; and how near and far it is drawn.
+const MESH_HEIGHT = 1.2, MESH_DEPTHS = [0.02, 20];
 const FIRST_SCENE = "bonnet", DROPPED = "dropped", PICTURE_CAMERA = { around: 0, over: 0, away: 3.5 };
 
 // A scene of a picture: { title, width, height, slope } and `normals`, which gives its normals, four floats a pixel, the lowest row
 // first. A camera does not move in it: it turns what is mirrored, and comes nearer.
 function sceneOf(picture) {
   return { ...picture, isPicture: true, middle: [0, 0, 0], studio: 2, camera: PICTURE_CAMERA };
+}
+
+// A scene of a reader's model: { title, triangles }.
+function sceneOfMesh(model) {
+  return { ...model, middle: [0, MESH_HEIGHT, 0], studio: 2, camera: { around: 25, over: 12, away: 2.5 } };
 }
 
 // The camera's axes and place as uniforms.

@@ -38,25 +38,33 @@ class See extends Renderer {
 
   fill() {
     for (const side of ["left", "right"]) this.control[side].append(new Option(EXACT), ...grouped(live.data.codecs.map(({ label }) => [label, label])));
-    for (const [at, scene] of live.data.scenes.entries()) this.add(String(at), { ...scene, normals: async () => unfolded(scene, await pixelsOf(scene.pixels, scene.width, scene.height)) });
+    for (const [at, scene] of live.data.scenes.entries()) this.add(String(at), sceneOf({ ...scene, normals: async () => unfolded(scene, await pixelsOf(scene.pixels, scene.width, scene.height)) }));
     const strip = this.control.strip, pen = penOf(strip);
     [strip.width, strip.height] = [256, 1];
     pen.putImageData(new ImageData(this.scale, 256), 0, 0);
   }
 
-  // A picture of normals to choose, in place of the one of that name.
-  add(name, picture) {
+  // A scene to choose, in place of the one of that name.
+  add(name, scene) {
     const { subject } = this.control, there = Array.from(subject.options).find(({ value }) => value === name);
-    this.scenes.set(name, sceneOf(picture));
-    if (there) there.textContent = picture.title;
-    else subject.append(element("option", { value: name }, picture.title));
+    this.letGo(name);
+    this.scenes.set(name, scene);
+    if (there) there.textContent = scene.title;
+    else subject.append(element("option", { value: name }, scene.title));
+    if (this.seen) this.seen.key = "";
+  }
+
+  // Frees what the GPU has of a scene.
+  letGo(name) {
+    const { corners } = this.scenes.get(name) ?? {};
+    if (corners) this.device.releaseCorners(corners);
     this.device.release(this.pictures?.get(name));
     this.pictures?.delete(name);
-    if (this.seen) this.seen.key = "";
   }
 
   remove(name) {
     Array.from(this.control.subject.options).find(({ value }) => value === name)?.remove();
+    this.letGo(name);
     this.scenes.delete(name);
   }
 
@@ -81,7 +89,13 @@ class See extends Renderer {
     }
     this.control.subject.addEventListener("input", () => this.aim(this.scene.camera));
     for (const one of this.presets) one.addEventListener("click", () => this.preset(one.dataset.preset));
-    const { line } = this.control;
+    const { line, flip } = this.control;
+    flip.addEventListener("click", () => this.flip());
+    this.stage.addEventListener("keydown", (event) => {
+      if (event.key !== " " || event.target !== this.stage) return;
+      event.preventDefault();
+      this.flip();
+    });
     line.addEventListener("pointerdown", (event) => {
       line.setPointerCapture(event.pointerId);
       event.preventDefault();
@@ -146,7 +160,12 @@ class See extends Renderer {
     const { out } = this, degrees = (name) => `${Math.round(this.value(name) * 10) / 10}°`;
     out.power.textContent = digits(2 ** this.value("power"), 4);
     out.bits.textContent = this.levels ? this.value("bits") : "as stored";
-    out.full.textContent = out.most.textContent = `${FULL_DEGREES[this.value("full")]}°`;
+    const shown = this.control.shown.value, isDifference = shown === "difference";
+    out.full.textContent = `${FULL_DEGREES[this.value("full")]}°`;
+    out.most.textContent = isDifference ? `${DIFFERENCE} of 255` : out.full.textContent;
+    // The bar of colours and the roughness are there where what is shown depends on them.
+    this.control.legend.hidden = !isDifference && shown !== "error" && !(this.value("gain") && !["normals", "code"].includes(shown));
+    this.control.roughness.disabled = !isDifference && shown !== "studio";
     out.gain.textContent = `${this.value("gain")}%`;
     out.roughness.textContent = this.value("roughness").toFixed(2);
     out.away.textContent = this.value("away").toFixed(2);
@@ -154,7 +173,11 @@ class See extends Renderer {
     for (const name of ["side", "above", "around", "over"]) out[name].textContent = degrees(name);
     for (const one of this.presets) one.setAttribute("aria-pressed", String(one.dataset.preset === this.control.subject.value));
     this.stage.style.setProperty("--at", `${this.value("divider")}%`);
-    for (const side of ["left", "right"]) this.stage.querySelector(`[data-name=${side}]`).textContent = this.control[side].value;
+    for (const [side, none] of [["left", 0], ["right", 100]]) {
+      const name = this.stage.querySelector(`[data-name=${side}]`);
+      name.textContent = this.control[side].value;
+      name.hidden = this.value("divider") === none;
+    }
     for (const follower of this.followers) follower();
   }
 
@@ -186,6 +209,12 @@ class See extends Renderer {
   divide({ clientX }) {
     const box = this.canvas.getBoundingClientRect();
     this.control.divider.value = Math.round((100 * (clientX - box.left)) / box.width);
+    this.change();
+  }
+
+  // All of the picture by the left codec, then by the right one: the same pixels, light and exposure.
+  flip() {
+    this.control.divider.value = this.value("divider") === 100 ? 0 : 100;
     this.change();
   }
 

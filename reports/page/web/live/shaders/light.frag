@@ -1,4 +1,5 @@
-// The picture that is shown of what came back, by SHOWN: lit, error, normals, code, zebra or studio, as scenes.js counts them.
+// The picture that is shown of what came back, by SHOWN: lit, error, normals, code, zebra, studio, or how far the studio's picture is
+// off, as scenes.js counts them.
 uniform highp usampler2D decoded;
 uniform float power;
 uniform float roughness;
@@ -24,6 +25,8 @@ const vec4 MATERIALS[14] = vec4[](
 const int SPHERES = 6, ROWS = 2, SHINING = 29;
 const float OWN[6] = float[](0.12, 0.3, 0.0, 0.35, 0.6, 1.0);
 const float EMITTED = 50.0;
+// Full colour of a difference, in steps of 8 bits; and the grey around a subject in zebra, which is its ground's.
+const float DIFFERENCE = 16.0, AROUND = 0.306;
 
 vec4 material_of(int number) {
     int behind = SPHERES + 9 * ROWS;
@@ -42,7 +45,7 @@ vec3 lit(vec3 base, vec3 n, vec3 v) {
     float diffuse = max(dot(n, light), 0.0), specular = pow(max(dot(n, between), 0.0), power);
     return base * (0.25 + 0.75 * diffuse) + vec3(diffuse > 0.0 ? 0.8 * specular : 0.0);
 }
-#elif SHOWN == 5
+#elif SHOWN > 4
 // All in the world's axes. `blur` is a pixel's share of the mirrored lobe's width.
 vec3 in_studio(int number, vec3 n, vec3 v, vec3 place, float blur) {
     vec4 material = material_of(number);
@@ -71,6 +74,10 @@ vec3 on_screen(vec3 x) {
 }
 #endif
 
+vec3 displayed(vec3 light) {
+    return pow(min(light, vec3(1.0)), vec3(1.0 / 2.2));
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Surface seen = surface_at(pixel);
@@ -91,16 +98,21 @@ void main() {
     made = mix(material.rgb * 0.25 + 0.02, material.rgb * 0.3 + 0.62, material.w > 0.0 ? share : 0.3);
 #else
     float blur = clamp(0.5 * length(fwidth(exact)), 1e-4, 0.2);
-    made = on_screen(seen.covered ? in_studio(seen.material, mirror, eyeward, eye + seen.view * to_view, blur) : surroundings(ray_at(pixel) * to_view, backdrop));
+    vec3 place = eye + seen.view * to_view;
+    made = on_screen(seen.covered ? in_studio(seen.material, mirror, eyeward, place, blur) : surroundings(ray_at(pixel) * to_view, backdrop));
+#if SHOWN == 6
+    vec3 off = abs(displayed(made) - displayed(on_screen(in_studio(seen.material, normalize(seen.n) * to_view, eyeward, place, blur)))) * 255.0;
+    made = false_colour(colours, max(max(off.r, off.g), off.b) / DIFFERENCE);
 #endif
 #endif
-#if SHOWN != 2 && SHOWN != 3
-    made = pow(min(made, vec3(1.0)), vec3(1.0 / 2.2));
+#endif
+#if SHOWN != 2 && SHOWN != 3 && SHOWN != 6
+    made = displayed(made);
 #endif
 #if SHOWN != 5
-    made = seen.covered ? made : vec3(0.0);
+    made = seen.covered ? made : SHOWN == 4 ? displayed(vec3(AROUND)) : vec3(0.0);
 #endif
-    bool over = gain > 0.0 && SHOWN != 2 && SHOWN != 3;
+    bool over = gain > 0.0 && SHOWN != 2 && SHOWN != 3 && SHOWN != 6;
     if (seen.covered && (SHOWN == 1 || over)) {
         vec3 error = false_colour(colours, degrees(angle_between(seen.n, n)) / full);
         made = SHOWN == 1 ? error : mix(made, error, gain);
