@@ -6,7 +6,6 @@ import base64
 import hashlib
 import itertools
 import json
-import math
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -44,8 +43,6 @@ TITLES = {view: view.capitalize() for view in View}
 MOST_CELLS, CELLS_BESIDE_MANY, MANY_CODECS = 1000, 400, 150
 # A legend has at most so many entries.
 MOST_KEYS = 40
-# More remarks than these are folded: the answer is what is read first.
-MOST_REMARKS = 2
 
 
 @dataclass(frozen=True)
@@ -129,18 +126,17 @@ def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Contai
 
 
 def _best(shown: Sequence[Row], rows: Sequence[Row], column: Column) -> Iterator[tuple[int, str]]:
-    """Yield the positions, row and column, of a column's best figures among rows with the same bits and operation;
-    none if all figures are equal or several are infinite, because they then do not show which is the best."""
+    """Yield the position, row and column, of a column's best figure among rows with the same bits and operation; none
+    if several rows share it."""
     groups: dict[Any, list[int]] = {}
     for index, row in enumerate(rows):
         if is_number(row[column.name]):
             groups.setdefault((row.get("bits"), row.get("operation")), []).append(index)
     for places in groups.values():
-        texts = {tables.text_of(shown[i][column.name]) for i in places}
         best = (max if column.better == "more" else min)(shown[i][column.name] for i in places)
         winners = [i for i in places if tables.text_of(shown[i][column.name]) == tables.text_of(best)]
-        if len(texts) > 1 and (math.isfinite(best) or len(winners) == 1):
-            yield from ((i, column.name) for i in winners)
+        if len(places) > len(winners) == 1:
+            yield winners[0], column.name
 
 
 def _cell(value: Any, numeric: bool, is_best: bool) -> Cell:
@@ -233,7 +229,8 @@ def beginning(
 ) -> dict[str, Any]:
     """Return the initial state of the page's script: all codecs, codecs A and B, and the view. A and B are the answer
     and the next codec in its table, or a user's own codec and the answer. The view is the laboratory if the page is a
-    laboratory, otherwise the view of the first measured section, with answers before all others."""
+    laboratory, the comparison if a user's own codec stands against another, and otherwise the view of the first
+    measured section, with answers before all others."""
     measured = sorted((part for part in parts if part.is_there), key=lambda part: not part.section.about.leads)
     leading = [part for part in measured if part.section.about.leads]
     answers = (table for part in leading for table in part.tables if table.said)
@@ -244,7 +241,7 @@ def beginning(
     others = [name for name in [*shown, *names] if name != mine] if mine else list(shown)
     first, second = [*([mine] if mine else []), *others, "", ""][:2]
     of_rows = measured[0].section.about.view if measured else View.DATA
-    view = View.SEE if is_laboratory else of_rows
+    view = View.SEE if is_laboratory else View.COMPARE if mine and second else of_rows
     return {"codecs": list(names), "a": first, "b": second, "view": view}
 
 
@@ -318,7 +315,6 @@ def html(
         found=run,
         home=home,
         remarks=remarks(run),
-        most_remarks=MOST_REMARKS,
         views=views(run, bool(names), bool(gallery.subjects)),
         agreement=run.agreement,
         parts=parts,

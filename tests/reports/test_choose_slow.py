@@ -1,10 +1,11 @@
 """The page's answer for a reader's constraints, which matches the answer of `pick` to the letter."""
 
 import json
+import re
 
 import numpy as np
 import pytest
-from browsing import PHONE, Opened
+from browsing import PHONE, Opened, no_paper
 from test_pictures import pick_row
 from test_pictures_slow import answered_run
 from test_report import a_run
@@ -183,12 +184,13 @@ def answered_page(tmp_path_factory):
 
 def test_constraints_change_the_answer_the_count_and_the_address(browser, answered_page):
     """The keyboard changes the constraints. The run's constraints are not in the address; a button restores them."""
-    page = Opened(browser, answered_page)
+    page = Opened(browser, answered_page, fragment="#v1/choose")
     page.says("[data-left]", "encodings are left")
     left, codes = page.page.locator("[data-left]"), page.page.locator("[data-codes] tbody tr")
     assert left.text_content() == "2 of 2 encodings are left" and codes.count() == 2
     assert page.page.locator(".reply:visible .lead").all_text_contents() == ["rg8, on sphere: take fine."]
     most = page.page.locator("[data-limit=most]")
+    page.page.locator(".menu summary").last.click()
     most.focus()
     page.page.keyboard.type("6")
     assert left.text_content() == "1 of 2 encodings are left" and codes.count() == 1
@@ -225,9 +227,10 @@ def test_constraints_change_the_answer_the_count_and_the_address(browser, answer
 
 def test_a_follows_the_answer_until_a_reader_chooses_a_codec(browser, answered_page):
     """The card and its code to copy are therefore for the answer. A reader's choice is kept in the address."""
-    page = Opened(browser, answered_page)
+    page = Opened(browser, answered_page, fragment="#v1/choose")
     page.says("[data-left]", "encodings are left")
     most, sides = page.page.locator("[data-limit=most]"), "[state.a, state.b]"
+    page.page.locator(".menu summary").last.click()
     assert page.page.evaluate(sides) == ["fine rg8", "xy rg8"]
     most.fill("6")
     assert page.page.evaluate(sides) == ["xy rg8", "fine rg8"]
@@ -244,6 +247,61 @@ def test_a_follows_the_answer_until_a_reader_chooses_a_codec(browser, answered_p
     copied.says("[data-left]", "encodings are left")
     assert copied.page.evaluate(sides) == ["fine rg8", "xy rg8"]
     copied.context.close()
+
+
+def test_the_answer_shows_reflections_cost_and_bits(browser, tmp_path):
+    """Of two thresholds, the looser is acceptable and the stricter invisible. On a phone the answer is in the upper
+    half of the screen."""
+    decided = {"encoding": "octahedral", "storage": "rg8", "rounding": "nearest", "object": "panel20", "decides": True}
+    decided |= {"environment": "lamp", "dither": "none", "frames": 1}
+    metal = [decided | {"threshold": limit, "roughness": rough} for limit, rough in (("0.1", 0.49), ("0.05", 0.62))]
+    plaster = [row | {"object": "plaster", "environment": "sun", "roughness": 0.0} for row in metal]
+    rows = [pick_row("octahedral", 0.2, 9), pick_row("spheremap", 0.3, 10)]
+    tables = {"pick": rows, "roughness": [TABLES["roughness"].empty([]) | row for row in (*plaster, *metal)]}
+    folder = a_run(tmp_path / "run", tables, request={"tables": ["pick", "roughness"]})
+    width, height = 390, 844
+    page = Opened(browser, write_report(folder, read_run(folder), folder / "report.html"), (width, height))
+    page.says("[data-tiles]", "issue slots")
+    assert page.texts("[data-tiles] dt") == ["Acceptable reflections", "Cost", "Bits"]
+    assert page.texts("[data-tiles] dd:not(.note)") == ["from roughness 0.49", "9 + 0 issue slots", "16"]
+    assert page.texts("[data-tiles] .note")[0] == (
+        "Invisible from roughness 0.62. Worst case: panel20 under lamp. "
+        "A mirror's reflection moves by at most 2\N{DEGREE SIGN}."
+    )
+    box = page.page.locator(".reply:visible .lead").bounding_box()
+    assert box["y"] + box["height"] <= height / 2, box
+    page.page.locator(".menu summary").last.click()
+    page.page.locator("[data-limit=most]").fill("1")
+    page.says(".reply:visible .lead", "no encoding qualifies")
+    assert page.texts("[data-tiles] dt") == [] and page.said == []
+    page.context.close()
+
+
+def test_the_tab_is_called_after_the_answer_or_the_codecs_that_are_shown(browser, answered_page):
+    page = Opened(browser, answered_page, fragment="#v1/choose")
+    page.says("[data-left]", "encodings are left")
+    titles = {"choose": "rg8, on sphere: fine", "compare": "fine rg8 against xy rg8", "data": "Data"}
+    for view, title in titles.items():
+        page.page.evaluate("(view) => change({ view })", view)
+        assert page.page.title() == f"{title} - normalbench"
+        count = page.page.locator("h1").evaluate_all("all => all.filter((one) => one.checkVisibility()).length")
+        assert count == 1, view
+    page.context.close()
+
+
+@no_paper
+def test_the_open_view_is_printed_on_at_most_three_pages(browser, answered_page):
+    page = Opened(browser, answered_page, fragment="#v1/choose")
+    page.says("[data-left]", "encodings are left")
+    for view, needs in (("choose", "take fine"), ("compare", "mean error"), ("data", "")):
+        page.page.evaluate("(view) => change({ view })", view)
+        page.page.wait_for_timeout(300)
+        page.page.emulate_media(media="print")
+        assert needs in page.page.locator("main").inner_text(), view
+        page.page.emulate_media(media="screen")
+        pages = len(re.findall(rb"/Type\s*/Page\b", page.page.pdf(format="A4")))
+        assert 1 <= pages <= 3, (view, pages)
+    page.context.close()
 
 
 def test_hemisphere_is_a_separate_question(browser, run, tmp_path):

@@ -65,14 +65,15 @@ ALL_AROUND = f"""([width, height]) => {{
 }}"""
 
 
-def studio_run(folder):
-    """Write a run with an answer in the scene `studio`, whose stills are of one colour."""
+def studio_run(folder, codes=CODES):
+    """Write a run with an answer in the scene `studio`, whose stills are of one colour; codes other than CODES have
+    none."""
     (folder / "images").mkdir(parents=True)
     about = {"scene": "studio", "image_db_studio": 40.0, "against": True}
-    rows = [pick_row(name, 0.2 + index / 10, 9 + index) | about for index, name in enumerate(CODES)]
+    rows = [pick_row(name, 0.2 + index / 10, 9 + index) | about for index, name in enumerate(codes)]
     for name in (*(f"{code}-rg8-final" for code in CODES), "reference"):
         Image.new("RGB", SIZE, (50, 60, 70)).save(folder / f"images/pick-studio-{name}.png")
-    write_live(codecs_named(",".join(CODES), "rg8", "nearest"), folder / "live")
+    write_live(codecs_named(",".join(codes), "rg8", "nearest"), folder / "live")
     return a_run(folder, {"pick": rows}, request={"tables": ["pick"]})
 
 
@@ -204,3 +205,37 @@ def test_without_webgl2_the_stills_stay_and_a_message_says_why(gl_browser, page_
         page.says(".proof [role=status]", f"These images are stills: {why}.")
         assert page.page.locator(".proof canvas[data-live]").count() == 0 and page.said == []
         page.context.close()
+
+
+MANY = (*CODES, "stereographic", "spherical", "equal_area_octahedral", "latitude_longitude", "xy_sign")
+
+
+def check_pairs(gl_browser, folder, count: int) -> None:
+    """Check that `count` random pairs of codes each show their own images, and that images without a still say so."""
+    from normalbench.bench.keep.runs import read_run
+    from normalbench.bench.show.report import write_report
+
+    run_folder = studio_run(folder, MANY)
+    page = Opened(gl_browser, write_report(run_folder, read_run(run_folder), run_folder / "report.html"))
+    page.page.evaluate("change({ a: 'stereographic rg8', b: 'octahedral rg8' })")
+    page.page.wait_for_selector(".proof canvas[data-live]")
+    own: dict[str, np.ndarray] = {}
+    rng = np.random.default_rng(count)
+    for _ in range(count):
+        names = [f"{MANY[place]} rg8" for place in rng.permutation(len(MANY))[:2]]
+        page.page.evaluate("([a, b]) => change({ a, b })", names)
+        shown = "(names) => viewer.pair.stills.map(({ name }) => name).join() === names.join()"
+        page.page.wait_for_function(shown, arg=names)
+        texts = page.texts(".proof button > span")[:2]
+        assert [text.split(":")[0] for text in texts] == [f"A {names[0]}", f"B {names[1]}"]
+        has_still = [name.split()[0] in CODES for name in names]
+        assert ["live, your GPU" in text for text in texts] == [not still for still in has_still]
+        for name, image in zip(names, images(page), strict=False):
+            assert (own.setdefault(name, image) == image).all(), f"{name} beside {names}"
+    assert len({image.tobytes() for image in own.values()}) == len(own) >= 2
+    assert page.said == []
+    page.context.close()
+
+
+def test_codes_without_a_still_are_drawn_live(gl_browser, tmp_path):
+    check_pairs(gl_browser, tmp_path / "run", count=10)

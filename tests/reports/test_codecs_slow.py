@@ -199,8 +199,12 @@ def test_the_list_is_filtered_and_sorted(shown):
     rows = shown.page.locator("[data-card-list] tbody tr")
     names = shown.page.evaluate("known.codecs")
     assert rows.count() == len(names) == 9
+    means = rows.locator("td:nth-child(4)").all_text_contents()
+    keys = [("only" in text, float(text.split("°")[0])) for text in means]
+    assert keys == sorted(keys) and keys[-1][0], "by error, and codes of half of the sphere last"
     shown.page.get_by_label("Filter").first.fill("spheremap")
-    assert rows.locator("visible=true").locator("th").all_text_contents() == [n for n in names if "spheremap" in n]
+    left = rows.locator("visible=true").locator("th").all_text_contents()
+    assert sorted(left) == [name for name in names if "spheremap" in name]
     shown.page.get_by_label("Filter").first.fill("")
     shown.page.locator("[data-card-list] thead button", has_text="mean").click()
     means = rows.locator("td:nth-child(4)").all_text_contents()
@@ -224,13 +228,17 @@ def test_touch_chooses_a_and_b(browser, codecs_page):
 
 
 @no_paper
-def test_one_action_leads_from_the_answer_to_the_card(browser, codecs_page):
+def test_a_page_of_ones_own_begins_with_it_and_one_click_leads_to_its_card(browser, codecs_page):
     page = Opened(browser, codecs_page)
-    button = page.page.get_by_role("button", name="Everything about A, mine rgba8")
-    assert button.bounding_box()["y"] < 900, "on the first screen"
-    button.click()
+    assert page.page.evaluate("[state.view, state.a, state.b]") == ["compare", "mine rgba8", "octahedral rg8"]
+    group = page.page.locator("[data-compare] [data-group]").first
+    group.wait_for()
+    assert group.bounding_box()["y"] < 900, "on the first screen"
+    page.page.locator("nav [data-to=codecs]").click()
     page.page.wait_for_selector('[data-card][data-ready="mine rgba8"]')
-    assert page.page.locator("#card-h").is_visible() and page.page.evaluate("state.at") == "cards"
+    assert page.page.locator("#card-h").is_visible()
+    row = page.page.locator('[data-card-list] tr[data-codec="mine rgba8"]')
+    assert row.evaluate("row => row.offsetTop >= row.closest('.scroll').scrollTop")
     page.page.locator("nav [data-to=choose]").click()
     page.page.wait_for_selector("[data-card]:empty", state="attached")
     page.page.emulate_media(media="print")

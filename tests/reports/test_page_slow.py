@@ -254,7 +254,7 @@ def test_hostile_names_are_plain_text_in_the_browser_too(browser, run, tmp_path)
     rows = [quality_row(HOSTILE), quality_row("octahedral", storage=HOSTILE)]
     image = {"encoding": HOSTILE, "storage": HOSTILE, "scene": HOSTILE, "psnr_db": 1.0, "normal_psnr_db": 2.0}
     assert run("report", str(a_run(tmp_path / "run", {"quality": rows, "render": [image]})))[0] == 0
-    page = Opened(browser, tmp_path / "run/report.html")
+    page = Opened(browser, tmp_path / "run/report.html", fragment="#v1/codecs")
     for figure in page.page.locator("figure[data-chart]").all():
         figure.scroll_into_view_if_needed()
         figure.locator(".plot svg").first.wait_for()

@@ -202,7 +202,7 @@ def test_rendered_images_and_images_next_to_the_page_are_shown(browser, run, tmp
 
 def test_images_of_an_answer_open_the_viewer_in_the_answers_scene(browser, run, tmp_path):
     assert run("report", str(answered_run(tmp_path / "run")))[0] == 0
-    page = Opened(browser, tmp_path / "run/report.html")
+    page = Opened(browser, tmp_path / "run/report.html", fragment="#v1/choose")
     page.page.wait_for_selector(".proof:not([hidden]) button:nth-child(4)")
     captions = page.texts(".proof button span")
     assert captions == [

@@ -49,6 +49,12 @@ def placed(chosen: Sequence[PickCase], rows: Sequence[Row]) -> Iterator[PickCase
     yield from (case for case in chosen if not case.is_beside and _key_of_case(case) in named)
 
 
+def eligible(chosen: Sequence[PickCase], rows: Sequence[Row]) -> Iterator[PickCase]:
+    """Yield the cases whose codec is not left out, except in other storages of the same bytes."""
+    keys = {CodecKey.of(row) for row in rows if not row["left_out"]}
+    yield from (case for case in chosen if not case.is_beside and _key_of_case(case) in keys)
+
+
 def _key_of_case(case: PickCase) -> CodecKey:
     return CodecKey(case.codec.encoding.name, case.codec.storage.name, str(case.said["rounding"]))
 

@@ -331,8 +331,8 @@ def _write(done: Measured, _: Tick) -> None:
         # It imports what writes GLSL ES, which rows alone do not need.
         from ...measures.live.kept import write_live
 
-        placed = (case for step in done.steps for case in pictures.placed(step.case.cases, done.rows))
-        write_live((case.codec for case in placed), done.outputs.live)
+        eligible = (case for step in done.steps for case in pictures.eligible(step.case.cases, done.rows))
+        write_live((case.codec for case in eligible), done.outputs.live)
 
 
 WORK = Work(

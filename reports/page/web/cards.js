@@ -2,20 +2,23 @@
 
 // Every codec in a list, and everything about A in a card, B's figures next to A's. Both are built when their view is shown, from the
 // block of cards.py and those of the tables.
-const CARD_FIGURES = 6, CARD_ROWS = 20;
+const CARD_FIGURES = 6, CARD_ROWS = 20, DOMAINS = ["sphere", "hemisphere", "view"];
 
 function ordinal(count) {
   const tens = count % 100 >= 11 && count % 100 <= 13;
   return `${count}${(!tens && ["th", "st", "nd", "rd"][count % 10]) || "th"}`;
 }
 
-// A value's place among others, and how near it is to the best: 1 is as good.
+// A value's place among others, how near it is to the best, where 1 is as good, and whether it alone is the best.
 function standing(value, values, better) {
   const sign = better === "more" ? -1 : 1, known = values.filter((one) => one !== null);
   const best = known.reduce((a, b) => (sign * b < sign * a ? b : a));
   const ratio = better === "more" ? value / best : best / value;
-  return { rank: 1 + known.filter((one) => sign * one < sign * value).length, of: known.length, share: value === best ? 1 : Math.max(0, Math.min(1, ratio || 0)) };
+  return { rank: 1 + known.filter((one) => sign * one < sign * value).length, isBest: value === best && known.length > 1 && known.filter((one) => one === best).length === 1, of: known.length, share: value === best ? 1 : Math.max(0, Math.min(1, ratio || 0)) };
 }
+
+// A name that may break into lines behind each of its words.
+const broken = (name) => name.split(/(?<=_)/).flatMap((word) => [word, element("wbr", {})]);
 
 const placeText = ({ rank, of }, bits) => (of < 2 ? "no codec to compare with" : `${ordinal(rank)} of ${of}${bits ? ` at ${bits} bits` : ""}`);
 
@@ -90,6 +93,17 @@ function usersOf(used, storage) {
   return said.join(" ") || "No known engine.";
 }
 
+// A codec's code in a language, as `normalbench code` writes it.
+const codeText = ({ pieces, codecs }, name, language) => codecs[name].texts[language].map((place) => pieces[place]).join("");
+
+// The languages of a codec's code; the one that a reader chose last is remembered, and HLSL is the first.
+function languageList({ languages, codecs }, name) {
+  const names = Object.keys(codecs[name].texts), usual = [remembered("language"), "hlsl", names[0]].find((language) => names.includes(language));
+  const list = element("select", { "data-language": "" }, ...names.map((language) => element("option", { value: language, ...(language === usual ? { selected: "" } : {}) }, languages[language])));
+  list.addEventListener("change", () => remembered("language", list.value));
+  return list;
+}
+
 class Cards {
   constructor(root, made) {
     Object.assign(this, { root, ...made, turn: 0 });
@@ -115,12 +129,13 @@ class Cards {
     const line = (name) => {
       const { mean, largest, slots, of, domain, codes } = this.codecs[name], bits = this.bits(name), aside = [of === this.usual ? "" : of, { hemisphere: "only z >= 0", view: "only facing" }[domain]].filter(Boolean).join(", ");
       const figures = [cell(bits, bitsText({ bits }), codes ? `codes of ${codes}` : ""), cell(mean, mean === undefined ? "" : degrees(mean), mean === undefined ? "" : aside), cell(largest, largest === undefined ? "" : degrees(largest)), cell(slots, String(slots ?? ""))];
-      return element("tr", { "data-codec": name }, element("th", { scope: "row" }, nameButton(name, name)), element("td", { class: "take" }, ...sideButtons(name)), ...figures);
+      return element("tr", { "data-codec": name }, element("th", { scope: "row" }, nameButton(name, ...broken(name))), element("td", { class: "take" }, ...sideButtons(name)), ...figures);
     };
     const counts = new Map();
     for (const { of } of Object.values(this.codecs)) if (of) counts.set(of, (counts.get(of) ?? 0) + 1);
     this.usual = [...counts].sort((a, b) => b[1] - a[1])[0]?.[0];
-    const names = Object.keys(this.codecs), count = `${names.length} of ${names.length} rows`;
+    const last = (value) => value ?? Infinity, keys = (name) => [DOMAINS.indexOf(this.codecs[name].domain), last(this.codecs[name].mean)];
+    const names = Object.keys(this.codecs).sort((one, other) => before(keys(one), keys(other))), count = `${names.length} of ${names.length} rows`;
     const tools = element("p", { class: "tools" }, element("label", { for: "cards-filter" }, "Filter"), element("input", { type: "search", id: "cards-filter", "data-filter": "", autocomplete: "off", spellcheck: "false" }), element("span", { role: "status", "data-count": "" }, count));
     const table = element("table", {}, element("caption", {}, element("span", {}, "Every codec")), element("thead", {}, element("tr", {}, ...heads)), element("tbody", {}, ...names.map(line)));
     const note = this.usual ? `Angles on the set ${this.usual}, unless the row names a different set. Slots: issue slots to encode and decode once.` : "";
@@ -142,8 +157,10 @@ class Cards {
     made.push(this.storages(a || b));
     this.card.replaceChildren(...made.filter(Boolean));
     this.card.dataset.ready = a || b;
-    // What an address names below the first card has moved.
+    // What an address names below the first card has moved. The list begins at A.
     if (!this.isShown && state.at) goTo(state);
+    const row = Array.from(this.list.querySelectorAll("tbody tr")).find(({ dataset }) => dataset.codec === a), scroll = row?.closest(".scroll");
+    if (!this.isShown && row) scroll.scrollTop += row.getBoundingClientRect().top - scroll.getBoundingClientRect().top - scroll.clientHeight / 3;
     this.isShown = true;
     return null;
   }
@@ -181,7 +198,7 @@ class Cards {
       const value = this.codecs[name][key], bits = this.bits(name), { of } = this.codecs[name];
       if (value === undefined) return element("td", {}, "not measured");
       const place = standing(value, this.others(bits, of, this.codecs[name].domain).map((one) => one[key] ?? null), "less");
-      return placedCell(text(value), place, placeText(place, bits), { "data-codec": name, "data-figure": key }, place.rank === 1 && place.of > 1);
+      return placedCell(text(value), place, placeText(place, bits), { "data-codec": name, "data-figure": key }, place.isBest);
     };
     const rows = figures.map(([key, title, text]) => element("tr", {}, element("th", { scope: "row" }, title), ...sides.map(([, name]) => cell(key, text, name))));
     const ofs = [...new Set(sides.map(([, name]) => this.codecs[name].of).filter(Boolean))];
@@ -228,12 +245,11 @@ class Cards {
 
   // The code to copy, as `normalbench code` writes it.
   written(name, level = "h4") {
-    const { languages, pieces, codecs } = this.code, one = codecs[name], [encoding, storage] = name.split(" ");
+    const { languages, codecs } = this.code, one = codecs[name], [encoding, storage] = name.split(" ");
     const command = `normalbench code ${encoding} --storage ${storage}`;
     const title = element(level, {}, `Code to copy: ${name}`);
     if (!one) return this.codecs[name].numbers ? element("div", {}, title, element("p", { class: "note" }, "This page does not contain its code. To write it, run ", element("code", {}, `${command} --to hlsl`), ".")) : null;
-    const select = element("select", { "data-language": "" }, ...Object.keys(one.texts).map((key) => element("option", { value: key }, languages[key])));
-    const text = () => one.texts[select.value].map((at) => pieces[at]).join(""), said = element("span", { role: "status" });
+    const select = languageList(this.code, name), text = () => codeText(this.code, name, select.value), said = element("span", { role: "status" });
     const shown = element("pre", { tabindex: "0", "data-code": "" }), fill = () => {
       shown.textContent = text();
       shown.setAttribute("aria-label", `${name} in ${languages[select.value]}`);
@@ -289,9 +305,9 @@ class Cards {
     const cells = figures.map((figure) => {
       const value = table.value(figure, row);
       if (value === null) return element("td", {});
-      const place = table.place(context, row, figure, this.codecs), isBest = place.rank === 1 && place.of > 1;
+      const place = table.place(context, row, figure, this.codecs);
       const text = table.columns[figure].kind === "float" ? textOf(value, true) : String(value);
-      return placedCell(text, place, place.of > 1 ? `${ordinal(place.rank)} of ${place.of}` : "", { "data-figure": figure, title: placeText(place, place.bits) }, isBest);
+      return placedCell(text, place, place.of > 1 ? `${ordinal(place.rank)} of ${place.of}` : "", { "data-figure": figure, title: placeText(place, place.bits) }, place.isBest);
     });
     const reasons = reasoned.map((reason) => element("td", { class: "long" }, table.value(reason, row) ?? ""));
     return element("tr", { "data-codec": name }, element("th", { scope: "row", class: `side-${side}` }, side.toUpperCase()), ...(varies.includes(true) ? [element("td", {}, keys.join(", "))] : []), ...cells, ...reasons);
@@ -348,14 +364,5 @@ if (cardsRoot) {
     if (key) once();
     // What is not seen takes no elements.
     built.then((made) => (shownCard ? made.show(state) : made.close()));
-  });
-}
-
-// From the answer to everything about A, in one step.
-const everything = document.querySelector("[data-everything]");
-if (everything) {
-  shows.push(({ a }) => {
-    everything.hidden = !a;
-    everything.textContent = `Everything about A, ${a}`;
   });
 }

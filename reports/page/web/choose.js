@@ -130,6 +130,24 @@ const COMPARED = [
 // Errors are those after the mixing that is asked for.
 const titleUnder = (title, mixing) => (mixing && title.endsWith(" error") ? `${title} after ${mixing.replaceAll(",", ", ")}` : title);
 
+// The lowest roughness at which each codec's banding is acceptable, and at which it is invisible (the looser and the stricter
+// threshold of the run), on its most demanding object.
+async function cleanRoughness() {
+  if (!document.querySelector("#data-roughness")) return new Map();
+  const { columns, count } = await dataOf("roughness"), column = Object.fromEntries(columns.map((one) => [one.name, one])), codecs = new Map();
+  const value = (name, row) => (column[name] ? valueIn(column[name], row) : null), isUsual = (name, row, usual) => [null, usual].includes(value(name, row)), height = ({ roughness }) => roughness ?? Infinity;
+  for (let row = 0; row < count; row++) {
+    if (!value("decides", row) || !isUsual("dither", row, "none") || !isUsual("frames", row, 1)) continue;
+    const [encoding, storage, rounding] = ["encoding", "storage", "rounding"].map((name) => value(name, row)), codec = [encoding, storage, rounding === "nearest" ? null : rounding].filter(Boolean).join(" ");
+    const threshold = Number(value("threshold", row)), decides = { roughness: value("roughness", row), where: `${value("object", row)} under ${value("environment", row)}` }, thresholds = codecs.get(codec) ?? new Map();
+    // Metal and plaster each have an object that decides.
+    if (!thresholds.has(threshold) || height(decides) > height(thresholds.get(threshold))) codecs.set(codec, thresholds.set(threshold, decides));
+  }
+  return new Map(Array.from(codecs, ([codec, thresholds]) => [codec, Array.from(thresholds).sort(([one], [other]) => other - one).map(([, decides]) => decides)]));
+}
+
+const fromRoughness = ({ roughness }) => (roughness === null ? "at no roughness" : `from roughness ${roughness}`);
+
 class Choose {
   constructor(root, { constants, questions, found }) {
     Object.assign(this, { root, constants, questions, title: found, answers: new Map() });
@@ -182,16 +200,18 @@ class Choose {
     const question = this.questionOf(state), asked = askedOf(question, state);
     const found = answerOf(question, asked, this.constants), isOwn = JSON.stringify(asked) !== JSON.stringify(question.asked);
     Object.assign(this, { question, found, asked });
-    this.root.querySelector("[data-pair]").replaceChildren(...this.pair(question, state));
     // The table stays under the pointer that chose a code in it.
     if (before && ["for", ...Object.keys(LIMITS)].every((key) => state[key] === before[key])) return;
     this.fill(question, asked, isOwn);
-    for (const reply of this.root.querySelectorAll("[data-question]")) reply.hidden = isOwn || reply.dataset.question !== question.where;
+    for (const part of this.root.querySelectorAll("[data-question]")) part.hidden = isOwn || part.dataset.question !== question.where;
     for (const place of this.root.querySelectorAll("[data-of]")) place.hidden = ![question.chart, question.spread].includes(place.dataset.of);
     for (const plot of this.root.querySelectorAll(`[data-of="${question.chart}"] .plot`)) this.plot(plot);
-    const own = this.root.querySelector("[data-own-reply]");
-    own.hidden = !isOwn;
-    own.replaceChildren(element("h2", { class: "lead" }, sentenceOf(question, asked, found)), element("ul", {}, ...this.said(found, asked, question).map((line) => element("li", {}, line))));
+    const [reply, reasons] = ["reply", "reasons"].map((part) => this.root.querySelector(`[data-own-${part}]`));
+    for (const part of [reply, reasons]) part.hidden = !isOwn;
+    reply.replaceChildren(element("h2", { class: "lead" }, sentenceOf(question, asked, found)));
+    reasons.replaceChildren(element("details", { class: "aside" }, element("summary", {}, "Reasons"), element("ul", {}, ...this.said(found, asked, question).map((line) => element("li", {}, line)))));
+    this.tile(found, asked, question);
+    this.offerCode(found);
     this.root.querySelector("[data-left]").textContent = `${found.fit.length} of ${found.fit.length + found.out.length} encodings are left`;
     this.root.querySelector("[data-codes]").replaceChildren(...(found.fit.length ? [this.table(found, asked)] : []), this.leftOut(found));
   }
@@ -234,6 +254,38 @@ class Choose {
       }
     }
     this.root.querySelector("[data-again]").hidden = !isOwn;
+    const uses = this.root.querySelector("[data-uses]"), folded = Object.keys(LIMITS).filter((key) => key !== "uses" && asked[LIMITS[key]] !== question.asked[LIMITS[key]]);
+    if (uses) uses.textContent = `: ${(asked.mixing || "nothing more").replaceAll(",", ", ")}`;
+    this.root.querySelector("[data-set]").textContent = folded.length ? ` (${folded.length} changed)` : "";
+  }
+
+  // What one sees, what it costs and what it takes, of the answer.
+  async tile({ best }, { family }, { families }) {
+    const place = this.root.querySelector("[data-tiles]"), turn = (this.tiling = {});
+    const clean = best && (await cleanRoughness()).get(best.codec);
+    if (turn !== this.tiling) return;
+    const moves = best && `A mirror's reflection moves by at most ${degrees(Math.min(2 * best.largest, 180))}.`;
+    const seen = clean ? ["Acceptable reflections", fromRoughness(clean[0]), `${clean.length > 1 ? `Invisible ${fromRoughness(clean.at(-1))}. ` : ""}Worst case: ${clean[0].where}. ${moves}`] : best && ["Reflections", `move by at most ${degrees(Math.min(2 * best.largest, 180))}`, `A mirror's; ${degrees(2 * best.mean)} on average.`];
+    const isKnown = best?.priced, tiles = !best ? [] : [
+      seen,
+      ["Cost", isKnown ? `${best.encode} + ${best.decode} issue slots` : "not known", isKnown ? `To encode + to decode${families[family] ? `, ${families[family]}` : ""}.` : "No compiler on the machine of this run reports it."],
+      ["Bits", String(best.bits || ""), `${best.free ? `${best.free} more bits of the texel are free` : "Uses all bits of the texel"}${best.codes ? `; its codes are worth ${best.codes} bits` : ""}.`],
+    ];
+    place.replaceChildren(...tiles.map(([title, text, note]) => element("div", {}, element("dt", {}, title), element("dd", {}, text), element("dd", { class: "note" }, note))));
+  }
+
+  // The code of the answer, in the language that a reader uses.
+  async offerCode({ best }) {
+    const place = this.root.querySelector("[data-copying]"), turn = (this.offering = {});
+    const { code } = best && document.querySelector("#data-cards") ? await dataOf("cards") : {};
+    if (turn !== this.offering) return;
+    if (!code?.codecs[best.codec]) return void place.replaceChildren();
+    const list = languageList(code, best.codec), said = element("span", { role: "status" });
+    const button = element("button", { type: "button", "data-copy": "answer", onclick: () => copy(codeText(code, best.codec, list.value), said) }), title = () => (button.textContent = `Copy ${code.languages[list.value]}`);
+    list.setAttribute("aria-label", "Language of the code");
+    list.addEventListener("change", title);
+    title();
+    place.replaceChildren(button, list, said);
   }
 
   // How many codes are left without each of the constraints.
@@ -278,12 +330,6 @@ class Choose {
     for (const code of out) reasons.set(why.get(code), [...(reasons.get(why.get(code)) ?? []), code.name]);
     const lines = Array.from(reasons, ([reason, names]) => element("p", {}, `${names.join(", ")}: ${reason}.`));
     return element("details", { class: "aside" }, element("summary", {}, `Excluded (${out.length})`), ...lines);
-  }
-
-  // A and B in the figures of the question.
-  pair(question, state) {
-    if (CODECS.some((side) => question.codes.some(({ codec }) => codec === state[side]))) return [pairTable(question, this.asked, this.constants, state)];
-    return [element("p", { class: "note" }, `Neither A nor B belongs to ${question.where}. Click an encoding below to make it A; Shift-click to make it B.`)];
   }
 }
 

@@ -63,7 +63,8 @@ class Compare {
     for (const side of CODECS) if (lacks[side].length) notes.push(`${side.toUpperCase()}, ${sides[side]}, is not in: ${lacks[side].join("; ")}.`);
     const none = groups.length ? [] : [element("p", { class: "note" }, "No table of this run has rows of both A and B.")];
     const aside = notes.length ? [element("details", { class: "aside" }, element("summary", {}, `Notes on the comparison (${notes.length})`), ...notes.map((note) => element("p", {}, note)))] : [];
-    this.root.replaceChildren(...this.lead(sides, where), ...none, ...groups.map((group, at) => this.group(group, !at)), ...aside);
+    const lead = this.lead(sides, where);
+    this.root.replaceChildren(...lead, ...none, ...groups.map((group, at) => this.group(group, !at && !lead.length)), ...aside);
     return null;
   }
 
@@ -86,7 +87,7 @@ class Compare {
   }
 
   line(one, { under, a, b, apart, said }, isFirst) {
-    const { figure, isVerdict, cases } = one, winner = !figure.better || !apart ? "" : (apart > 0) === (figure.better === "more") ? "b" : "a";
+    const { figure, isVerdict, cases } = one, winner = !figure.better || !apart || a === b ? "" : (apart > 0) === (figure.better === "more") ? "b" : "a";
     const cell = (side, text) => element("td", { class: winner === side ? "n best" : "n" }, text);
     const name = element("th", { scope: "row", ...(isFirst && figure.says ? { title: figure.says } : {}) }, isFirst ? figure.title : "");
     const row = element("tr", {}, name, cell("a", a), cell("b", b), element("td", { class: "apart" }, ...(isVerdict ? [] : [bar(apart, winner), said])), element("td", { class: "long" }, under));

@@ -21,7 +21,11 @@ if (laboratory) {
   else shows.push(({ view }) => view === laboratory.closest(".view").dataset.view && open());
 }
 if (laboratory && pair) {
-  const enliven = once(() => readLive().then(() => pair.enliven()).catch((error) => pair.say(`These images are stills: ${error.message}.`)));
+  const enliven = once(() => readLive().then(() => pair.enliven()).catch((error) => {
+    pair.isDrawable = false;
+    pair.say(`These images are stills: ${error.message}.`);
+    pair.show(state);
+  }));
   const whenIdle = window.requestIdleCallback ?? ((work) => setTimeout(work, IDLE_MS));
   let waiting = 0;
   const seen = new IntersectionObserver((entries) => {
@@ -29,6 +33,8 @@ if (laboratory && pair) {
     if (entries.at(-1).isIntersecting) waiting = setTimeout(() => whenIdle(enliven), IDLE_MS);
   });
   if (hasGpu) {
+    Object.assign(pair, { isDrawable: true, begin: enliven });
+    pair.show(state);
     seen.observe(pair.place);
     for (const touch of ["pointerdown", "focusin"]) pair.place.addEventListener(touch, enliven);
   } else pair.say("These images are stills: this browser does not support WebGL 2.");

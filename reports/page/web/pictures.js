@@ -622,15 +622,27 @@ class Pair {
     const most = Math.max(1, ...planes.map((one) => one.offBy().most));
     const views = [["final", () => "image"], ["apart", (one) => one.offBy().said]];
     const buttons = views.flatMap(([view, said]) => planes.map((one, at) => this.button(subject, sides[at], one, view, most, said(one))));
-    const missing = CODECS.filter((side) => state[side] && !sides.includes(side)).map((side) => `${side.toUpperCase()}, ${state[side]}`);
-    const scene = subject ? subject.title.replace("the answer on ", "") : this.scene;
-    const note = missing.length ? `This page has no image of ${scene} with ${missing.join(" or with ")}.` : `On ${scene}; full colour at ${most} of 255.`;
+    // What the run has no image of is drawn by the reader's GPU.
+    const missing = CODECS.filter((side) => state[side] && !sides.includes(side)), drawn = missing.filter((side) => this.mayDraw(state[side]));
+    const lacks = missing.filter((side) => !drawn.includes(side)).map((side) => `${side.toUpperCase()}, ${state[side]}`);
+    const scene = subject ? subject.title.replace("the answer on ", "") : this.scene, none = lacks.length ? [`This page has no image of ${scene} with ${lacks.join(" or with ")}.`] : [];
+    const note = [...none, ...(planes.length ? [`On ${scene}; full colour at ${most} of 255.`] : [])].join(" ");
     this.note = element("p", { class: "note" }, `${note} `, element("span", { role: "status" }, this.said));
-    this.place.replaceChildren(...buttons, this.note);
-    this.stills = planes.map((one, at) => ({ name: state[sides[at]], canvas: buttons[at].querySelector("canvas") }));
-    this.place.dataset.sides = sides.length;
+    const lively = drawn.map((side) => this.liveButton(side, state[side])), shown = [...sides, ...drawn], images = [...buttons.slice(0, sides.length), ...lively];
+    // A stands left of B, and the differences below.
+    const inOrder = CODECS.filter((side) => shown.includes(side)).map((side) => images[shown.indexOf(side)]);
+    this.place.replaceChildren(...inOrder, ...buttons.slice(sides.length), this.note);
+    this.stills = shown.map((side, at) => ({ name: state[side], canvas: images[at].querySelector("canvas") }));
+    this.place.dataset.sides = shown.length;
     this.place.hidden = false;
+    if (drawn.length) this.begin?.();
     this.live?.take();
+  }
+
+  // Whether the laboratory can draw a codec; it is taken to be able to until it is there.
+  mayDraw(name) {
+    if (!this.isDrawable) return false;
+    return typeof live === "undefined" || !live.data || (this.scene in SCENES && live.byLabel.has(name));
   }
 
   say(text) {
@@ -640,6 +652,8 @@ class Pair {
 
   // The images are drawn by the reader's GPU, where the laboratory has their scene.
   enliven() {
+    // What it cannot draw is said.
+    if (this.stills.some(({ name }) => !this.mayDraw(name))) this.show(state);
     if (!(this.scene in SCENES)) return this.say("These images are stills: the laboratory does not have their scene.");
     this.live = new Chosen(this);
     this.say("Live: drag to rotate; click, then scroll to zoom. No shadows and few lights; the differences are from the run.");
@@ -651,6 +665,12 @@ class Pair {
       this.read.set(codec, await Planes.of(subject, codec, exact));
     }
     return this.read.get(codec);
+  }
+
+  // An image without a still: no figures, because none were measured for it.
+  liveButton(side, name) {
+    const canvas = element("canvas", { "aria-hidden": "true", width: 480, height: 360 });
+    return element("button", { type: "button", onclick: () => change({ view: "see" }) }, canvas, element("span", {}, element("b", { class: `side-${side}` }, side.toUpperCase()), ` ${name}: `, element("mark", {}, "live, your GPU")));
   }
 
   button(subject, side, planes, view, scale, said) {

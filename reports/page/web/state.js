@@ -202,7 +202,6 @@ document.addEventListener("click", (event) => {
   if (name) choose(name, event.shiftKey);
 });
 // A view keeps A, B and what is asked.
-for (const button of document.querySelectorAll("[data-go]")) button.addEventListener("click", () => change({ view: button.dataset.go, at: button.dataset.at }));
 for (const link of document.querySelectorAll("nav [data-to]")) {
   link.addEventListener("click", (event) => {
     if (event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
