@@ -80,23 +80,6 @@ def test_figures_from_the_article_match_the_published_figures():
         assert by != [published.SLOTS_BY] or count == (slots and sum(slots)), (name, operation)
 
 
-@pytest.mark.parametrize(
-    "marker, row",
-    [("normalbench cost vendors", r"\| (encode|decode)"), ("normalbench cost nvidia", r"\| to (encode|decode)")],
-)
-def test_the_stated_orders_match_the_counts(marker, row):
-    """Orders run from cheap to expensive on the first GPU of each column; `and` joins equal counts."""
-    counts = kept_figures(marker, "instructions")
-    families = list(dict.fromkeys(family for _, _, family in counts))
-    orders = re.findall(rf"^{row} \| (.+) \| (.+) \| (.+) \|$", VENDORS, re.M)
-    assert len(orders) == 4
-    for operation, *columns in orders:
-        for family, names in zip(families, columns, strict=False):
-            order = [[counts[name, operation, family] for name in same.split(" and ")] for same in names.split(", ")]
-            assert order == sorted(order), (operation, family, names)
-            assert all(len(set(same)) == 1 for same in order), (operation, family, names)
-
-
 def test_every_published_figure_has_a_verdict():
     lines = TABLES["published figures"].read().lines
     assert {verdict for *_, verdict, _, _ in lines} == {"reproduced", "holds", "short by sampling", "different"}

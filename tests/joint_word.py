@@ -1,0 +1,170 @@
+"""What one word for normal and roughness gains, in which the levels an axis depend on roughness.
+
+    python -m tests.joint_word
+
+prints the table of docs/beyond-octahedral.md, in two minutes. It draws the images of `normalbench roughness` for
+octahedral codes of 3:3 to 16:16 and for small steps of roughness, then solves for the least worst error of each form:
+
+- fixed split: L levels an axis and any number of roughness codes, spaced freely;
+- joint: L is free for each code of roughness, sum of L^2 <= 2^bits;
+- prefix classes: 2 or 4 ranges of roughness by the word's leading zeros, whole bits in each.
+
+A roughness code that is w wide costs L^2 codes and is off by S w / 2 + E, with E(r, L) the displayed error of the
+normals and S(r) that of a step of roughness; so a density of S / (2 (T - E)) codes holds an error T.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+
+import numpy as np
+
+from normalbench.bench.ground.machine.devices import require_device
+from normalbench.bench.subjects.environments.environment_names import environment_named
+from normalbench.bench.tables.roughness.frames import Accumulation
+from normalbench.bench.tables.roughness.measure import Pictures, RoughnessCase
+from normalbench.encodings.catalogue import ENCODINGS
+from normalbench.encodings.codecs.codec import Codec
+from normalbench.encodings.storages.rules import by_rule
+
+OBJECTS = (("panel4", "lamp"), ("panel20", "lamp"), ("panel4", "studio"), ("panel20", "studio"), ("plaster", None))
+ROUGHNESS = (0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7, 0.85, 1)
+BITS, WORDS = tuple(range(3, 17)), (20, 24, 28, 30, 32)
+# Least roughnesses of materials: a perfect mirror, and that to which Frostbite clamps (Lagarde and de Rousiers 2014).
+LEAST = (0.0, 0.045)
+SIZE, STEPS = (400, 300), (0.004, 0.016)
+FINE = np.arange(3, 16.001, 0.05)
+LARGEST, LEAST_ERROR = 600.0, 0.05
+
+
+def measured(objects=OBJECTS, roughness=ROUGHNESS, bits=BITS, size=SIZE) -> tuple[np.ndarray, np.ndarray]:
+    """Return E of shape (roughnesses, bits) and S of shape (roughnesses,): the 99th percentile of the displayed
+    difference, of 255, by octahedral codes and for a step of roughness of 1, on the worst object."""
+    codecs = tuple(Codec(ENCODINGS["octahedral"], by_rule("unorm", (count, count))) for count in bits)
+    parts = [_of_object(name, environment, codecs, roughness, size) for name, environment in objects]
+    return np.max([part[0] for part in parts], 0), np.max([part[1] for part in parts], 0)
+
+
+def _of_object(name, environment, codecs, roughness, size) -> tuple[np.ndarray, np.ndarray]:
+    surroundings = environment_named(environment) if environment else None
+    case = RoughnessCase(codecs, name, surroundings, (0.1,), size)
+    with ExitStack() as stack:
+        pictures = Pictures(require_device(), stack, case)
+        frame = pictures.exact(1)
+        covered = frame.covered
+
+        def image(of, rough: float) -> np.ndarray:
+            return pictures.image(of, rough)[covered].astype(np.float64)
+
+        def apart(one: np.ndarray, other: np.ndarray) -> float:
+            return 255 * float(np.percentile(abs(one - other).max(-1), 99))
+
+        exact = {rough: image(frame, rough) for rough in roughness}
+        errors = np.zeros((len(roughness), len(codecs)))
+        for column, codec in enumerate(codecs):
+            with ExitStack() as opened:
+                decoded = pictures.opened(opened, codec, Accumulation())
+                errors[:, column] = [apart(image(decoded, rough), exact[rough]) for rough in roughness]
+        slopes = [
+            max(apart(image(frame, rough + way * step), exact[rough]) / step for step in STEPS)
+            for rough, way in ((rough, 1 if rough + max(STEPS) <= 1 else -1) for rough in roughness)
+        ]
+    return errors, np.array(slopes)
+
+
+class Problem:
+    """E and S between the measured roughnesses and levels: logarithms of E along both, S straight.
+
+    Args:
+        roughness, bits: where they were measured.
+        errors, slopes: E and S there.
+        least: the least roughness of materials.
+    """
+
+    def __init__(self, roughness, bits, errors, slopes, least: float = 0.0):
+        self.grid = np.linspace(least, 1, 801)
+        self.step = self.grid[1] - self.grid[0]
+        columns = np.log(np.maximum(errors, LEAST_ERROR)).T
+        along = np.array([np.interp(self.grid, roughness, column) for column in columns]).T
+        self.errors = np.exp([np.interp(FINE, bits, row) for row in along])
+        self.slopes = np.interp(self.grid, roughness, slopes)
+        self.levels = 2**FINE
+
+    def _sum(self, values: np.ndarray) -> float:
+        return float(((values[1:] + values[:-1]) / 2).sum() * self.step)
+
+    def _density(self, target: float) -> np.ndarray:
+        """Return how many codes of roughness a unit of it takes, by roughness and levels; infinite where none hold."""
+        room = target - self.errors
+        return np.where(room > 0, self.slopes[:, None] / (2 * np.maximum(room, 1e-12)), np.inf)
+
+    def joint(self, target: float) -> float:
+        """Return how many codes a word takes whose levels depend on roughness."""
+        least = (self.levels**2 * self._density(target)).min(1)
+        return self._sum(least) if np.isfinite(least).all() else np.inf
+
+    def fixed(self, target: float) -> float:
+        """Return how many codes the best fixed split takes, whose fields have whole or broken numbers of bits."""
+        density = self._density(target)
+        sums = ((density[1:] + density[:-1]) / 2).sum(0) * self.step
+        return float(np.min(self.levels**2 * np.maximum(sums, 1)))
+
+    def prefix(self, target: float, bits: int, classes: int) -> bool:
+        """Whether classes by leading zeros hold an error: of `bits` - 1, - 2, ... bits, the last two of as many."""
+        sizes = [bits - 1 - min(index, classes - 2) for index in range(classes)]
+        cells = self._density(target) * self.step
+        return any(self._reaches_end(order, cells) for order in set(itertools.permutations(sizes)))
+
+    def _reaches_end(self, order, cells: np.ndarray) -> bool:
+        start = 0
+        for size in order:
+            ends = [start]
+            for both in range(6, min(size, 32) + 1):
+                column = cells[start:, np.searchsorted(FINE, both / 2 - 1e-9)]
+                ends.append(start + int(np.searchsorted(np.cumsum(column), 2.0 ** (size - both), side="right")))
+            start = min(max(ends), len(self.grid) - 1)
+        return start == len(self.grid) - 1
+
+    def solved(self, bits: int) -> dict[str, float]:
+        """Return the least worst error of each form in a word of so many bits."""
+        count = 2.0**bits
+        return {
+            "fixed": least_error(lambda target: self.fixed(target) <= count),
+            "joint": least_error(lambda target: self.joint(target) <= count),
+            "prefix 2": least_error(lambda target: self.prefix(target, bits, 2)),
+            "prefix 4": least_error(lambda target: self.prefix(target, bits, 4)),
+        }
+
+
+def least_error(holds: Callable[[float], bool]) -> float:
+    """Return the least error that holds, by bisection of its logarithm."""
+    low, high = LEAST_ERROR, LARGEST
+    for _ in range(40):
+        middle = float(np.sqrt(low * high))
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return high
+
+
+def cells(errors: Mapping[str, float]) -> list[str]:
+    """Return the cells of the page's table for a word: the fixed split's error, and the gains in dB over it."""
+    gains = [20 * np.log10(errors["fixed"] / errors[form]) for form in ("joint", "prefix 2", "prefix 4")]
+    return [f"{errors['fixed']:.1f}", *(f"{gain:.1f}" for gain in gains)]
+
+
+def rows() -> list[list[str]]:
+    """Return the rows of the page's table: for each word its bits, and the cells for each least roughness."""
+    errors, slopes = measured()
+    problems = [Problem(ROUGHNESS, BITS, errors, slopes, least) for least in LEAST]
+    return [[str(bits), *(cell for problem in problems for cell in cells(problem.solved(bits)))] for bits in WORDS]
+
+
+def main() -> None:
+    """Print the rows of the page's table."""
+    for line in rows():
+        print("|", " | ".join(line), "|")
+
+
+if __name__ == "__main__":
+    main()
