@@ -1,4 +1,4 @@
-"""What a normal gains that is stored in the frame of the normal that depth gives, by surface, over two more bits.
+"""Measure the gain of storing a normal in the frame of the depth's normal, by surface, next to two more bits.
 
     python -m tests.relative_to_depth
 
@@ -42,7 +42,7 @@ def rays() -> np.ndarray:
 
 
 def surfaces() -> Iterator[tuple[str, np.ndarray, np.ndarray, np.ndarray]]:
-    """Yield each surface's name, distances along z (0 where nothing is seen), shading normals and triangles' normals,
+    """Yield each surface's name, distances along z (0 for the background), shading normals and triangles' normals,
     in view space."""
     ray = rays()
     for name, normal, distance in (("wall", (0.3, 0.1, 1.0), 3.0), ("mapped floor", (0, 1, 0), 1.5)):
@@ -132,7 +132,7 @@ def decoded(e: np.ndarray) -> np.ndarray:
 
 
 def stored(e: np.ndarray, bits: int, power: float = 1.0) -> np.ndarray:
-    """Return numbers after rounding to a centred code of so many bits, in which 0 is exact."""
+    """Return numbers after rounding to a centred code of `bits` bits, in which 0 is exact."""
     levels = 2 ** (bits - 1) - 1
     bent = np.copysign(abs(e) ** power, e)
     kept = np.round(bent * levels) / levels
@@ -182,7 +182,7 @@ def rows(bits: int = 8) -> Iterator[list[str]]:
 
 
 def seen_around(seen: np.ndarray) -> np.ndarray:
-    """Return whether all pixels within two of a pixel are seen, so that silhouettes do not decide."""
+    """Return whether a surface covers all pixels within two of a pixel, so that silhouettes do not decide."""
     steps = [(axis, k) for axis in (0, 1) for k in (-2, -1, 1, 2)]
     return np.logical_and.reduce([np.roll(seen, k, axis) for axis, k in steps])
 

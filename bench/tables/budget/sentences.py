@@ -81,13 +81,15 @@ def _subject(row: Row) -> str:
 
 
 def _answer(row: Row) -> str:
-    """Return two sentences: the bytes per pixel with the PSNR of the worst class and of the frame; then whether
-    errors are visible."""
+    """Return two sentences: the bytes per pixel with the PSNR of the worst class, there and in scenes that did not
+    choose the layout, and of the frame; then whether errors are visible."""
     fewer = f"{row['bytes_per_pixel']:g} bytes are enough, for " if row["bytes_per_pixel"] != row["limit"] else ""
     scene, _, surfaces = row["worst_class"].rpartition(" ")
     worst = f"{row['worst_db']:.1f} dB in the worst class ({surfaces} in {scene})"
+    is_held_back = "," in row["scene"] and row["held_back_db"] is not None
+    others = f"{row['held_back_db']:.1f} dB in scenes left out of the choice, " if is_held_back else ""
     frame = f"{row['psnr_db']:.1f} dB in the frame"
-    return f"{_subject(row)}: {fewer}{worst}, {frame}. {_visible(row['flip_p99'])}"
+    return f"{_subject(row)}: {fewer}{worst}, {others}{frame}. {_visible(row['flip_p99'])}"
 
 
 def _free(row: Row) -> str:
@@ -119,10 +121,7 @@ def _names(names: str) -> str:
 
 
 def _errors(row: Row) -> str:
-    sentences = []
-    if "," in row["scene"] and row["held_back_db"] is not None:
-        sentences.append(f"In scenes left out of the choice, the worst class scores {row['held_back_db']:.1f} dB.")
-    sentences.append(f"FLIP (99th percentile) is {row['flip_p99']:.3f}; up to {INVISIBLE:g} counts as invisible.")
+    sentences = [f"FLIP (99th percentile) is {row['flip_p99']:.3f}; up to {INVISIBLE:g} counts as invisible."]
     if row["error_from"]:
         parts = [_code(part) for part in row["error_from"].split(", ")[:NAMED]]
         sentences.append(f"The error of the worst class comes from {', '.join(parts)}.")

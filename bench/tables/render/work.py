@@ -42,7 +42,8 @@ MOSTLY_BLACK = 95.0
 MUCH_CLIPPED = 5.0
 # What `pick` measures of studio: an encoding's figures with each axis up, over many orientations.
 ONE_ORIENTATION = (
-    " in one orientation; other orientations change an encoding by several dB, so compare encodings with pick"
+    " in one orientation; other orientations change an encoding by several dB, "
+    "so compare encodings with normalbench pick"
 )
 
 
