@@ -289,6 +289,24 @@ def test_the_tab_is_called_after_the_answer_or_the_codecs_that_are_shown(browser
     page.context.close()
 
 
+def test_compare_says_how_b_differs_in_a_sentence_and_what_a_code_cannot_hold(browser, tmp_path):
+    lost = pick_row("hemi_octahedral", 30.0, 9) | {"domain": "hemisphere", "lost_percent": 50.0}
+    rows = [pick_row("octahedral", 0.2, 10), pick_row("spheremap", 0.3, 5), lost]
+    folder = a_run(tmp_path / "run", {"pick": rows}, request={"tables": ["pick"]})
+    written = write_report(folder, read_run(folder), folder / "report.html")
+    page = Opened(browser, written, fragment="#v1/compare?a=octahedral%20rg8&b=spheremap%20rg8")
+    page.says("[data-compare] .subhead", "Compared with A, B has a 50% larger mean error")
+    sentence = page.page.locator("[data-compare] .subhead").text_content()
+    assert "the same largest error, a 50% lower cost and" in sentence, sentence
+    page.page.evaluate("change({ b: 'hemi_octahedral rg8' })")
+    page.says("[data-compare] .remark", "B, hemi_octahedral: ")
+    assert page.page.locator("[data-compare] .pair-figures .best").count() == 0
+    page.page.set_viewport_size({"width": PHONE[0], "height": PHONE[1]})
+    heights = page.page.locator(".pair-figures tbody tr").evaluate_all("all => all.map((one) => one.offsetHeight)")
+    assert max(heights) < 80, f"{heights}: words stay whole on a phone"
+    page.context.close()
+
+
 @no_paper
 def test_the_open_view_is_printed_on_at_most_three_pages(browser, answered_page):
     page = Opened(browser, answered_page, fragment="#v1/choose")

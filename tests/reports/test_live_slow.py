@@ -82,7 +82,7 @@ def test_each_view_shows_what_its_name_promises(laboratory):
     assert len(np.unique(picture[:, : middle - 2].reshape(-1, 3), axis=0)) == 1, "exact normals have no error"
     before = picture
     laboratory.press("[data-see=full]", *["ArrowLeft"] * 3)
-    assert laboratory.texts("[data-see-out=most]") == ["0.05°"]
+    assert laboratory.texts("[data-see-out=most]") == ["0.05° and more"]
     assert apart(laboratory.picture()[:, middle:], before[:, middle:]) > 0.2
     laboratory.choose(shown="normals", right="xy rgba8")
     normals = laboratory.picture()[10, 10] / 255 * 2 - 1

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pixel_files
 import pytest
-from browsing import Laboratory, no_files
+from browsing import Laboratory, no_files, no_paper
 from PIL import Image
 from written import Document
 
@@ -325,6 +325,14 @@ def test_the_space_bar_shows_one_codec_everywhere_and_then_the_other(laboratory)
         assert names == [divider == 100, divider == 0]
         pictures.append(laboratory.picture())
     assert (pictures[0] == pictures[2]).all() and (pictures[0] != pictures[1]).any()
+
+
+@no_paper
+def test_the_picture_is_printed_without_its_controls(laboratory):
+    laboratory.page.emulate_media(media="print")
+    assert laboratory.page.locator("[data-live=canvas]").is_visible()
+    assert not laboratory.page.locator("[data-preset]").first.is_visible()
+    laboratory.page.emulate_media(media="screen")
 
 
 def test_an_address_restores_everything(reader_browser, report, laboratory):

@@ -2,6 +2,8 @@
 
 // Every codec in a list, and everything about A in a card, B's figures next to A's. Both are built when their view is shown, from the
 // block of cards.py and those of the tables.
+// Among a few, a place says nothing.
+const FEW = 3;
 const CARD_FIGURES = 6, CARD_ROWS = 20, DOMAINS = ["sphere", "hemisphere", "view"];
 
 function ordinal(count) {
@@ -14,7 +16,7 @@ function standing(value, values, better) {
   const sign = better === "more" ? -1 : 1, known = values.filter((one) => one !== null);
   const best = known.reduce((a, b) => (sign * b < sign * a ? b : a));
   const ratio = better === "more" ? value / best : best / value;
-  return { rank: 1 + known.filter((one) => sign * one < sign * value).length, isBest: value === best && known.length > 1 && known.filter((one) => one === best).length === 1, of: known.length, share: value === best ? 1 : Math.max(0, Math.min(1, ratio || 0)) };
+  return { rank: 1 + known.filter((one) => sign * one < sign * value).length, isBest: value === best && known.length > FEW && known.filter((one) => one === best).length === 1, of: known.length, share: value === best ? 1 : Math.max(0, Math.min(1, ratio || 0)) };
 }
 
 // A name that may break into lines behind each of its words.
@@ -238,8 +240,8 @@ class Cards {
     const codec = subject?.codecs.find((one) => one.codec === name);
     if (!codec) return [];
     const view = subject.of === "image" ? "apart" : "error", canvas = element("canvas", { role: "img", "aria-label": `${name}, ${subject.title}` });
-    pixelsOf(subject.original, subject.width, subject.height).then((exact) => Planes.of(subject, codec, exact)).then((planes) => planes.drawSmall(canvas, view, 8, view === "error", 2 * THUMB), () => canvas.remove());
-    const said = view === "error" ? `its error ${viewer.data.articles.gain}×` : "its image's difference, full colour at 8 of 255";
+    pixelsOf(subject.original, subject.width, subject.height).then((exact) => Planes.of(subject, codec, exact)).then((planes) => planes.drawSmall(canvas, view, FULL_APART, view === "error", 2 * THUMB), () => canvas.remove());
+    const said = view === "error" ? `its error ${viewer.data.articles.gain}×` : `its image's difference, full colour at ${FULL_APART} of 255`;
     return [element("figure", {}, canvas, element("figcaption", {}, `${name} on ${subject.title}: ${said}. `, element("button", { type: "button", class: "pick", onclick: () => viewer.open(subject, codec, view) }, "Look closer")))];
   }
 
@@ -286,7 +288,7 @@ class Cards {
     const notes = [constant && `In every row: ${constant}.`, ...like.map((one) => `Not measured: ${one.name}. The figures are for ${one.like}, which stores identical values.`)].filter(Boolean);
     const finding = this.finding(table, figures, lines.filter(({ name }) => name === (a || b)));
     const links = element("p", { class: "note" }, "To repeat it: ", element("code", {}, this.command(about, sides[0].like || sides[0].name)), ". ", ...(about.view === "codecs" ? [element("a", { href: `#${about.key}` }, "All codecs in this table")] : []));
-    return element("div", {}, element("h4", {}, about.title), element("p", { class: "note" }, [finding, ...notes].join(" ")), element("div", { class: "scroll", role: "region", "aria-label": about.title, tabindex: "0" }, made), ...(lines.length > CARD_ROWS ? [element("p", { class: "tools" }, more)] : []), links);
+    return element("details", { class: "aside" }, element("summary", {}, about.title), element("p", { class: "note" }, [finding, ...notes].join(" ")), element("div", { class: "scroll", role: "region", "aria-label": about.title, tabindex: "0" }, made), ...(lines.length > CARD_ROWS ? [element("p", { class: "tools" }, more)] : []), links);
   }
 
   // The rows of A and B in a context.
@@ -307,7 +309,7 @@ class Cards {
       if (value === null) return element("td", {});
       const place = table.place(context, row, figure, this.codecs);
       const text = table.columns[figure].kind === "float" ? textOf(value, true) : String(value);
-      return placedCell(text, place, place.of > 1 ? `${ordinal(place.rank)} of ${place.of}` : "", { "data-figure": figure, title: placeText(place, place.bits) }, place.isBest);
+      return placedCell(text, place, place.of > FEW ? `${ordinal(place.rank)} of ${place.of}` : "", { "data-figure": figure, title: placeText(place, place.bits) }, place.isBest);
     });
     const reasons = reasoned.map((reason) => element("td", { class: "long" }, table.value(reason, row) ?? ""));
     return element("tr", { "data-codec": name }, element("th", { scope: "row", class: `side-${side}` }, side.toUpperCase()), ...(varies.includes(true) ? [element("td", {}, keys.join(", "))] : []), ...cells, ...reasons);
@@ -315,8 +317,7 @@ class Cards {
 
   // Where it stands best, and where worst.
   finding(table, figures, lines) {
-    // Among a few, a place says nothing.
-    const places = lines.flatMap(({ context, row }) => figures.filter((figure) => table.value(figure, row) !== null).map((figure) => ({ figure, ...table.place(context, row, figure, this.codecs) }))).filter(({ of }) => of > 3);
+      const places = lines.flatMap(({ context, row }) => figures.filter((figure) => table.value(figure, row) !== null).map((figure) => ({ figure, ...table.place(context, row, figure, this.codecs) }))).filter(({ of }) => of > FEW);
     if (!places.length) return "Not ranked: too few codecs with the same bit count.";
     const by = (one) => (one.rank - 1) / (one.of - 1), best = places.reduce((x, y) => (by(y) < by(x) ? y : x)), worst = places.reduce((x, y) => (by(y) > by(x) ? y : x));
     const said = (one) => `${placeText(one, one.bits)} in ${table.columns[one.figure].title}`;

@@ -333,15 +333,17 @@ class Choose {
   }
 }
 
-// A and B in the figures by which codes are chosen, the better one of each marked; images that tie are no better.
-function pairTable(question, asked, constants, sides) {
-  const [a, b] = CODECS.map((side) => question.codes.find(({ codec }) => codec === sides[side])).map((code) => code && codeAs(code, question, asked));
-  const isTie = a && b && a.image !== null && b.image !== null && Math.abs(a.image - b.image) < clearImageGap(a, b, constants);
+const isImageTie = (a, b, constants) => a.image !== null && b.image !== null && Math.abs(a.image - b.image) < clearImageGap(a, b, constants);
+
+// A and B in the figures by which codes are chosen, the better one of each marked; images that tie are no better, and neither is a
+// code that cannot hold the normals.
+function pairTable([a, b], asked, constants) {
+  const isTie = isImageTie(a, b, constants), isFit = !a.unfit && !b.unfit;
   const cell = ([title, text, value, better], one, other) => {
-    const isTied = isTie && title === IMAGE, isBest = !isTied && one && other && value(one) !== null && value(other) !== null && (better === "less" ? value(one) < value(other) : value(one) > value(other));
-    return element("td", { class: isBest ? "n best" : "n" }, one ? `${text(one)}${isTied ? ", a tie" : ""}` : "");
+    const isTied = isTie && title === IMAGE, isBest = isFit && !isTied && value(one) !== null && value(other) !== null && (better === "less" ? value(one) < value(other) : value(one) > value(other));
+    return element("td", { class: isBest ? "n best" : "n" }, `${text(one)}${isTied ? ", a tie" : ""}`);
   };
-  const heads = CODECS.map((side, at) => element("th", { scope: "col", class: `n side-${side}` }, `${side.toUpperCase()} ${[a, b][at]?.name ?? (sides[side] ? `${sides[side]}: see another question` : "none")}`));
+  const heads = [a, b].map(({ name }, at) => element("th", { scope: "col", class: `n side-${CODECS[at]}` }, `${CODECS[at].toUpperCase()} `, ...broken(name)));
   const rows = COMPARED.map((column) => element("tr", {}, element("th", { scope: "row" }, titleUnder(column[0], asked.mixing)), cell(column, a, b), cell(column, b, a)));
   const table = element("table", { class: "pair-figures" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...heads)), element("tbody", {}, ...rows));
   return element("div", { class: "scroll", role: "region", "aria-label": "A next to B", tabindex: "0" }, table);

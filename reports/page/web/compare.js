@@ -40,6 +40,18 @@ function comparedIn(table, sides) {
   });
 }
 
+// How B differs from A, in a sentence.
+function apartText([a, b], constants) {
+  const of = (one, other, title, more, less) => {
+    if (!one || !other) return [];
+    const times = other / one;
+    return Math.abs(Math.log2(times)) < 0.03 ? [`the same ${title}`] : [times < 1 ? `a ${Math.round(100 * (1 - times))}% ${less} ${title}` : times < 2 ? `a ${Math.round(100 * (times - 1))}% ${more} ${title}` : `${Number(times.toPrecision(2))} times the ${title}`];
+  };
+  const image = a.image === null || b.image === null ? [] : isImageTie(a, b, constants) ? ["an image that ties"] : [`an image ${Math.abs(b.image - a.image).toFixed(1)} dB ${b.image > a.image ? "better" : "worse"}`];
+  const parts = [...of(a.mean, b.mean, "mean error", "larger", "smaller"), ...of(a.largest, b.largest, "largest error", "larger", "smaller"), ...of(a.once, b.once, "cost", "higher", "lower"), ...image];
+  return parts.length ? `Compared with A, B has ${parts.length > 1 ? `${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}` : parts[0]}.` : "";
+}
+
 class Compare {
   constructor(root, { codecs, tables }, choices) {
     Object.assign(this, { root, codecs, tables, choices, turn: 0 });
@@ -68,11 +80,15 @@ class Compare {
     return null;
   }
 
-  // Errors, image, cost and bits, each once, under the conditions of a question that has both.
-  lead({ a, b }, where) {
-    const { questions, constants } = this.choices ?? { questions: [] }, both = questions.filter(({ codes }) => [a, b].every((name) => codes.some(({ codec }) => codec === name)));
-    const question = both.find((one) => one.where === where) ?? both[0];
-    return question ? [pairTable(question, question.asked, constants, { a, b }), element("p", { class: "note" }, `Figures for ${question.where}.`)] : [];
+  // Errors, image, cost and bits, each once, under the conditions of a question that has both, or else of each one's own.
+  lead(sides, where) {
+    const { questions, constants } = this.choices ?? { questions: [] }, has = ({ codes }, name) => codes.some(({ codec }) => codec === name), names = CODECS.map((side) => sides[side]);
+    const inOrder = [...questions.filter((one) => one.where === where), ...questions], both = inOrder.find((one) => names.every((name) => has(one, name)));
+    const own = names.map((name) => both ?? inOrder.find((one) => has(one, name)));
+    if (!own.every(Boolean)) return [];
+    const codes = names.map((name, at) => codeAs(own[at].codes.find(({ codec }) => codec === name), own[at], own[at].asked));
+    const unfit = codes.flatMap(({ name, unfit: why }, at) => (why ? [element("p", { class: "remark" }, `${CODECS[at].toUpperCase()}, ${name}: ${why}.`)] : []));
+    return [element("p", { class: "subhead" }, ...(unfit.length ? [] : [apartText(codes, constants)])), ...unfit, pairTable(codes, own[0].asked, constants), element("p", { class: "note" }, `Figures for ${[...new Set(own.map((one) => one.where))].join(" and for ")}.`)];
   }
 
   group({ about, figures }, isOpen) {

@@ -1,9 +1,7 @@
 "use strict";
 
-const IDLE_MS = 2000;
-
 // What draws on the reader's GPU is unpacked when it is needed: the laboratory when its view is shown, and the pictures of A and B
-// when they are touched, or seen while the page is idle.
+// when they are touched, or the run has none.
 const laboratory = document.querySelector("#live"), pair = viewer?.pair, hasGpu = Boolean(window.WebGL2RenderingContext);
 const once = (work) => {
   let done = null;
@@ -26,16 +24,9 @@ if (laboratory && pair) {
     pair.say(`These images are stills: ${error.message}.`);
     pair.show(state);
   }));
-  const whenIdle = window.requestIdleCallback ?? ((work) => setTimeout(work, IDLE_MS));
-  let waiting = 0;
-  const seen = new IntersectionObserver((entries) => {
-    clearTimeout(waiting);
-    if (entries.at(-1).isIntersecting) waiting = setTimeout(() => whenIdle(enliven), IDLE_MS);
-  });
   if (hasGpu) {
     Object.assign(pair, { isDrawable: true, begin: enliven });
     pair.show(state);
-    seen.observe(pair.place);
     for (const touch of ["pointerdown", "focusin"]) pair.place.addEventListener(touch, enliven);
   } else pair.say("These images are stills: this browser does not support WebGL 2.");
 }

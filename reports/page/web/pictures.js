@@ -4,6 +4,8 @@
 // computed here from each pixel's stored bits, decoded normal and angle, or from its rendered colour.
 const SIDES = ["left", "right"];
 const ORIGINAL = -1, LACKING = -2;
+// Full colour of a difference in a small picture, in steps of 8 bits.
+const FULL_APART = 16, LIVE_TEXT = "live, your GPU";
 const normalViews = ({ gain, power }) => ({
   angle: "angle",
   error: `${gain}× |error|`,
@@ -213,8 +215,18 @@ class NoPixels {
     Object.assign(this, { width, height, exact });
   }
 
+  // Hatched, so that nobody takes the other side's picture for it.
   draw(canvas) {
     Object.assign(canvas, { width: this.width, height: this.height });
+    const pen = penOf(canvas), step = Math.max(4, Math.round(this.width / 40));
+    pen.fillStyle = "#777";
+    pen.fillRect(0, 0, this.width, this.height);
+    pen.strokeStyle = "#555";
+    for (let x = -this.height; x < this.width; x += step) {
+      pen.moveTo(x, this.height);
+      pen.lineTo(x + this.height, 0);
+    }
+    pen.stroke();
   }
 
   numbers() {
@@ -619,14 +631,13 @@ class Pair {
     const sides = subject ? CODECS.filter((side) => has(subject, state[side])) : [];
     const planes = await Promise.all(sides.map((side) => this.planes(subject, has(subject, state[side]))));
     if (turn !== this.turn) return;
-    const most = Math.max(1, ...planes.map((one) => one.offBy().most));
     const views = [["final", () => "image"], ["apart", (one) => one.offBy().said]];
-    const buttons = views.flatMap(([view, said]) => planes.map((one, at) => this.button(subject, sides[at], one, view, most, said(one))));
+    const buttons = views.flatMap(([view, said]) => planes.map((one, at) => this.button(subject, sides[at], one, view, FULL_APART, said(one))));
     // What the run has no image of is drawn by the reader's GPU.
     const missing = CODECS.filter((side) => state[side] && !sides.includes(side)), drawn = missing.filter((side) => this.mayDraw(state[side]));
     const lacks = missing.filter((side) => !drawn.includes(side)).map((side) => `${side.toUpperCase()}, ${state[side]}`);
     const scene = subject ? subject.title.replace("the answer on ", "") : this.scene, none = lacks.length ? [`This page has no image of ${scene} with ${lacks.join(" or with ")}.`] : [];
-    const note = [...none, ...(planes.length ? [`On ${scene}; full colour at ${most} of 255.`] : [])].join(" ");
+    const note = [...none, ...(planes.length ? [`On ${scene}; full colour at ${FULL_APART} of 255.`] : [])].join(" ");
     this.note = element("p", { class: "note" }, `${note} `, element("span", { role: "status" }, this.said));
     const lively = drawn.map((side) => this.liveButton(side, state[side])), shown = [...sides, ...drawn], images = [...buttons.slice(0, sides.length), ...lively];
     // A stands left of B, and the differences below.
@@ -656,7 +667,7 @@ class Pair {
     if (this.stills.some(({ name }) => !this.mayDraw(name))) this.show(state);
     if (!(this.scene in SCENES)) return this.say("These images are stills: the laboratory does not have their scene.");
     this.live = new Chosen(this);
-    this.say("Live: drag to rotate; click, then scroll to zoom. No shadows and few lights; the differences are from the run.");
+    this.say("Live: drag to rotate; click, then scroll to zoom. No shadows and few lights; differences are those of the run's images.");
   }
 
   async planes(subject, codec) {
@@ -670,7 +681,7 @@ class Pair {
   // An image without a still: no figures, because none were measured for it.
   liveButton(side, name) {
     const canvas = element("canvas", { "aria-hidden": "true", width: 480, height: 360 });
-    return element("button", { type: "button", onclick: () => change({ view: "see" }) }, canvas, element("span", {}, element("b", { class: `side-${side}` }, side.toUpperCase()), ` ${name}: `, element("mark", {}, "live, your GPU")));
+    return element("button", { type: "button", onclick: () => change({ view: "see" }) }, canvas, element("span", {}, element("b", { class: `side-${side}` }, side.toUpperCase()), ` ${name}: `, element("mark", {}, LIVE_TEXT)));
   }
 
   button(subject, side, planes, view, scale, said) {

@@ -25,9 +25,13 @@ function changed(state, change) {
   return next;
 }
 
-// What A is unless a reader chooses it: the answer, or an encoding of the user's own. And B: the next one that is not A.
+// What A is unless a reader chooses it: the answer, or an encoding of the user's own. And B: the next one that is not A, of
+// the same storage where the answer has only one.
 const usualA = (state) => (answersTo(DEFAULTS)[0] === DEFAULTS.a ? answersTo(state)[0] : null) ?? DEFAULTS.a;
-const usualB = (state) => [...answersTo(state), DEFAULTS.b, DEFAULTS.a].find((name) => name !== state.a) ?? "";
+const usualB = (state) => {
+  const answers = answersTo(state), isOther = (name) => name !== state.a, isNear = (name) => !answers.length || name.split(" ")[1] === state.a.split(" ")[1];
+  return answers.find(isOther) ?? [DEFAULTS.b, DEFAULTS.a].find((name) => isOther(name) && isNear(name)) ?? "";
+};
 
 function followed(state) {
   const next = { ...state, a: picked.has("a") ? state.a : usualA(state) };

@@ -19,6 +19,9 @@ class Chosen extends Renderer {
     this.stills = this.pair.stills.filter(({ name }) => live.byLabel.has(name));
     for (const { canvas } of this.stills) {
       canvas.dataset.live = "";
+      // Its caption was that of the run's image.
+      const caption = canvas.nextElementSibling;
+      if (!caption.querySelector("mark")) caption.lastChild.replaceWith(caption.lastChild.textContent.replace(/: image$/, ": "), element("mark", {}, LIVE_TEXT));
       this.orbit.hold(canvas, canvas.closest("button"), true);
     }
     this.change();

@@ -91,8 +91,8 @@ class See extends Renderer {
     for (const one of this.presets) one.addEventListener("click", () => this.preset(one.dataset.preset));
     const { line, flip } = this.control;
     flip.addEventListener("click", () => this.flip());
-    this.stage.addEventListener("keydown", (event) => {
-      if (event.key !== " " || event.target !== this.stage) return;
+    document.addEventListener("keydown", (event) => {
+      if (event.key !== " " || !this.stage.checkVisibility() || event.target.closest?.("input, select, textarea, button, summary, a")) return;
       event.preventDefault();
       this.flip();
     });
@@ -162,7 +162,7 @@ class See extends Renderer {
     out.bits.textContent = this.levels ? this.value("bits") : "as stored";
     const shown = this.control.shown.value, isDifference = shown === "difference";
     out.full.textContent = `${FULL_DEGREES[this.value("full")]}°`;
-    out.most.textContent = isDifference ? `${DIFFERENCE} of 255` : out.full.textContent;
+    out.most.textContent = isDifference ? `${DIFFERENCE} of 255` : `${out.full.textContent} and more`;
     // The bar of colours and the roughness are there where what is shown depends on them.
     this.control.legend.hidden = !isDifference && shown !== "error" && !(this.value("gain") && !["normals", "code"].includes(shown));
     this.control.roughness.disabled = !isDifference && shown !== "studio";

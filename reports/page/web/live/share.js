@@ -63,6 +63,7 @@ class Share {
       this.field.link.value = link;
       this.field.link.parentNode.hidden = false;
       await copy(link, this.field.said);
+      if (this.see.control.subject.value === DROPPED) this.field.said.textContent += `, without ${this.see.scene.title}: a link has no files`;
     } catch (error) {
       this.field.said.textContent = `Not shared: ${error.message}.`;
     }
@@ -116,12 +117,15 @@ class Share {
     const made = element("canvas", { width, height: height + bar }), pen = made.getContext("2d"), at = Math.round((width * see.value("divider")) / 100);
     pen.drawImage(canvas, 0, 0);
     pen.fillStyle = INK;
-    pen.fillRect(at - 1, 0, 2, height);
+    const isWhole = { left: at > 0, right: at < width };
+    if (isWhole.left && isWhole.right) pen.fillRect(at - 1, 0, 2, height);
     pen.fillStyle = GROUND;
     pen.fillRect(0, height, width, bar);
     pen.fillStyle = INK;
     pen.font = `${size}px system-ui, sans-serif`;
     for (const [side, x, align] of [["left", size, "left"], ["right", width - size, "right"]]) {
+      // What is not in the picture has no figures below it.
+      if (!isWhole[side]) continue;
       pen.textAlign = align;
       for (const [line, text] of (await this.lines(side)).entries()) pen.fillText(text, x, height + (1.5 + 1.5 * line) * size, width / 2 - 2 * size);
     }
