@@ -41,10 +41,7 @@ MAX_FRAMES = 1000
 MOSTLY_BLACK = 95.0
 MUCH_CLIPPED = 5.0
 # What `pick` measures of studio: an encoding's figures with each axis up, over many orientations.
-ONE_ORIENTATION = (
-    " in one orientation; other orientations change an encoding by several dB, "
-    "so compare encodings with normalbench pick"
-)
+ONE_ORIENTATION = " in one orientation, which does not rank encodings; normalbench pick does"
 
 
 def layouts(options: RenderOptions) -> list[Layout]:
