@@ -30,7 +30,7 @@ SHAPES = (
 # Lengths of strokes and gaps; an empty one is a solid line.
 DASHES: tuple[tuple[float, ...], ...] = ((), (5, 3), (1, 2), (6, 2, 1, 2), (1, 4), (7, 2, 1, 2, 1, 2), (9, 3))
 # Colours without a name: of text and axes, of what is beside the point, and of the rest, which others stand out from.
-INK, MUTED, FAINT = "ink", "muted", "faint"
+INK, MUTED, FAINT, PAPER = "ink", "muted", "faint", "paper"
 # Where counts are marked on their axis, which is logarithmic beyond the first few.
 COUNTS, LINEAR_TO = (0, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000), 8
 # Pixels of a page that a line of names takes, and that a chart without names is high.
@@ -190,7 +190,8 @@ class Mark:
         rows: the mark's own rows; None for the chart's rows.
         x, y, x2, y2: the fields that contain its positions.
         text: the field that contains the text of texts, labels and line ends.
-        colour: INK, MUTED, FAINT, the field of the chart's colours, or a field that contains colours.
+        colour: INK, MUTED, FAINT, PAPER (for text on a colour), the field of the chart's colours, or a field that
+            contains colours.
         shape: for points, one of SHAPES or the field of the chart's shapes.
         dash: for lines, "solid", "dashed", "dotted" or the field of the chart's dashes.
         by: the fields that distinguish lines, areas and line ends.

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from .chart import DASHES, FAINT, INK, MUTED, SHAPES, Axis, Chart, Mark, Names, Row, Scale, Shades
+from .chart import DASHES, FAINT, INK, MUTED, PAPER, SHAPES, Axis, Chart, Mark, Names, Row, Scale, Shades
 
 # How many letters of a name a chart has room for.
 LONGEST = 48
-ROLES = MappingProxyType({INK: "#000000", MUTED: "#777777", FAINT: "#AAAAAA"})
+ROLES = MappingProxyType({INK: "#000000", MUTED: "#777777", FAINT: "#AAAAAA", PAPER: "#FFFFFF"})
 STROKES: Mapping[str, Any] = MappingProxyType({"solid": "-", "dashed": (0, (5, 4)), "dotted": (0, (1, 3))})
 MARKERS = MappingProxyType(dict(zip((*SHAPES, "tick"), "osD^vP<>*X|", strict=True)))
 # Perceptually uniform, and the same order to those who do not see all colours.

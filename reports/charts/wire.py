@@ -23,6 +23,7 @@ from .chart import (
     INK,
     LINEAR_TO,
     MUTED,
+    PAPER,
     SHAPES,
     Axis,
     Chart,
@@ -43,7 +44,7 @@ Spec = dict[str, Any]
 # The package that carries the library, and where in it.
 PACKAGE, LIBRARY = "mpld3", "js/d3.v5.min.js"
 # Colours of page.css. Beside a point, a name has to be read: FAINT is for what has none.
-ROLES = MappingProxyType({role: f"var(--{role})" for role in (INK, MUTED, FAINT)})
+ROLES = MappingProxyType({role: f"var(--{role})" for role in (INK, MUTED, FAINT, PAPER)})
 STROKES: Mapping[str, Sequence[float]] = MappingProxyType({"solid": (), "dashed": (5, 4), "dotted": (1, 3)})
 # Shapes of points as paths, in a square from -1 to 1.
 PATHS = MappingProxyType(

@@ -1,20 +1,81 @@
-"""The chart of budgets: the PSNR of the worst class by bytes per pixel, with engines' layouts as points."""
+"""The charts of budgets: the bits of each proposed layout, and the PSNR of the worst class by bytes per pixel."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
 
-from ....reports.charts.chart import MUTED, Axis, Chart, Kind, Mark
+from ....gbuffer.layouts.words import LayoutError, all_placed, targets_of
+from ....reports.charts.chart import MUTED, PAPER, Axis, Chart, Kind, Mark, Names, Scale, distinct
 from ..charts import having
 from ..table import Row
 from .table import PROPOSAL
 
 # Layouts that are farther below the proposals are not drawn: they would press the others together.
 NEAR_DB = 30.0
+# Bits at which the axis of a target has ticks, and pixels that a target takes.
+BIT_TICKS, TARGET_HEIGHT = (0, 8, 16, 24, 32, 48, 64, 96, 128), 34
+TIPS = (("attribute", "attribute"), ("bits", "bits"))
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:
+    """Yield a chart of the bits of each proposal, and the chart of `plotted`."""
+    proposals = {row["targets"]: row for row in rows if row["kind"] == PROPOSAL and row["targets"]}
+    fields = {text: _fields(row) for text, row in proposals.items()}
+    # An attribute has the same colour in each chart.
+    names = distinct([field for of in fields.values() for field in of], "attribute")
+    for text, row in proposals.items():
+        if fields[text]:
+            yield bit_chart(row, fields[text], names)
+    yield from plotted(rows)
+
+
+def _fields(row: Row) -> list[Row]:
+    """Return the fields of a proposal's targets with their bits; none if its text is not that of a layout."""
+    fields = []
+    try:
+        for index, target in enumerate(targets_of(row["targets"])):
+            sizes = target.storage.bits
+            for word in all_placed(row["layout"], index, target):
+                start = word.first if word.bits else sum(sizes[: word.first])
+                bits = word.bits or sizes[word.first]
+                field = {"target": f"{index}: {target.format}", "bits": bits, "x": start, "x2": start + bits}
+                fields.append(field | {"attribute": word.label or word.component.partition(".")[0]})
+    except LayoutError:
+        return []
+    return fields
+
+
+def bit_chart(row: Row, fields: Sequence[Row], names: tuple[str, ...]) -> Chart:
+    """Return the chart of a proposal's bits, with a bar for each target.
+
+    Args:
+        row: the proposal.
+        fields: its fields.
+        names: attributes, in the order of their colours.
+    """
+    totals = {name: sum(field["bits"] for field in fields if field["attribute"] == name) for name in names}
+    largest = sorted(filter(totals.get, totals), key=totals.__getitem__, reverse=True)
+    wide, lines = max(field["x2"] for field in fields), distinct(fields, "target")
+    return Chart(
+        name=f"layout-{row['contract_bytes']:g}",
+        title=f"{row['contract_bytes']:g} bytes: {', '.join(f'{name} {totals[name]} bits' for name in largest)}",
+        subtitle="Bits of each render target, the most significant first",
+        description="A bar for each render target, divided by attribute, with the number of bits. The encodings are in "
+        "the table.",
+        x=Axis(title="bit", domain=(0.0, float(wide)), ticks=tuple((float(t), str(t)) for t in BIT_TICKS if t <= wide)),
+        y=Axis(title="", scale=Scale.NAMES, names=lines),
+        rows=tuple(fields),
+        colour=Names("attribute", names),
+        height=TARGET_HEIGHT * len(lines),
+        marks=(
+            Mark(kind=Kind.BARS, x="x", x2="x2", y="target", colour="attribute", tips=TIPS),
+            Mark(kind=Kind.TEXTS, y="target", text="bits", colour=PAPER),
+        ),
+    )
+
+
+def plotted(rows: Sequence[Row]) -> Iterator[Chart]:
     """Yield one chart if at least three rows can be compared and at least one of them is a proposal."""
     usable = having(rows, "held_back_db", "contract_bytes")
     if len(usable) > 2 and any(row["kind"] == PROPOSAL for row in usable):

@@ -9,7 +9,7 @@ from ...ground.machine.devices import require_device, require_jax
 from ...ground.output.errors import tell
 from ...ground.output.writing import check_folder, write_text
 from ..table import Measured, Row, Sheet, Step, Tick, Work
-from .charts import charts
+from .charts import charts, plotted
 from .contract import IN_LIGHT, as_known
 from .measure import in_order, measure
 from .question import question
@@ -123,4 +123,5 @@ WORK = Work(
     failures=_failures,
     write=_write,
     charts=charts,
+    plotted=lambda done: plotted(done.rows),
 )

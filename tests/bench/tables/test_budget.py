@@ -15,6 +15,7 @@ from normalbench.bench.measures.metrics.totals import psnr_db
 from normalbench.bench.tables.budget import attributes as held
 from normalbench.bench.tables.budget import changes
 from normalbench.bench.tables.budget.bins import BINS, WEBGPU, WEBGPU_BYTES, webgpu_cost
+from normalbench.bench.tables.budget.charts import charts
 from normalbench.bench.tables.budget.contract import KNOWN
 from normalbench.bench.tables.budget.measure import Judged
 from normalbench.bench.tables.budget.own import Own, own
@@ -389,6 +390,20 @@ def test_a_run_measures_a_budget_unless_it_names_scenes():
     assert TABLE in chosen_tables(("all",), {"count": 4096}) and usual.bytes == ("12", "16")
     assert TABLE not in chosen_tables(("all",), {"scene": ("room",)})
     assert chosen_tables(("budget",), {"scene": ("studio",)}) == [TABLE]
+
+
+def test_the_chart_of_a_layout_has_all_bits_of_its_targets():
+    text = (
+        "rgba8: normal.x:10 normal.y:10 square_root(roughness):6 metallic:3 linear:0.09(f0):3; rg16f: motion.x motion.y"
+    )
+    row = TABLE.empty([]) | {"kind": "proposal", "targets": text, "layout": "budget_8", "contract_bytes": 8}
+    (chart,) = charts([row])
+    assert [(field["attribute"], field["x"], field["x2"]) for field in chart.rows] == [
+        *(("normal", 0, 10), ("normal", 10, 20), ("roughness", 20, 26), ("metallic", 26, 29), ("f0", 29, 32)),
+        *(("motion", 0, 16), ("motion", 16, 32)),
+    ]
+    assert chart.title == "8 bytes: motion 32 bits, normal 20 bits, roughness 6 bits, metallic 3 bits, f0 3 bits"
+    assert list(charts([row | {"targets": "rgba8: of_another_version"}])) == []
 
 
 def test_a_change_that_gains_nothing_is_not_suggested():
