@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 from ...encodings.catalogue import is_in_catalogue
@@ -25,6 +26,9 @@ OF_CODECS = (
     *(f"encodings/codecs/{name}.py" for name in ("codec", "encoding")),
     *(f"encodings/storages/{name}.py" for name in ("storage", "rounding", "rules")),
 )
+# CPython 3.11 counts the depth of all threads' syntax trees together, and may then raise SystemError
+# (python/cpython#106905).
+_ONE_PARSES = Lock()
 
 
 @dataclass(frozen=True)
@@ -56,7 +60,8 @@ class Recorded:
 @cache
 def code_of(path: Path) -> str:
     """Return the dump of a module's syntax tree, without comments and docstrings."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    with _ONE_PARSES:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
     for node in _documented(tree):
         node.body = node.body[1:] or [ast.Pass()]
     return ast.dump(tree)

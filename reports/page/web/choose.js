@@ -322,7 +322,8 @@ class Choose {
       return element("tr", { "data-codec": code.codec }, element("th", { scope: "row" }, nameButton(code.codec, code.name)), ...COMPARED.map(([, text]) => element("td", { class: "n" }, text(code))), ratio);
     });
     const table = element("table", {}, element("caption", {}, element("span", {}, "Eligible encodings, ranked by error and cost")), element("thead", { class: "plain" }, element("tr", {}, ...heads)), element("tbody", {}, ...rows));
-    return element("div", { class: "scroll", role: "region", "aria-label": "Eligible encodings", tabindex: "0" }, table);
+    const note = element("p", { class: "note" }, `Memory traffic hides ${this.constants.hidden} issue slots per pass: up to there, a cost counts the same.`);
+    return element("div", {}, element("div", { class: "scroll", role: "region", "aria-label": "Eligible encodings", tabindex: "0" }, table), note);
   }
 
   leftOut({ out, why }) {

@@ -212,9 +212,11 @@ class See extends Renderer {
     this.change();
   }
 
-  // All of the picture by the left codec, then by the right one: the same pixels, light and exposure.
+  // All of the picture by the left codec, then by the right one, then both: the same pixels, light and exposure.
   flip() {
-    this.control.divider.value = this.value("divider") === 100 ? 0 : 100;
+    const divider = this.value("divider"), isSplit = divider > 0 && divider < 100;
+    if (isSplit) this.split = divider;
+    this.control.divider.value = isSplit ? 100 : divider ? 0 : this.split ?? 50;
     this.change();
   }
 
