@@ -216,7 +216,7 @@ def _called(row: Row) -> str:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    names = ("encoding", "storage", "psnr_db", "rank", "normal_psnr_db", "normal_rank")
+    names = ("encoding", "storage", "psnr_db", "normal_psnr_db")
     groups: dict[tuple, list[Row]] = {}
     for row in rows:
         if row["psnr_db"] is not None:
